@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco {
+
+/// What a receive found.
+struct Received {
+  Flow flow{Flow::None};
+  std::size_t octets{0};             ///< of the buffer that were filled
+};
+
+/// Any means of communication with a device (paper 4.1): whole frames, both ways, never blocking.
+/// Realtime: send and receive are bounded (at most one system call). Thread: the one user.
+class DataFlow {
+ public:
+  virtual ~DataFlow() = default;
+  /// Hands one frame over. Unavailable: nobody listens or no room; the frame is gone.
+  [[nodiscard]] Result<> send(Octets frame) noexcept { return do_send(frame); }
+  /// Newest frame if one came since the last call. Unavailable: the peer is gone for good (hang-up).
+  [[nodiscard]] Result<Received> receive(MutableOctets buffer) noexcept { return do_receive(buffer); }
+  /// Waits until a frame may be there, at most `timeout`; false on timeout. Blocks: never in a cycle.
+  [[nodiscard]] bool wait(Duration timeout) noexcept { return do_wait(timeout); }
+
+ private:
+  [[nodiscard]] virtual Result<> do_send(Octets frame) noexcept = 0;
+  [[nodiscard]] virtual Result<Received> do_receive(MutableOctets buffer) noexcept = 0;
+  [[nodiscard]] virtual bool do_wait(Duration timeout) noexcept = 0;
+};
+
+/// Which end of a flow is opened: the subsystem's or the device's.
+enum class FlowSide : std::uint8_t { Subsystem, Device };
+
+/// The part of an endnode descriptor that a flow needs.
+struct FlowAddress {
+  std::uint8_t transfer{};           ///< descriptor::Transfer
+  std::string address;               ///< a name, a path, or host:port
+};
+
+/// Opens data flows. Real: by means of transfer; simulated: a pair of mailboxes in memory.  Realtime: allocates.
+class FlowFactory {
+ public:
+  virtual ~FlowFactory() = default;
+  [[nodiscard]] Result<std::unique_ptr<DataFlow>> open(const FlowAddress& address, FlowSide side) {
+    return do_open(address, side);
+  }
+
+ private:
+  [[nodiscard]] virtual Result<std::unique_ptr<DataFlow>> do_open(const FlowAddress& address, FlowSide side) = 0;
+};
+
+}  // namespace hirosco

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// The latest-value real-time link in shared memory: one writer, many readers, no system call (decision 20).
+namespace hirosco {
+
+/// Written by the producer beside each sample.
+enum class LinkStatus : std::uint32_t { None = 0, Valid = 1, Degraded = 2, Stopping = 3, Fault = 4 };
+
+/// What both sides agreed on and find again in the memory's header.
+struct LinkLayout {
+  std::uint32_t epoch{};             ///< of the handshake that made this link
+  std::uint32_t payload_octets{};    ///< of one sample, 1 .. 65,536
+  std::uint64_t layout_hash{};       ///< of the agreed fields, byte order and kind
+  Duration period{};                 ///< of the producer
+};
+
+/// Octets of memory that a link with this payload needs (a multiple of 64).
+[[nodiscard]] std::size_t link_memory_octets(std::uint32_t payload_octets) noexcept;
+
+/// The producer's end.  Realtime: wait-free, no system call. Thread: one.
+class LinkWriter {
+ public:
+  LinkWriter() = default;
+  /// Writes the header. Mismatch: memory too small or not 64-octet aligned.
+  [[nodiscard]] static Result<LinkWriter> make(MutableOctets memory, const LinkLayout& layout) noexcept;
+  /// Publishes one sample. `payload` has the agreed size (invariant). Counts from 1.
+  void write(Octets payload, TimePoint sampled_at, LinkStatus status) noexcept;
+  /// Changes the status without a new sample (stopping, fault).
+  void set_status(LinkStatus status) noexcept;
+  [[nodiscard]] explicit operator bool() const noexcept { return memory_ != nullptr; }
+
+ private:
+  std::byte* memory_{nullptr};
+  std::uint32_t payload_octets_{0};
+  std::uint64_t count_{0};
+};
+
+/// What a read found. `flow` None: never a sample yet. Old: the same sample as last time, or the writer was caught in
+/// the middle too often and `payload` still holds the reader's last copy.
+struct LinkSample {
+  Flow flow{Flow::None};
+  LinkStatus status{LinkStatus::None};
+  std::uint64_t count{0};            ///< of the sample in `payload`
+  std::uint64_t lost{0};             ///< samples never seen between this and the one before
+  TimePoint sampled_at{};
+};
+
+/// A consumer's end.  Realtime: wait-free (bounded retries), no system call. Thread: one.
+class LinkReader {
+ public:
+  LinkReader() = default;
+  /// Mismatch: the header does not say what was agreed (magic, version, epoch, size, layout hash).
+  [[nodiscard]] static Result<LinkReader> make(Octets memory, const LinkLayout& layout) noexcept;
+  /// Copies the newest whole sample into `payload` (agreed size, invariant), never a torn one.
+  LinkSample read(MutableOctets payload) noexcept;
+  [[nodiscard]] explicit operator bool() const noexcept { return memory_ != nullptr; }
+
+ private:
+  const std::byte* memory_{nullptr};
+  std::uint32_t payload_octets_{0};
+  std::uint64_t last_count_{0};
+};
+
+}  // namespace hirosco

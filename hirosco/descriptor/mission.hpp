@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hirosco/descriptor/subsystem.hpp"
+
+/// The mission descriptor in memory: what is started, connected, permitted and recovered.
+namespace hirosco::descriptor {
+
+struct MissionSubsystem {
+  std::string executable;            ///< name of the program, looked up beside the running one and then in PATH
+  Subsystem subsystem;               ///< with the overrides of the mission applied
+  Location at;
+};
+
+/// A simulated device process standing in for hardware.
+struct SimulatedDevice {
+  std::string name;                  ///< as `hirosco fault` names it
+  std::string executable;
+  std::string subsystem;             ///< whose device it plays
+  std::string device;
+  std::uint64_t seed{1};
+  std::vector<std::pair<std::string, std::string>> settings;
+  Location at;
+};
+
+struct MissionLink {
+  std::uint8_t id{};
+  std::string from, provides;        ///< producing subsystem and its set
+  std::string to, requires_;         ///< consuming subsystem and its set
+  Location at;
+};
+
+/// What a mode lets through: functions and services of one subsystem, or of all ("*").
+struct Permit {
+  std::string subsystem;
+  std::vector<std::string> functions;  ///< "*" = all
+  std::vector<std::uint8_t> services;
+  Location at;
+};
+
+struct CommissionStep {
+  std::string subsystem;
+  std::string configuration;
+  State state{State::Operational};
+  Location at;
+};
+
+struct Mode {
+  std::string name;
+  std::uint8_t id{};
+  std::vector<CommissionStep> commission;  ///< the start list when this is the start mode
+  std::vector<std::uint8_t> establish;     ///< links
+  std::vector<Permit> permits;
+  Location at;
+};
+
+enum class Action : std::uint8_t { Log, SetState, ShutDownNetwork };
+
+/// A recovery plan: the most specific matching one is taken (subsystem, event, severity, mode).
+struct Plan {
+  std::string name;
+  std::vector<Severity> severities;  ///< empty = any
+  std::string subsystem;             ///< empty = any
+  std::string event;                 ///< empty = any
+  std::string mode;                  ///< empty = any
+  Action action{Action::Log};
+  State state{State::SafeOperational};  ///< for SetState
+  Location at;
+};
+
+struct GroundAddresses {
+  std::string subsystem;             ///< which subsystem carries the ground link; empty = none
+  std::string telemetry{"127.0.0.1:10015"};
+  std::string telecommand{"127.0.0.1:10025"};
+};
+
+struct DatabaseUse {
+  std::string strategy{"sqlite"};    ///< sqlite | ascii
+  std::filesystem::path path;        ///< relative to the working directory
+};
+
+struct Mission {
+  std::string name;
+  std::uint16_t id{};
+  std::filesystem::path file;
+  Subsystem supervisor;
+  DatabaseUse database;
+  GroundAddresses ground;
+  std::vector<MissionSubsystem> subsystems;
+  std::vector<SimulatedDevice> devices;
+  std::vector<MissionLink> links;
+  std::vector<Mode> modes;
+  std::string initial_mode;
+  std::string start_mode;            ///< empty = stay in the initial mode, commission nothing
+  std::vector<Plan> plans;
+
+  [[nodiscard]] const MissionSubsystem* find_subsystem(std::string_view subsystem) const noexcept;
+  [[nodiscard]] const MissionSubsystem* find_subsystem(std::uint16_t apid) const noexcept;
+  [[nodiscard]] const Mode* find_mode(std::string_view mode) const noexcept;
+  [[nodiscard]] const MissionLink* find_link(std::uint8_t link) const noexcept;
+};
+
+}  // namespace hirosco::descriptor
+
+namespace hirosco {
+template <>
+struct EnumTexts<descriptor::Action> {
+  using enum descriptor::Action;
+  static constexpr auto table = enum_table<descriptor::Action>(
+      {{Log, "log"}, {SetState, "set_state"}, {ShutDownNetwork, "shut_down_network"}});
+};
+}  // namespace hirosco

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/subsystem.hpp"
+
+namespace hirosco::descriptor {
+
+/// One problem of a descriptor, where it is and what to do about it.
+struct Diagnostic {
+  std::filesystem::path file;
+  Location at;
+  std::string code;                  ///< "E0104": stable, explained in docs/descriptor-errors.md
+  std::string message;               ///< "unknown parameter type 'DUBLE'"
+  std::string hint;                  ///< "did you mean 'DOUBLE'?"; may be empty
+  std::size_t length{1};             ///< characters to underline
+};
+
+/// Reads whole files; given from outside so that reading is testable without a file system.
+/// Returns the octets, or nothing when there is no such (regular, readable, at most 4 MiB) file.
+using FileSource = std::function<std::optional<std::string>(const std::filesystem::path&)>;
+[[nodiscard]] FileSource file_system();
+
+template <class T>
+struct Reading {
+  std::optional<T> value;            ///< present only when `problems` is empty
+  std::vector<Diagnostic> problems;  ///< all of them, in file order
+};
+
+/// Reads and checks a subsystem descriptor. `name` is used in the diagnostics.  Realtime: allocates.
+[[nodiscard]] Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source);
+/// Reads and checks a mission with every subsystem it names (paths relative to the mission file).  Realtime: allocates.
+[[nodiscard]] Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source);
+
+/// file:line:col: error: …, the source line, a caret and the hint (docs: ground habits). `source_line` may be empty.
+[[nodiscard]] std::string render(const Diagnostic& problem, const FileSource& source, bool colour);
+
+}  // namespace hirosco::descriptor

@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hirosco/parameter/type.hpp"
+#include "hirosco/utilities/enum_text.hpp"
+#include "hirosco/utilities/id.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// The subsystem descriptor in memory (paper 4.1, figure 3). Plain data: read once, checked whole, then constant.
+/// All references are resolved: indices point into the vectors of the same descriptor.
+namespace hirosco::descriptor {
+
+/// Where an element stands in its file; line and column count from 1.
+struct Location {
+  int line{0};
+  int column{0};
+};
+
+/// The ten states (paper 4.2, figure 4). The transition table is in hirosco/subsystem/states.hpp.
+enum class State : std::uint8_t {
+  Offline = 0, SoftwareInit = 1, HardwareInit = 2, PreOperational = 3, SafeOperational = 4,
+  Operational = 5, ErrorOperational = 6, PostOperational = 7, HardwareDeinit = 8, SoftwareDeinit = 9,
+};
+
+/// Severity of an event (PUS ST[05]); the value is the message subtype of its report.
+enum class Severity : std::uint8_t { Info = 1, Low = 2, Medium = 3, High = 4 };
+
+struct EnumerationText {
+  std::int64_t value{};
+  std::string text;
+};
+struct Enumeration {
+  std::string name;
+  std::vector<EnumerationText> texts;
+};
+
+/// A typed, named, ranged value: member, argument, link field or device field.
+struct Field {
+  std::string name;
+  Type type{Type::Double};
+  std::uint16_t count{1};            ///< array length; 1 = a single value
+  std::string unit;                  ///< SI, as text; empty = none
+  std::optional<double> minimum;     ///< inclusive, in `unit`
+  std::optional<double> maximum;     ///< inclusive, in `unit`
+  std::string enumeration;           ///< name of an Enumeration; empty = none
+  Location at;
+  [[nodiscard]] std::size_t octets() const noexcept { return octets_of(type) * count; }
+};
+
+/// A parameter of the dictionary: a single value or array, or a structure of such.
+struct Parameter {
+  Field field;                       ///< for a structure: name and Type::Struct
+  std::uint8_t id{};
+  std::vector<double> init;          ///< `count` values or empty (zeros)
+  bool read_only{false};             ///< ST[20] may not set it
+  bool persistent{false};
+  struct Member {
+    Field field;
+    std::uint8_t id{};
+  };
+  std::vector<Member> members;       ///< of a structure, in order
+  /// Octets on the wire: packed, no padding.
+  [[nodiscard]] std::size_t octets() const noexcept {
+    if (members.empty()) return field.octets();
+    std::size_t sum = 0;
+    for (const auto& member : members) sum += member.field.octets();
+    return sum;
+  }
+};
+
+/// A parameter or one member of it, resolved: `CUR_VALUES` or `CUR_VALUES.POSITION`.
+struct ParameterRef {
+  std::string text;                  ///< as written
+  std::uint16_t parameter{};         ///< index into Subsystem::parameters
+  std::optional<std::uint16_t> member;  ///< index into Parameter::members
+  Location at;
+};
+
+/// One housekeeping report structure (Listing 2).
+struct HousekeepingStructure {
+  std::uint16_t id{};
+  std::uint32_t interval_cycles{};
+  bool enabled{true};                ///< periodic generation from Pre-Operational on
+  std::vector<ParameterRef> sampled_once;
+  struct SampledSet {
+    std::uint16_t repetitions{};     ///< samples in one interval, spaced interval / repetitions
+    std::vector<ParameterRef> parameters;
+  };
+  std::vector<SampledSet> sampled_repeatedly;
+  Location at;
+};
+
+struct Event {
+  std::string name;
+  std::uint16_t id{};
+  Severity severity{Severity::Info};
+  std::vector<Field> arguments;      ///< auxiliary data, in order
+  Location at;
+};
+
+/// A function of ST[08]. Argument ids count from 1 in order.
+struct Function {
+  std::string name;                  ///< upper-case ASCII, at most 16 octets
+  std::uint16_t states{0};           ///< bit n set: permitted in State n
+  bool essential{false};             ///< forwarded before it is logged (decision 24)
+  struct Argument {
+    Field field;
+    std::optional<double> fallback;  ///< value when the argument is absent from the request
+  };
+  std::vector<Argument> arguments;
+  std::string description;
+  Location at;
+  [[nodiscard]] bool permitted_in(State state) const noexcept { return (states >> static_cast<int>(state) & 1) != 0; }
+};
+
+enum class Method : std::uint8_t { SharedMemory = 1, Udp = 2, Tcp = 3, Unix = 4, Dds = 5, Tipc = 6 };
+enum class ByteOrder : std::uint8_t { Little = 1, Big = 2 };
+enum class LinkKind : std::uint8_t { Latest = 1, Queued = 2 };
+
+/// What one side of a real-time link can do; lists are in order of preference, never empty.
+struct LinkTerms {
+  std::vector<Method> methods{Method::SharedMemory};
+  std::vector<ByteOrder> byte_orders{ByteOrder::Little};
+  std::vector<LinkKind> kinds{LinkKind::Latest};
+};
+
+/// A set of parameters that a configuration provides over a real-time link.
+struct Provides {
+  std::string name;
+  LinkTerms terms;
+  std::vector<ParameterRef> parameters;
+  Location at;
+};
+
+/// What a consumer does at the cycle when a required link is stale (decision 22).
+enum class MissingPolicy : std::uint8_t { Inhibit, Hold };
+
+/// A limit in the observer's own cycles: with real-time scheduling, and without it (decision 21).
+struct CycleLimit {
+  std::uint32_t realtime{};
+  std::uint32_t reduced{};
+};
+
+/// A set of fields that a configuration requires over a real-time link. Fields are matched by name.
+struct Requires {
+  std::string name;
+  std::string from;                  ///< name of the producing subsystem, empty = any
+  LinkTerms terms;
+  bool required{true};               ///< false: useful, but Safe-Operational does not wait for it
+  CycleLimit age{3, 40};
+  MissingPolicy missing{MissingPolicy::Inhibit};
+  std::vector<Field> fields;
+  Location at;
+};
+
+enum class Transfer : std::uint8_t { SharedMemory, MessageQueue, Unix, Udp, Tcp, Serial };
+
+/// Address and means of transfer of a data flow (paper 4.1).
+struct Endnode {
+  Transfer transfer{Transfer::SharedMemory};
+  std::string address;               ///< a name, or host:port
+  ByteOrder byte_order{ByteOrder::Little};
+  Location at;
+};
+
+/// A hardware device: its identity and frames. Declared once under <Subsystem>.
+struct Device {
+  std::string name;
+  bool actuator{false};              ///< output is gated by the framework (decision 22)
+  std::vector<Field> input;          ///< device -> subsystem
+  struct Output {
+    Field field;
+    std::vector<double> safe;        ///< value in every state but Operational; `count` values
+  };
+  std::vector<Output> output;        ///< subsystem -> device
+  Location at;
+};
+
+/// Settings and endnode of a device in one configuration.
+struct DeviceUse {
+  std::uint16_t device{};            ///< index into Subsystem::devices
+  CycleLimit silence{3, 40};         ///< cycles without a valid frame until the device counts as lost
+  std::uint32_t watchdog_us{10'000}; ///< device watchdog with real-time scheduling
+  std::uint32_t watchdog_reduced_us{50'000};
+  std::vector<std::pair<std::string, std::string>> settings;
+  Endnode endnode;
+  Location at;
+};
+
+struct Configuration {
+  std::string name;
+  std::uint8_t id{};
+  int priority{0};                   ///< SCHED_FIFO priority of the cycle; 0 = ordinary scheduling
+  Duration sampling{};               ///< period of the cycle
+  CycleLimit overruns{3, 20};        ///< overruns in a row until the overrun event
+  std::vector<HousekeepingStructure> housekeeping;
+  std::vector<Provides> provides;
+  std::vector<Requires> requires_;
+  std::vector<DeviceUse> devices;
+  struct Initial {
+    ParameterRef parameter;
+    std::vector<double> values;
+  };
+  std::vector<Initial> initial;      ///< parameter values that this configuration sets
+  Location at;
+};
+
+struct Pool {
+  std::size_t block_octets{};
+  std::size_t count{};
+};
+struct Resources {
+  std::vector<Pool> pools;
+  std::size_t memory_octets{0};      ///< 0 = not limited
+  unsigned warning_percent{75};
+};
+
+struct Subsystem {
+  std::string name;
+  std::uint16_t id{};                ///< APID
+  std::string description;
+  std::filesystem::path file;        ///< where it was read from
+  std::uint64_t hash{};              ///< FNV-1a 64 of the file's octets
+  Resources resources;
+  std::vector<Enumeration> enumerations;
+  std::vector<Parameter> parameters;
+  std::vector<Event> events;
+  std::vector<Function> functions;   ///< the author's; SET_STATE and CONFIGURE are built in
+  std::vector<HousekeepingStructure> housekeeping;  ///< valid in every configuration
+  std::vector<Device> devices;
+  std::vector<Configuration> configurations;
+  CycleLimit hang{20, 200};          ///< cycles the vital page may stand still
+
+  [[nodiscard]] const Parameter* find_parameter(std::string_view parameter) const noexcept;
+  [[nodiscard]] const Event* find_event(std::string_view event) const noexcept;
+  [[nodiscard]] const Function* find_function(std::string_view function) const noexcept;
+  [[nodiscard]] const Configuration* find_configuration(std::string_view configuration) const noexcept;
+  [[nodiscard]] const Configuration* find_configuration(std::uint8_t configuration) const noexcept;
+};
+
+/// Fields a reference stands for, in wire order: one for a value or member, all members for a structure.
+[[nodiscard]] std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference);
+
+}  // namespace hirosco::descriptor
+
+namespace hirosco {
+template <>
+struct EnumTexts<descriptor::State> {
+  using enum descriptor::State;
+  static constexpr auto table = enum_table<descriptor::State>({
+      {Offline, "Offline"}, {SoftwareInit, "SoftwareInit"}, {HardwareInit, "HardwareInit"},
+      {PreOperational, "PreOperational"}, {SafeOperational, "SafeOperational"}, {Operational, "Operational"},
+      {ErrorOperational, "ErrorOperational"}, {PostOperational, "PostOperational"},
+      {HardwareDeinit, "HardwareDeinit"}, {SoftwareDeinit, "SoftwareDeinit"},
+  });
+  static_assert(table.size() == 10);
+};
+template <>
+struct EnumTexts<descriptor::Severity> {
+  using enum descriptor::Severity;
+  static constexpr auto table =
+      enum_table<descriptor::Severity>({{Info, "info"}, {Low, "low"}, {Medium, "medium"}, {High, "high"}});
+};
+template <>
+struct EnumTexts<descriptor::Method> {
+  using enum descriptor::Method;
+  static constexpr auto table = enum_table<descriptor::Method>({{SharedMemory, "shared_memory"}, {Udp, "udp"},
+      {Tcp, "tcp"}, {Unix, "unix"}, {Dds, "dds"}, {Tipc, "tipc"}});
+};
+template <>
+struct EnumTexts<descriptor::ByteOrder> {
+  using enum descriptor::ByteOrder;
+  static constexpr auto table = enum_table<descriptor::ByteOrder>({{Little, "little"}, {Big, "big"}});
+};
+template <>
+struct EnumTexts<descriptor::LinkKind> {
+  using enum descriptor::LinkKind;
+  static constexpr auto table = enum_table<descriptor::LinkKind>({{Latest, "latest"}, {Queued, "queued"}});
+};
+template <>
+struct EnumTexts<descriptor::MissingPolicy> {
+  using enum descriptor::MissingPolicy;
+  static constexpr auto table = enum_table<descriptor::MissingPolicy>({{Inhibit, "inhibit"}, {Hold, "hold"}});
+};
+template <>
+struct EnumTexts<descriptor::Transfer> {
+  using enum descriptor::Transfer;
+  static constexpr auto table = enum_table<descriptor::Transfer>({{SharedMemory, "shared_memory"},
+      {MessageQueue, "message_queue"}, {Unix, "unix"}, {Udp, "udp"}, {Tcp, "tcp"}, {Serial, "serial"}});
+};
+}  // namespace hirosco
