@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hirosco/utilities/enum_text.hpp"
+#include "hirosco/utilities/octets.hpp"
+
+namespace hirosco::pus {
+
+/// Failure codes of ST[01] notices (pus-c tailoring 5.5; 13 to 15 decision 26; documented in docs/failure-codes.md).
+enum class FailureCode : std::uint16_t {
+  UnknownApid = 1, IllegalLength = 2, IllegalPrimaryHeader = 3, IllegalPusVersion = 4, ErrorControl = 5,
+  UnknownService = 6, UnknownSubtype = 7, DataLength = 8, IllegalField = 9, WrongState = 10, QueueFull = 11,
+  IllegalSequenceFlags = 12, WrongMode = 13, LinkAbsent = 14, SetpointOwnedByLink = 15,
+  UnknownIdentifier = 0x0101, IdentifierExists = 0x0102, WrongStatus = 0x0103, CapacityExceeded = 0x0104,
+  ValueNotAcceptable = 0x0105, InThePast = 0x0106, NotPermittedNow = 0x0107, Busy = 0x0108, ChecksumMismatch = 0x0109,
+  ExecutedInPart = 0x0201, ExecutionError = 0x0202, Timeout = 0x0203, Aborted = 0x0204, DeviceError = 0x0205,
+};
+
+/// A failure notice: code and code-specific data.  Realtime: wait-free, trivially copyable.
+class FailureNotice {
+ public:
+  static constexpr std::size_t max_data_octets = 18;
+  FailureNotice() = default;
+  explicit FailureNotice(FailureCode code) noexcept : code_{code} {}
+  /// Appends a number of the failure data, big-endian.
+  template <WireNumber T>
+  FailureNotice& with(T value) noexcept {
+    OctetWriter writer{MutableOctets{data_}.subspan(size_)};
+    writer.put(value);
+    size_ = static_cast<std::uint8_t>(size_ + writer.size());
+    return *this;
+  }
+  FailureNotice& with(Octets octets) noexcept {
+    OctetWriter writer{MutableOctets{data_}.subspan(size_)};
+    writer.put(octets);
+    size_ = static_cast<std::uint8_t>(size_ + writer.size());
+    return *this;
+  }
+  [[nodiscard]] FailureCode code() const noexcept { return code_; }
+  [[nodiscard]] Octets data() const noexcept { return Octets{data_}.first(size_); }
+
+ private:
+  FailureCode code_{FailureCode::ExecutionError};
+  std::array<std::byte, max_data_octets> data_{};
+  std::uint8_t size_{0};
+};
+
+}  // namespace hirosco::pus
+
+namespace hirosco {
+template <>
+struct EnumTexts<pus::FailureCode> {
+  using enum pus::FailureCode;
+  static constexpr auto table = enum_table<pus::FailureCode>({
+      {UnknownApid, "unknown APID"}, {IllegalLength, "illegal packet length"},
+      {IllegalPrimaryHeader, "illegal primary header"}, {IllegalPusVersion, "illegal PUS version"},
+      {ErrorControl, "error control mismatch"}, {UnknownService, "unknown service"}, {UnknownSubtype, "unknown subtype"},
+      {DataLength, "application data length"}, {IllegalField, "illegal field value"},
+      {WrongState, "not permitted in this state"}, {QueueFull, "queue full"},
+      {IllegalSequenceFlags, "illegal sequence flags"}, {WrongMode, "not permitted in this mode"},
+      {LinkAbsent, "required link absent"}, {SetpointOwnedByLink, "setpoint owned by a link"},
+      {UnknownIdentifier, "unknown identifier"}, {IdentifierExists, "identifier already exists"},
+      {WrongStatus, "wrong status"}, {CapacityExceeded, "capacity exceeded"},
+      {ValueNotAcceptable, "value not acceptable"}, {InThePast, "time in the past"},
+      {NotPermittedNow, "not permitted now"}, {Busy, "busy"}, {ChecksumMismatch, "checksum mismatch"},
+      {ExecutedInPart, "executed in part"}, {ExecutionError, "execution error"}, {Timeout, "timeout"},
+      {Aborted, "aborted"}, {DeviceError, "device error"},
+  });
+};
+}  // namespace hirosco
