@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "hirosco/utilities/os/thread.hpp"
+
+namespace hirosco {
+
+Result<> set_fifo_priority(int priority) noexcept {
+  if (priority < sched_get_priority_min(SCHED_FIFO) || priority > sched_get_priority_max(SCHED_FIFO))
+    return fail(ErrorCode::OutOfRange, "FIFO priority", priority);
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  // Process 0 is the calling thread here. Without the flag a process we start would compete with our loops.
+  if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) != 0)
+    return fail(ErrorCode::SystemFailure, "FIFO scheduling (rtprio limit, or cpu group without rt_runtime)", errno);
+  return ok();
+}
+
+Result<> pin_to_cpu(unsigned cpu) noexcept {
+  if (cpu >= CPU_SETSIZE) return fail(ErrorCode::OutOfRange, "processor", cpu);
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(cpu, &set);
+  if (const int error = pthread_setaffinity_np(pthread_self(), sizeof set, &set); error != 0)
+    return fail(ErrorCode::SystemFailure, "processor affinity", error);
+  return ok();
+}
+
+void set_thread_name(const char* name) noexcept {
+  std::array<char, 16> cut{};
+  std::memcpy(cut.data(), name, std::min(std::strlen(name), cut.size() - 1));
+  (void)pthread_setname_np(pthread_self(), cut.data());
+}
+
+}  // namespace hirosco

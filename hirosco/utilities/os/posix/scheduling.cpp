@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <pthread.h>
+
+#include "hirosco/utilities/os/thread.hpp"
+
+namespace hirosco {
+
+Result<> set_fifo_priority(int priority) noexcept {
+  if (priority < sched_get_priority_min(SCHED_FIFO) || priority > sched_get_priority_max(SCHED_FIFO))
+    return fail(ErrorCode::OutOfRange, "FIFO priority", priority);
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters); error != 0)
+    return fail(ErrorCode::SystemFailure, "FIFO scheduling", error);
+  return ok();
+}
+
+Result<> pin_to_cpu(unsigned cpu) noexcept { return fail(ErrorCode::Unavailable, "POSIX has no processor affinity", cpu); }
+
+void set_thread_name(const char* /*name*/) noexcept {}
+
+}  // namespace hirosco

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pthread.h>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco {
+
+/// A thread that is joined at the latest by its destructor. An exception that leaves its body ends the process.
+/// Thread: its owner. Realtime: blocks, allocates.
+class Thread {
+ public:
+  /// `name` shows in the tools of the operating system (15 octets there); `stack_octets` 0 is the system's own choice.
+  [[nodiscard]] static Result<Thread> start(std::string name, std::move_only_function<void()> body,
+                                            std::size_t stack_octets = 0);
+  Thread() = default;
+  Thread(Thread&& other) noexcept;
+  Thread& operator=(Thread&& other) noexcept;
+  Thread(const Thread&) = delete;
+  Thread& operator=(const Thread&) = delete;
+  ~Thread() { join(); }
+
+  [[nodiscard]] bool joinable() const noexcept { return joinable_; }
+  /// Returns when the body has ended; at once when there is none.
+  void join() noexcept;
+
+ private:
+  pthread_t handle_{};
+  bool joinable_{false};
+};
+
+/// Puts the calling thread under SCHED_FIFO; children made later start without it where the system can say so.
+/// Priority 1..99, out of range refused; SystemFailure when the system does not permit it. Realtime: bounded.
+[[nodiscard]] Result<> set_fifo_priority(int priority) noexcept;
+/// Returns the calling thread to ordinary scheduling.
+[[nodiscard]] Result<> set_ordinary_scheduling() noexcept;
+/// Whether the calling thread may have SCHED_FIFO: tried and undone.
+[[nodiscard]] bool realtime_permitted() noexcept;
+/// Keeps the calling thread on one processor, counted from 0; Unavailable where the system has no such call.
+[[nodiscard]] Result<> pin_to_cpu(unsigned cpu) noexcept;
+/// Names the calling thread (first 15 octets); for tools only, so a refusal is silent.
+void set_thread_name(const char* name) noexcept;
+
+/// Sleeps until the monotonic clock reads at least `wake`; signals do not shorten it. Realtime: blocks until then.
+void sleep_until(TimePoint wake) noexcept;
+
+/// Keeps all present and future pages of the process in memory, so that no cycle waits for a page fault.
+[[nodiscard]] Result<> lock_memory() noexcept;
+
+}  // namespace hirosco
