@@ -43,6 +43,10 @@ struct PrimaryHeader {
 /// Malformed: fewer than 6 octets.
 [[nodiscard]] Result<PrimaryHeader> read_primary_header(Octets packet) noexcept;
 
+/// Check 1 of acceptance: fewer than 6 octets, another version, telemetry or idle. Such a packet is discarded and counted
+/// (idle ones not even that) without a report, though parse() says IllegalPrimaryHeader for want of a better notice.
+[[nodiscard]] bool to_be_discarded(Octets packet) noexcept;
+
 /// A whole, checked telecommand packet. Views the octets it was parsed from.  Realtime: bounded.
 class TelecommandView {
  public:
