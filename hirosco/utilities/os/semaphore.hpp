@@ -11,7 +11,7 @@
 namespace hirosco {
 
 /// Counting semaphore. post() happens before the wait it lets through.
-/// Realtime: post() and try_wait() are bounded, the waits block. Thread: any.
+/// Realtime: post() and try_wait() are bounded, the waits block. Thread: any; destroyed only when no call is under way.
 class Semaphore {
  public:
   explicit Semaphore(std::uint32_t initial = 0) noexcept;

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/result.hpp"
+
+namespace hirosco {
+
+/// How a process ended.
+struct ExitStatus {
+  enum class Kind : std::uint8_t {
+    Exited,    ///< `value` is its exit code
+    Signalled, ///< `value` is the signal that ended it
+    Unknown,   ///< it ended, but it was not our child, so its parent was told and we were not
+  };
+  Kind kind{Kind::Unknown};
+  int value{0};
+  [[nodiscard]] bool success() const noexcept { return kind == Kind::Exited && value == 0; }
+  friend bool operator==(const ExitStatus&, const ExitStatus&) = default;
+};
+
+/// What to start.
+struct ProcessStart {
+  /// A descriptor of ours that the new process finds under `number`.
+  struct Inherited {
+    int ours{-1};
+    int number{-1};
+  };
+  std::string executable;                ///< path; not searched for
+  std::vector<std::string> arguments;    ///< without the executable's own name, which becomes argv[0]
+  std::vector<Inherited> inherited;      ///< besides 0, 1 and 2, the new process has these descriptors and no others
+  std::optional<std::vector<std::string>> environment;  ///< "NAME=value"; ours when absent
+  std::string working_directory;         ///< ours when empty
+};
+
+/// A process in a group of its own. It outlives this object and this process: nothing here kills it but send_signal().
+/// Whoever starts processes keeps the Process until poll() has returned its end, or a zombie stays.
+/// Realtime: blocks. Thread: one at a time.
+class Process {
+ public:
+  /// Starts an executable; an executable that cannot be started is an error here, not an exit later. It begins with no
+  /// blocked or ignored signals and ordinary scheduling.
+  [[nodiscard]] static Result<Process> spawn(const ProcessStart& start);
+  /// Takes over a process that somebody else started.
+  [[nodiscard]] static Result<Process> adopt(int pid) noexcept;
+  [[nodiscard]] static Result<Process> adopt(int pid, FileDescriptor handle) noexcept;
+
+  [[nodiscard]] int pid() const noexcept { return pid_; }
+  /// Readable once the process has ended: for WaitSet, or to hand to another process.
+  [[nodiscard]] const FileDescriptor& handle() const noexcept { return handle_; }
+  /// Its end, or nothing while it runs; does not block, and repeats its answer.
+  [[nodiscard]] Result<std::optional<ExitStatus>> poll() noexcept;
+  /// Never hits another process that got the same pid later; NotFound when it has ended.
+  [[nodiscard]] Result<> send_signal(int signal) noexcept;
+
+ private:
+  Process(int pid, FileDescriptor handle) noexcept : pid_{pid}, handle_{std::move(handle)} {}
+  int pid_;
+  FileDescriptor handle_;
+  std::optional<ExitStatus> ended_;
+};
+
+}  // namespace hirosco
