@@ -31,8 +31,7 @@ TEST_F(Ping, IsAnsweredWithoutVerificationWhenNoneIsAskedFor) {
 }
 
 TEST_F(Ping, OfTheVectorsGivesTheReplyOfTheVectors) {
-  const auto telecommand = TelecommandView::parse(vector_of("tc", "TC-01").octets);
-  service.handle(telecommand.value(), request_of(telecommand.value()));
+  handle(service, vector_of("tc", "TC-01").octets);
   ASSERT_EQ(sink.reports.size(), 4U);
   const auto reply = vector_of("tm", "TM-01");
   Bytes buffer(64);
@@ -41,14 +40,12 @@ TEST_F(Ping, OfTheVectorsGivesTheReplyOfTheVectors) {
 }
 
 TEST_F(Ping, WithDataIsRejected) {
-  const auto telecommand = TelecommandView::parse(vector_of("negative", "NEG-16").octets);
-  service.handle(telecommand.value(), request_of(telecommand.value()));
+  handle(service, vector_of("negative", "NEG-16").octets);
   EXPECT_THAT(sink.take(), ElementsAre("1.2 180ac02d0008"));
 }
 
 TEST_F(Ping, OfAnUnknownSubtypeIsRejectedWithServiceAndSubtype) {
-  const auto telecommand = TelecommandView::parse(vector_of("negative", "NEG-15").octets);
-  service.handle(telecommand.value(), request_of(telecommand.value()));
+  handle(service, vector_of("negative", "NEG-15").octets);
   send(service, 3, "000a");
   EXPECT_THAT(sink.take(), ElementsAre("1.2 180ac02c00071163", "1.2 180ac00100071103"));
 }

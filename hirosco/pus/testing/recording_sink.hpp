@@ -41,6 +41,12 @@ class RecordingSink final : public TelemetrySink {
 inline constexpr std::uint16_t test_source = 7;
 inline constexpr const char* test_request_id = "180ac001";   ///< of every telecommand that send() makes
 
+/// Lets the service handle a whole telecommand packet.
+inline void handle(Service& service, const Bytes& packet) {
+  const auto view = TelecommandView::parse(packet);
+  service.handle(view.value(), request_of(view.value()));
+}
+
 /// Makes a whole telecommand and lets the service handle it.
 inline void send(Service& service, std::uint8_t subtype, Octets data, std::uint8_t ack = ack_all) {
   std::vector<std::byte> buffer(max_telecommand_octets);
