@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/utilities/allocation_guard.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+// Defined by the hook, absent without it.
+extern "C" [[gnu::weak]] bool hirosco_malloc_hook_present() noexcept;
+
+namespace hirosco {
+namespace {
+
+struct ThreadState {
+  unsigned depth{0};
+  HeapUse use{HeapUse::Count};
+  AllocationCount count;
+};
+// The one thread_local of the framework: malloc has no parameter to pass it in. Constant initialisation and this model
+// keep its access free of malloc, which would recur.
+[[gnu::tls_model("initial-exec")]] constinit thread_local ThreadState thread_state;
+
+}  // namespace
+
+RealtimeScope::RealtimeScope(HeapUse use) noexcept
+    : start_{thread_state.count}, outer_use_{std::exchange(thread_state.use, use)} {
+  ++thread_state.depth;
+}
+
+RealtimeScope::~RealtimeScope() {
+  --thread_state.depth;
+  thread_state.use = outer_use_;
+}
+
+AllocationCount RealtimeScope::count() const noexcept {
+  const AllocationCount& now = thread_state.count;
+  return {now.allocations - start_.allocations, now.frees - start_.frees, now.octets - start_.octets};
+}
+
+bool RealtimeScope::hook_present() noexcept {
+  return hirosco_malloc_hook_present != nullptr && hirosco_malloc_hook_present();
+}
+
+HeapPermitted::HeapPermitted() noexcept : depth_{std::exchange(thread_state.depth, 0U)} {}
+
+HeapPermitted::~HeapPermitted() { thread_state.depth = depth_; }
+
+}  // namespace hirosco
+
+void hirosco_note_allocation(std::size_t octets) noexcept {
+  auto& state = hirosco::thread_state;
+  if (state.depth == 0) return;
+  if (state.use == hirosco::HeapUse::Abort) std::abort();
+  ++state.count.allocations;
+  state.count.octets += octets;
+}
+
+void hirosco_note_free() noexcept {
+  auto& state = hirosco::thread_state;
+  if (state.depth == 0) return;
+  if (state.use == hirosco::HeapUse::Abort) std::abort();
+  ++state.count.frees;
+}
