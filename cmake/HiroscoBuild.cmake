@@ -3,6 +3,10 @@
 #
 # The three helpers of the build: hirosco_library, hirosco_executable, hirosco_test.
 
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
+  message(FATAL_ERROR "HIROSCO needs g++ 12 or later (C++23 with std::expected); this is ${CMAKE_CXX_COMPILER_VERSION}")
+endif()
+
 set(CMAKE_CXX_STANDARD 23)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -23,8 +27,14 @@ if(HIROSCO_SANITIZE)
   target_link_options(hirosco_options INTERFACE -fsanitize=${HIROSCO_SANITIZE})
 endif()
 
+# What ./check builds with the sanitizers: the tests with these labels and nothing else.
+add_custom_target(unit_tests)
+add_custom_target(concurrency_tests)
+
 # hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit])
-# One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast.
+# One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast. Labels: unit (the default) beside
+# the code; concurrency: threads meet, so also under TSan; endtoend, realtime, fault: real processes, alone on the
+# machine; long: in ./check --all only.
 function(hirosco_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
@@ -39,6 +49,14 @@ function(hirosco_test name)
     set(ARG_LABELS unit)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
+  foreach(label IN LISTS ARG_LABELS)
+    if(TARGET ${label}_tests)
+      add_dependencies(${label}_tests ${name})
+    endif()
+    if(label MATCHES "^(endtoend|realtime|fault)$")
+      set_tests_properties(${name} PROPERTIES RUN_SERIAL ON)
+    endif()
+  endforeach()
 endfunction()
 
 # hirosco_library(NAME SOURCES *.cpp TESTS *_test.cpp DEPENDS targets... [EXAMPLE example.cpp])

@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Who may include whom (CONTRIBUTING.md). Prints what breaks the rules; `planted` breaks each rule once, to be caught."""
+import pathlib, re, sys
+libraries = ["utilities", "resource", "xml", "parameter", "data_transfer", "descriptor", "pus", "subsystem"]  # lowest first
+may = {"hirosco": ["hirosco"], "subsystems": ["hirosco"], "supervisor": ["hirosco", "supervisor"],
+       "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything
+shells = ("hirosco/utilities/os/", "hirosco/data_transfer/flows/", "supervisor/keeper/", "supervisor/platform/", "tools/",
+          "tests/", "bench/", "simulation/devices/")  # these and main.cpp or run.cpp anywhere may ask the operating system
+system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|sched|spawn|signal|semaphore|mqueue|"
+                    r"termios|dirent|netdb|dlfcn|ifaddrs)\.h$|csignal$")
+include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
+def rank(path):
+    return libraries.index(name) if (name := pathlib.Path(path).parts[1].split(".")[0]) in libraries else -1
+def wrong(path, to):
+    top, target = path.split("/")[0], to.split("/")[0]
+    if system.match(to):
+        return not path.startswith(shells) and not path.endswith(("main.cpp", "run.cpp")) and "the operating system"
+    if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
+    same = path.split("/")[:2] == to.split("/")[:2]
+    if top in may and target not in may[top] and not same: return "another part"
+    if top == target == "hirosco" and rank(to) > rank(path): return "a higher rank"
+    if top == "ground" and to.startswith("hirosco/subsystem"): return "the generic subsystem"
+    if top in may and to.startswith("simulation/spacecraft") and not same: return "the simulated spacecraft"
+    return "/detail/" in to and not path.startswith(to.split("/detail/")[0] + "/") and "a private header"
+planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "subsystems/a/a.cpp subsystems/b/b.hpp", "ground/a.cpp supervisor/b.hpp",
+           "ground/a.cpp hirosco/subsystem/b.hpp", "hirosco/pus/a.cpp sys/mman.h", "supervisor/a.cpp unistd.h",
+           "hirosco/pus/a.cpp hirosco/parameter/detail/b.hpp", "simulation/world/a.cpp simulation/spacecraft/b.hpp",
+           "subsystems/a/a.cpp supervisor/b.hpp", "hirosco/pus/a.cpp supervisor/b.hpp"]
+missed = [plant for plant in planted if not wrong(*plant.split())]
+root = pathlib.Path(__file__).resolve().parent.parent
+files = [file for top in [*may, "tools", "tests", "bench"] for file in sorted((root / top).rglob("*.[hc]pp"))]
+found = [f"{path}: includes {to}, {reason}" for path, text in ((f.relative_to(root).as_posix(), f.read_text()) for f in files)
+         for to in include.findall(text) if (reason := wrong(path, to))]
+sys.exit("\n".join(found + [f"planted and not seen: {plant}" for plant in missed]) or ("no files" if not files else None))
