@@ -1,0 +1,263 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/parameter/dictionary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace hirosco {
+namespace {
+
+[[nodiscard]] std::size_t element_count(const ParameterSpec& spec) noexcept {
+  std::size_t sum = 0;
+  for (const auto& field : spec.fields) sum += field.count;
+  return sum;
+}
+
+[[nodiscard]] std::string problem_of(const ParameterSpec& spec) {
+  if (spec.name.empty()) return "a parameter has no name";
+  if (spec.fields.empty()) return spec.name + ": no fields";
+  if (!spec.is_struct && spec.fields.size() != 1) return spec.name + ": a single value has one field";
+  for (std::size_t i = 0; i < spec.fields.size(); ++i) {
+    const auto& field = spec.fields[i];
+    if (field.count == 0) return spec.name + "." + field.name + ": count is 0";
+    if (octets_of(field.type) == 0) return spec.name + "." + field.name + ": a structure is no member";
+    if (spec.is_struct && std::ranges::count(spec.fields, field.name, &SpecField::name) > 1)
+      return spec.name + "." + field.name + ": the structure has two members of this name";
+  }
+  if (spec.id.layout != (spec.is_struct ? Type::Struct : spec.fields.front().type))
+    return spec.name + ": the layout of its id is not its type";
+  if (!spec.init.empty() && spec.init.size() != element_count(spec))
+    return spec.name + ": " + std::to_string(spec.init.size()) + " initial values for " +
+           std::to_string(element_count(spec)) + " elements";
+  return {};
+}
+
+[[nodiscard]] std::string declared_text(const SpecField& field) { return descriptor_text(field.type, field.count); }
+[[nodiscard]] std::string cpp_text_of(const NativeField& field) { return cpp_text(field.type, field.count); }
+
+/// Writes `number` as T in big-endian order; false when T cannot hold it.
+template <WireNumber T>
+[[nodiscard]] bool put_number(double number, OctetWriter& to) noexcept {
+  if constexpr (std::is_integral_v<T>) {
+    // 2^digits is exact in a double, the largest T need not be.
+    const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);
+    const double begin = std::is_signed_v<T> ? -end : 0.0;
+    if (!(number >= begin && number < end) || std::trunc(number) != number) return false;
+  } else {
+    if (!std::isfinite(number) || std::abs(number) > static_cast<double>(std::numeric_limits<T>::max())) return false;
+  }
+  to.put(static_cast<T>(number));
+  return true;
+}
+
+[[nodiscard]] bool put_number(Type type, double number, OctetWriter& to) noexcept {
+  switch (type) {
+    case Type::Uint8: return put_number<std::uint8_t>(number, to);
+    case Type::Int8: return put_number<std::int8_t>(number, to);
+    case Type::Uint16: return put_number<std::uint16_t>(number, to);
+    case Type::Int16: return put_number<std::int16_t>(number, to);
+    case Type::Uint32: return put_number<std::uint32_t>(number, to);
+    case Type::Int32: return put_number<std::int32_t>(number, to);
+    case Type::Uint64: return put_number<std::uint64_t>(number, to);
+    case Type::Int64: return put_number<std::int64_t>(number, to);
+    case Type::Float: return put_number<float>(number, to);
+    case Type::Double: return put_number<double>(number, to);
+    case Type::Struct: return false;
+  }
+  return false;
+}
+
+/// One element of a field, as a field of its own.
+[[nodiscard]] NativeField element(const NativeField& field, std::size_t position) noexcept {
+  return {field.type, 1, field.offset + position * octets_of(field.type)};
+}
+
+}  // namespace
+
+std::optional<LayoutMismatch> compare(const ParameterSpec& spec, const ParameterCell& cell) {
+  const auto native = cell.fields();
+  if (spec.is_struct != cell.is_struct())
+    return LayoutMismatch{-1, spec.name + ": the C++ type is " +
+                                  (cell.is_struct() ? "a structure" : cpp_text_of(native.front())) +
+                                  ", the descriptor declares " +
+                                  (spec.is_struct ? "STRUCT" : declared_text(spec.fields.front()))};
+  for (std::size_t i = 0; i < std::min(native.size(), spec.fields.size()); ++i) {
+    const auto& field = spec.fields[i];
+    if (native[i].type == field.type && native[i].count == field.count) continue;
+    const std::string where =
+        spec.is_struct ? spec.name + "." + field.name + " (member " + std::to_string(i + 1) + ")" : spec.name;
+    return LayoutMismatch{spec.is_struct ? static_cast<int>(i) : -1, where + ": the C++ type is " +
+                              cpp_text_of(native[i]) + ", the descriptor declares " + declared_text(field)};
+  }
+  if (native.size() == spec.fields.size()) return std::nullopt;
+  const std::size_t first = std::min(native.size(), spec.fields.size());
+  std::string text = spec.name + ": the C++ structure has " + std::to_string(native.size()) +
+                     " members, the descriptor declares " + std::to_string(spec.fields.size()) + "; ";
+  text += first < spec.fields.size() ? "C++ lacks " + spec.fields[first].name + " " + declared_text(spec.fields[first])
+                                     : "not declared is the C++ member " + std::to_string(first + 1) + " (" +
+                                           cpp_text_of(native[first]) + ")";
+  return LayoutMismatch{static_cast<int>(first), std::move(text)};
+}
+
+std::expected<Dictionary, std::string> Dictionary::make(std::span<const ParameterSpec> specs) {
+  if (specs.size() > std::numeric_limits<std::uint16_t>::max()) return std::unexpected{"more than 65535 parameters"};
+  Dictionary made;
+  made.entries_.reserve(specs.size());
+  for (const auto& spec : specs) {
+    if (std::string problem = problem_of(spec); !problem.empty()) return std::unexpected{std::move(problem)};
+    const auto index = static_cast<std::uint16_t>(made.entries_.size());
+    if (!made.by_name_.emplace(spec.name, index).second)
+      return std::unexpected{spec.name + ": a second parameter of this name"};
+    if (const auto [other, fresh] = made.by_id_.emplace(spec.id.wire(), index); !fresh)
+      return std::unexpected{spec.name + ": has the layout and id of " + made.entries_[other->second].spec.name};
+    made.entries_.push_back({spec, nullptr});
+  }
+  return made;
+}
+
+std::expected<void, std::string> Dictionary::publish(std::string_view name, ParameterCell& cell) {
+  const auto index = index_of(name);
+  if (!index) return std::unexpected{std::string{name} + ": the descriptor declares no parameter of this name"};
+  Entry& entry = entries_[*index];
+  if (entry.cell != nullptr) return std::unexpected{entry.spec.name + ": published twice"};
+  if (auto mismatch = compare(entry.spec, cell)) return std::unexpected{std::move(mismatch->explanation)};
+  entry.cell = &cell;
+  return {};
+}
+
+void Dictionary::unpublish_all() noexcept {
+  for (auto& entry : entries_) entry.cell = nullptr;
+}
+
+bool Dictionary::all_published(std::string& missing) const {
+  missing.clear();
+  for (const auto& entry : entries_)
+    if (entry.cell == nullptr) missing += (missing.empty() ? "" : ", ") + entry.spec.name;
+  return missing.empty();
+}
+
+std::optional<std::uint16_t> Dictionary::index_of(std::string_view name) const noexcept {
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::optional<std::uint16_t> Dictionary::index_of(std::uint32_t wire_id) const noexcept {
+  const auto found = by_id_.find(wire_id);
+  return found == by_id_.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::optional<ParameterPlace> Dictionary::find(std::string_view text) const noexcept {
+  if (const auto whole = index_of(text)) return ParameterPlace{*whole, -1};
+  const auto dot = text.find('.');
+  const std::string_view member = dot == std::string_view::npos ? text : text.substr(dot + 1);
+  std::optional<ParameterPlace> found;
+  for (std::size_t index = 0; index < entries_.size(); ++index) {
+    const auto& spec = entries_[index].spec;
+    if (!spec.is_struct || (dot != std::string_view::npos && spec.name != text.substr(0, dot))) continue;
+    const auto place = std::ranges::find(spec.fields, member, &SpecField::name);
+    if (place == spec.fields.end()) continue;
+    if (found) return std::nullopt;  // ambiguous
+    found = ParameterPlace{static_cast<std::uint16_t>(index), static_cast<int>(place - spec.fields.begin())};
+  }
+  return found;
+}
+
+std::size_t Dictionary::wire_octets(std::size_t index, int member) const noexcept {
+  if (index >= entries_.size()) return 0;
+  const auto& fields = entries_[index].spec.fields;
+  if (member >= 0)
+    return static_cast<std::size_t>(member) < fields.size()
+               ? octets_of(fields[static_cast<std::size_t>(member)].type) * fields[static_cast<std::size_t>(member)].count
+               : 0;
+  std::size_t sum = 0;
+  for (const auto& field : fields) sum += octets_of(field.type) * field.count;
+  return sum;
+}
+
+std::span<const NativeField> Dictionary::fields_at(std::size_t index, int member) const noexcept {
+  const ParameterCell* const target = cell(index);
+  if (target == nullptr) return {};
+  if (member < 0) return target->fields();
+  if (static_cast<std::size_t>(member) >= target->fields().size()) return {};
+  return target->fields().subspan(static_cast<std::size_t>(member), 1);
+}
+
+std::size_t Dictionary::encode(std::size_t index, int member, MutableOctets big_endian) const noexcept {
+  const auto fields = fields_at(index, member);
+  return fields.empty() ? 0 : cell(index)->encode(fields, big_endian);
+}
+
+std::size_t Dictionary::snapshot_encode(std::size_t index, int member, MutableOctets big_endian) const noexcept {
+  const auto fields = fields_at(index, member);
+  return fields.empty() ? 0 : cell(index)->snapshot_encode(fields, big_endian);
+}
+
+Result<> Dictionary::accepts(std::size_t index, int member, Octets big_endian) const noexcept {
+  if (index >= entries_.size()) return fail(ErrorCode::NotFound, "no parameter of this index", std::int64_t(index));
+  if (cell(index) == nullptr) return fail(ErrorCode::Unavailable, "parameter not published", std::int64_t(index));
+  const auto fields = fields_at(index, member);
+  if (fields.empty()) return fail(ErrorCode::NotFound, "no member of this number", member);
+  if (encoded_octets(fields) != big_endian.size())
+    return fail(ErrorCode::Malformed, "length of a parameter value", std::int64_t(big_endian.size()));
+  return ok();
+}
+
+Result<> Dictionary::stage(std::size_t index, int member, Octets big_endian) noexcept {
+  HIROSCO_TRY(accepts(index, member, big_endian));
+  cell(index)->stage_encoded(fields_at(index, member), big_endian);
+  return ok();
+}
+
+Result<> Dictionary::decode_into(std::size_t index, int member, Octets big_endian) noexcept {
+  HIROSCO_TRY(stage(index, member, big_endian));
+  commit(index);
+  return ok();
+}
+
+Result<> Dictionary::set_from_doubles(std::size_t index, int member, std::span<const double> values) noexcept {
+  const auto fields = fields_at(index, member);
+  if (fields.empty()) return fail(ErrorCode::NotFound, "no published parameter or member", std::int64_t(index));
+  std::size_t expected = 0;
+  for (const auto& field : fields) expected += field.count;
+  if (values.size() != expected) return fail(ErrorCode::Malformed, "number of values", std::int64_t(values.size()));
+
+  // Check all before the first is set: a refused request changes nothing.
+  for (const bool set : {false, true}) {
+    std::size_t position = 0;
+    for (const auto& field : fields) {
+      for (std::size_t i = 0; i < field.count; ++i, ++position) {
+        std::array<std::byte, 8> octets{};
+        OctetWriter writer{octets};
+        if (!put_number(field.type, values[position], writer))
+          return fail(ErrorCode::OutOfRange, "value not representable in its type", std::int64_t(position));
+        const NativeField one = element(field, i);
+        if (set) cell(index)->stage_encoded({&one, 1}, writer.written());
+      }
+    }
+  }
+  commit(index);
+  return ok();
+}
+
+Result<> Dictionary::initialise() noexcept {
+  for (std::size_t index = 0; index < entries_.size(); ++index) {
+    const Entry& entry = entries_[index];
+    if (entry.cell == nullptr) continue;
+    if (!entry.spec.init.empty()) {
+      HIROSCO_TRY(set_from_doubles(index, -1, entry.spec.init));
+      continue;
+    }
+    constexpr std::array<std::byte, 8> zeros{};
+    for (const auto& field : entry.cell->fields())
+      for (std::size_t i = 0; i < field.count; ++i)
+        entry.cell->stage(element(field, i).offset, Octets{zeros}.first(octets_of(field.type)));
+    entry.cell->commit();
+  }
+  return ok();
+}
+
+}  // namespace hirosco

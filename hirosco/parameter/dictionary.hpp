@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/parameter/parameter.hpp"
+#include "hirosco/parameter/type.hpp"
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+
+namespace hirosco {
+
+/// One declared value, array or member.
+struct SpecField {
+  std::string name;
+  Type type{Type::Double};
+  std::uint16_t count{1};
+};
+
+/// A parameter as its descriptor declares it.
+struct ParameterSpec {
+  std::string name;
+  ParameterId id;
+  std::vector<SpecField> fields;  ///< one for a value or array, the members of a structure
+  bool is_struct{false};
+  std::vector<double> init;       ///< one number for each element of all fields in order, or empty (zeros)
+};
+
+/// Why a C++ type is not the declared one; `explanation` names parameter, member, C++ type and declared type.
+struct LayoutMismatch {
+  int member{-1};                 ///< -1: the parameter as a whole
+  std::string explanation;
+};
+[[nodiscard]] std::optional<LayoutMismatch> compare(const ParameterSpec& spec, const ParameterCell& cell);
+
+/// `CUR_VALUES` or `CUR_VALUES.POSITION`, resolved. `member` -1: the whole parameter.
+struct ParameterPlace {
+  std::uint16_t index{};
+  int member{-1};
+  friend bool operator==(const ParameterPlace&, const ParameterPlace&) = default;
+};
+
+/// The parameters of one subsystem: what the descriptor declares, and the C++ parameters published under these names.
+///
+/// Built and published in Software-Init by the service loop; constant while a cycle runs. From then on the functions
+/// marked "the writer's" belong to the cycle, the others to any thread.
+class Dictionary {
+ public:
+  Dictionary() = default;
+  /// Refuses a name or an id that occurs twice, a parameter without fields, a count of 0, a wrong number of initial
+  /// values; the text names the parameter. Realtime: allocates.
+  [[nodiscard]] static std::expected<Dictionary, std::string> make(std::span<const ParameterSpec> specs);
+
+  /// Binds a C++ parameter to its declaration. `cell` must outlive the binding. Refuses an unknown name, a second
+  /// parameter of the name and a layout that differs.  Realtime: allocates.
+  [[nodiscard]] std::expected<void, std::string> publish(std::string_view name, ParameterCell& cell);
+  void unpublish_all() noexcept;
+  /// False and the names in `missing` while a declared parameter has no C++ one.  Realtime: allocates.
+  [[nodiscard]] bool all_published(std::string& missing) const;
+
+  [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
+  /// nullptr: no such index, or not published.  Realtime: wait-free.
+  [[nodiscard]] ParameterCell* cell(std::size_t index) const noexcept {
+    return index < entries_.size() ? entries_[index].cell : nullptr;
+  }
+  [[nodiscard]] const ParameterSpec& spec(std::size_t index) const noexcept { return entries_[index].spec; }
+
+  [[nodiscard]] std::optional<std::uint16_t> index_of(std::string_view name) const noexcept;
+  [[nodiscard]] std::optional<std::uint16_t> index_of(std::uint32_t wire_id) const noexcept;
+  /// A parameter, `PARAMETER.MEMBER`, or a member's name alone where only one structure has it.
+  [[nodiscard]] std::optional<ParameterPlace> find(std::string_view text) const noexcept;
+
+  /// Octets on the wire (packed); 0 for a place that does not exist.  Realtime: wait-free.
+  [[nodiscard]] std::size_t wire_octets(std::size_t index, int member = -1) const noexcept;
+
+  /// Writes the live value in big-endian order; returns the octets written, 0 when the place does not exist, is not
+  /// published or `big_endian` is too small.  Realtime: wait-free. Thread: the writer's.
+  [[nodiscard]] std::size_t encode(std::size_t index, int member, MutableOctets big_endian) const noexcept;
+  /// The same of a whole committed value; 0 also when a writer was in the way too often (try again later).
+  /// Realtime: bounded. Thread: any.
+  [[nodiscard]] std::size_t snapshot_encode(std::size_t index, int member, MutableOctets big_endian) const noexcept;
+
+  /// Whether decode_into would succeed.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] Result<> accepts(std::size_t index, int member, Octets big_endian) const noexcept;
+  /// Sets a place from exactly wire_octets() octets.  Realtime: wait-free. Thread: the writer's.
+  [[nodiscard]] Result<> decode_into(std::size_t index, int member, Octets big_endian) noexcept;
+  /// decode_into without showing it to other threads before commit(): for changes that belong together.
+  /// Realtime: wait-free. Thread: the writer's.
+  [[nodiscard]] Result<> stage(std::size_t index, int member, Octets big_endian) noexcept;
+  void commit(std::size_t index) noexcept {
+    if (ParameterCell* const target = cell(index)) target->commit();
+  }
+
+  /// Sets a place from numbers, one for each element; each must be representable in its type (integers exactly).
+  /// `value` of an error is the position of the number that is not.  Realtime: bounded. Thread: the writer's.
+  [[nodiscard]] Result<> set_from_doubles(std::size_t index, int member, std::span<const double> values) noexcept;
+  /// Sets all published parameters to their declared initial values.  Thread: the writer's.
+  [[nodiscard]] Result<> initialise() noexcept;
+
+ private:
+  struct Entry {
+    ParameterSpec spec;
+    ParameterCell* cell{nullptr};
+  };
+  [[nodiscard]] std::span<const NativeField> fields_at(std::size_t index, int member) const noexcept;
+
+  std::vector<Entry> entries_;
+  std::map<std::string, std::uint16_t, std::less<>> by_name_;
+  std::map<std::uint32_t, std::uint16_t> by_id_;
+};
+
+}  // namespace hirosco

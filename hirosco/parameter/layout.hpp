@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "hirosco/parameter/type.hpp"
+
+/// Derives the layout of a parameter from its C++ type: no macro, no registration. A parameter may be a number, an
+/// enumeration, a std::array of those, or an aggregate of up to 16 such members. Members carry no `alignas`.
+namespace hirosco {
+
+/// One value or array as it lies in memory.
+struct NativeField {
+  Type type{};
+  std::uint16_t count{1};
+  std::size_t offset{0};
+  [[nodiscard]] constexpr std::size_t octets() const noexcept { return octets_of(type) * count; }
+  friend constexpr bool operator==(const NativeField&, const NativeField&) = default;
+};
+
+namespace layout_detail {
+
+template <class T>
+struct ArrayOf : std::false_type {
+  using Element = T;
+  static constexpr std::size_t count = 1;
+};
+template <class T, std::size_t N>
+struct ArrayOf<std::array<T, N>> : std::true_type {
+  using Element = T;
+  static constexpr std::size_t count = N;
+};
+
+template <class T>
+struct NumberOf {
+  using type = T;
+};
+template <class T>
+  requires std::is_enum_v<T>
+struct NumberOf<T> {
+  using type = std::underlying_type_t<T>;
+};
+
+template <class T>
+concept Character = std::same_as<T, char> || std::same_as<T, wchar_t> || std::same_as<T, char8_t> ||
+                    std::same_as<T, char16_t> || std::same_as<T, char32_t>;
+template <class T>
+concept Number = std::is_arithmetic_v<T> && !std::same_as<T, bool> && !Character<T> && sizeof(T) <= 8;
+
+/// Numbers and enumerations of a definite size; bool and character types have none.
+template <class T>
+concept Scalar = Number<typename NumberOf<std::remove_cv_t<T>>::type>;
+template <class T>
+concept FieldType = Scalar<typename ArrayOf<std::remove_cv_t<T>>::Element>;
+
+template <Scalar S>
+[[nodiscard]] constexpr Type type_of() {
+  using T = typename NumberOf<std::remove_cv_t<S>>::type;
+  static_assert(alignof(T) == sizeof(T), "snapshots rely on it: no number spans two words");
+  if (std::is_floating_point_v<T>) return sizeof(T) == 4 ? Type::Float : Type::Double;
+  switch (sizeof(T)) {
+    case 1: return std::is_signed_v<T> ? Type::Int8 : Type::Uint8;
+    case 2: return std::is_signed_v<T> ? Type::Int16 : Type::Uint16;
+    case 4: return std::is_signed_v<T> ? Type::Int32 : Type::Uint32;
+    default: return std::is_signed_v<T> ? Type::Int64 : Type::Uint64;
+  }
+}
+
+struct Anything {
+  template <class T>
+  operator T() const;  // never defined: only its type is used
+};
+template <std::size_t>
+using AnythingAt = Anything;
+
+template <class T, std::size_t... I>
+[[nodiscard]] consteval bool takes(std::index_sequence<I...>) {
+  return requires { T{AnythingAt<I>{}...}; };
+}
+
+inline constexpr std::size_t max_members = 16;
+
+/// Number of members of an aggregate, max_members + 1 for any larger number.
+template <class T, std::size_t N = max_members + 1>
+[[nodiscard]] consteval std::size_t member_count() {
+  if constexpr (N == 0) return 0;
+  else if constexpr (takes<T>(std::make_index_sequence<N>{})) return N;
+  else return member_count<T, N - 1>();
+}
+
+template <class... Members>
+struct Types {};
+
+/// The member types of an aggregate, by structured bindings. Only its return type is used.
+template <class T>
+auto members_of(T& t) {
+  constexpr std::size_t n = member_count<T>();
+  if constexpr (n == 1) {
+    [[maybe_unused]] auto& [a] = t;
+    return Types<decltype(a)>{};
+  } else if constexpr (n == 2) {
+    [[maybe_unused]] auto& [a, b] = t;
+    return Types<decltype(a), decltype(b)>{};
+  } else if constexpr (n == 3) {
+    [[maybe_unused]] auto& [a, b, c] = t;
+    return Types<decltype(a), decltype(b), decltype(c)>{};
+  } else if constexpr (n == 4) {
+    [[maybe_unused]] auto& [a, b, c, d] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d)>{};
+  } else if constexpr (n == 5) {
+    [[maybe_unused]] auto& [a, b, c, d, e] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e)>{};
+  } else if constexpr (n == 6) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f)>{};
+  } else if constexpr (n == 7) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g)>{};
+  } else if constexpr (n == 8) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h)>{};
+  } else if constexpr (n == 9) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h), decltype(i)>{};
+  } else if constexpr (n == 10) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h), decltype(i), decltype(j)>{};
+  } else if constexpr (n == 11) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h), decltype(i), decltype(j), decltype(k)>{};
+  } else if constexpr (n == 12) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l)>{};
+  } else if constexpr (n == 13) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l), decltype(m)>{};
+  } else if constexpr (n == 14) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o)>{};
+  } else if constexpr (n == 15) {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o),
+                 decltype(p)>{};
+  } else {
+    [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = t;
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
+                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o),
+                 decltype(p), decltype(q)>{};
+  }
+}
+
+template <FieldType F>
+[[nodiscard]] constexpr NativeField field_at(std::size_t offset) {
+  using Traits = ArrayOf<std::remove_cv_t<F>>;
+  static_assert(Traits::count >= 1 && Traits::count <= 0xFFFF, "an array has 1 to 65535 elements");
+  return {type_of<typename Traits::Element>(), static_cast<std::uint16_t>(Traits::count), offset};
+}
+
+[[nodiscard]] constexpr std::size_t round_up(std::size_t offset, std::size_t alignment) noexcept {
+  return (offset + alignment - 1) / alignment * alignment;
+}
+
+template <class T, class... Members>
+[[nodiscard]] consteval auto structure_layout(Types<Members...>) {
+  static_assert((FieldType<Members> && ...),
+                "a member is a number, an enumeration or a std::array of those; bool and characters have no "
+                "definite size, use std::uint8_t");
+  std::array<NativeField, sizeof...(Members)> fields{};
+  std::size_t end = 0;
+  std::size_t index = 0;
+  const auto add = [&]<class M>(std::type_identity<M>) {
+    fields[index++] = field_at<M>(round_up(end, alignof(M)));
+    end = round_up(end, alignof(M)) + sizeof(M);
+  };
+  (add(std::type_identity<Members>{}), ...);
+  std::size_t alignment = 1;
+  ((alignment = alignof(Members) > alignment ? alignof(Members) : alignment), ...);
+  return std::pair{fields, round_up(end, alignment)};
+}
+
+}  // namespace layout_detail
+
+template <class T>
+concept ParameterStructure = std::is_class_v<T> && std::is_aggregate_v<T> && !layout_detail::ArrayOf<T>::value;
+
+/// Fields of a parameter type in order, as std::array<NativeField, N>. A type that has no layout does not compile.
+template <class T>
+[[nodiscard]] consteval auto layout_of() {
+  static_assert(std::is_trivially_copyable_v<T>, "a parameter is copied octet by octet");
+  if constexpr (ParameterStructure<T>) {
+    constexpr std::size_t count = layout_detail::member_count<T>();
+    static_assert(count >= 1, "a structure has at least one member");
+    static_assert(count <= layout_detail::max_members, "a structure has at most 16 members");
+    constexpr auto layout =
+        layout_detail::structure_layout<T>(decltype(layout_detail::members_of(std::declval<T&>())){});
+    static_assert(layout.second == sizeof(T), "members of a parameter structure carry no alignas or bit width");
+    return layout.first;
+  } else {
+    static_assert(layout_detail::FieldType<T>,
+                  "a parameter is a number, an enumeration, a std::array of those or an aggregate of those; bool and "
+                  "characters have no definite size, use std::uint8_t");
+    return std::array{layout_detail::field_at<T>(0)};
+  }
+}
+
+/// A type that layout_of accepts as a single value or array.
+template <class T>
+concept ParameterValue = layout_detail::FieldType<T>;
+
+/// The C++ spelling of a field, for messages: `std::array<double, 2>`.
+[[nodiscard]] std::string cpp_text(Type type, std::uint16_t count);
+/// The descriptor's spelling: `DOUBLE[2]`.
+[[nodiscard]] std::string descriptor_text(Type type, std::uint16_t count);
+
+}  // namespace hirosco
