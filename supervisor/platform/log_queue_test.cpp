@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/platform/log_queue.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+namespace hirosco::supervisor {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<LogRecord> take_all(LogQueue& queue) {
+  std::vector<LogRecord> all;
+  LogBatch batch{3};
+  while (!queue.empty()) {
+    queue.take(batch);
+    all.insert(all.end(), batch.records().begin(), batch.records().end());
+    batch.clear();
+  }
+  return all;
+}
+
+std::vector<std::uint64_t> numbers(const std::vector<LogRecord>& records) {
+  std::vector<std::uint64_t> all;
+  for (const LogRecord& one : records) all.push_back(one.number);
+  return all;
+}
+
+LogEntry telemetry(Octets packet = {}) { return {.kind = LogKind::Telemetry, .packet = packet}; }
+LogEntry telecommand() { return {.kind = LogKind::TelecommandReceived, .packet = {}}; }
+
+std::uint64_t push(LogQueue& queue, const LogEntry& entry) { return queue.push(entry, {}, {}); }
+
+TEST(LogQueue, GivesRecordsBackInTheOrderOfTheirNumbers) {
+  LogQueue queue{{}, OnboardTime{5s}};
+  EXPECT_EQ(push(queue, telemetry()), 1U);
+  EXPECT_EQ(push(queue, telecommand()), 2U);
+  EXPECT_EQ(push(queue, telemetry()), 3U);
+  EXPECT_EQ(push(queue, telecommand()), 4U);
+  const auto all = take_all(queue);
+  EXPECT_THAT(numbers(all), ElementsAre(1, 2, 3, 4));
+  EXPECT_EQ(all[0].run, OnboardTime{5s});
+}
+
+TEST(LogQueue, PushesOutTheOldestTelemetryAndSaysExactlyHowMuch) {
+  LogQueue queue{{.telemetry_records = 2, .telemetry_octets = 100, .vital_records = 8, .vital_octets = 100}, {}};
+  push(queue, telecommand());
+  for (int i = 0; i < 5; ++i) push(queue, telemetry());  // 2..6
+  push(queue, telecommand());
+  const auto all = take_all(queue);
+  EXPECT_THAT(numbers(all), ElementsAre(1, 2, 5, 6, 7));
+  EXPECT_EQ(all[1].kind, LogKind::Gap);
+  EXPECT_EQ(all[1].lost, 3U);
+  EXPECT_EQ(queue.lost(), 3U);
+}
+
+TEST(LogQueue, NeverPushesOutTelecommandsAndEventsOfSeverityMediumAndHigh) {
+  LogQueue queue{{.telemetry_records = 4, .telemetry_octets = 100, .vital_records = 4, .vital_octets = 100}, {}};
+  std::array<std::byte, 9> report{std::byte{0x08}, {}, {}, {}, {}, {}, {}, std::byte{5}, std::byte{3}};
+  ASSERT_NE(push(queue, telecommand()), 0U);
+  ASSERT_NE(push(queue, {.kind = LogKind::Event, .packet = report}), 0U);
+  for (int i = 0; i < 1000; ++i) ASSERT_NE(push(queue, telemetry()), 0U);
+  report[8] = std::byte{2};
+  for (int i = 0; i < 1000; ++i) ASSERT_NE(push(queue, {.kind = LogKind::Event, .packet = report}), 0U);
+  const auto all = take_all(queue);
+  EXPECT_EQ(all[0].kind, LogKind::TelecommandReceived);
+  EXPECT_EQ(all[1].packet[8], std::byte{3});
+  EXPECT_EQ(all[2].lost, 1996U);
+}
+
+TEST(LogQueue, RefusesATelecommandWithoutRoomButStillTakesAnEvent) {
+  LogQueue queue{{.telemetry_records = 4, .telemetry_octets = 100, .vital_records = 8, .vital_octets = 100}, {}};
+  for (int i = 0; i < 6; ++i) EXPECT_NE(push(queue, telecommand()), 0U);
+  EXPECT_EQ(push(queue, telecommand()), 0U);
+  EXPECT_EQ(push(queue, {.kind = LogKind::Event, .packet = {}}), 8U);
+  EXPECT_EQ(queue.refused(), 1U);
+  const auto all = take_all(queue);
+  EXPECT_THAT(numbers(all), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  EXPECT_EQ(all[6].kind, LogKind::Gap);
+  EXPECT_EQ(all[6].lost, 1U);
+}
+
+TEST(LogQueue, RefusesAPacketThatCanNeverFit) {
+  LogQueue queue{{.telemetry_records = 4, .telemetry_octets = 10, .vital_records = 8, .vital_octets = 10}, {}};
+  const std::vector<std::byte> packet(11);
+  push(queue, telemetry());
+  EXPECT_EQ(push(queue, telemetry(packet)), 0U);
+  EXPECT_EQ(queue.lost(), 0U);
+}
+
+TEST(LogQueue, TakesUpToANumberOnly) {
+  LogQueue queue{{}, {}};
+  for (int i = 0; i < 5; ++i) push(queue, telecommand());
+  LogBatch batch{100};
+  queue.take(batch, LogQueue::none, 3);
+  EXPECT_EQ(batch.records().size(), 3U);
+  EXPECT_EQ(queue.next_waiting(), 4U);
+}
+
+// Against a plain model: whatever is pushed and taken, every number comes out once or stands in a gap, octets unharmed.
+TEST(LogQueue, LosesNothingUnsaidUnderRandomUse) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::mt19937 random{seed};
+    LogQueue queue{{.telemetry_records = 7, .telemetry_octets = 61, .vital_records = 9, .vital_octets = 83}, {}};
+    std::map<std::uint64_t, std::vector<std::byte>> pushed;
+    std::vector<LogRecord> out;
+    LogBatch batch{4};
+    for (int step = 0; step < 2000; ++step) {
+      if (random() % 4 == 0) {
+        queue.take(batch, random() % 6);
+        out.insert(out.end(), batch.records().begin(), batch.records().end());
+        batch.clear();
+        continue;
+      }
+      std::vector<std::byte> packet(random() % 25);
+      for (std::byte& octet : packet) octet = static_cast<std::byte>(random());
+      const LogEntry entry{.kind = random() % 2 == 0 ? LogKind::Telemetry : LogKind::TelecommandForwarded, .packet = packet};
+      if (const std::uint64_t number = push(queue, entry); number != 0) pushed[number] = packet;
+    }
+    const auto rest = take_all(queue);
+    out.insert(out.end(), rest.begin(), rest.end());
+    std::uint64_t lost = 0;
+    std::uint64_t before = 0;
+    for (const LogRecord& record : out) {
+      ASSERT_GT(record.number, before) << "seed " << seed;
+      before = record.number;
+      lost += record.lost;
+      if (record.kind != LogKind::Gap) {
+        ASSERT_EQ(record.packet, pushed.at(record.number)) << "seed " << seed;
+      }
+    }
+    std::size_t gaps = 0;
+    for (const LogRecord& record : out) gaps += record.kind == LogKind::Gap ? 1 : 0;
+    EXPECT_EQ(out.size() - gaps + lost, queue.last_number()) << "seed " << seed;
+    EXPECT_EQ(lost, queue.lost() + queue.refused());
+  }
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
