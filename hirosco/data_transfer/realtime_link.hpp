@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
@@ -22,6 +23,22 @@ struct LinkLayout {
   std::uint64_t layout_hash{};       ///< of the agreed fields, byte order and kind
   Duration period{};                 ///< of the producer
 };
+
+/// Where things stand in a link's memory, in octets. All words are of 8 octets in the order of the machine.
+namespace link_memory {
+inline constexpr std::uint64_t magic = 0x4B4E'494C'5243'5348;  ///< "HSCRLINK" of a little-endian machine
+inline constexpr std::uint64_t version = 1;
+inline constexpr std::size_t magic_at = 0;           ///< line 0: written once, before the link is handed on
+inline constexpr std::size_t version_epoch_at = 8;   ///< version in the high, epoch in the low half
+inline constexpr std::size_t payload_octets_at = 16;
+inline constexpr std::size_t layout_hash_at = 24;
+inline constexpr std::size_t period_at = 32;         ///< ns
+inline constexpr std::size_t sequence_at = 64;       ///< line 1: odd while the writer is at work
+inline constexpr std::size_t status_at = 72;
+inline constexpr std::size_t count_at = 80;          ///< of the sample, from 1
+inline constexpr std::size_t stamp_at = 88;          ///< ns of the monotonic clock
+inline constexpr std::size_t payload_at = 96;        ///< filled up with zero to a whole word
+}  // namespace link_memory
 
 /// Octets of memory that a link with this payload needs (a multiple of 64).
 [[nodiscard]] std::size_t link_memory_octets(std::uint32_t payload_octets) noexcept;
@@ -42,6 +59,7 @@ class LinkWriter {
   std::byte* memory_{nullptr};
   std::uint32_t payload_octets_{0};
   std::uint64_t count_{0};
+  std::uint64_t sequence_{0};
 };
 
 /// What a read found. `flow` None: never a sample yet. Old: the same sample as last time, or the writer was caught in
@@ -54,20 +72,29 @@ struct LinkSample {
   TimePoint sampled_at{};
 };
 
-/// A consumer's end.  Realtime: wait-free (bounded retries), no system call. Thread: one.
+/// A consumer's end. Keeps the last whole sample itself, so that no writer can take it away. Moves, does not copy.
+/// Realtime: wait-free (bounded retries), no system call; `make` allocates. Thread: one.
 class LinkReader {
  public:
   LinkReader() = default;
   /// Mismatch: the header does not say what was agreed (magic, version, epoch, size, layout hash).
   [[nodiscard]] static Result<LinkReader> make(Octets memory, const LinkLayout& layout) noexcept;
-  /// Copies the newest whole sample into `payload` (agreed size, invariant), never a torn one.
+  /// Copies the newest whole sample into `payload` (agreed size, invariant), never a torn one; on Old the last one again,
+  /// on None nothing.
   LinkSample read(MutableOctets payload) noexcept;
   [[nodiscard]] explicit operator bool() const noexcept { return memory_ != nullptr; }
 
  private:
   const std::byte* memory_{nullptr};
+  [[nodiscard]] bool copy(std::uint64_t sequence, LinkSample& sample) noexcept;
+  [[nodiscard]] LinkSample last(MutableOctets payload) const noexcept;
+  [[nodiscard]] LinkSample accept(LinkSample sample, MutableOctets payload) noexcept;
+
   std::uint32_t payload_octets_{0};
-  std::uint64_t last_count_{0};
+  std::uint64_t last_sequence_{0};
+  LinkSample last_{};
+  std::unique_ptr<std::uint64_t[]> kept_;     ///< payload of last_
+  std::unique_ptr<std::uint64_t[]> arriving_; ///< the copy that is not yet known to be whole
 };
 
 }  // namespace hirosco

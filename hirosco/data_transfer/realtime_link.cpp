@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/data_transfer/realtime_link.hpp"
+
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <cstring>
+#include <new>
+#include <utility>
+
+// A sequence lock over words of 8 octets, for one writer and any number of readers. Invariants:
+//  1. Line 0 is written once, in LinkWriter::make, its magic last; nobody writes it after that.
+//  2. Only the writer writes. Its sequence is odd from before the first word of a sample is stored until after the last.
+//  3. The writer stores every word of a sample with release order. A reader that loads such a word with acquire order
+//     has therefore also seen the odd sequence before it (2), and finds at its second look a sequence other than the
+//     even one it began with. Fences would do the same; thread sanitizers do not understand them.
+//  4. The writer stores the even sequence with release order, a reader loads it with acquire order first: the words it
+//     then loads are those of this sample or newer ones, never older ones. With 3: equal even sequences, whole sample.
+//  5. A reader tries `attempts` times, then answers with its own last copy. It never waits for a writer, which may be
+//     preempted by it, stopped or dead.
+//  6. A reader believes nothing it has read but as data: no length, index or address comes from the memory.
+namespace hirosco {
+namespace {
+
+using Word = std::uint64_t;
+static_assert(std::atomic_ref<Word>::is_always_lock_free);
+
+constexpr std::size_t line = 64;
+constexpr std::uint32_t max_payload_octets = 65'536;
+constexpr int attempts = 8;
+
+constexpr std::size_t words_of(std::uint32_t octets) noexcept { return (octets + sizeof(Word) - 1) / sizeof(Word); }
+
+bool plausible(const LinkLayout& layout) noexcept {
+  return layout.payload_octets >= 1 && layout.payload_octets <= max_payload_octets;
+}
+
+bool fits(const void* start, std::size_t octets, const LinkLayout& layout) noexcept {
+  return plausible(layout) && start != nullptr && std::bit_cast<std::uintptr_t>(start) % line == 0 &&
+         octets >= link_memory_octets(layout.payload_octets);
+}
+
+std::atomic_ref<Word> word(std::byte* memory, std::size_t at) noexcept {
+  return std::atomic_ref<Word>{*reinterpret_cast<Word*>(memory + at)};
+}
+
+// The standard has no atomic_ref to const yet; a lock-free load does not write, so a read-only mapping is safe.
+Word load(const std::byte* memory, std::size_t at, std::memory_order order) noexcept {
+  return word(const_cast<std::byte*>(memory), at).load(order);
+}
+
+Word version_epoch(const LinkLayout& layout) noexcept { return link_memory::version << 32 | layout.epoch; }
+
+// Leaves the line to the writer for a moment, where the processor knows how.
+void relax() noexcept {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+}  // namespace
+
+std::size_t link_memory_octets(std::uint32_t payload_octets) noexcept {
+  const std::size_t used = link_memory::payload_at + words_of(payload_octets) * sizeof(Word);
+  return (used + line - 1) / line * line;
+}
+
+Result<LinkWriter> LinkWriter::make(MutableOctets memory, const LinkLayout& layout) noexcept {
+  if (!fits(memory.data(), memory.size(), layout)) {
+    return fail(ErrorCode::Mismatch, "link memory too small, not aligned, or payload size impossible",
+                layout.payload_octets);
+  }
+  std::byte* const start = memory.data();
+  const auto set = [start](std::size_t at, Word value) { word(start, at).store(value, std::memory_order_relaxed); };
+  const std::size_t all = link_memory_octets(layout.payload_octets);
+  for (std::size_t at = 0; at < all; at += sizeof(Word)) set(at, 0);
+  set(link_memory::version_epoch_at, version_epoch(layout));
+  set(link_memory::payload_octets_at, layout.payload_octets);
+  set(link_memory::layout_hash_at, layout.layout_hash);
+  set(link_memory::period_at, std::bit_cast<Word>(std::int64_t{layout.period.count()}));
+  word(start, link_memory::magic_at).store(link_memory::magic, std::memory_order_release);
+
+  LinkWriter writer;
+  writer.memory_ = start;
+  writer.payload_octets_ = layout.payload_octets;
+  return writer;
+}
+
+void LinkWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status) noexcept {
+  assert(memory_ != nullptr && payload.size() == payload_octets_);
+  const auto publish = [this](std::size_t at, Word value) {
+    word(memory_, at).store(value, std::memory_order_release);
+  };
+  word(memory_, link_memory::sequence_at).store(sequence_ + 1, std::memory_order_relaxed);
+  publish(link_memory::status_at, std::to_underlying(status));
+  publish(link_memory::count_at, ++count_);
+  publish(link_memory::stamp_at, std::bit_cast<Word>(std::int64_t{sampled_at.time_since_epoch().count()}));
+  const std::size_t whole = payload_octets_ / sizeof(Word) * sizeof(Word);
+  for (std::size_t at = 0; at < whole; at += sizeof(Word)) {
+    Word value;
+    std::memcpy(&value, payload.data() + at, sizeof value);
+    publish(link_memory::payload_at + at, value);
+  }
+  if (whole != payload_octets_) {
+    Word value = 0;
+    std::memcpy(&value, payload.data() + whole, payload_octets_ - whole);
+    publish(link_memory::payload_at + whole, value);
+  }
+  sequence_ += 2;
+  publish(link_memory::sequence_at, sequence_);
+}
+
+void LinkWriter::set_status(LinkStatus status) noexcept {
+  assert(memory_ != nullptr);
+  word(memory_, link_memory::sequence_at).store(sequence_ + 1, std::memory_order_relaxed);
+  word(memory_, link_memory::status_at).store(std::to_underlying(status), std::memory_order_release);
+  sequence_ += 2;
+  word(memory_, link_memory::sequence_at).store(sequence_, std::memory_order_release);
+}
+
+Result<LinkReader> LinkReader::make(Octets memory, const LinkLayout& layout) noexcept {
+  if (!fits(memory.data(), memory.size(), layout)) {
+    return fail(ErrorCode::Mismatch, "link memory too small, not aligned, or payload size impossible",
+                layout.payload_octets);
+  }
+  const std::byte* const start = memory.data();
+  const auto get = [start](std::size_t at) { return load(start, at, std::memory_order_relaxed); };
+  if (load(start, link_memory::magic_at, std::memory_order_acquire) != link_memory::magic)
+    return fail(ErrorCode::Mismatch, "link memory has no header");
+  if (get(link_memory::version_epoch_at) >> 32 != link_memory::version)
+    return fail(ErrorCode::Mismatch, "link version", static_cast<std::int64_t>(get(link_memory::version_epoch_at) >> 32));
+  if (get(link_memory::version_epoch_at) != version_epoch(layout))
+    return fail(ErrorCode::Mismatch, "link epoch", static_cast<std::uint32_t>(get(link_memory::version_epoch_at)));
+  if (get(link_memory::payload_octets_at) != layout.payload_octets)
+    return fail(ErrorCode::Mismatch, "link payload size", std::bit_cast<std::int64_t>(get(link_memory::payload_octets_at)));
+  if (get(link_memory::layout_hash_at) != layout.layout_hash)
+    return fail(ErrorCode::Mismatch, "link layout", std::bit_cast<std::int64_t>(get(link_memory::layout_hash_at)));
+
+  LinkReader reader;
+  reader.memory_ = start;
+  reader.payload_octets_ = layout.payload_octets;
+  reader.kept_.reset(new (std::nothrow) Word[words_of(layout.payload_octets)]{});
+  reader.arriving_.reset(new (std::nothrow) Word[words_of(layout.payload_octets)]{});
+  if (!reader.kept_ || !reader.arriving_) return fail(ErrorCode::ResourceExhausted, "no memory for a link's copy");
+  return reader;
+}
+
+LinkSample LinkReader::read(MutableOctets payload) noexcept {
+  assert(memory_ != nullptr && payload.size() == payload_octets_);
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    const Word sequence = load(memory_, link_memory::sequence_at, std::memory_order_acquire);
+    if (sequence == last_sequence_) return last(payload);
+    LinkSample sample;
+    if (sequence % 2 == 0 && copy(sequence, sample)) {
+      last_sequence_ = sequence;
+      return accept(sample, payload);
+    }
+    relax();
+  }
+  return last(payload);
+}
+
+bool LinkReader::copy(std::uint64_t sequence, LinkSample& sample) noexcept {
+  const auto get = [this](std::size_t at) { return load(memory_, at, std::memory_order_acquire); };
+  sample.status = static_cast<LinkStatus>(static_cast<std::uint32_t>(get(link_memory::status_at)));
+  sample.count = get(link_memory::count_at);
+  sample.sampled_at = TimePoint{Duration{std::bit_cast<std::int64_t>(get(link_memory::stamp_at))}};
+  const std::size_t words = words_of(payload_octets_);
+  for (std::size_t i = 0; i < words; ++i) arriving_[i] = get(link_memory::payload_at + i * sizeof(Word));
+  return load(memory_, link_memory::sequence_at, std::memory_order_relaxed) == sequence;
+}
+
+LinkSample LinkReader::last(MutableOctets payload) const noexcept {
+  LinkSample sample = last_;
+  sample.flow = last_.count == 0 ? Flow::None : Flow::Old;
+  sample.lost = 0;
+  if (sample.flow == Flow::Old) std::memcpy(payload.data(), kept_.get(), payload_octets_);
+  return sample;
+}
+
+LinkSample LinkReader::accept(LinkSample sample, MutableOctets payload) noexcept {
+  const std::uint64_t before = std::exchange(last_, sample).count;
+  if (sample.count == before) return last(payload);
+  std::swap(kept_, arriving_);
+  std::memcpy(payload.data(), kept_.get(), payload_octets_);
+  sample.flow = Flow::New;
+  sample.lost = before != 0 && sample.count > before ? sample.count - before - 1 : 0;
+  return sample;
+}
+
+}  // namespace hirosco
