@@ -7,7 +7,8 @@ libraries = ["utilities", "resource", "xml", "parameter", "data_transfer", "desc
 may = {"hirosco": ["hirosco"], "subsystems": ["hirosco"], "supervisor": ["hirosco", "supervisor"],
        "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything
 shells = ("hirosco/utilities/os/", "hirosco/data_transfer/flows/", "supervisor/keeper/", "supervisor/platform/", "tools/",
-          "tests/", "bench/", "simulation/devices/")  # these and main.cpp or run.cpp anywhere may ask the operating system
+          "tests/", "bench/", "simulation/devices/", "subsystems/communication/tcp_server.")
+# These, and main.cpp and run.cpp anywhere, may ask the operating system.
 system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|sched|spawn|signal|semaphore|mqueue|"
                     r"termios|dirent|netdb|dlfcn|ifaddrs)\.h$|csignal$")
 include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
