@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/communication/ground_link.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <random>
+
+namespace hirosco::communication {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+std::vector<std::byte> telecommand(std::size_t data_octets = 0, std::uint16_t count = 0) {
+  std::vector<std::byte> buffer(pus::max_telecommand_octets);
+  const std::vector<std::byte> data(data_octets, std::byte{0x5A});
+  const auto packet = pus::write_telecommand(buffer, {.apid = 11, .sequence_count = count, .service = 17, .subtype = 1}, data);
+  return {packet->begin(), packet->end()};
+}
+
+/// A header with this length field and nothing behind it.
+std::vector<std::byte> header(std::uint16_t first_two, std::uint16_t length) {
+  std::vector<std::byte> octets(6);
+  OctetWriter{octets}.put(first_two).put(std::uint16_t{0xC000}).put(length);
+  return octets;
+}
+
+void append(std::vector<std::byte>& stream, const std::vector<std::byte>& more) {
+  stream.insert(stream.end(), more.begin(), more.end());
+}
+
+using Packets = std::vector<std::vector<std::byte>>;
+struct Sink {
+  Packets packets;
+  void operator()(Octets packet) { packets.emplace_back(packet.begin(), packet.end()); }
+};
+
+TEST(Deframer, CutsPacketsWhereverTheStreamIsDivided) {
+  const Packets sent{telecommand(), telecommand(100, 1), telecommand(pus::max_telecommand_octets - 13, 2), telecommand(1, 3)};
+  std::vector<std::byte> stream;
+  for (const auto& packet : sent) append(stream, packet);
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{2}, std::size_t{5}, std::size_t{6}, std::size_t{7},
+                                  std::size_t{13}, std::size_t{1000}, stream.size()}) {
+    Deframer deframer;
+    Sink sink;
+    for (std::size_t at = 0; at < stream.size(); at += piece) {
+      const Octets octets = Octets{stream}.subspan(at, std::min(piece, stream.size() - at));
+      ASSERT_FALSE(deframer.feed(octets, {}, sink));
+    }
+    EXPECT_EQ(sink.packets, sent) << piece;
+    EXPECT_FALSE(deframer.deadline());
+  }
+}
+
+TEST(Deframer, TakesExactlyThePlausibleLengths) {
+  for (std::size_t field = 0; field <= 0xFFFF; ++field) {
+    Deframer deframer;
+    Sink sink;
+    const auto reason = deframer.feed(header(0x180B, static_cast<std::uint16_t>(field)), {}, sink);
+    const bool plausible = field + 7 >= 13 && field + 7 <= 4096;
+    ASSERT_EQ(reason, plausible ? std::nullopt : std::optional{CloseReason::Length}) << field;
+    ASSERT_THAT(sink.packets, IsEmpty());
+  }
+}
+
+TEST(Deframer, EndsTheStreamAtAVersionOrTypeThatIsNoTelecommand) {
+  Sink sink;
+  EXPECT_EQ(Deframer{}.feed(header(0x080B, 6), {}, sink), CloseReason::NotTelecommand);
+  for (unsigned version = 1; version <= 7; ++version)
+    EXPECT_EQ(Deframer{}.feed(header(static_cast<std::uint16_t>(0x180BU | version << 13), 6), {}, sink),
+              CloseReason::Version);
+}
+
+TEST(Deframer, HandsOnWhateverIsDamagedBehindAPlausibleHeader) {
+  const auto good = telecommand(20);
+  for (std::size_t bit = 0; bit < good.size() * 8; ++bit) {
+    auto damaged = good;
+    damaged[bit / 8] ^= static_cast<std::byte>(0x80 >> bit % 8);
+    Deframer deframer;
+    Sink sink;
+    const auto reason = deframer.feed(damaged, {}, sink);
+    const std::size_t announced = pus::announced_octets(damaged);
+    if (bit < 3) EXPECT_EQ(reason, CloseReason::Version);
+    else if (bit == 3) EXPECT_EQ(reason, CloseReason::NotTelecommand);
+    else if (announced > 4096 || announced < 13) EXPECT_EQ(reason, CloseReason::Length) << bit;
+    else if (announced <= damaged.size()) EXPECT_EQ(sink.packets.at(0).size(), announced) << bit;
+    else EXPECT_TRUE(sink.packets.empty() && deframer.deadline()) << bit;
+  }
+}
+
+TEST(Deframer, NeverFindsATelecommandInsideASpoiltStream) {
+  auto stream = header(0x180B, 0xFFFF);
+  for (int i = 0; i < 1000; ++i) append(stream, telecommand());
+  Deframer deframer;
+  Sink sink;
+  EXPECT_TRUE(deframer.feed(stream, {}, sink));
+  EXPECT_EQ(deframer.feed(telecommand(), {}, sink), CloseReason::Length);
+  EXPECT_THAT(sink.packets, IsEmpty());
+}
+
+TEST(Deframer, GivesAPacketTwoSecondsFromItsFirstOctet) {
+  const auto packet = telecommand(10);
+  Deframer deframer;
+  Sink sink;
+  const TimePoint begun{5s};
+  ASSERT_FALSE(deframer.feed(Octets{packet}.first(1), begun, sink));
+  EXPECT_EQ(deframer.deadline(), begun + 2s);
+  // A trickle of octets does not prolong it.
+  ASSERT_FALSE(deframer.feed(Octets{packet}.subspan(1, 1), begun + 1999ms, sink));
+  EXPECT_FALSE(deframer.check(begun + 1999ms));
+  EXPECT_EQ(deframer.check(begun + 2s), CloseReason::Incomplete);
+  EXPECT_TRUE(deframer.feed(Octets{packet}.subspan(2), begun + 2s, sink));
+  EXPECT_THAT(sink.packets, IsEmpty());
+}
+
+TEST(Deframer, WaitsForEverBetweenPackets) {
+  Deframer deframer;
+  Sink sink;
+  ASSERT_FALSE(deframer.feed(telecommand(), {}, sink));
+  EXPECT_FALSE(deframer.check(TimePoint{1000h}));
+}
+
+TEST(Deframer, DropsIdlePacketsSilently) {
+  auto stream = header(0x17FF, 0);
+  stream.push_back(std::byte{0x55});
+  append(stream, telecommand());
+  Deframer deframer;
+  Sink sink;
+  EXPECT_FALSE(deframer.feed(stream, {}, sink));
+  EXPECT_EQ(sink.packets.size(), 1U);
+  EXPECT_EQ(deframer.idle_packets(), 1U);
+}
+
+struct Received final : GroundTraffic {
+  void telecommand(ClientId client, Octets packet) override { all.emplace_back(client, packet.size()); }
+  std::vector<std::pair<ClientId, std::size_t>> all;
+};
+
+ClientId admit(GroundClients& clients, GroundPort port = GroundPort::TelemetryAndTelecommands) {
+  const auto admission = clients.admit(port, {});
+  return admission ? admission->client : ClientId{0};
+}
+
+std::vector<std::byte> drain(GroundClients& clients, ClientId client, std::size_t at_once = 1'000'000) {
+  std::vector<std::byte> all;
+  for (Octets output = clients.output(client); !output.empty(); output = clients.output(client)) {
+    output = output.first(std::min(output.size(), at_once));
+    all.insert(all.end(), output.begin(), output.end());
+    clients.sent(client, output.size());
+  }
+  return all;
+}
+
+TEST(GroundClients, GiveAllTelemetryToTelemetryClientsOnly) {
+  GroundClients clients{{}};
+  const ClientId first = admit(clients);
+  const ClientId commander = admit(clients, GroundPort::TelecommandsOnly);
+  ASSERT_TRUE(clients.telemetry(telecommand(5)));
+  const ClientId late = admit(clients);
+  ASSERT_TRUE(clients.telemetry(telecommand(6)));
+  auto both = telecommand(5);
+  append(both, telecommand(6));
+  EXPECT_EQ(drain(clients, first), both);
+  EXPECT_EQ(drain(clients, late), telecommand(6));
+  EXPECT_THAT(drain(clients, commander), IsEmpty());
+}
+
+TEST(GroundClients, CutWhoDoesNotReadAndServeTheOthersWholly) {
+  GroundClients clients{{.backlog_octets = 10'000}};
+  const ClientId slow = admit(clients);
+  const ClientId quick = admit(clients);
+  std::vector<std::byte> expected;
+  std::vector<std::byte> got;
+  for (std::uint16_t i = 0; i < 200; ++i) {
+    const auto packet = telecommand(i % 300U, i);
+    append(expected, packet);
+    ASSERT_TRUE(clients.telemetry(packet));
+    append(got, drain(clients, quick, 77));
+  }
+  EXPECT_EQ(got, expected);
+  EXPECT_EQ(clients.condemned(slow), CloseReason::Slow);
+  EXPECT_THAT(clients.output(slow), IsEmpty());
+  EXPECT_FALSE(clients.condemned(quick));
+  clients.remove(slow, CloseReason::PeerClosed);
+  EXPECT_EQ(clients.counters().closed[static_cast<std::size_t>(CloseReason::Slow)], 1U);
+}
+
+TEST(GroundClients, EvictTheOldestSilentClientNeverOneThatHasSpoken) {
+  GroundClients clients{{.clients = 3}};
+  Received traffic;
+  const ClientId honest = admit(clients);
+  clients.received(honest, telecommand(), {}, traffic);
+  const ClientId noisy = admit(clients);
+  auto damaged = telecommand();
+  damaged.back() ^= std::byte{1};
+  clients.received(noisy, damaged, {}, traffic);
+  const ClientId silent = admit(clients);
+  EXPECT_EQ(clients.admit(GroundPort::TelecommandsOnly, {})->evicted, noisy);
+  EXPECT_EQ(clients.admit(GroundPort::TelecommandsOnly, {})->evicted, silent);
+  EXPECT_NE(clients.counters_of(honest), nullptr);
+  EXPECT_EQ(clients.counters_of(silent), nullptr);
+}
+
+TEST(GroundClients, RefuseANewcomerWhenEveryPlaceHasSpoken) {
+  GroundClients clients{{.clients = 2}};
+  Received traffic;
+  for (int i = 0; i < 2; ++i) clients.received(admit(clients), telecommand(), {}, traffic);
+  EXPECT_EQ(admit(clients), 0);
+  EXPECT_EQ(clients.counters().refused, 1U);
+}
+
+TEST(GroundClients, NumberAPlaceAnewForEachClient) {
+  GroundClients clients{{.clients = 1}};
+  const ClientId first = admit(clients);
+  clients.remove(first, CloseReason::PeerClosed);
+  const ClientId second = admit(clients);
+  EXPECT_NE(first, second);
+  Received traffic;
+  clients.received(first, telecommand(), {}, traffic);
+  EXPECT_THAT(traffic.all, IsEmpty());
+  for (int i = 0; i < 1000; ++i) {
+    const ClientId next = admit(clients);
+    ASSERT_NE(next, 0);
+    ASSERT_EQ(GroundClients::place_of(next), 0U);
+  }
+}
+
+TEST(GroundClients, CountByClientAndByReason) {
+  GroundClients clients{{}};
+  Received traffic;
+  const ClientId good = admit(clients);
+  auto two = telecommand();
+  append(two, telecommand(3));
+  two.back() ^= std::byte{1};
+  clients.received(good, two, {}, traffic);
+  EXPECT_THAT(traffic.all, ElementsAre(std::pair{good, 13U}, std::pair{good, 16U}));
+  EXPECT_EQ(clients.counters_of(good)->packets, 2U);
+  EXPECT_EQ(clients.counters_of(good)->valid_packets, 1U);
+
+  const ClientId late = admit(clients);
+  clients.received(late, Octets{two}.first(3), TimePoint{1s}, traffic);
+  EXPECT_EQ(clients.step(TimePoint{2s}), TimePoint{3s});
+  clients.step(TimePoint{3s});
+  EXPECT_EQ(clients.condemned(late), CloseReason::Incomplete);
+  clients.remove(late, CloseReason::PeerClosed);
+  EXPECT_EQ(clients.counters().closed[static_cast<std::size_t>(CloseReason::Incomplete)], 1U);
+  EXPECT_EQ(clients.counters().clients, 1U);
+}
+
+}  // namespace
+}  // namespace hirosco::communication

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/communication/tcp_server.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <utility>
+
+namespace hirosco::communication {
+
+namespace {
+
+constexpr int accepts_per_step = 16;
+constexpr int reads_per_step = 4;
+constexpr std::size_t read_octets = 16 * 1024;
+constexpr int listen_backlog = 512;
+// The epoll data of a connection is its ClientId, which is never below most_clients; listeners use the numbers below.
+constexpr std::uint32_t first_client_mark = GroundClients::most_clients;
+
+bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
+
+Result<in_addr> loopback_address(const std::string& text) {
+  in_addr address{};
+  if (::inet_pton(AF_INET, text.c_str(), &address) != 1)
+    return fail(ErrorCode::InvalidArgument, "not an IPv4 address in numbers");
+  if (ntohl(address.s_addr) >> 24 != 127) return fail(ErrorCode::NotPermitted, "the ground link binds loopback only");
+  return address;
+}
+
+}  // namespace
+
+TcpServer::TcpServer(const Options& options, GroundTraffic& traffic) : traffic_{traffic}, clients_{options.limits} {}
+TcpServer::~TcpServer() = default;
+
+Result<std::unique_ptr<TcpServer>> TcpServer::open(const Options& options, GroundTraffic& traffic) {
+  std::unique_ptr<TcpServer> server{new TcpServer{options, traffic}};
+  server->epoll_.reset(::epoll_create1(EPOLL_CLOEXEC));
+  server->spare_.reset(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  if (!server->epoll_) return fail(ErrorCode::SystemFailure, "epoll", errno);
+  HIROSCO_TRY(server->listen_on(GroundPort::TelemetryAndTelecommands, options));
+  HIROSCO_TRY(server->listen_on(GroundPort::TelecommandsOnly, options));
+  return server;
+}
+
+Result<> TcpServer::listen_on(GroundPort port, const Options& options) {
+  HIROSCO_TRY_LET(const in_addr host, loopback_address(options.address));
+  FileDescriptor listener{::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  if (!listener) return fail(ErrorCode::SystemFailure, "socket of the ground link", errno);
+  const int yes = 1;
+  ::setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  const bool telemetry = port == GroundPort::TelemetryAndTelecommands;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr = host;
+  address.sin_port = htons(telemetry ? options.telemetry_port : options.telecommand_port);
+  if (::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(listener.get(), listen_backlog) != 0)
+    return fail(ErrorCode::SystemFailure, "port of the ground link", errno);
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.u32 = std::to_underlying(port);
+  if (::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, listener.get(), &event) != 0)
+    return fail(ErrorCode::SystemFailure, "epoll", errno);
+  listeners_[std::to_underlying(port)] = std::move(listener);
+  return ok();
+}
+
+std::uint16_t TcpServer::port(GroundPort port) const noexcept {
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  const int listener = listeners_[std::to_underlying(port)].get();
+  if (::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
+  return ntohs(address.sin_port);
+}
+
+std::optional<TimePoint> TcpServer::step(TimePoint now) {
+  // Those who are in are served before others come in: a flood of newcomers cannot evict who has something to say.
+  serve_ready(now);
+  for (Connection& connection : connections_) {
+    if (connection.client == 0) continue;
+    write_to(connection);
+  }
+  const auto next = clients_.step(now);
+  for (Connection& connection : connections_)
+    if (const auto reason = clients_.condemned(connection.client)) close(connection, *reason);
+  return next;
+}
+
+void TcpServer::serve_ready(TimePoint now) {
+  std::array<epoll_event, GroundClients::most_clients + 2> events{};
+  const int count = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), 0);
+  std::array<bool, 2> knocking{};
+  for (int i = 0; i < count; ++i) {
+    const epoll_event& event = events[static_cast<std::size_t>(i)];
+    if (event.data.u32 < first_client_mark) {
+      knocking[event.data.u32] = true;
+      continue;
+    }
+    Connection& connection = connections_[GroundClients::place_of(static_cast<ClientId>(event.data.u32))];
+    if (connection.client != event.data.u32) continue;
+    if ((event.events & EPOLLOUT) != 0) {
+      connection.full = false;
+      watch(connection, EPOLL_CTL_MOD);
+    }
+    if ((event.events & EPOLLIN) != 0) read_from(connection, now);
+    else if ((event.events & (EPOLLERR | EPOLLHUP)) != 0)
+      close(connection, (event.events & EPOLLERR) != 0 ? CloseReason::SocketError : CloseReason::PeerClosed);
+  }
+  if (knocking[0]) accept_clients(GroundPort::TelemetryAndTelecommands, now);
+  if (knocking[1]) accept_clients(GroundPort::TelecommandsOnly, now);
+}
+
+void TcpServer::accept_clients(GroundPort port, TimePoint now) {
+  const int listener = listeners_[std::to_underlying(port)].get();
+  for (int i = 0; i < accepts_per_step; ++i) {
+    FileDescriptor socket{::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+    if (!socket && (errno == EMFILE || errno == ENFILE)) return make_room_by_refusing(listener);
+    if (!socket && errno != ECONNABORTED && errno != EINTR) return;
+    if (socket) welcome(std::move(socket), port, now);
+  }
+}
+
+void TcpServer::make_room_by_refusing(int listener) {
+  spare_.reset();
+  FileDescriptor{::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC)}.reset();
+  spare_.reset(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+}
+
+void TcpServer::welcome(FileDescriptor socket, GroundPort port, TimePoint now) {
+  const auto admission = clients_.admit(port, now);
+  if (!admission) return;
+  Connection& connection = connections_[GroundClients::place_of(admission->client)];
+  // An evicted client had the same place: its socket closes here.
+  connection = Connection{.client = admission->client, .socket = std::move(socket)};
+  const int yes = 1;
+  ::setsockopt(connection.socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  watch(connection, EPOLL_CTL_ADD);
+  if (connection.client != 0) read_from(connection, now);
+}
+
+void TcpServer::read_from(Connection& connection, TimePoint now) {
+  std::array<std::byte, read_octets> buffer;
+  for (int i = 0; i < reads_per_step; ++i) {
+    const ssize_t count = ::recv(connection.socket.get(), buffer.data(), buffer.size(), 0);
+    if (count == 0) return end_of_stream(connection);
+    if (count < 0 && would_block(errno)) return;
+    if (count < 0) return close(connection, errno == ECONNRESET ? CloseReason::PeerClosed : CloseReason::SocketError);
+    clients_.received(connection.client, Octets{buffer}.first(static_cast<std::size_t>(count)), now, traffic_);
+    if (clients_.condemned(connection.client)) return;
+  }
+}
+
+void TcpServer::end_of_stream(Connection& connection) {
+  const ClientCounters* counters = clients_.counters_of(connection.client);
+  // A listener may end its own direction and still want telemetry; when it is gone altogether, writing tells.
+  if (counters == nullptr || counters->port == GroundPort::TelecommandsOnly)
+    return close(connection, CloseReason::PeerClosed);
+  connection.deaf = true;
+  watch(connection, EPOLL_CTL_MOD);
+}
+
+void TcpServer::write_to(Connection& connection) {
+  while (!connection.full) {
+    const Octets output = clients_.output(connection.client);
+    if (output.empty()) return;
+    const ssize_t count = ::send(connection.socket.get(), output.data(), output.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (count >= 0) {
+      clients_.sent(connection.client, static_cast<std::size_t>(count));
+    } else if (would_block(errno)) {
+      connection.full = true;
+      watch(connection, EPOLL_CTL_MOD);
+    } else {
+      const bool gone = errno == EPIPE || errno == ECONNRESET;
+      return close(connection, gone ? CloseReason::PeerClosed : CloseReason::SocketError);
+    }
+  }
+}
+
+void TcpServer::watch(Connection& connection, int operation) {
+  epoll_event event{};
+  event.events = (connection.deaf ? 0U : static_cast<std::uint32_t>(EPOLLIN)) |
+                 (connection.full ? static_cast<std::uint32_t>(EPOLLOUT) : 0U);
+  event.data.u32 = connection.client;
+  if (::epoll_ctl(epoll_.get(), operation, connection.socket.get(), &event) != 0)
+    close(connection, CloseReason::SocketError);
+}
+
+void TcpServer::close(Connection& connection, CloseReason reason) {
+  clients_.remove(connection.client, reason);
+  connection = Connection{};
+}
+
+}  // namespace hirosco::communication
