@@ -81,25 +81,25 @@ template <WireNumber T>
 std::optional<LayoutMismatch> compare(const ParameterSpec& spec, const ParameterCell& cell) {
   const auto native = cell.fields();
   if (spec.is_struct != cell.is_struct())
-    return LayoutMismatch{-1, spec.name + ": the C++ type is " +
-                                  (cell.is_struct() ? "a structure" : cpp_text_of(native.front())) +
-                                  ", the descriptor declares " +
-                                  (spec.is_struct ? "STRUCT" : declared_text(spec.fields.front()))};
+    return LayoutMismatch{
+        -1, spec.name + ": the C++ type is " + (cell.is_struct() ? "a structure" : cpp_text_of(native.front())) +
+                ", the descriptor declares " + (spec.is_struct ? "STRUCT" : declared_text(spec.fields.front()))};
   for (std::size_t i = 0; i < std::min(native.size(), spec.fields.size()); ++i) {
     const auto& field = spec.fields[i];
     if (native[i].type == field.type && native[i].count == field.count) continue;
     const std::string where =
         spec.is_struct ? spec.name + "." + field.name + " (member " + std::to_string(i + 1) + ")" : spec.name;
-    return LayoutMismatch{spec.is_struct ? static_cast<int>(i) : -1, where + ": the C++ type is " +
-                              cpp_text_of(native[i]) + ", the descriptor declares " + declared_text(field)};
+    return LayoutMismatch{
+        spec.is_struct ? static_cast<int>(i) : -1,
+        where + ": the C++ type is " + cpp_text_of(native[i]) + ", the descriptor declares " + declared_text(field)};
   }
   if (native.size() == spec.fields.size()) return std::nullopt;
   const std::size_t first = std::min(native.size(), spec.fields.size());
   std::string text = spec.name + ": the C++ structure has " + std::to_string(native.size()) +
                      " members, the descriptor declares " + std::to_string(spec.fields.size()) + "; ";
-  text += first < spec.fields.size() ? "C++ lacks " + spec.fields[first].name + " " + declared_text(spec.fields[first])
-                                     : "not declared is the C++ member " + std::to_string(first + 1) + " (" +
-                                           cpp_text_of(native[first]) + ")";
+  text += first < spec.fields.size()
+              ? "C++ lacks " + spec.fields[first].name + " " + declared_text(spec.fields[first])
+              : "not declared is the C++ member " + std::to_string(first + 1) + " (" + cpp_text_of(native[first]) + ")";
   return LayoutMismatch{static_cast<int>(first), std::move(text)};
 }
 
@@ -170,9 +170,9 @@ std::size_t Dictionary::wire_octets(std::size_t index, int member) const noexcep
   if (index >= entries_.size()) return 0;
   const auto& fields = entries_[index].spec.fields;
   if (member >= 0)
-    return static_cast<std::size_t>(member) < fields.size()
-               ? octets_of(fields[static_cast<std::size_t>(member)].type) * fields[static_cast<std::size_t>(member)].count
-               : 0;
+    return static_cast<std::size_t>(member) < fields.size() ? octets_of(fields[static_cast<std::size_t>(member)].type) *
+                                                                  fields[static_cast<std::size_t>(member)].count
+                                                            : 0;
   std::size_t sum = 0;
   for (const auto& field : fields) sum += octets_of(field.type) * field.count;
   return sum;

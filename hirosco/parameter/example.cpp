@@ -14,8 +14,11 @@ struct CurrentValues {
 };
 
 int main() {
-  const std::vector<ParameterSpec> declared{
-      {"CUR_VALUES", {10, Type::Struct, 0}, {{"MOVING", Type::Int32, 1}, {"POSITION", Type::Double, 1}}, true, {0, 0.5}}};
+  const std::vector<ParameterSpec> declared{{"CUR_VALUES",
+                                             {10, Type::Struct, 0},
+                                             {{"MOVING", Type::Int32, 1}, {"POSITION", Type::Double, 1}},
+                                             true,
+                                             {0, 0.5}}};
   auto dictionary = Dictionary::make(declared).value();
   Parameter<CurrentValues> current;
   if (const auto published = dictionary.publish("CUR_VALUES", current); !published) {

@@ -130,38 +130,37 @@ auto members_of(T& t) {
                  decltype(h)>{};
   } else if constexpr (n == 9) {
     [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i] = t;
-    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
-                 decltype(h), decltype(i)>{};
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g), decltype(h),
+                 decltype(i)>{};
   } else if constexpr (n == 10) {
     [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j] = t;
-    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
-                 decltype(h), decltype(i), decltype(j)>{};
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g), decltype(h),
+                 decltype(i), decltype(j)>{};
   } else if constexpr (n == 11) {
     [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k] = t;
-    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
-                 decltype(h), decltype(i), decltype(j), decltype(k)>{};
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g), decltype(h),
+                 decltype(i), decltype(j), decltype(k)>{};
   } else if constexpr (n == 12) {
     [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l] = t;
-    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
-                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l)>{};
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g), decltype(h),
+                 decltype(i), decltype(j), decltype(k), decltype(l)>{};
   } else if constexpr (n == 13) {
     [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = t;
-    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
-                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l), decltype(m)>{};
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g), decltype(h),
+                 decltype(i), decltype(j), decltype(k), decltype(l), decltype(m)>{};
   } else if constexpr (n == 14) {
     [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = t;
-    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
-                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o)>{};
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g), decltype(h),
+                 decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o)>{};
   } else if constexpr (n == 15) {
     [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = t;
-    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
-                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o),
-                 decltype(p)>{};
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g), decltype(h),
+                 decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o), decltype(p)>{};
   } else {
     [[maybe_unused]] auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = t;
-    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g),
-                 decltype(h), decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o),
-                 decltype(p), decltype(q)>{};
+    return Types<decltype(a), decltype(b), decltype(c), decltype(d), decltype(e), decltype(f), decltype(g), decltype(h),
+                 decltype(i), decltype(j), decltype(k), decltype(l), decltype(m), decltype(o), decltype(p),
+                 decltype(q)>{};
   }
 }
 

@@ -29,8 +29,22 @@ struct Mixed {
   std::int16_t g;
 };
 struct Sixteen {
-  std::uint8_t a; std::int16_t b; std::uint32_t c; std::int64_t d; float e; double f; std::int8_t g; std::uint16_t h;
-  std::int32_t i; std::uint64_t j; std::uint8_t k; std::uint8_t l; std::uint8_t m; std::uint8_t n; double o; float p;
+  std::uint8_t a;
+  std::int16_t b;
+  std::uint32_t c;
+  std::int64_t d;
+  float e;
+  double f;
+  std::int8_t g;
+  std::uint16_t h;
+  std::int32_t i;
+  std::uint64_t j;
+  std::uint8_t k;
+  std::uint8_t l;
+  std::uint8_t m;
+  std::uint8_t n;
+  double o;
+  float p;
 };
 
 static_assert(layout_of<double>() == std::array{NativeField{Type::Double, 1, 0}});
@@ -89,25 +103,32 @@ TEST(Layout, ReachesSixteenMembers) {
 
 template <std::size_t N>
 struct Counted;
-#define MEMBERS(n, ...) template <> struct Counted<n> { std::uint16_t __VA_ARGS__; };
-MEMBERS(1, a) MEMBERS(2, a, b) MEMBERS(3, a, b, c) MEMBERS(4, a, b, c, d) MEMBERS(5, a, b, c, d, e)
-MEMBERS(6, a, b, c, d, e, f) MEMBERS(7, a, b, c, d, e, f, g) MEMBERS(8, a, b, c, d, e, f, g, h)
-MEMBERS(9, a, b, c, d, e, f, g, h, i) MEMBERS(10, a, b, c, d, e, f, g, h, i, j)
-MEMBERS(11, a, b, c, d, e, f, g, h, i, j, k) MEMBERS(12, a, b, c, d, e, f, g, h, i, j, k, l)
-MEMBERS(13, a, b, c, d, e, f, g, h, i, j, k, l, m) MEMBERS(14, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
-MEMBERS(15, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o) MEMBERS(16, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
+#define MEMBERS(n, ...)        \
+  template <>                  \
+  struct Counted<n> {          \
+    std::uint16_t __VA_ARGS__; \
+  };
+MEMBERS(1, a)
+MEMBERS(2, a, b) MEMBERS(3, a, b, c) MEMBERS(4, a, b, c, d) MEMBERS(5, a, b, c, d, e) MEMBERS(6, a, b, c, d, e, f)
+    MEMBERS(7, a, b, c, d, e, f, g) MEMBERS(8, a, b, c, d, e, f, g, h) MEMBERS(9, a, b, c, d, e, f, g, h, i)
+        MEMBERS(10, a, b, c, d, e, f, g, h, i, j) MEMBERS(11, a, b, c, d, e, f, g, h, i, j, k)
+            MEMBERS(12, a, b, c, d, e, f, g, h, i, j, k, l) MEMBERS(13, a, b, c, d, e, f, g, h, i, j, k, l, m)
+                MEMBERS(14, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+                    MEMBERS(15, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
+                        MEMBERS(16, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
 #undef MEMBERS
 
-template <std::size_t N>
-void expect_layout_of_members() {
+                            template <std::size_t N>
+                            void expect_layout_of_members() {
   const auto fields = layout_of<Counted<N>>();
   ASSERT_EQ(fields.size(), N);
   for (std::size_t i = 0; i < N; ++i) EXPECT_EQ(fields[i], (NativeField{Type::Uint16, 1, 2 * i})) << N;
 }
 
 TEST(Layout, CountsEveryNumberOfMembers) {
-  [&]<std::size_t... I>(std::index_sequence<I...>) { (expect_layout_of_members<I + 1>(), ...); }
-  (std::make_index_sequence<16>{});
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (expect_layout_of_members<I + 1>(), ...);
+  }(std::make_index_sequence<16>{});
 }
 
 TEST(Layout, HasATextForMessages) {

@@ -12,26 +12,49 @@ namespace hirosco {
 /// Types a parameter, link field, device field or function argument may have. The value is the layout code of the
 /// parameter id on the wire (docs/adr/0003).
 enum class Type : std::uint8_t {
-  Uint8 = 1, Int8 = 2, Uint16 = 3, Int16 = 4, Uint32 = 5, Int32 = 6, Uint64 = 7, Int64 = 8, Float = 9, Double = 10,
+  Uint8 = 1,
+  Int8 = 2,
+  Uint16 = 3,
+  Int16 = 4,
+  Uint32 = 5,
+  Int32 = 6,
+  Uint64 = 7,
+  Int64 = 8,
+  Float = 9,
+  Double = 10,
   Struct = 32,
 };
 
 template <>
 struct EnumTexts<Type> {
   static constexpr auto table = enum_table<Type>({
-      {Type::Uint8, "UINT8"}, {Type::Int8, "INT8"}, {Type::Uint16, "UINT16"}, {Type::Int16, "INT16"},
-      {Type::Uint32, "UINT32"}, {Type::Int32, "INT32"}, {Type::Uint64, "UINT64"}, {Type::Int64, "INT64"},
-      {Type::Float, "FLOAT"}, {Type::Double, "DOUBLE"}, {Type::Struct, "STRUCT"},
+      {Type::Uint8, "UINT8"},
+      {Type::Int8, "INT8"},
+      {Type::Uint16, "UINT16"},
+      {Type::Int16, "INT16"},
+      {Type::Uint32, "UINT32"},
+      {Type::Int32, "INT32"},
+      {Type::Uint64, "UINT64"},
+      {Type::Int64, "INT64"},
+      {Type::Float, "FLOAT"},
+      {Type::Double, "DOUBLE"},
+      {Type::Struct, "STRUCT"},
   });
 };
 
 /// Octets of one value of a type; 0 for a structure, whose size is that of its members.
 [[nodiscard]] constexpr std::size_t octets_of(Type type) noexcept {
   switch (type) {
-    case Type::Uint8: case Type::Int8: return 1;
-    case Type::Uint16: case Type::Int16: return 2;
-    case Type::Uint32: case Type::Int32: case Type::Float: return 4;
-    case Type::Uint64: case Type::Int64: case Type::Double: return 8;
+    case Type::Uint8:
+    case Type::Int8: return 1;
+    case Type::Uint16:
+    case Type::Int16: return 2;
+    case Type::Uint32:
+    case Type::Int32:
+    case Type::Float: return 4;
+    case Type::Uint64:
+    case Type::Int64:
+    case Type::Double: return 8;
     case Type::Struct: return 0;
   }
   return 0;

@@ -54,7 +54,7 @@ class WriteQueue {
   std::size_t octets_per_batch_;
   std::vector<std::byte> storage_;
   Mutex enqueuers_;
-  alignas(64) std::atomic<std::uint64_t> filled_{0};   // written by enqueuers, under the mutex
+  alignas(64) std::atomic<std::uint64_t> filled_{0};  // written by enqueuers, under the mutex
   alignas(64) std::atomic<std::uint64_t> applied_{0};  // written by the cycle
 };
 
