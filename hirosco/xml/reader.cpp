@@ -80,7 +80,8 @@ bool is_utf8_name(std::string_view encoding) noexcept {
   const auto same = [&](std::string_view name) {
     if (encoding.size() != name.size()) return false;
     for (std::size_t i = 0; i < name.size(); ++i) {
-      const char c = encoding[i] >= 'a' && encoding[i] <= 'z' ? static_cast<char>(encoding[i] - 'a' + 'A') : encoding[i];
+      const char c =
+          encoding[i] >= 'a' && encoding[i] <= 'z' ? static_cast<char>(encoding[i] - 'a' + 'A') : encoding[i];
       if (c != name[i]) return false;
     }
     return true;
@@ -204,7 +205,8 @@ class Reader::Parser {
     if (problem_) return;
     give_text();
     --depth_;
-    events_.push_back({.kind = Event::Kind::End, .name = name, .attributes = {}, .text = {}, .at = cursor_.at(offset())});
+    events_.push_back(
+        {.kind = Event::Kind::End, .name = name, .attributes = {}, .text = {}, .at = cursor_.at(offset())});
     suspend();
   }
 
@@ -220,7 +222,10 @@ class Reader::Parser {
 
   void give_text() {
     if (!text_at_) return;
-    events_.push_back({.kind = Event::Kind::Text, .name = {}, .attributes = {}, .text = std::exchange(text_, {}),
+    events_.push_back({.kind = Event::Kind::Text,
+                       .name = {},
+                       .attributes = {},
+                       .text = std::exchange(text_, {}),
                        .at = *std::exchange(text_at_, std::nullopt)});
   }
 

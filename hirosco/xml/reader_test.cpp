@@ -76,15 +76,15 @@ TEST(Reader, SaysWhereADocumentIsNotWellFormed) {
 
 TEST(Reader, AProblemIsFinal) {
   Reader reader{"<a><b></a>"};
-  while (reader.next().has_value()) {
-  }
+  while (reader.next().has_value()) {}
   EXPECT_FALSE(reader.next().has_value());
   EXPECT_EQ(reader.next().error().reason, "mismatched tag");
 }
 
 TEST(Reader, RefusesDocumentTypesBeforeAnyEntityGrows) {
   const Problem laughs = problem_of(
-      "<?xml version=\"1.0\"?>\n<!DOCTYPE l [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;\"><!ENTITY c \"&b;&b;&b;\">]>\n"
+      "<?xml version=\"1.0\"?>\n<!DOCTYPE l [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;\"><!ENTITY c "
+      "\"&b;&b;&b;\">]>\n"
       "<l>&c;</l>");
   EXPECT_EQ(laughs.refusal, Refusal::NotAllowed);
   EXPECT_EQ(laughs.at.line, 2);

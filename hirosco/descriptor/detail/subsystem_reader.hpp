@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/detail/element_reader.hpp"
+#include "hirosco/descriptor/subsystem.hpp"
+
+namespace hirosco::descriptor::detail {
+
+/// Octets of a housekeeping report that are left for samples: packet 4096 less headers, checksum and structure id.
+inline constexpr std::size_t max_housekeeping_octets = 4096 - 22 - 2;
+/// Of one sample of a link (data_transfer/realtime_link.hpp).
+inline constexpr std::size_t max_link_octets = 65'536;
+
+/// Reads one <Subsystem>. Declarations first, then what refers to them, whatever their order in the file.
+class SubsystemReader {
+ public:
+  explicit SubsystemReader(Problems& problems) : problems_{problems} {}
+  [[nodiscard]] Subsystem read(const xml::Element& root);
+
+ private:
+  /// What may stand once under <Subsystem> and once under each <Configuration>.
+  struct Services {
+    std::vector<HousekeepingStructure>& housekeeping;
+    std::vector<Provides>& provides;
+    std::vector<Requires>& requires_;
+    Unique& structure_ids;
+    Unique& provided;
+    Unique& required;
+    std::map<std::string, Location> seen{};
+  };
+
+  // read_subsystem.cpp
+  void read_head(const xml::Element& root);
+  void read_resources(const xml::Element& element);
+  void read_memory(const xml::Element& element);
+  void read_hang(const xml::Element& element);
+  void read_device(const xml::Element& element);
+  void read_output(const xml::Element& element, Device& device, Unique& names);
+
+  // read_configuration.cpp
+  void read_configuration(const xml::Element& element);
+  void read_device_use(const xml::Element& element, Configuration& configuration, Unique& names);
+  void read_setting(const xml::Element& element, DeviceUse& use, Unique& names);
+  [[nodiscard]] Endnode read_endnode(const xml::Element& element);
+  void read_initial(const xml::Element& element, Configuration& configuration);
+
+  // read_parameters.cpp
+  void read_enumeration(const xml::Element& element);
+  void read_structure(const xml::Element& element);
+  void read_parameter(const xml::Element& element);
+  void read_member(const xml::Element& element, Parameter& structure, Unique& names);
+  void claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id);
+  void check_enumerations();
+  /// Name, type, count, unit and, with `ranged`, minimum and maximum.
+  [[nodiscard]] Field read_field(Attributes& attributes, bool ranged);
+  void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names);
+  void check_field_range(Attributes& attributes, Field& field);
+  /// True when every value fits the type and the range of `field`.
+  bool check_values(const xml::Attribute& at, const Field& field, const std::vector<double>& values);
+  [[nodiscard]] std::vector<double> read_values(Attributes& attributes, std::string_view name, const Field& field);
+  /// The `name` attribute resolved against the parameters.
+  [[nodiscard]] std::optional<ParameterRef> read_reference(Attributes& attributes, std::string_view user);
+  void index_references();
+  [[nodiscard]] std::optional<ParameterRef> resolve(const xml::Attribute& name, std::string_view user);
+  [[nodiscard]] std::string suggest_reference(std::string_view text) const;
+  [[nodiscard]] std::size_t octets_of_reference(const ParameterRef& reference) const;
+
+  // read_services.cpp
+  /// Rows for each_child(): the services, read into `services`.
+  [[nodiscard]] std::vector<Child> service_children(Services& services);
+  bool first_service(const xml::Element& element, Services& services);
+  void read_event(const xml::Element& element);
+  void read_function(const xml::Element& element);
+  [[nodiscard]] std::uint16_t read_states(Attributes& attributes);
+  void read_argument(const xml::Element& element, Function& function, Unique& names);
+  void read_housekeeping(const xml::Element& element, Services& services);
+  void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);
+  void read_provides(const xml::Element& element, Services& services);
+  void read_requires(const xml::Element& element, Services& services);
+  [[nodiscard]] LinkTerms read_terms(Attributes& attributes);
+  [[nodiscard]] CycleLimit read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
+                                      CycleLimit fallback);
+
+  struct EnumerationUse {
+    const xml::Attribute* at;
+    std::string name;
+    Type type;
+  };
+
+  Problems& problems_;
+  Subsystem subsystem_;
+  Unique parameter_names_{"parameter name", "E0201"};
+  Unique parameter_ids_{"parameter id", "E0203"};
+  Unique enumeration_names_{"enumeration name", "E0201"};
+  Unique device_names_{"device name", "E0201"};
+  Unique event_names_{"event name", "E0201"};
+  Unique event_ids_{"event id", "E0202"};
+  Unique function_names_{"function name", "E0201"};
+  Unique configuration_names_{"configuration name", "E0201"};
+  Unique configuration_ids_{"configuration id", "E0202"};
+  Unique structure_ids_{"housekeeping structure id", "E0211"};
+  Unique provided_{"provided set", "E0201"};
+  Unique required_{"required set", "E0201"};
+  std::vector<Provides> provides_;   ///< under <Subsystem>: valid in every configuration
+  std::vector<Requires> requires_;
+  std::vector<EnumerationUse> enumeration_uses_;
+  std::map<std::string, std::vector<ParameterRef>, std::less<>> references_;  ///< by every spelling
+};
+
+}  // namespace hirosco::descriptor::detail

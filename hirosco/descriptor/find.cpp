@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/subsystem.hpp"
+
+namespace hirosco::descriptor {
+namespace {
+
+template <class Range, class Key, class Projection>
+auto find_in(const Range& range, const Key& key, Projection projection) noexcept -> decltype(&*range.begin()) {
+  const auto found = std::ranges::find(range, key, projection);
+  return found == range.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const Parameter* Subsystem::find_parameter(std::string_view parameter) const noexcept {
+  return find_in(parameters, parameter, [](const Parameter& p) -> std::string_view { return p.field.name; });
+}
+const Event* Subsystem::find_event(std::string_view event) const noexcept {
+  return find_in(events, event, &Event::name);
+}
+const Function* Subsystem::find_function(std::string_view function) const noexcept {
+  return find_in(functions, function, &Function::name);
+}
+const Configuration* Subsystem::find_configuration(std::string_view configuration) const noexcept {
+  return find_in(configurations, configuration, &Configuration::name);
+}
+const Configuration* Subsystem::find_configuration(std::uint8_t configuration) const noexcept {
+  return find_in(configurations, configuration, &Configuration::id);
+}
+
+const MissionSubsystem* Mission::find_subsystem(std::string_view subsystem) const noexcept {
+  return find_in(subsystems, subsystem, [](const MissionSubsystem& m) -> std::string_view { return m.subsystem.name; });
+}
+const MissionSubsystem* Mission::find_subsystem(std::uint16_t apid) const noexcept {
+  return find_in(subsystems, apid, [](const MissionSubsystem& m) { return m.subsystem.id; });
+}
+const Mode* Mission::find_mode(std::string_view mode) const noexcept { return find_in(modes, mode, &Mode::name); }
+const MissionLink* Mission::find_link(std::uint8_t link) const noexcept {
+  return find_in(links, link, &MissionLink::id);
+}
+
+std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference) {
+  const Parameter& parameter = subsystem.parameters.at(reference.parameter);
+  if (reference.member) return {parameter.members.at(*reference.member).field};
+  if (parameter.field.type != Type::Struct) return {parameter.field};
+  std::vector<Field> fields;
+  for (const Parameter::Member& member : parameter.members) fields.push_back(member.field);
+  return fields;
+}
+
+}  // namespace hirosco::descriptor

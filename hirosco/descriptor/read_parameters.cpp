@@ -1,0 +1,294 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hirosco/descriptor/detail/subsystem_reader.hpp"
+
+namespace hirosco::descriptor::detail {
+namespace {
+
+constexpr std::int64_t max_count = 4096;
+
+struct Range {
+  double low;
+  double high;
+};
+
+/// What the type holds, as far as a double names it exactly.
+Range range_of(Type type) noexcept {
+  constexpr auto exact = static_cast<double>(max_exact_integer);
+  switch (type) {
+    case Type::Uint8: return {0, 255};
+    case Type::Int8: return {-128, 127};
+    case Type::Uint16: return {0, 65'535};
+    case Type::Int16: return {-32'768, 32'767};
+    case Type::Uint32: return {0, 4'294'967'295.0};
+    case Type::Int32: return {-2'147'483'648.0, 2'147'483'647.0};
+    case Type::Uint64: return {0, exact};
+    case Type::Int64: return {-exact, exact};
+    case Type::Float: return {-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
+    case Type::Double:
+    case Type::Struct: return {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  }
+  return {0, 0};
+}
+
+constexpr bool is_integer(Type type) noexcept {
+  return type != Type::Float && type != Type::Double && type != Type::Struct;
+}
+
+std::string range_text(const Field& field) {
+  return fmt::format("{} to {}", field.minimum ? to_string(*field.minimum) : "-inf",
+                     field.maximum ? to_string(*field.maximum) : "inf");
+}
+
+}  // namespace
+
+void SubsystemReader::read_enumeration(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Enumeration enumeration{attributes.name(), {}};
+  if (!enumeration.name.empty())
+    enumeration_names_.add(enumeration.name, place(element.at), problems_, element.name.size() + 1);
+  Unique values{"enumeration value", "E0202"};
+  each_child(element, problems_,
+             {{"Text", [&](const xml::Element& text) {
+                 Attributes inner{text, problems_};
+                 const auto value =
+                     inner.required_integer<std::int64_t>("value", -max_exact_integer, max_exact_integer);
+                 no_children(text, problems_, true);
+                 if (inner.element().find("value") != nullptr)
+                   values.add(std::to_string(value), place(text.at), problems_, text.name.size() + 1);
+                 if (words(text.text).empty()) problems_.add(text, "E0109", "<Text> is empty");
+                 enumeration.texts.push_back({value, text.text});
+               }}});
+  if (enumeration.texts.empty()) problems_.add(element, "E0106", "<Enumeration> needs at least one <Text>");
+  subsystem_.enumerations.push_back(std::move(enumeration));
+}
+
+void SubsystemReader::read_structure(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Parameter parameter;
+  parameter.field.name = attributes.name();
+  parameter.field.type = Type::Struct;
+  parameter.field.at = place(element.at);
+  if (const auto* type = attributes.optional("type"); type != nullptr && type->value != "STRUCT")
+    problems_.add(*type, "E0104", "the type of a <StructRef> is 'STRUCT', not " + in_quotes(type->value));
+  parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  parameter.read_only = attributes.yes("read_only", false);
+  parameter.persistent = attributes.yes("persistent", false);
+  claim_parameter_id(attributes, Type::Struct, parameter.id);
+  if (!parameter.field.name.empty())
+    parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
+  Unique names{"member name", "E0201"};
+  each_child(element, problems_,
+             {{"ParamRef", [&](const xml::Element& child) { read_member(child, parameter, names); }, 256},
+              {"StructRef", [&](const xml::Element& child) {
+                 problems_.add(child, "E0102", "a structure inside a structure is not possible",
+                               "reference its members one by one");
+               }}});
+  if (parameter.members.empty()) problems_.add(element, "E0106", "<StructRef> needs at least one <ParamRef>");
+  subsystem_.parameters.push_back(std::move(parameter));
+}
+
+void SubsystemReader::read_member(const xml::Element& element, Parameter& structure, Unique& names) {
+  Attributes attributes{element, problems_};
+  Parameter::Member member;
+  member.field = read_field(attributes, true);
+  member.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  claim_parameter_id(attributes, member.field.type, member.id);
+  no_children(element, problems_);
+  if (!member.field.name.empty()) names.add(member.field.name, place(element.at), problems_, element.name.size() + 1);
+  structure.members.push_back(std::move(member));
+}
+
+void SubsystemReader::read_parameter(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Parameter parameter;
+  parameter.field = read_field(attributes, true);
+  parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  parameter.init = read_values(attributes, "init", parameter.field);
+  parameter.read_only = attributes.yes("read_only", false);
+  parameter.persistent = attributes.yes("persistent", false);
+  claim_parameter_id(attributes, parameter.field.type, parameter.id);
+  no_children(element, problems_);
+  const bool zero_outside = parameter.field.minimum.value_or(0) > 0 || parameter.field.maximum.value_or(0) < 0;
+  if (zero_outside && element.find("init") == nullptr)
+    problems_.add(
+        element, "E0207",
+        fmt::format("'{}' begins as 0, outside its range {}", parameter.field.name, range_text(parameter.field)),
+        "add the attribute init");
+  if (!parameter.field.name.empty())
+    parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
+  subsystem_.parameters.push_back(std::move(parameter));
+}
+
+void SubsystemReader::claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id) {
+  const xml::Element& element = attributes.element();
+  const xml::Attribute* written = element.find("id");
+  const bool known_type =
+      type == Type::Struct || (element.find("type") != nullptr && from_text<Type>(element.find("type")->value));
+  if (written == nullptr || !known_type || to_integer(written->value) != id) return;
+  parameter_ids_.add(fmt::format("{} {}", to_text(type), id), place(written->value_at), problems_,
+                     written->value.size(), "type and id together must be unique, members included");
+}
+
+Field SubsystemReader::read_field(Attributes& attributes, bool ranged) {
+  Field field;
+  field.at = place(attributes.element().at);
+  field.name = attributes.name();
+  if (const auto* type = attributes.required("type"); type != nullptr) {
+    field.type = attributes.one_of("type", Type::Double);
+    if (field.type == Type::Struct) {
+      problems_.add(*type, "E0104", "'STRUCT' is the type of a <StructRef> only");
+      field.type = Type::Double;
+    }
+  }
+  field.count = attributes.integer_or<std::uint16_t>("count", 1, max_count, 1);
+  field.unit = attributes.text("unit");
+  if (field.unit.size() > 32)
+    problems_.add(*attributes.element().find("unit"), "E0114", "a unit has at most 32 octets");
+  field.enumeration = attributes.text("enumeration");
+  if (const auto* use = attributes.optional("enumeration"); use != nullptr)
+    enumeration_uses_.push_back({use, use->value, field.type});
+  if (ranged) check_field_range(attributes, field);
+  return field;
+}
+
+void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
+  const auto limit = [&](std::string_view name) {
+    const auto value = attributes.number(name);
+    if (!value) return value;
+    const bool fits = check_values(*attributes.element().find(name), field, {*value});
+    return fits ? value : std::nullopt;
+  };
+  const auto minimum = limit("minimum");
+  const auto maximum = limit("maximum");
+  field.minimum = minimum;
+  field.maximum = maximum;
+  if (!minimum || !maximum || *minimum <= *maximum) return;
+  problems_.add(*attributes.element().find("minimum"), "E0206",
+                fmt::format("minimum {} is above maximum {}", *minimum, *maximum));
+  field.minimum = field.maximum = std::nullopt;
+}
+
+bool SubsystemReader::check_values(const xml::Attribute& at, const Field& field, const std::vector<double>& values) {
+  const Range range = range_of(field.type);
+  for (const double value : values) {
+    if (is_integer(field.type) && std::trunc(value) != value) {
+      problems_.add(at, "E0208",
+                    fmt::format("{} is not a whole number, '{}' is {}", value, field.name, to_text(field.type)));
+      return false;
+    }
+    if (value < range.low || value > range.high) {
+      problems_.add(at, "E0208", fmt::format("{} does not fit {}", value, to_text(field.type)),
+                    fmt::format("{} to {}", range.low, range.high));
+      return false;
+    }
+    if ((field.minimum && value < *field.minimum) || (field.maximum && value > *field.maximum)) {
+      problems_.add(at, "E0207", fmt::format("{} is outside the range of '{}'", value, field.name), range_text(field));
+      return false;
+    }
+  }
+  return true;
+}
+
+std::vector<double> SubsystemReader::read_values(Attributes& attributes, std::string_view name, const Field& field) {
+  auto values = attributes.numbers(name);
+  if (values.empty()) return {};
+  const xml::Attribute& at = *attributes.element().find(name);
+  if (values.size() != field.count) {
+    problems_.add(at, "E0209",
+                  fmt::format("'{}' has {} value{}, not {}", field.name, field.count, field.count == 1 ? "" : "s",
+                              values.size()));
+    return {};
+  }
+  if (!check_values(at, field, values)) return {};
+  return values;
+}
+
+void SubsystemReader::read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names) {
+  Attributes attributes{element, problems_};
+  Field field = read_field(attributes, false);
+  no_children(element, problems_);
+  if (!field.name.empty()) names.add(field.name, place(element.at), problems_, element.name.size() + 1);
+  fields.push_back(std::move(field));
+}
+
+void SubsystemReader::check_enumerations() {
+  std::vector<std::string_view> known;
+  for (const Enumeration& enumeration : subsystem_.enumerations) known.push_back(enumeration.name);
+  std::ranges::sort(known);
+  for (const EnumerationUse& use : enumeration_uses_) {
+    if (problems_.full()) return;
+    if (!std::ranges::binary_search(known, use.name))
+      problems_.add(*use.at, "E0210", fmt::format("enumeration {} is not defined", in_quotes(use.name)),
+                    did_you_mean(use.name, known));
+    else if (!is_integer(use.type))
+      problems_.add(*use.at, "E0208", fmt::format("an enumeration needs an integer type, not {}", to_text(use.type)));
+  }
+}
+
+std::optional<ParameterRef> SubsystemReader::read_reference(Attributes& attributes, std::string_view user) {
+  const auto* name = attributes.required("name");
+  return name == nullptr ? std::nullopt : resolve(*name, user);
+}
+
+/// A parameter's own name goes before members of that name: it is listed first, and is not ambiguous.
+void SubsystemReader::index_references() {
+  const auto add = [this](const std::string& text, std::size_t parameter, std::optional<std::uint16_t> member) {
+    references_[text].push_back({text, static_cast<std::uint16_t>(parameter), member, {}});
+  };
+  const auto& parameters = subsystem_.parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) add(parameters[i].field.name, i, std::nullopt);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    for (std::size_t m = 0; m < parameters[i].members.size(); ++m) {
+      const std::string& member = parameters[i].members[m].field.name;
+      add(member, i, static_cast<std::uint16_t>(m));
+      add(parameters[i].field.name + "." + member, i, static_cast<std::uint16_t>(m));
+    }
+}
+
+std::optional<ParameterRef> SubsystemReader::resolve(const xml::Attribute& name, std::string_view user) {
+  const std::string_view text = name.value;
+  const auto found = text.empty() ? references_.end() : references_.find(text);
+  if (found == references_.end()) {
+    problems_.add(name, "E0204", fmt::format("{} refers to {}, which is not defined", user, in_quotes(text)),
+                  suggest_reference(text));
+    return std::nullopt;
+  }
+  const std::vector<ParameterRef>& members = found->second;
+  if (members.size() == 1 || !members.front().member) {
+    ParameterRef reference = members.front();
+    reference.at = place(name.value_at);
+    return reference;
+  }
+  std::string hint = "one of";
+  for (std::size_t i = 0; i < members.size() && i < 8; ++i)
+    hint += fmt::format(" '{}.{}'", subsystem_.parameters[members[i].parameter].field.name, text);
+  problems_.add(name, "E0205", fmt::format("{} refers to {}, a member of several structures", user, in_quotes(text)),
+                hint);
+  return std::nullopt;
+}
+
+std::string SubsystemReader::suggest_reference(std::string_view text) const {
+  std::vector<std::string_view> names;
+  for (const auto& [name, references] : references_) names.push_back(name);
+  std::string hint = did_you_mean(text, names);
+  const std::size_t first = hint.find('\''), last = hint.rfind('\'');
+  if (hint.empty() || first == last) return hint;
+  const ParameterRef& nearest = references_.find(hint.substr(first + 1, last - first - 1))->second.front();
+  const Parameter& parameter = subsystem_.parameters[nearest.parameter];
+  const Field& field = nearest.member ? parameter.members[*nearest.member].field : parameter.field;
+  return hint + fmt::format(" (line {})", field.at.line);
+}
+
+std::size_t SubsystemReader::octets_of_reference(const ParameterRef& reference) const {
+  const Parameter& parameter = subsystem_.parameters[reference.parameter];
+  return reference.member ? parameter.members[*reference.member].field.octets() : parameter.octets();
+}
+
+}  // namespace hirosco::descriptor::detail

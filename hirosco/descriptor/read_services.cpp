@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <bit>
+#include <utility>
+
+#include "hirosco/descriptor/detail/subsystem_reader.hpp"
+
+namespace hirosco::descriptor::detail {
+namespace {
+
+constexpr std::int64_t max_cycles = 1'000'000;
+constexpr std::size_t max_arguments = 255;
+constexpr std::size_t max_structures = 256;
+constexpr std::size_t max_sets = 64;
+
+}  // namespace
+
+std::vector<Child> SubsystemReader::service_children(Services& services) {
+  const auto service = [this, &services](auto read) {
+    return [this, &services, read](const xml::Element& element) {
+      Attributes attributes{element, problems_};
+      if (first_service(element, services)) read(element);
+    };
+  };
+  return {{"EventService", service([this](const xml::Element& element) {
+             each_child(element, problems_, {{"Event", [this](const auto& child) { read_event(child); }}});
+           })},
+          {"FunctionService", service([this](const xml::Element& element) {
+             each_child(element, problems_, {{"Function", [this](const auto& child) { read_function(child); }}});
+           })},
+          {"TestService", service([this](const xml::Element& element) { no_children(element, problems_); })},
+          {"HKService", [this, &services](const xml::Element& element) { read_housekeeping(element, services); },
+           max_structures},
+          {"RealTimeLinkService", service([this, &services](const xml::Element& element) {
+             each_child(
+                 element, problems_,
+                 {{"Provides", [this, &services](const auto& child) { read_provides(child, services); }, max_sets},
+                  {"Requires", [this, &services](const auto& child) { read_requires(child, services); }, max_sets}});
+           })}};
+}
+
+bool SubsystemReader::first_service(const xml::Element& element, Services& services) {
+  const auto [before, first] = services.seen.emplace(element.name, place(element.at));
+  if (!first)
+    problems_.add(element, "E0212",
+                  fmt::format("a second <{}>: a subsystem has one instance of each service", element.name),
+                  fmt::format("the first one is in line {}", before->second.line));
+  return first;
+}
+
+void SubsystemReader::read_event(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Event event;
+  event.at = place(element.at);
+  event.name = attributes.name();
+  event.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
+  if (attributes.required("severity") != nullptr) event.severity = attributes.one_of("severity", Severity::Info);
+  Unique names{"argument name", "E0201"};
+  each_child(element, problems_,
+             {{"Argument", [&](const xml::Element& child) { read_plain_field(child, event.arguments, names); },
+               max_arguments}});
+  if (!event.name.empty()) event_names_.add(event.name, event.at, problems_, element.name.size() + 1);
+  if (event.id != 0)
+    event_ids_.add(std::to_string(event.id), place(element.find("id")->value_at), problems_,
+                   element.find("id")->value.size());
+  subsystem_.events.push_back(std::move(event));
+}
+
+void SubsystemReader::read_function(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Function function;
+  function.at = place(element.at);
+  function.name = attributes.name("name", NameKind::Function);
+  function.essential = attributes.yes("essential", false);
+  function.states = read_states(attributes);
+  // A function's identity on the wire is its name; a number is allowed as documentation.
+  static_cast<void>(attributes.integer("id", 0, 65'535));
+  Unique names{"argument name", "E0201"};
+  each_child(element, problems_,
+             {{"Argument", [&](const xml::Element& child) { read_argument(child, function, names); }, max_arguments},
+              {"Description",
+               [&](const xml::Element& child) {
+                 no_children(child, problems_, true);
+                 function.description = child.text;
+               },
+               1}});
+  if (function.name == "SET_STATE" || function.name == "CONFIGURE")
+    problems_.add(*element.find("name"), "E0213",
+                  fmt::format("'{}' is built in: every subsystem has it", function.name));
+  else if (!function.name.empty()) function_names_.add(function.name, function.at, problems_, element.name.size() + 1);
+  subsystem_.functions.push_back(std::move(function));
+}
+
+std::uint16_t SubsystemReader::read_states(Attributes& attributes) {
+  unsigned states = 0;
+  for (const State state : attributes.list_of<State>("states", {State::Operational}))
+    states |= 1U << static_cast<unsigned>(state);
+  return static_cast<std::uint16_t>(states);
+}
+
+void SubsystemReader::read_argument(const xml::Element& element, Function& function, Unique& names) {
+  Attributes attributes{element, problems_};
+  Function::Argument argument;
+  argument.field = read_field(attributes, true);
+  if (const auto fallback = attributes.number("default"))
+    if (check_values(*element.find("default"), argument.field, {*fallback})) argument.fallback = fallback;
+  no_children(element, problems_);
+  if (!argument.field.name.empty())
+    names.add(argument.field.name, place(element.at), problems_, element.name.size() + 1);
+  function.arguments.push_back(std::move(argument));
+}
+
+void SubsystemReader::read_housekeeping(const xml::Element& element, Services& services) {
+  Attributes attributes{element, problems_};
+  HousekeepingStructure structure;
+  structure.at = place(element.at);
+  structure.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
+  structure.interval_cycles = attributes.required_integer<std::uint32_t>("interval", 1, 4'294'967'295);
+  structure.enabled = attributes.yes("enabled", true);
+  const std::string user = fmt::format("HKService {}", structure.id);
+  each_child(element, problems_,
+             {{"SampledOnce",
+               [&](const xml::Element& child) {
+                 const Attributes none{child, problems_};
+                 read_sampled(child, structure.sampled_once, user);
+               },
+               1},
+              {"SampledNREPTimes", [&](const xml::Element& child) {
+                 Attributes inner{child, problems_};
+                 HousekeepingStructure::SampledSet set;
+                 set.repetitions = inner.required_integer<std::uint16_t>("nrep", 1, 65'535);
+                 if (set.repetitions != 0 && structure.interval_cycles % set.repetitions != 0)
+                   problems_.add(*child.find("nrep"), "E0214",
+                                 fmt::format("nrep {} does not divide the interval {}", set.repetitions,
+                                             structure.interval_cycles));
+                 read_sampled(child, set.parameters, user);
+                 structure.sampled_repeatedly.push_back(std::move(set));
+               }}});
+  std::size_t octets = 0;
+  for (const auto& reference : structure.sampled_once) octets += octets_of_reference(reference);
+  for (const auto& set : structure.sampled_repeatedly)
+    for (const auto& reference : set.parameters) octets += set.repetitions * octets_of_reference(reference);
+  if (octets > max_housekeeping_octets)
+    problems_.add(element, "E0215", fmt::format("{} takes {} octets in one report", user, octets),
+                  fmt::format("at most {}", max_housekeeping_octets));
+  if (element.children.empty())
+    problems_.add(element, "E0106", "<HKService> needs <SampledOnce> or <SampledNREPTimes>");
+  if (structure.id != 0)
+    services.structure_ids.add(std::to_string(structure.id), place(element.find("id")->value_at), problems_,
+                               element.find("id")->value.size());
+  services.housekeeping.push_back(std::move(structure));
+}
+
+void SubsystemReader::read_sampled(const xml::Element& element, std::vector<ParameterRef>& into,
+                                   std::string_view user) {
+  each_child(element, problems_, {{"ParamRef", [&](const xml::Element& child) {
+                                     Attributes attributes{child, problems_};
+                                     no_children(child, problems_);
+                                     if (auto reference = read_reference(attributes, user))
+                                       into.push_back(std::move(*reference));
+                                   }}});
+  if (element.children.empty())
+    problems_.add(element, "E0106", fmt::format("<{}> needs at least one <ParamRef>", element.name));
+}
+
+LinkTerms SubsystemReader::read_terms(Attributes& attributes) {
+  LinkTerms terms;
+  terms.methods = attributes.list_of<Method>("methods", terms.methods);
+  terms.kinds = attributes.list_of<LinkKind>("kind", terms.kinds);
+  const auto* orders = attributes.optional("byte_order");
+  if (orders == nullptr) return terms;
+  if (orders->value != "native") terms.byte_orders = attributes.list_of<ByteOrder>("byte_order", terms.byte_orders);
+  else terms.byte_orders = {std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big};
+  return terms;
+}
+
+CycleLimit SubsystemReader::read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
+                                       CycleLimit fallback) {
+  CycleLimit limit;
+  limit.realtime = attributes.integer_or<std::uint32_t>(realtime, 1, max_cycles, fallback.realtime);
+  // A limit that was raised for real time is not to be tighter without it.
+  limit.reduced =
+      attributes.integer_or<std::uint32_t>(reduced, 1, max_cycles, std::max(fallback.reduced, limit.realtime));
+  return limit;
+}
+
+void SubsystemReader::read_provides(const xml::Element& element, Services& services) {
+  Attributes attributes{element, problems_};
+  Provides set;
+  set.at = place(element.at);
+  set.name = attributes.name();
+  set.terms = read_terms(attributes);
+  const std::string user = fmt::format("set '{}'", set.name);
+  read_sampled(element, set.parameters, user);
+  Unique names{"field name", "E0201"};
+  std::size_t octets = 0;
+  for (const ParameterRef& reference : set.parameters) {
+    octets += octets_of_reference(reference);
+    if (octets > max_link_octets) break;
+    for (const Field& field : fields_of(subsystem_, reference))
+      if (!field.name.empty() &&
+          !names.add(field.name, reference.at, problems_, reference.text.size(), "fields of a set are matched by name"))
+        break;
+  }
+  if (octets > max_link_octets)
+    problems_.add(element, "E0215", fmt::format("{} takes {} octets or more in one sample", user, octets),
+                  fmt::format("at most {}", max_link_octets));
+  if (!set.name.empty()) services.provided.add(set.name, set.at, problems_, element.name.size() + 1);
+  services.provides.push_back(std::move(set));
+}
+
+void SubsystemReader::read_requires(const xml::Element& element, Services& services) {
+  Attributes attributes{element, problems_};
+  Requires set;
+  set.at = place(element.at);
+  set.name = attributes.name();
+  if (attributes.optional("from") != nullptr) set.from = attributes.name("from");
+  set.terms = read_terms(attributes);
+  set.required = attributes.yes("required", true);
+  set.age = read_limit(attributes, "age", "age_reduced", set.age);
+  set.missing = attributes.one_of("missing", MissingPolicy::Inhibit);
+  Unique names{"field name", "E0201"};
+  each_child(element, problems_, {{"Field", [&](const auto& child) { read_plain_field(child, set.fields, names); }}});
+  if (set.fields.empty()) problems_.add(element, "E0106", "<Requires> needs at least one <Field>");
+  std::size_t octets = 0;
+  for (const Field& field : set.fields) octets += field.octets();
+  if (octets > max_link_octets)
+    problems_.add(element, "E0215", fmt::format("set '{}' takes {} octets in one sample", set.name, octets),
+                  fmt::format("at most {}", max_link_octets));
+  if (!set.name.empty()) services.required.add(set.name, set.at, problems_, element.name.size() + 1);
+  services.requires_.push_back(std::move(set));
+}
+
+}  // namespace hirosco::descriptor::detail

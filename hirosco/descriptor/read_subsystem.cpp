@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "hirosco/descriptor/detail/subsystem_reader.hpp"
+#include "hirosco/descriptor/read.hpp"
+
+namespace hirosco::descriptor {
+namespace detail {
+namespace {
+
+constexpr std::size_t max_description = 4096;
+constexpr std::int64_t max_octets = std::int64_t{1} << 40;
+
+/// "64MiB", "512KiB", "4096"; empty when it is none or more than a tebibyte.
+std::optional<std::size_t> to_octets(std::string_view text) noexcept {
+  std::int64_t unit = 1;
+  for (const auto& [suffix, factor] :
+       {std::pair<std::string_view, std::int64_t>{"KiB", 1 << 10}, {"MiB", 1 << 20}, {"GiB", 1 << 30}})
+    if (text.ends_with(suffix)) {
+      unit = factor;
+      text.remove_suffix(suffix.size());
+      break;
+    }
+  const auto number = to_integer(text);
+  if (!number || *number < 1 || *number > max_octets / unit) return std::nullopt;
+  return static_cast<std::size_t>(*number * unit);
+}
+
+}  // namespace
+
+Subsystem SubsystemReader::read(const xml::Element& root) {
+  read_head(root);
+  std::vector<const xml::Element*> configurations, services_elements;
+  const auto later = [](std::vector<const xml::Element*>& list) {
+    return [&list](const xml::Element& e) { list.push_back(&e); };
+  };
+  std::vector<Child> children{{"Description",
+                               [this](const xml::Element& element) {
+                                 const Attributes none{element, problems_};
+                                 no_children(element, problems_, true);
+                                 if (element.text.size() > max_description)
+                                   problems_.add(element, "E0114", "a description has at most 4096 octets");
+                                 subsystem_.description = element.text;
+                               },
+                               1},
+                              {"Resources", [this](const auto& element) { read_resources(element); }, 1},
+                              {"Parameters",
+                               [this](const xml::Element& element) {
+                                 const Attributes none{element, problems_};
+                                 each_child(element, problems_,
+                                            {{"StructRef", [this](const auto& child) { read_structure(child); }},
+                                             {"ParamRef", [this](const auto& child) { read_parameter(child); }}});
+                               },
+                               1},
+                              {"StructRef", [this](const auto& element) { read_structure(element); }},
+                              {"ParamRef", [this](const auto& element) { read_parameter(element); }},
+                              {"Enumeration", [this](const auto& element) { read_enumeration(element); }},
+                              {"Device", [this](const auto& element) { read_device(element); }, 255},
+                              {"Hang", [this](const auto& element) { read_hang(element); }, 1},
+                              {"Configuration", later(configurations), 255}};
+  Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_};
+  const std::vector<Child> service_rows = service_children(services);
+  for (const Child& row : service_rows) children.push_back({row.name, later(services_elements), row.most});
+  each_child(root, problems_, children);
+  index_references();
+  for (const xml::Element* element : services_elements)
+    std::ranges::find(service_rows, element->name, &Child::name)->read(*element);
+  for (const xml::Element* element : configurations) read_configuration(*element);
+  check_enumerations();
+  return std::move(subsystem_);
+}
+
+void SubsystemReader::read_head(const xml::Element& root) {
+  Attributes attributes{root, problems_};
+  subsystem_.name = attributes.name();
+  subsystem_.id = attributes.required_integer<std::uint16_t>("id", 1, 2039);
+}
+
+void SubsystemReader::read_resources(const xml::Element& element) {
+  const Attributes none{element, problems_};
+  Unique sizes{"pool of blocks of octets", "E0202"};
+  each_child(element, problems_,
+             {{"Pool",
+               [&](const xml::Element& child) {
+                 Attributes attributes{child, problems_};
+                 no_children(child, problems_);
+                 Pool pool;
+                 pool.block_octets = attributes.required_integer<std::size_t>("block", 1, 1 << 24);
+                 pool.count = attributes.required_integer<std::size_t>("count", 1, 1 << 24);
+                 if (pool.block_octets != 0)
+                   sizes.add(std::to_string(pool.block_octets), place(child.at), problems_, 5);
+                 subsystem_.resources.pools.push_back(pool);
+               }},
+              {"Memory", [this](const auto& child) { read_memory(child); }, 1}});
+}
+
+void SubsystemReader::read_memory(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  if (const auto* maximum = attributes.required("maximum"); maximum != nullptr) {
+    const auto octets = to_octets(maximum->value);
+    if (octets) subsystem_.resources.memory_octets = *octets;
+    else
+      problems_.add(*maximum, "E0111", in_quotes(maximum->value) + " is not an amount of memory",
+                    "a number of octets, or with KiB, MiB or GiB");
+  }
+  subsystem_.resources.warning_percent = attributes.integer_or<unsigned>("warning", 1, 100, 75);
+}
+
+void SubsystemReader::read_hang(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  subsystem_.hang = read_limit(attributes, "realtime", "reduced", subsystem_.hang);
+}
+
+void SubsystemReader::read_device(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Device device;
+  device.at = place(element.at);
+  device.name = attributes.name("name", NameKind::Loose);
+  device.actuator = attributes.yes("actuator", false);
+  Unique inputs{"input field", "E0201"}, outputs{"output field", "E0201"};
+  each_child(element, problems_,
+             {{"Input",
+               [&](const xml::Element& input) {
+                 const Attributes none{input, problems_};
+                 each_child(input, problems_,
+                            {{"Field", [&](const auto& field) { read_plain_field(field, device.input, inputs); }}});
+               },
+               1},
+              {"Output",
+               [&](const xml::Element& output) {
+                 const Attributes none{output, problems_};
+                 each_child(output, problems_,
+                            {{"Field", [&](const auto& field) { read_output(field, device, outputs); }}});
+               },
+               1}});
+  if (device.input.empty() && device.output.empty())
+    problems_.add(element, "E0106", "<Device> needs a <Field> of <Input> or <Output>");
+  if (device.actuator && device.output.empty())
+    problems_.add(element, "E0106", "an actuator needs an <Output> with at least one <Field>");
+  if (!device.name.empty()) device_names_.add(device.name, device.at, problems_, element.name.size() + 1);
+  subsystem_.devices.push_back(std::move(device));
+}
+
+void SubsystemReader::read_output(const xml::Element& element, Device& device, Unique& names) {
+  Attributes attributes{element, problems_};
+  Device::Output output;
+  output.field = read_field(attributes, true);
+  output.safe = read_values(attributes, "safe", output.field);
+  no_children(element, problems_);
+  if (device.actuator && element.find("safe") == nullptr)
+    problems_.add(element, "E0218", fmt::format("output '{}' of an actuator needs its safe value", output.field.name),
+                  "add the attribute safe: it is sent in every state but Operational");
+  if (!output.field.name.empty()) names.add(output.field.name, place(element.at), problems_, element.name.size() + 1);
+  device.output.push_back(std::move(output));
+}
+
+}  // namespace detail
+
+Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source) {
+  detail::Problems problems{file};
+  std::string octets;
+  const auto root = detail::read_root(file, source, "Subsystem", octets, problems);
+  Reading<Subsystem> reading;
+  if (root) {
+    Subsystem subsystem = detail::SubsystemReader{problems}.read(*root);
+    subsystem.file = file;
+    subsystem.hash = detail::fnv1a(octets);
+    if (problems.count() == 0) reading.value = std::move(subsystem);
+  }
+  reading.problems = problems.take();
+  return reading;
+}
+
+}  // namespace hirosco::descriptor
