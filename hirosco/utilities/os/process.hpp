@@ -32,11 +32,11 @@ struct ProcessStart {
     int ours{-1};
     int number{-1};
   };
-  std::string executable;                ///< path; not searched for
-  std::vector<std::string> arguments;    ///< without the executable's own name, which becomes argv[0]
-  std::vector<Inherited> inherited;      ///< besides 0, 1 and 2, the new process has these descriptors and no others
-  std::optional<std::vector<std::string>> environment;  ///< "NAME=value"; ours when absent
-  std::string working_directory;         ///< ours when empty
+  std::string executable{};              ///< path; not searched for
+  std::vector<std::string> arguments{};  ///< without the executable's own name, which becomes argv[0]
+  std::vector<Inherited> inherited{};    ///< besides 0, 1 and 2, the new process has these descriptors and no others
+  std::optional<std::vector<std::string>> environment{};  ///< "NAME=value"; ours when absent
+  std::string working_directory{};       ///< ours when empty
 };
 
 /// A process in a group of its own. It outlives this object and this process: nothing here kills it but send_signal().

@@ -6,7 +6,7 @@
 #include <linux/close_range.h>
 #include <poll.h>
 #include <sched.h>
-#include <sys/pidfd.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -177,7 +177,8 @@ Result<Process> Process::spawn(const ProcessStart& start) {
 }
 
 Result<Process> Process::adopt(int pid) noexcept {
-  FileDescriptor handle{::pidfd_open(pid, 0)};
+  // By number: glibc 2.36 declares these two without C linkage.
+  FileDescriptor handle{static_cast<int>(::syscall(SYS_pidfd_open, pid, 0))};
   if (!handle) return fail(code_of(errno), "handle of a process", errno);
   return adopt(pid, std::move(handle));
 }
@@ -208,7 +209,7 @@ Result<std::optional<ExitStatus>> Process::poll() noexcept {
 
 Result<> Process::send_signal(int signal) noexcept {
   if (ended_) return fail(ErrorCode::NotFound, "process has ended", pid_);
-  if (::pidfd_send_signal(handle_.get(), signal, nullptr, 0) != 0) return fail(code_of(errno), "signal to a process", errno);
+  if (::syscall(SYS_pidfd_send_signal, handle_.get(), signal, nullptr, 0) != 0) return fail(code_of(errno), "signal to a process", errno);
   return ok();
 }
 

@@ -10,6 +10,8 @@
 
 #include "hirosco/utilities/os/thread.hpp"
 
+// Throughout by sched_*() with 0, the calling thread: pthread_getschedparam() answers from a cache that these do not
+// refresh, and pthread_setschedparam() knows no SCHED_RESET_ON_FORK.
 namespace hirosco {
 
 Result<> set_fifo_priority(int priority) noexcept {
@@ -17,10 +19,31 @@ Result<> set_fifo_priority(int priority) noexcept {
     return fail(ErrorCode::OutOfRange, "FIFO priority", priority);
   sched_param parameters{};
   parameters.sched_priority = priority;
-  // Process 0 is the calling thread here. Without the flag a process we start would compete with our loops.
+  // Without the flag a process we start would compete with our loops.
   if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) != 0)
     return fail(ErrorCode::SystemFailure, "FIFO scheduling (rtprio limit, or cpu group without rt_runtime)", errno);
   return ok();
+}
+
+Result<> set_ordinary_scheduling() noexcept {
+  const sched_param parameters{};
+  const int flag = ::sched_getscheduler(0) & SCHED_RESET_ON_FORK;  // only a privileged thread may clear it
+  if (::sched_setscheduler(0, SCHED_OTHER | flag, &parameters) != 0)
+    return fail(ErrorCode::SystemFailure, "ordinary scheduling", errno);
+  return ok();
+}
+
+bool realtime_permitted() noexcept {
+  const int policy = ::sched_getscheduler(0);
+  sched_param before{};
+  if (policy < 0 || ::sched_getparam(0, &before) != 0) return false;
+  if ((policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO) return true;
+  sched_param lowest{};
+  lowest.sched_priority = sched_get_priority_min(SCHED_FIFO);
+  // An unprivileged thread cannot clear the flag again, so the probe leaves it as it was.
+  if (::sched_setscheduler(0, SCHED_FIFO | (policy & SCHED_RESET_ON_FORK), &lowest) != 0) return false;
+  (void)::sched_setscheduler(0, policy, &before);
+  return true;
 }
 
 Result<> pin_to_cpu(unsigned cpu) noexcept {

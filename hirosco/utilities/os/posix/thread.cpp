@@ -58,25 +58,6 @@ void Thread::join() noexcept {
   if (std::exchange(joinable_, false)) (void)pthread_join(handle_, nullptr);
 }
 
-Result<> set_ordinary_scheduling() noexcept {
-  const sched_param parameters{};
-  if (const int error = pthread_setschedparam(pthread_self(), SCHED_OTHER, &parameters); error != 0)
-    return fail(ErrorCode::SystemFailure, "ordinary scheduling", error);
-  return ok();
-}
-
-bool realtime_permitted() noexcept {
-  int policy = 0;
-  sched_param before{};
-  if (pthread_getschedparam(pthread_self(), &policy, &before) != 0) return false;
-  if (policy == SCHED_FIFO) return true;
-  sched_param lowest{};
-  lowest.sched_priority = sched_get_priority_min(SCHED_FIFO);
-  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &lowest) != 0) return false;
-  (void)pthread_setschedparam(pthread_self(), policy, &before);
-  return true;
-}
-
 void sleep_until(TimePoint wake) noexcept {
   const Duration since_start = std::max(wake.time_since_epoch(), Duration{0});
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(since_start);

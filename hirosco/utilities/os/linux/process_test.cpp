@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/utilities/os/process.hpp"
+
+#include <gtest/gtest.h>
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <filesystem>
+
+#include "hirosco/utilities/os/wait_set.hpp"
+
+namespace hirosco {
+namespace {
+
+[[nodiscard]] ProcessStart shell(std::string command) { return {.executable = "/bin/sh", .arguments = {"-c", std::move(command)}}; }
+
+[[nodiscard]] ExitStatus end_of(Process& process) {
+  WaitSet set;
+  EXPECT_TRUE(set.add(process.handle().get()));
+  EXPECT_EQ(set.wait(std::nullopt)->size(), 1U);
+  return process.poll()->value();
+}
+
+struct Pipe {
+  FileDescriptor read_end;
+  FileDescriptor write_end;
+  Pipe() {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+    read_end.reset(ends[0]);
+    write_end.reset(ends[1]);
+  }
+  /// All that is written until the last writer is gone.
+  [[nodiscard]] std::string rest() {
+    write_end.reset();
+    std::string text;
+    std::array<char, 256> part{};
+    ssize_t got = 0;
+    while ((got = ::read(read_end.get(), part.data(), part.size())) > 0) text.append(part.data(), static_cast<std::size_t>(got));
+    return text;
+  }
+};
+
+TEST(Process, TellsItsExitCode) {
+  auto process = Process::spawn(shell("exit 7"));
+  ASSERT_TRUE(process) << process.error().text;
+  EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Exited, 7}));
+  EXPECT_EQ(process->poll()->value(), (ExitStatus{ExitStatus::Kind::Exited, 7})) << "the answer is repeated";
+  EXPECT_FALSE(process->poll()->value().success());
+}
+
+TEST(Process, RunsUntilASignalEndsIt) {
+  auto process = Process::spawn(shell("kill -STOP $$; exit 0"));
+  ASSERT_TRUE(process);
+  EXPECT_EQ(process->poll()->has_value(), false);
+  EXPECT_TRUE(process->send_signal(SIGKILL));
+  EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Signalled, SIGKILL}));
+  EXPECT_EQ(process->send_signal(SIGKILL).error().code, ErrorCode::NotFound);
+}
+
+TEST(Process, AnExecutableThatDoesNotExistIsAnErrorAtOnce) {
+  const auto process = Process::spawn({.executable = "/nonexistent/executable"});
+  ASSERT_FALSE(process);
+  EXPECT_EQ(process.error().code, ErrorCode::NotFound);
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "no zombie stays";
+  EXPECT_EQ(Process::spawn({.executable = "/"}).error().code, ErrorCode::NotPermitted);
+  EXPECT_FALSE(Process::spawn({}));
+}
+
+TEST(Process, HasTheInheritedDescriptorsAndNoOthers) {
+  Pipe first;
+  Pipe second;
+  Pipe list;
+  // The targets are chosen to be the numbers of each other's sources.
+  const int a = first.write_end.get();
+  const int b = second.write_end.get();
+  ProcessStart start = shell("printf one >&" + std::to_string(b) + "; printf two >&" + std::to_string(a) +
+                             "; cd /proc/self/fd; echo * >&40");
+  start.inherited = {{a, b}, {b, a}, {list.write_end.get(), 40}};
+  start.executable = "/bin/bash";
+  if (!std::filesystem::exists(start.executable)) GTEST_SKIP() << "no bash: other shells know one-digit descriptors only";
+  // A descriptor that somebody forgot to close on exec.
+  const FileDescriptor stray{::fcntl(0, F_DUPFD, 50)};
+  ASSERT_TRUE(stray);
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process);
+  EXPECT_TRUE(end_of(*process).success());
+  EXPECT_EQ(first.rest(), "one");
+  EXPECT_EQ(second.rest(), "two");
+  const std::string numbers = " " + list.rest();
+  EXPECT_EQ(numbers.find(" " + std::to_string(stray.get())), std::string::npos) << numbers;
+  EXPECT_NE(numbers.find(" 40"), std::string::npos) << numbers;
+}
+
+TEST(Process, IsInAGroupOfItsOwnWithDefaultSignals) {
+  (void)std::signal(SIGPIPE, SIG_IGN);
+  Pipe pipe;
+  ProcessStart start = shell("read line < /proc/self/stat; set -- $line; echo $$ $5 >&9; trap - PIPE; kill -PIPE $$");
+  start.inherited = {{pipe.write_end.get(), 9}};
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process);
+  EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Signalled, SIGPIPE}));
+  const std::string pid = std::to_string(process->pid());
+  EXPECT_EQ(pipe.rest(), pid + " " + pid + "\n");
+  (void)std::signal(SIGPIPE, SIG_DFL);
+}
+
+TEST(Process, GetsItsEnvironmentAndDirectory) {
+  Pipe pipe;
+  ProcessStart start = shell("echo \"$HIROSCO_TEST:$HOME:$PWD\" >&9");
+  start.inherited = {{pipe.write_end.get(), 9}};
+  start.environment = {{"HIROSCO_TEST=value"}};
+  start.working_directory = "/";
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process);
+  EXPECT_EQ(pipe.rest(), "value::/\n");
+  EXPECT_TRUE(end_of(*process).success());
+  start.working_directory = "/nonexistent";
+  EXPECT_EQ(Process::spawn(start).error().code, ErrorCode::NotFound);
+}
+
+TEST(Process, RefusesDescriptorsWithoutMeaning) {
+  ProcessStart start = shell("true");
+  start.inherited = {{-1, 9}};
+  EXPECT_EQ(Process::spawn(start).error().code, ErrorCode::InvalidArgument);
+  start.inherited = {{0, 9}, {1, 9}};
+  EXPECT_EQ(Process::spawn(start).error().code, ErrorCode::AlreadyExists);
+  start.inherited = {{0, 1 << 20}};
+  EXPECT_EQ(Process::spawn(start).error().code, ErrorCode::InvalidArgument);
+}
+
+TEST(Process, AnAdoptedProcessOfOthersEndsAsUnknown) {
+  Pipe pipe;
+  // The grandchild is not ours: its parent ends at once and init takes it over.
+  ProcessStart start = shell("(echo; read line) <&8 >&9 & echo $! >&9");
+  Pipe hold;
+  start.inherited = {{pipe.write_end.get(), 9}, {hold.read_end.get(), 8}};
+  auto parent = Process::spawn(start);
+  ASSERT_TRUE(parent);
+  EXPECT_TRUE(end_of(*parent).success());
+  std::array<char, 64> text{};
+  std::string said;
+  while (std::count(said.begin(), said.end(), '\n') < 2) {
+    const ssize_t got = ::read(pipe.read_end.get(), text.data(), text.size());
+    ASSERT_GT(got, 0);
+    said.append(text.data(), static_cast<std::size_t>(got));
+  }
+  auto adopted = Process::adopt(std::stoi(said));
+  ASSERT_TRUE(adopted) << adopted.error().text;
+  EXPECT_FALSE(adopted->poll()->has_value());
+  hold.write_end.reset();
+  EXPECT_EQ(end_of(*adopted).kind, ExitStatus::Kind::Unknown);
+}
+
+}  // namespace
+}  // namespace hirosco

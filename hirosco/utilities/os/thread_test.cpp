@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/utilities/os/thread.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+#include <memory>
+#include <vector>
+
+#include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/mutex.hpp"
+
+namespace hirosco {
+namespace {
+
+TEST(Thread, RunsItsBodyAndIsJoined) {
+  int value = 0;
+  Thread thread = *Thread::start("body", [&, owned = std::make_unique<int>(7)] { value = *owned; });
+  EXPECT_TRUE(thread.joinable());
+  thread.join();
+  EXPECT_EQ(value, 7);
+  EXPECT_FALSE(thread.joinable());
+  thread.join();
+}
+
+TEST(Thread, IsJoinedByDestructorAndByMoveAssignment) {
+  std::atomic<int> ended{0};
+  {
+    Thread thread = *Thread::start("first", [&] { ++ended; });
+    thread = *Thread::start("second", [&] { ++ended; }, 256 * 1024);
+    EXPECT_GE(ended, 1);
+    const Thread moved = std::move(thread);
+    EXPECT_TRUE(moved.joinable());
+  }
+  EXPECT_EQ(ended, 2);
+}
+
+TEST(SleepUntil, WakesAtItsTimeAndNotBefore) {
+  const SystemClock clock;
+  const TimePoint start = clock.now();
+  for (const Duration span : {2ms, 1ms, 3ms}) {
+    const TimePoint wake = clock.now() + span;
+    sleep_until(wake);
+    EXPECT_GE(clock.now(), wake);
+  }
+  EXPECT_GE(clock.now() - start, 6ms);
+  sleep_until(start);
+  sleep_until(TimePoint{-1s});
+}
+
+TEST(SleepUntil, WakesInTheOrderOfTheDeadlines) {
+  const SystemClock clock;
+  Mutex mutex;
+  std::vector<int> order;
+  const TimePoint start = clock.now() + 5ms;
+  {
+    std::vector<Thread> threads;
+    for (const int place : {2, 0, 1})
+      threads.push_back(*Thread::start("sleeper", [&, place] {
+        sleep_until(start + place * 40ms);
+        const LockGuard guard{mutex};
+        order.push_back(place);
+      }));
+  }
+  EXPECT_EQ(order, (std::vector<int>{0, 1, 2}));
+}
+
+TEST(SleepUntil, IsNotShortenedBySignals) {
+  struct sigaction action {};
+  action.sa_handler = [](int) {};
+  ASSERT_EQ(::sigaction(SIGUSR1, &action, nullptr), 0);
+  const SystemClock clock;
+  std::atomic<bool> awake{false};
+  std::atomic<bool> started{false};
+  pthread_t sleeper{};
+  TimePoint woke;
+  const TimePoint wake = clock.now() + 30ms;
+  Thread thread = *Thread::start("sleeper", [&] {
+    sleeper = pthread_self();
+    started = true;
+    sleep_until(wake);
+    woke = clock.now();
+    awake = true;
+  });
+  while (!started) sched_yield();
+  while (!awake) {
+    (void)pthread_kill(sleeper, SIGUSR1);
+    sched_yield();
+  }
+  thread.join();
+  EXPECT_GE(woke, wake);
+}
+
+TEST(Scheduling, RefusesAPriorityThatDoesNotExist) {
+  EXPECT_EQ(set_fifo_priority(0).error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(set_fifo_priority(1000).error().code, ErrorCode::OutOfRange);
+}
+
+TEST(Scheduling, ProbeAgreesWithTheAttempt) {
+  Thread::start("prober", [] {
+    const bool permitted = realtime_permitted();
+    EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER) << "the probe undoes what it tried";
+    EXPECT_EQ(set_fifo_priority(10).has_value(), permitted);
+    if (!permitted) return;
+    EXPECT_TRUE(realtime_permitted());
+    sched_param parameters{};
+    ASSERT_EQ(sched_getparam(0, &parameters), 0);
+    EXPECT_EQ(sched_getscheduler(0) & SCHED_FIFO, SCHED_FIFO) << "the probe leaves a FIFO thread as it is";
+    EXPECT_EQ(parameters.sched_priority, 10);
+    EXPECT_TRUE(set_ordinary_scheduling());
+    EXPECT_EQ(sched_getscheduler(0) & SCHED_FIFO, 0);
+  })->join();
+}
+
+}  // namespace
+}  // namespace hirosco
