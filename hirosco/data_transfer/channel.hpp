@@ -26,8 +26,8 @@ struct Message {
   MessageKind kind{MessageKind::Packet};
   std::uint32_t mode_epoch{0};       ///< supervisor's mode epoch at permission (decision 27)
   std::uint16_t link{0};             ///< ground link client that a GroundTelecommand came from; else 0
-  Octets packet;
-  MemoryHandle memory;               ///< usually empty
+  Octets packet{};
+  MemoryHandle memory{};             ///< usually empty
 };
 
 struct MessageBuffer {

@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "hirosco/subsystem/generic_subsystem.hpp"
+
+/// The state machine of the generic subsystem: commands, phases of transient states, configurations.
+namespace hirosco {
+namespace {
+
+constexpr Duration transient_limit = 10s;
+
+[[nodiscard]] pus::FailureNotice wrong_state(State state) {
+  return pus::FailureNotice{pus::FailureCode::WrongState}.with(static_cast<std::uint8_t>(state));
+}
+
+}  // namespace
+
+std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State target, const pus::Request& request) {
+  if (way_) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
+  if (!route(state_, target)) return std::unexpected{wrong_state(state_)};
+  if (target == State::SafeOperational && state_ == State::PreOperational) {
+    if (configuration_ == nullptr) return std::unexpected{wrong_state(state_)};
+    if (!required_links_attached()) return std::unexpected{pus::FailureNotice{pus::FailureCode::LinkAbsent}};
+  }
+  if (target == State::ErrorOperational && configuration_ == nullptr) return std::unexpected{wrong_state(state_)};
+  if (target == State::Operational && permit_.stop.load(std::memory_order_acquire) != 0)
+    return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
+  verification_.started(request);
+  go(target, request);
+  return {};
+}
+
+void GenericSubsystem::go(State target, std::optional<pus::Request> request) {
+  way_ = route(state_, target);
+  way_at_ = 0;
+  way_request_ = way_ ? request : std::nullopt;
+  phase_entered_ = false;
+  awaiting_cycle_ = false;
+}
+
+void GenericSubsystem::advance(TimePoint now) {
+  // Several transient states may be done in one step; each round either arrives somewhere or waits.
+  for (int rounds = 0; way_ && !awaiting_cycle_ && rounds < 8; ++rounds)
+    if (!run_phase(way_->states[way_at_], now)) return;
+}
+
+/// One phase on the way into `next`; false while there is something to wait for.
+bool GenericSubsystem::run_phase(State next, TimePoint now) {
+  if (!phase_entered_) {
+    phase_entered_ = true;
+    phase_deadline_ = now + transient_limit;
+  }
+  const bool cycle_node = is_cyclic(next) && configuration_ != nullptr && wanted_.load(std::memory_order_relaxed);
+  if (cycle_node) {
+    awaiting_cycle_ = push({.kind = CommandKind::EnterState, .index = static_cast<std::uint16_t>(next)});
+    return false;
+  }
+  if (is_transient(next) && state_ != next) arrive_transient(next);
+  const Result<Step> outcome = enter_transient(next);
+  if (!outcome) {
+    fail_transition(next, outcome.error().text);
+    return true;
+  }
+  if (*outcome == Step::Again) {
+    if (now <= phase_deadline_) return false;
+    fail_transition(next, "time limit");
+    return true;
+  }
+  arrive(next);
+  return true;
+}
+
+/// A transient state is entered before its phases run: it shows in telemetry while it lasts.
+void GenericSubsystem::arrive_transient(State state) {
+  state_ = state;
+  vital_.state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
+}
+
+Result<Step> GenericSubsystem::enter_transient(State next) {
+  switch (next) {
+    case State::SoftwareInit: return initialise_software();
+    case State::HardwareInit: return author_.hardware_init();
+    case State::PostOperational: return leave_cycle();
+    case State::HardwareDeinit: return author_.hardware_deinit();
+    case State::SoftwareDeinit: {
+      HIROSCO_TRY_LET(const Step step, author_.software_deinit());
+      if (step == Step::Done) {
+        dictionary_.unpublish_all();
+        link_ports_.clear();
+        device_ports_.clear();
+      }
+      return step;
+    }
+    default: return done;
+  }
+}
+
+Result<Step> GenericSubsystem::initialise_software() {
+  HIROSCO_TRY_LET(const Step step, author_.software_init());
+  if (step == Step::Again) return again;
+  if (dictionary_.index_of("CYCLE_STATS")) publish("CYCLE_STATS", cycle_.statistics());
+  std::string missing;
+  if (latched_problem_.empty() && !dictionary_.all_published(missing))
+    latched_problem_ = "parameters declared but not published: " + missing;
+  if (!latched_problem_.empty()) return fail(ErrorCode::Mismatch, latched_problem_.c_str());
+  HIROSCO_TRY(dictionary_.initialise());
+  return done;
+}
+
+/// Stops the cycle, gives back what Pre-Operational took, then lets the author finish.
+Result<Step> GenericSubsystem::leave_cycle() {
+  if (wanted_.load(std::memory_order_relaxed)) {
+    rest_ticket_.fetch_add(1, std::memory_order_release);
+    wanted_.store(false, std::memory_order_release);
+    vital_.cycling.store(0, std::memory_order_release);
+  }
+  if (parked_ticket_.load(std::memory_order_acquire) != rest_ticket_.load(std::memory_order_relaxed)) return again;
+  take_cycle_reports();
+  release_configuration();
+  return author_.post_operational();
+}
+
+void GenericSubsystem::release_configuration() {
+  for (const auto& [link, end] : link_ends_) {
+    // An announced end is not a stale link: consumers make themselves safe without an alarm.
+    if (end.role == pus::st128::Role::Producer) end.link->writer.set_status(LinkStatus::Stopping);
+    link_service_.report_detached(link, end.role);
+  }
+  link_ends_.clear();
+  leaving_links_.clear();
+  CycleCommand forgotten;
+  while (handover_.commands.try_pop(forgotten)) {
+    // A function that never reached the cycle still ends: nothing accepted is lost.
+    if (forgotten.kind == CommandKind::Function)
+      verification_.start_failed(forgotten.request, pus::FailureNotice{pus::FailureCode::Aborted});
+  }
+  writes_.apply(dictionary_);
+  cycle_.release();
+  housekeeping_service_.reset();
+  sampler_.reset();
+  configuration_ = nullptr;
+  vital_.configuration.store(0, std::memory_order_relaxed);
+  vital_.inhibited.store(0, std::memory_order_relaxed);
+}
+
+void GenericSubsystem::arrive(State state) {
+  state_ = state;
+  vital_.state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
+  phase_entered_ = false;
+  announce("STATE_CHANGED", {static_cast<double>(state)});
+  if (++way_at_ < way_->size) return;
+  if (way_request_) verification_.completed(*way_request_);
+  way_.reset();
+  way_request_.reset();
+}
+
+void GenericSubsystem::fail_transition(State at, const char* why) {
+  if (world_.explain) world_.explain(descriptor_.name + ": " + std::string{to_text(at)} + " failed: " + why);
+  announce("STATE_FAILED", {static_cast<double>(at)});
+  if (way_request_) verification_.completion_failed(*way_request_, pus::FailureNotice{pus::FailureCode::ExecutionError});
+  way_request_.reset();
+  way_.reset();
+  const auto target = failure_target(at);
+  if (!target) {
+    // A deinit that fails cannot stop the way down: what is left is given back by the end of the process.
+    if (at == State::HardwareDeinit || at == State::SoftwareDeinit || at == State::PostOperational) go_down_from(at);
+    return;
+  }
+  if (is_cyclic(at)) return go(State::ErrorOperational, std::nullopt);
+  go_down_from(at);
+}
+
+/// The way to Offline that begins behind a failed state.
+void GenericSubsystem::go_down_from(State failed) {
+  constexpr std::array down{State::PostOperational, State::HardwareDeinit, State::SoftwareDeinit, State::Offline};
+  const State first = failed == State::SoftwareInit      ? State::SoftwareDeinit
+                      : failed == State::HardwareInit    ? State::HardwareDeinit
+                      : failed == State::PostOperational ? State::HardwareDeinit
+                      : failed == State::HardwareDeinit  ? State::SoftwareDeinit
+                                                         : State::Offline;
+  Route way;
+  for (auto state = std::ranges::find(down, first); state != down.end(); ++state) way.states[way.size++] = *state;
+  latched_problem_.clear();
+  way_ = way;
+  way_at_ = 0;
+  phase_entered_ = false;
+  awaiting_cycle_ = false;
+}
+
+// --- configurations ----------------------------------------------------------------------------------------------------
+
+std::expected<void, pus::FailureNotice> GenericSubsystem::command_configuration(std::uint8_t id,
+                                                                                const pus::Request& request) {
+  if (way_) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
+  if (state_ != State::PreOperational) return std::unexpected{wrong_state(state_)};
+  const auto refuse = [&](pus::FailureCode code) {
+    return std::unexpected{pus::FailureNotice{code}.with(std::uint8_t{0}).with(std::uint32_t{id})};
+  };
+  const descriptor::Configuration* wanted = descriptor_.find_configuration(id);
+  if (wanted == nullptr) return refuse(pus::FailureCode::UnknownIdentifier);
+  // Another configuration goes by way of Post-Operational: devices and links are given back there.
+  if (configuration_ != nullptr && configuration_ != wanted) return refuse(pus::FailureCode::WrongStatus);
+  verification_.started(request);
+  if (configuration_ == wanted) {
+    verification_.completed(request);
+    return {};
+  }
+  if (const std::string problem = apply_configuration(*wanted); !problem.empty()) {
+    if (world_.explain) world_.explain(descriptor_.name + ": CONFIGURE " + wanted->name + " failed: " + problem);
+    release_configuration();
+    announce("CONFIGURATION_FAILED", {static_cast<double>(id)});
+    verification_.completion_failed(request, pus::FailureNotice{pus::FailureCode::ExecutionError});
+    return {};
+  }
+  verification_.completed(request);
+  return {};
+}
+
+std::string GenericSubsystem::apply_configuration(const descriptor::Configuration& configuration) {
+  configuration_ = &configuration;
+  for (const auto& initial : configuration.initial) {
+    const int member = initial.parameter.member ? static_cast<int>(*initial.parameter.member) : -1;
+    if (!dictionary_.set_from_doubles(initial.parameter.parameter, member, initial.values))
+      return "initial value of " + initial.parameter.text;
+  }
+  CyclePlan plan;
+  plan.configuration = &configuration;
+  for (const auto& wanted : configuration.requires_) {
+    const auto port = link_ports_.find(wanted.name);
+    if (port == link_ports_.end()) return "no port for the required set " + wanted.name;
+    if (const auto difference = layout_difference(port->second->layout(), wanted.fields); !difference.empty())
+      return "required set " + wanted.name + ": " + difference;
+    plan.inputs.emplace_back(wanted, port->second, world_.realtime);
+    plan.input_stale_events.push_back(event_id(wanted.name + "_STALE"));
+  }
+  for (const auto& provided : configuration.provides) plan.outputs.emplace_back(descriptor_, provided, dictionary_);
+  for (const auto& use : configuration.devices) {
+    const descriptor::Device& device = descriptor_.devices[use.device];
+    const auto port = device_ports_.find(device.name);
+    if (port == device_ports_.end()) return "no port for the device " + device.name;
+    if (const auto difference = DeviceSlot::difference(device, *port->second); !difference.empty())
+      return "device " + device.name + ": " + difference;
+    auto flow = world_.flows.open({static_cast<std::uint8_t>(use.endnode.transfer), use.endnode.address},
+                                  FlowSide::Subsystem);
+    if (!flow) return "device " + device.name + ": " + flow.error().text;
+    plan.devices.emplace_back(device, use, *port->second, std::move(*flow), world_.realtime);
+    plan.device_lost_events.push_back(event_id(device.name + "_LOST"));
+  }
+  plan.overrun_event = event_id("CYCLE_OVERRUNS");
+  sampler_ = std::make_unique<pus::HousekeepingSampler>();
+  pus::TelemetrySink& sink = *this;
+  housekeeping_service_ = std::make_unique<pus::HousekeepingService>(descriptor_, *sampler_, verification_, sink);
+  for (const auto& structures : {descriptor_.housekeeping, configuration.housekeeping})
+    if (const auto loaded = housekeeping_service_->load(structures); !loaded) return loaded.error().text;
+  plan.sampler = sampler_.get();
+  if (const auto configured = author_.configure(configuration); !configured) return configured.error().text;
+  cycle_.prepare(std::move(plan));
+  vital_.configuration.store(configuration.id, std::memory_order_relaxed);
+  vital_.period_ns.store(static_cast<std::uint64_t>(configuration.sampling.count()), std::memory_order_relaxed);
+  ++generation_;
+  vital_.cycling.store(1, std::memory_order_release);
+  wanted_.store(true, std::memory_order_release);
+  return {};
+}
+
+}  // namespace hirosco

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/cycle.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "hirosco/parameter/number.hpp"
+
+namespace hirosco {
+namespace {
+
+[[nodiscard]] std::uint32_t clamped_ns(Duration span) noexcept {
+  return static_cast<std::uint32_t>(
+      std::clamp<std::int64_t>(span.count(), 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+[[nodiscard]] Octets octets_of_report(const CycleReport& report) noexcept {
+  return std::as_bytes(std::span{&report, 1});
+}
+
+}  // namespace
+
+CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {}
+
+void CycleLoop::prepare(CyclePlan plan) {
+  plan_ = std::move(plan);
+  input_was_stale_.assign(plan_.inputs.size(), 0);
+  state_ = State::PreOperational;
+  first_ = true;
+  inhibited_ = 0;
+  count_ = 0;
+  overruns_in_a_row_ = 0;
+  overruns_ = 0;
+  latency_max_ns_ = 0;
+  execution_max_ns_ = 0;
+  execution_mean_ns_ = 0.0;
+  statistics_.store({});
+}
+
+void CycleLoop::release() { plan_ = {}; }
+
+TimePoint CycleLoop::step(TimePoint planned) noexcept {
+  const TimePoint started = parts_.clock.now();
+  check_permit();
+  take_commands();
+  read_inputs();
+  run_node(planned);
+  write_outputs(planned);
+  if (plan_.sampler != nullptr) plan_.sampler->tick(*this, *this);
+  ++count_;
+  account(planned, started);
+  const TimePoint next = planned + plan_.configuration->sampling;
+  const TimePoint finished = parts_.clock.now();
+  if (finished <= next) return next;
+  // Missed cycles are skipped, not made up for: a burst of late cycles would be worse than a gap.
+  return next + (finished - next) / plan_.configuration->sampling * plan_.configuration->sampling;
+}
+
+bool CycleLoop::controlling() const noexcept {
+  return state_ == State::SafeOperational || state_ == State::Operational;
+}
+
+void CycleLoop::check_permit() noexcept {
+  const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
+  const bool stop = parts_.permit.stop.load(std::memory_order_acquire) != 0;
+  if (stop || (state_ == State::Operational && epoch != entered_epoch_)) inhibit(inhibited_by_stop);
+  parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);
+}
+
+void CycleLoop::take_commands() noexcept {
+  parts_.writes.apply(parts_.dictionary);
+  // Bounded by the ring: at most what was there when the cycle began.
+  for (std::size_t left = parts_.handover.commands.size(); left > 0; --left) {
+    const auto command = parts_.handover.commands.try_pop();
+    if (!command) return;
+    switch (command->kind) {
+      case CommandKind::Function: run_function(*command); break;
+      case CommandKind::EnterState: enter(static_cast<State>(command->index)); break;
+      case CommandKind::AttachInput: plan_.inputs[command->index].attach(command->link); break;
+      case CommandKind::DetachInput:
+        if (AttachedLink* link = plan_.inputs[command->index].detach())
+          report(ReportKind::InputDetached, command->index, {}, link);
+        break;
+      case CommandKind::AttachOutput: static_cast<void>(plan_.outputs[command->index].attach(command->link)); break;
+      case CommandKind::DetachOutput:
+        plan_.outputs[command->index].detach(command->link);
+        report(ReportKind::OutputDetached, command->index, {}, command->link);
+        break;
+    }
+  }
+}
+
+void CycleLoop::run_function(const CycleCommand& command) noexcept {
+  const Outcome outcome = functions_[command.index].handler(command.arguments, Call{command.request});
+  switch (outcome.kind) {
+    case Outcome::Kind::Refused:
+      report(ReportKind::Refused, static_cast<std::uint16_t>(outcome.code), command.request);
+      return;
+    case Outcome::Kind::Running: report(ReportKind::Started, 0, command.request); return;
+    case Outcome::Kind::Done:
+      report(ReportKind::Started, 0, command.request);
+      report(ReportKind::Finished, 0, command.request);
+      return;
+  }
+}
+
+void CycleLoop::enter(State state) noexcept {
+  state_ = state;
+  first_ = true;
+  if (state == State::Operational) {
+    entered_epoch_ = parts_.permit.epoch.load(std::memory_order_acquire);
+    inhibited_ = 0;
+    check_permit();
+  }
+  report(ReportKind::StateEntered, static_cast<std::uint16_t>(state), {});
+}
+
+void CycleLoop::read_inputs() noexcept {
+  for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
+    LinkInputSlot& input = plan_.inputs[i];
+    input.read();
+    const bool stale = controlling() && input.stale() && (input.attached() || input.terms().required);
+    if (stale && input.terms().missing == descriptor::MissingPolicy::Inhibit) inhibit(inhibited_by_link);
+    if (stale && !input.ended() && input_was_stale_[i] == 0) {
+      const double age = input.port()->age_cycles();
+      raise(plan_.input_stale_events[i], {&age, 1});
+    }
+    input_was_stale_[i] = stale ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < plan_.devices.size(); ++i) {
+    DeviceSlot& device = plan_.devices[i];
+    device.read(controlling());
+    if (!device.alive() && controlling()) inhibit(inhibited_by_device);
+    if (device.just_lost()) raise(plan_.device_lost_events[i], {});
+  }
+}
+
+void CycleLoop::run_node(TimePoint planned) noexcept {
+  const Cycle cycle{.planned = planned,
+                    .period = plan_.configuration->sampling,
+                    .count = count_,
+                    .state = state_,
+                    .first = first_,
+                    .active = state_ == State::Operational && inhibited_ == 0};
+  first_ = false;
+  Result<> result;
+  switch (state_) {
+    case State::PreOperational: result = parts_.author.pre_operational(cycle); break;
+    case State::SafeOperational: result = parts_.author.safe_operational(cycle); break;
+    case State::Operational: result = parts_.author.operational(cycle); break;
+    case State::ErrorOperational: result = parts_.author.error_operational(cycle); break;
+    default: break;
+  }
+  if (result || state_ == State::ErrorOperational || (inhibited_ & inhibited_by_failure) != 0) return;
+  inhibit(inhibited_by_failure);
+  report(ReportKind::NodeFailed, static_cast<std::uint16_t>(state_), {});
+}
+
+LinkStatus CycleLoop::link_status() const noexcept {
+  if (state_ == State::ErrorOperational || (inhibited_ & (inhibited_by_failure | inhibited_by_device)) != 0)
+    return LinkStatus::Fault;
+  return inhibited_ != 0 ? LinkStatus::Degraded : LinkStatus::Valid;
+}
+
+void CycleLoop::write_outputs(TimePoint planned) noexcept {
+  const bool active = state_ == State::Operational && inhibited_ == 0;
+  const bool stopping = state_ == State::ErrorOperational || inhibited_ != 0;
+  const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
+  for (DeviceSlot& device : plan_.devices) device.write(epoch, active, stopping);
+  for (LinkOutputSlot& output : plan_.outputs) output.write(planned, link_status());
+}
+
+void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
+  const TimePoint finished = parts_.clock.now();
+  const Duration execution = finished - started;
+  latency_max_ns_ = std::max(latency_max_ns_, clamped_ns(started - planned));
+  execution_max_ns_ = std::max(execution_max_ns_, clamped_ns(execution));
+  constexpr double weight = 1e-3;
+  execution_mean_ns_ += weight * (static_cast<double>(execution.count()) - execution_mean_ns_);
+
+  const descriptor::CycleLimit& limit = plan_.configuration->overruns;
+  const bool overrun = finished > planned + plan_.configuration->sampling;
+  overruns_in_a_row_ = overrun ? overruns_in_a_row_ + 1 : 0;
+  if (overrun) ++overruns_;
+  if (overruns_in_a_row_ == (parts_.realtime ? limit.realtime : limit.reduced)) {
+    const double row = overruns_in_a_row_;
+    raise(plan_.overrun_event, {&row, 1});
+  }
+
+  statistics_.store({static_cast<std::uint32_t>(overruns_), static_cast<float>(execution_max_ns_) * 1e-3F,
+                     static_cast<float>(execution_mean_ns_ * 1e-3)});
+  VitalPage& vital = parts_.vital;
+  vital.inhibited.store(inhibited_, std::memory_order_relaxed);
+  vital.overruns.store(overruns_, std::memory_order_relaxed);
+  vital.latency_max_ns.store(latency_max_ns_, std::memory_order_relaxed);
+  vital.execution_max_ns.store(execution_max_ns_, std::memory_order_relaxed);
+  vital.execution_mean_ns.store(static_cast<std::uint32_t>(execution_mean_ns_), std::memory_order_relaxed);
+  vital.lost_reports.store(static_cast<std::uint32_t>(parts_.handover.reports.dropped()), std::memory_order_relaxed);
+  vital.cycles.fetch_add(1, std::memory_order_release);
+}
+
+void CycleLoop::raise(std::uint16_t event, std::span<const double> arguments) noexcept {
+  if (event == 0) return;
+  const auto& events = parts_.descriptor.events;
+  const auto found = std::ranges::find(events, event, &descriptor::Event::id);
+  if (found == events.end()) return;
+  OctetWriter writer{event_buffer_};
+  for (std::size_t i = 0; i < found->arguments.size(); ++i)
+    put_number(writer, found->arguments[i].type, i < arguments.size() ? arguments[i] : 0.0);
+  const CycleReport head{.kind = ReportKind::Event, .index = event};
+  static_cast<void>(parts_.handover.reports.try_write(octets_of_report(head), writer.written()));
+}
+
+void CycleLoop::report(ReportKind kind, std::uint16_t index, const pus::Request& request, AttachedLink* link) noexcept {
+  const CycleReport head{.kind = kind, .index = index, .request = request, .link = link};
+  static_cast<void>(parts_.handover.reports.try_write(octets_of_report(head)));
+}
+
+std::size_t CycleLoop::sample(std::uint16_t parameter, int member, MutableOctets big_endian) noexcept {
+  return parts_.dictionary.encode(parameter, member, big_endian);
+}
+
+MutableOctets CycleLoop::reserve(std::size_t octets) noexcept {
+  reserved_ = parts_.handover.reports.try_reserve(sizeof(CycleReport) + octets);
+  return reserved_.empty() ? MutableOctets{} : reserved_.subspan(sizeof(CycleReport));
+}
+
+void CycleLoop::commit(std::uint16_t structure, std::size_t octets) noexcept {
+  // reserve() left room for the head in front of what it handed out.
+  const CycleReport head{.kind = ReportKind::Housekeeping, .index = structure};
+  std::ranges::copy(octets_of_report(head), reserved_.begin());
+  parts_.handover.reports.commit(sizeof head + octets);
+}
+
+}  // namespace hirosco

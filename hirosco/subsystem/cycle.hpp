@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/parameter/dictionary.hpp"
+#include "hirosco/parameter/write_queue.hpp"
+#include "hirosco/pus/st03_housekeeping.hpp"
+#include "hirosco/subsystem/handover.hpp"
+#include "hirosco/subsystem/pages.hpp"
+#include "hirosco/subsystem/slots.hpp"
+#include "hirosco/utilities/record_ring.hpp"
+#include "hirosco/utilities/spsc_ring.hpp"
+
+/// The cycle of a subsystem (architecture, rule 1): reads links and devices, runs the state's node, gates the actuators,
+/// samples housekeeping, writes links and devices.
+namespace hirosco {
+
+/// Cycle statistics as a parameter: published by the framework where a descriptor declares CYCLE_STATS.
+struct CycleStatistics {
+  std::uint32_t overruns{0};
+  float max_us{0.0F};        ///< longest execution since the configuration was applied
+  float avg_us{0.0F};        ///< mean over about the last 1,000 cycles
+};
+
+/// A function's handler and what the cycle needs to know of it.
+struct BoundFunction {
+  FunctionHandler handler;
+};
+
+/// What of a configuration the cycle works on. Built by the service loop while the cycle rests.
+struct CyclePlan {
+  const descriptor::Configuration* configuration{nullptr};
+  std::vector<LinkInputSlot> inputs;
+  std::vector<LinkOutputSlot> outputs;
+  std::vector<DeviceSlot> devices;
+  pus::HousekeepingSampler* sampler{nullptr};
+  std::vector<std::uint16_t> device_lost_events;   ///< per device; 0 = the descriptor declares none
+  std::vector<std::uint16_t> input_stale_events;   ///< per input
+  std::uint16_t overrun_event{0};
+};
+
+/// Commands and reports between the loops of one subsystem.
+struct Handover {
+  Handover() : reports{64 * 1024} {}
+  SpscRing<CycleCommand, 64> commands;
+  RecordRing reports;
+};
+
+class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
+ public:
+  struct Parts {
+    Subsystem& author;
+    const descriptor::Subsystem& descriptor;
+    const Clock& clock;
+    Dictionary& dictionary;
+    WriteQueue& writes;
+    Handover& handover;
+    VitalPage& vital;
+    const PermitPage& permit;
+    bool realtime;
+  };
+  explicit CycleLoop(const Parts& parts);
+
+  // --- service loop, while the cycle rests ------------------------------------------------------------------------
+  void prepare(CyclePlan plan);
+  void release();
+  [[nodiscard]] CyclePlan& plan() noexcept { return plan_; }
+  [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
+  [[nodiscard]] Parameter<CycleStatistics>& statistics() noexcept { return statistics_; }
+
+  // --- the cycle --------------------------------------------------------------------------------------------------
+  /// One cycle that was due at `planned`; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
+  /// at most one system call per device.
+  TimePoint step(TimePoint planned) noexcept;
+
+  // --- the author, from inside the cycle --------------------------------------------------------------------------
+  void raise(std::uint16_t event, std::span<const double> arguments) noexcept;
+  void inhibit(Inhibition reason) noexcept { inhibited_ |= reason; }
+  void report(ReportKind kind, std::uint16_t index, const pus::Request& request,
+              AttachedLink* link = nullptr) noexcept;
+
+ private:
+  void take_commands() noexcept;
+  void run_function(const CycleCommand& command) noexcept;
+  void enter(State state) noexcept;
+  void check_permit() noexcept;
+  void read_inputs() noexcept;
+  void run_node(TimePoint planned) noexcept;
+  void write_outputs(TimePoint planned) noexcept;
+  void account(TimePoint planned, TimePoint started) noexcept;
+  [[nodiscard]] bool controlling() const noexcept;
+  [[nodiscard]] LinkStatus link_status() const noexcept;
+
+  std::size_t sample(std::uint16_t parameter, int member, MutableOctets big_endian) noexcept override;
+  MutableOctets reserve(std::size_t octets) noexcept override;
+  void commit(std::uint16_t structure, std::size_t octets) noexcept override;
+
+  Parts parts_;
+  CyclePlan plan_;
+  std::vector<BoundFunction> functions_;
+  Parameter<CycleStatistics> statistics_;
+  std::array<std::byte, 1024> event_buffer_{};
+  MutableOctets reserved_;           ///< housekeeping report under assembly
+
+  State state_{State::PreOperational};
+  bool first_{true};
+  std::uint32_t inhibited_{0};
+  std::uint64_t count_{0};
+  std::uint32_t entered_epoch_{0};
+  std::uint32_t overruns_in_a_row_{0};
+  std::uint64_t overruns_{0};
+  std::uint32_t latency_max_ns_{0};
+  std::uint32_t execution_max_ns_{0};
+  double execution_mean_ns_{0.0};
+  std::vector<char> input_was_stale_;
+};
+
+}  // namespace hirosco

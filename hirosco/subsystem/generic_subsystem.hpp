@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hirosco/data_transfer/channel.hpp"
+#include "hirosco/data_transfer/data_flow.hpp"
+#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/parameter/dictionary.hpp"
+#include "hirosco/parameter/write_queue.hpp"
+#include "hirosco/pus/packet_counters.hpp"
+#include "hirosco/pus/service.hpp"
+#include "hirosco/pus/st03_housekeeping.hpp"
+#include "hirosco/pus/st05_event.hpp"
+#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st17_test.hpp"
+#include "hirosco/pus/st20_parameter.hpp"
+#include "hirosco/subsystem/cycle.hpp"
+#include "hirosco/subsystem/link_service.hpp"
+#include "hirosco/subsystem/pages.hpp"
+#include "hirosco/subsystem/subsystem.hpp"
+
+/// The active part of the component framework (paper 4.1 and 4.2): standard behaviour of every subsystem around one
+/// author's class. Two steps, driven from outside: service_step() and, while cycle_demand() asks for it, cycle_step().
+namespace hirosco {
+
+/// Everything a subsystem needs from outside (architecture, rule 3).
+struct World {
+  const Clock& clock;
+  MemoryProvider& memory;
+  FlowFactory& flows;
+  bool realtime{true};               ///< SCHED_FIFO is granted; false: the reduced limits hold (decision 21)
+  /// Explains to a developer why something was refused (standard error, a test's list). Service loop only.
+  std::function<void(std::string_view)> explain{};
+};
+
+class GenericSubsystem final : private pus::TelemetrySink,
+                               private pus::FunctionExecutor,
+                               private pus::ParameterAccess,
+                               private LinkServiceOwner {
+ public:
+  /// `vital` and `permit` are the mapped pages, at least as large as VitalPage and PermitPage and initialised.
+  GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const World& world, Channel& channel,
+                   VitalPage& vital, const PermitPage& permit);
+  ~GenericSubsystem() override;
+
+  /// One step of the service loop; returns when the next is due at the latest.  Realtime: allocates. Thread: service.
+  TimePoint service_step(TimePoint now);
+
+  /// What the cycle thread is to do.
+  struct Demand {
+    bool wanted{false};
+    Duration period{};
+    int priority{0};
+    std::uint32_t generation{0};     ///< rises with every new configuration
+    std::uint32_t ticket{0};         ///< of the newest order to rest: goes back with cycle_parked()
+  };
+  [[nodiscard]] Demand cycle_demand() const noexcept;
+  /// One cycle; call only while cycle_demand().wanted.  Realtime: bounded, no allocation. Thread: cycle.
+  TimePoint cycle_step(TimePoint planned) noexcept { return cycle_.step(planned); }
+  /// The cycle thread has seen that no cycle is wanted and rests.  Thread: cycle.
+  void cycle_parked(std::uint32_t ticket) noexcept { parked_ticket_.store(ticket, std::memory_order_release); }
+
+  /// Offline again after the supervisor went away or said so: the process may end.
+  [[nodiscard]] bool finished() const noexcept { return finished_; }
+  [[nodiscard]] State state() const noexcept { return state_; }
+  [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept { return descriptor_; }
+
+  // --- for Subsystem ----------------------------------------------------------------------------------------------
+  void publish(std::string_view name, ParameterCell& parameter);
+  void require_link(std::string_view set, LinkInputPort& port);
+  void use_device(std::string_view name, DevicePortBase& port);
+  void bind_function(std::string_view name, std::size_t arguments, FunctionHandler handler);
+  [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
+  /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
+  [[nodiscard]] pus::Verification& verification() noexcept { return verification_; }
+  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
+  void raise_in_service(std::uint16_t event, std::span<const double> arguments);
+
+ private:
+  // TelemetrySink
+  void report(std::uint8_t service, std::uint8_t subtype, std::uint16_t destination, Octets source_data) override;
+  // FunctionExecutor
+  std::expected<void, pus::FailureNotice> submit(const pus::FunctionCall& call, const pus::Request& request) override;
+  // ParameterAccess
+  std::expected<std::size_t, ErrorCode> read(std::uint32_t parameter, MutableOctets big_endian) override;
+  std::size_t size_of(std::uint32_t parameter) override;
+  std::expected<void, pus::FailureCode> check_write(std::uint32_t parameter, Octets value) override;
+  bool submit_write(std::span<const pus::ParameterAccess::Write> writes, const pus::Request& request) override;
+  // LinkServiceOwner
+  const descriptor::Requires* find_required(std::string_view set) override;
+  const LinkOutputSlot* find_provided(std::string_view set) override;
+  Duration period() override;
+  Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) override;
+  bool detach(std::uint8_t link) override;
+
+  void receive_messages();
+  void dispatch(const Message& message);
+  void take_cycle_reports();
+  void take_cycle_report(const CycleReport& report, Octets payload);
+  void watch_supervisor(TimePoint now);
+
+  std::expected<void, pus::FailureNotice> command_state(State target, const pus::Request& request);
+  std::expected<void, pus::FailureNotice> command_configuration(std::uint8_t id, const pus::Request& request);
+  void advance(TimePoint now);
+  void go(State target, std::optional<pus::Request> request);
+  bool run_phase(State next, TimePoint now);
+  void arrive(State state);
+  void arrive_transient(State state);
+  void go_down_from(State failed);
+  void fail_transition(State state, const char* why);
+  Result<Step> enter_transient(State state);
+  Result<Step> initialise_software();
+  Result<Step> leave_cycle();
+  [[nodiscard]] std::string apply_configuration(const descriptor::Configuration& configuration);
+  void release_configuration();
+  void announce(std::string_view event_name, std::initializer_list<double> arguments);
+  bool push(const CycleCommand& command);
+  [[nodiscard]] bool required_links_attached() const noexcept;
+  [[nodiscard]] std::uint16_t event_id(std::string_view name) const noexcept;
+  void send(const Message& message);
+  void flush();
+
+  Subsystem& author_;
+  descriptor::Subsystem descriptor_;
+  World world_;
+  Channel& channel_;
+  VitalPage& vital_;
+  const PermitPage& permit_;
+
+  Dictionary dictionary_;
+  WriteQueue writes_;
+  Handover handover_;
+  CycleLoop cycle_;
+  pus::PacketCounters counters_;
+  pus::Verification verification_;
+  pus::TestService test_service_;
+  pus::EventService event_service_;
+  pus::FunctionService function_service_;
+  pus::ParameterService parameter_service_;
+  std::unique_ptr<pus::HousekeepingSampler> sampler_;
+  std::unique_ptr<pus::HousekeepingService> housekeeping_service_;
+  LinkService link_service_;
+
+  std::map<std::string, LinkInputPort*, std::less<>> link_ports_;
+  std::map<std::string, DevicePortBase*, std::less<>> device_ports_;
+  struct LinkEnd {
+    std::unique_ptr<AttachedLink> link;
+    pus::st128::Role role{};
+    std::uint16_t slot{0};
+  };
+  std::map<std::uint8_t, LinkEnd> link_ends_;
+  std::vector<std::unique_ptr<AttachedLink>> leaving_links_;
+
+  State state_{State::Offline};
+  const descriptor::Configuration* configuration_{nullptr};
+  std::optional<Route> way_;
+  std::uint8_t way_at_{0};
+  std::optional<pus::Request> way_request_;
+  bool phase_entered_{false};
+  bool awaiting_cycle_{false};
+  TimePoint phase_deadline_{};
+  std::string latched_problem_;      ///< of publish() and its kin: fails Software-Init
+
+  std::atomic<bool> wanted_{false};
+  // A late answer to an earlier order must not pass for one to the newest: orders to rest are numbered.
+  std::atomic<std::uint32_t> rest_ticket_{0};
+  std::atomic<std::uint32_t> parked_ticket_{0};
+  std::uint32_t generation_{0};
+  std::deque<std::vector<std::byte>> unsent_;
+  std::uint64_t unsent_dropped_{0};
+  std::uint64_t last_heartbeat_{0};
+  TimePoint heartbeat_seen_{};
+  bool supervisor_lost_{false};
+  bool finished_{false};
+};
+
+}  // namespace hirosco

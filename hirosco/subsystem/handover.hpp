@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hirosco/pus/service.hpp"
+#include "hirosco/subsystem/states.hpp"
+#include "hirosco/subsystem/subsystem.hpp"
+
+/// What the two loops of a subsystem tell each other. Trivially copyable records in preallocated rings: the only way
+/// between them (architecture, rule 1).
+namespace hirosco {
+
+struct AttachedLink;
+
+enum class CommandKind : std::uint8_t {
+  Function,       ///< run handler `index` with `arguments`
+  EnterState,     ///< `index` is the State
+  AttachInput,    ///< `link` to input slot `index`
+  DetachInput,
+  AttachOutput,   ///< `link` to output slot `index`
+  DetachOutput,
+};
+
+/// Service loop -> cycle.
+struct CycleCommand {
+  CommandKind kind{};
+  std::uint16_t index{0};
+  pus::Request request{};
+  AttachedLink* link{nullptr};
+  std::array<double, max_function_arguments> arguments{};
+};
+
+enum class ReportKind : std::uint8_t {
+  Housekeeping,   ///< payload: source data of TM[3,25], `index` the structure id
+  Event,          ///< payload: auxiliary data, `index` the event id
+  Started, Refused, Progressed, Finished, Aborted,  ///< of a function; `index` code or step
+  StateEntered,   ///< `index` the State
+  NodeFailed,     ///< `index` the State
+  InputDetached, OutputDetached,  ///< `link` may be freed
+};
+
+/// Cycle -> service loop; a payload may follow in the same record.
+struct CycleReport {
+  ReportKind kind{};
+  std::uint16_t index{0};
+  pus::Request request{};
+  AttachedLink* link{nullptr};
+};
+
+}  // namespace hirosco

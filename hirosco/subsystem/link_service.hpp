@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/pus/service.hpp"
+#include "hirosco/pus/st128_realtime_link.hpp"
+#include "hirosco/subsystem/slots.hpp"
+
+/// ST[128] at one end of a link: answers the handshake for the configuration in force.
+namespace hirosco {
+
+/// What the service needs of its subsystem.
+class LinkServiceOwner {
+ public:
+  virtual ~LinkServiceOwner() = default;
+  /// The required or provided set of the configuration in force; null when there is none.
+  virtual const descriptor::Requires* find_required(std::string_view set) = 0;
+  virtual const LinkOutputSlot* find_provided(std::string_view set) = 0;
+  virtual Duration period() = 0;
+  /// Maps the memory and hands this end to the cycle.
+  virtual Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) = 0;
+  /// Takes an end back from the cycle; false when there is no such link here.
+  virtual bool detach(std::uint8_t link) = 0;
+};
+
+class LinkService final : public pus::Service {
+ public:
+  LinkService(pus::Verification& verification, pus::TelemetrySink& sink, LinkServiceOwner& owner)
+      : verification_{verification}, sink_{sink}, owner_{owner} {}
+  [[nodiscard]] std::uint8_t type() const noexcept override { return pus::st128::service_type; }
+  void handle(const pus::TelecommandView& telecommand, const pus::Request& request) override;
+  /// Memory that came beside the telecommand which is handled next.
+  void offer_memory(MemoryHandle memory) { memory_ = std::move(memory); }
+  /// Tells the supervisor that an end is gone.
+  void report_detached(std::uint8_t link, pus::st128::Role role);
+
+ private:
+  void offer(Octets data, const pus::Request& request);
+  void negotiate(Octets data, const pus::Request& request);
+  void attach(Octets data, const pus::Request& request);
+  void detach(Octets data, const pus::Request& request);
+  void refuse(std::uint8_t link, const pus::st128::Refusal& refusal, const pus::Request& request);
+
+  pus::Verification& verification_;
+  pus::TelemetrySink& sink_;
+  LinkServiceOwner& owner_;
+  MemoryHandle memory_;
+};
+
+}  // namespace hirosco

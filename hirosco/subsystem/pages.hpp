@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <type_traits>
+
+#include "hirosco/pus/packet_counters.hpp"
+
+/// The two pages of shared memory between a subsystem and the supervisor (decision 6). Both sides check magic and
+/// version before use; all fields are single words, so nothing can be torn.
+namespace hirosco {
+
+inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
+inline constexpr std::uint32_t page_version = 1;
+
+/// Why the framework inhibits the actuators of a subsystem; bits of VitalPage::inhibited.
+enum Inhibition : std::uint32_t {
+  inhibited_by_stop = 1,         ///< stop flag of the permit page, or another epoch
+  inhibited_by_link = 2,         ///< a required link is stale or its producer reports a fault
+  inhibited_by_device = 4,       ///< a device is silent
+  inhibited_by_author = 8,       ///< the subsystem itself (a limit)
+  inhibited_by_failure = 16,     ///< a state's node failed
+  inhibited_by_supervisor = 32,  ///< the supervisor is gone
+};
+
+/// Written by the subsystem, read by the supervisor.
+struct VitalPage {
+  std::uint32_t magic{page_magic};
+  std::uint32_t version{page_version};
+  std::atomic<std::uint32_t> state{0};           ///< State
+  std::atomic<std::uint32_t> configuration{0};   ///< id, 0 = none
+  std::atomic<std::uint32_t> inhibited{0};       ///< bits of Inhibition
+  std::atomic<std::uint32_t> seen_epoch{0};      ///< epoch of the permit page at the last cycle
+  std::atomic<std::uint32_t> realtime{0};        ///< 1: SCHED_FIFO granted, 0: the reduced promise holds
+  std::atomic<std::uint32_t> cycling{0};         ///< 1 while the cycle is to run
+  std::atomic<std::uint64_t> period_ns{0};
+  std::atomic<std::uint64_t> cycles{0};          ///< advances while the cycle runs: hang detection
+  std::atomic<std::uint64_t> service_steps{0};   ///< advances while the service loop runs
+  std::atomic<std::uint64_t> overruns{0};
+  std::atomic<std::uint32_t> latency_max_ns{0};  ///< wake-up after its planned time, largest since configuration
+  std::atomic<std::uint32_t> execution_max_ns{0};
+  std::atomic<std::uint32_t> execution_mean_ns{0};  ///< over about the last 1,000 cycles
+  std::atomic<std::uint32_t> lost_reports{0};    ///< cycle-side reports that found no room
+  pus::CounterBlock counters;                    ///< outlive the process (decision 8b)
+};
+
+/// Written by the supervisor, read by the subsystem every cycle.
+struct PermitPage {
+  std::uint32_t magic{page_magic};
+  std::uint32_t version{page_version};
+  std::atomic<std::uint32_t> epoch{1};           ///< rises with every fence; device frames carry it
+  std::atomic<std::uint32_t> stop{0};            ///< 1: actuators inhibited at the next cycle
+  std::atomic<std::uint32_t> mode_epoch{0};      ///< rises with every mode change
+  std::atomic<std::uint64_t> heartbeat{0};       ///< advances with every step of the supervisor
+};
+
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free);
+
+}  // namespace hirosco

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+#include "hirosco/data_transfer/realtime_link.hpp"
+#include "hirosco/parameter/layout.hpp"
+#include "hirosco/utilities/octets.hpp"
+
+/// The two things a control law reads and writes besides parameters: real-time links and devices. A subsystem's author
+/// holds them as members and names them in software_init(); the framework fills and empties them around every cycle.
+namespace hirosco {
+
+/// A required set of real-time data, as the cycle sees it.  Thread: the cycle.
+class LinkInputPort {
+ public:
+  /// Connected, fresh and not reported faulty by its producer.
+  [[nodiscard]] bool valid() const noexcept { return valid_; }
+  /// Own cycles since the newest sample; 0 = new in this cycle.
+  [[nodiscard]] std::uint32_t age_cycles() const noexcept { return age_cycles_; }
+  [[nodiscard]] LinkStatus status() const noexcept { return status_; }
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  [[nodiscard]] std::span<const NativeField> layout() const noexcept { return layout_; }
+
+ protected:
+  LinkInputPort(std::span<const NativeField> layout, MutableOctets native) noexcept
+      : layout_{layout}, native_{native} {}
+  LinkInputPort(const LinkInputPort&) = delete;
+  LinkInputPort& operator=(const LinkInputPort&) = delete;
+  ~LinkInputPort() = default;
+
+ private:
+  friend class LinkInputSlot;
+  std::span<const NativeField> layout_;
+  MutableOctets native_;
+  bool valid_{false};
+  std::uint32_t age_cycles_{0};
+  LinkStatus status_{LinkStatus::None};
+  std::uint64_t count_{0};
+};
+
+/// T: an aggregate with one member per <Field> of the <Requires> element, in their order.
+template <class T>
+class LinkInput final : public LinkInputPort {
+ public:
+  LinkInput() noexcept : LinkInputPort{fields, std::as_writable_bytes(std::span{&value_, 1})} {}
+  /// Last whole sample; zeros before the first.
+  [[nodiscard]] const T& value() const noexcept { return value_; }
+
+ private:
+  static constexpr auto fields = layout_of<T>();
+  T value_{};
+};
+
+/// A device, as the cycle sees it.  Thread: the cycle.
+class DevicePortBase {
+ public:
+  /// Connected, and heard of within the silence limit.
+  [[nodiscard]] bool alive() const noexcept { return alive_; }
+  /// A new frame came in this cycle.
+  [[nodiscard]] bool fresh() const noexcept { return fresh_; }
+  /// Flags of the newest status frame.
+  [[nodiscard]] std::uint16_t flags() const noexcept { return flags_; }
+  [[nodiscard]] std::uint32_t damaged_frames() const noexcept { return damaged_frames_; }
+  [[nodiscard]] std::span<const NativeField> input_layout() const noexcept { return input_layout_; }
+  [[nodiscard]] std::span<const NativeField> output_layout() const noexcept { return output_layout_; }
+
+ protected:
+  DevicePortBase(std::span<const NativeField> input_layout, MutableOctets input,
+                 std::span<const NativeField> output_layout, Octets output) noexcept
+      : input_layout_{input_layout}, input_{input}, output_layout_{output_layout}, output_{output} {}
+  DevicePortBase(const DevicePortBase&) = delete;
+  DevicePortBase& operator=(const DevicePortBase&) = delete;
+  ~DevicePortBase() = default;
+
+ private:
+  friend class DeviceSlot;
+  std::span<const NativeField> input_layout_;
+  MutableOctets input_;
+  std::span<const NativeField> output_layout_;
+  Octets output_;
+  bool alive_{false};
+  bool fresh_{false};
+  std::uint16_t flags_{0};
+  std::uint32_t damaged_frames_{0};
+};
+
+/// Input and Output: aggregates with one member per <Field> of the device's <Input> and <Output>, in their order.
+template <class Input, class Output>
+class DevicePort final : public DevicePortBase {
+ public:
+  DevicePort() noexcept
+      : DevicePortBase{input_fields, std::as_writable_bytes(std::span{&input_, 1}), output_fields,
+                       std::as_bytes(std::span{&output_, 1})} {}
+  /// What the device last said; zeros before the first frame.
+  [[nodiscard]] const Input& input() const noexcept { return input_; }
+  /// What the device is to do. Reaches an actuator in Operational only: in every other state, and while inhibited, the
+  /// framework sends the descriptor's safe values instead (decision 22).
+  [[nodiscard]] Output& output() noexcept { return output_; }
+
+ private:
+  static constexpr auto input_fields = layout_of<Input>();
+  static constexpr auto output_fields = layout_of<Output>();
+  Input input_{};
+  Output output_{};
+};
+
+}  // namespace hirosco

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/run.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "hirosco/data_transfer/flows/sealed_memory.hpp"
+#include "hirosco/data_transfer/flows/socket_channel.hpp"
+#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/descriptor/read.hpp"
+#include "hirosco/subsystem/generic_subsystem.hpp"
+#include "hirosco/utilities/allocation_guard.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/semaphore.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/utilities/os/wait_set.hpp"
+
+namespace hirosco {
+namespace {
+
+/// Real-time, but below every cycle: a busy core cannot hold up a command to stop (decision 8a).
+constexpr int service_priority = 20;
+constexpr int exit_usage = 2;
+constexpr int exit_environment = 3;
+
+struct Options {
+  std::string descriptor;
+  int channel{-1};
+  int vital{-1};
+  int permit{-1};
+  [[nodiscard]] bool complete() const { return !descriptor.empty() && channel >= 0 && vital >= 0 && permit >= 0; }
+};
+
+[[nodiscard]] int number_of(const char* text) {
+  int number = -1;
+  std::from_chars(text, text + std::strlen(text), number);
+  return number;
+}
+
+[[nodiscard]] Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string_view name{argv[i]};
+    if (name == "--descriptor") options.descriptor = argv[i + 1];
+    else if (name == "--channel") options.channel = number_of(argv[i + 1]);
+    else if (name == "--vital") options.vital = number_of(argv[i + 1]);
+    else if (name == "--permit") options.permit = number_of(argv[i + 1]);
+  }
+  return options;
+}
+
+[[nodiscard]] Mapping map_page(SealedMemory& memory, int descriptor, Access access) {
+  auto mapping = memory.map(SealedMemory::adopt(descriptor), access);
+  return mapping ? std::move(*mapping) : Mapping{};
+}
+
+/// The cycle thread: sleeps to absolute times while a cycle is wanted, rests on a semaphore otherwise.
+class CycleThread {
+ public:
+  explicit CycleThread(GenericSubsystem& subsystem, const Clock& clock, bool realtime)
+      : subsystem_{subsystem}, clock_{clock}, realtime_{realtime} {}
+  [[nodiscard]] Result<> start() {
+    HIROSCO_TRY_LET(thread_, Thread::start("cycle", [this] { run(); }));
+    return ok();
+  }
+  void wake() { wanted_.post(); }
+  void end() {
+    ending_.store(true, std::memory_order_release);
+    wanted_.post();
+    thread_.join();
+  }
+
+ private:
+  void run() {
+    while (!ending_.load(std::memory_order_acquire)) {
+      const auto demand = subsystem_.cycle_demand();
+      if (!demand.wanted) {
+        subsystem_.cycle_parked(demand.ticket);
+        wanted_.wait();
+        continue;
+      }
+      if (realtime_) static_cast<void>(set_fifo_priority(demand.priority));
+      cycle(demand.generation);
+    }
+  }
+
+  void cycle(std::uint32_t generation) {
+    TimePoint planned = clock_.now() + subsystem_.cycle_demand().period;
+    for (;;) {
+      sleep_until(planned);
+      const auto demand = subsystem_.cycle_demand();
+      if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) return;
+      const RealtimeScope no_heap;
+      planned = subsystem_.cycle_step(planned);
+    }
+  }
+
+  GenericSubsystem& subsystem_;
+  const Clock& clock_;
+  bool realtime_;
+  Semaphore wanted_{0};
+  std::atomic<bool> ending_{false};
+  Thread thread_;
+};
+
+void serve(GenericSubsystem& subsystem, const Clock& clock, const Channel& channel, CycleThread& cycle) {
+  WaitSet waits;
+  static_cast<void>(waits.add(channel.wait_descriptor()));
+  bool cycling = false;
+  while (!subsystem.finished()) {
+    const TimePoint wake = subsystem.service_step(clock.now());
+    const bool wanted = subsystem.cycle_demand().wanted;
+    if (wanted && !cycling) cycle.wake();
+    cycling = wanted;
+    static_cast<void>(waits.wait(std::max(wake - clock.now(), Duration{0})));
+  }
+}
+
+}  // namespace
+
+int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Subsystem>()>& make) {
+  const Options options = read_options(argc, argv);
+  if (!options.complete()) {
+    fmt::print(stderr,
+               "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
+               "  --descriptor FILE --channel FD --vital FD --permit FD\n",
+               argv[0]);
+    return exit_usage;
+  }
+  const auto source = descriptor::file_system();
+  auto reading = descriptor::read_subsystem(options.descriptor, source);
+  for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
+  if (!reading.value) return exit_environment;
+
+  SystemClock clock;
+  SealedMemory memory;
+  SystemFlowFactory flows{clock};
+  SocketChannel channel{FileDescriptor{options.channel}};
+  const Mapping vital = map_page(memory, options.vital, Access::ReadWrite);
+  const Mapping permit = map_page(memory, options.permit, Access::ReadOnly);
+  if (vital.octets.size() < sizeof(VitalPage) || permit.octets.size() < sizeof(PermitPage)) {
+    fmt::print(stderr, "{}: the vital or permit page cannot be mapped\n", argv[0]);
+    return exit_environment;
+  }
+  const bool realtime = realtime_permitted();
+  if (realtime) {
+    static_cast<void>(lock_memory());
+    static_cast<void>(set_fifo_priority(service_priority));
+  }
+  const World world{.clock = clock,
+                    .memory = memory,
+                    .flows = flows,
+                    .realtime = realtime,
+                    .explain = [](std::string_view text) { fmt::print(stderr, "{}\n", text); }};
+  const auto author = make();
+  GenericSubsystem subsystem{*author,
+                             std::move(*reading.value),
+                             world,
+                             channel,
+                             *reinterpret_cast<VitalPage*>(vital.octets.data()),
+                             *reinterpret_cast<const PermitPage*>(permit.octets.data())};
+  CycleThread cycle{subsystem, clock, realtime};
+  if (const auto started = cycle.start(); !started) {
+    fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
+    return exit_environment;
+  }
+  serve(subsystem, clock, channel, cycle);
+  cycle.end();
+  return 0;
+}
+
+}  // namespace hirosco

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/slots.hpp"
+
+#include <algorithm>
+
+#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/parameter/number.hpp"
+
+namespace hirosco {
+namespace {
+
+/// Cycles without news are counted up to here, so that a counter never wraps back to "fresh".
+constexpr std::uint32_t longest_silence = 1'000'000'000;
+
+[[nodiscard]] std::endian endian_of(descriptor::ByteOrder order) noexcept {
+  return order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
+}
+
+[[nodiscard]] std::vector<LayoutField> layout_fields(std::span<const NativeField> native) {
+  std::vector<LayoutField> fields;
+  for (const NativeField& field : native) fields.push_back({field.type, field.count, field.offset});
+  return fields;
+}
+
+/// Declared safe values in wire form.
+[[nodiscard]] std::vector<std::byte> safe_payload(const descriptor::Device& device, std::endian order) {
+  std::vector<std::byte> payload;
+  for (const auto& output : device.output) {
+    const std::size_t start = payload.size();
+    payload.resize(start + output.field.octets());
+    OctetWriter writer{MutableOctets{payload}.subspan(start), order};
+    for (std::uint16_t i = 0; i < output.field.count; ++i)
+      put_number(writer, output.field.type, i < output.safe.size() ? output.safe[i] : 0.0);
+  }
+  return payload;
+}
+
+}  // namespace
+
+std::string layout_difference(std::span<const NativeField> native, const std::vector<descriptor::Field>& declared) {
+  if (native.size() != declared.size())
+    return "the C++ type has " + std::to_string(native.size()) + " members, the descriptor declares " +
+           std::to_string(declared.size()) + " fields";
+  for (std::size_t i = 0; i < native.size(); ++i) {
+    if (native[i].type == declared[i].type && native[i].count == declared[i].count) continue;
+    return "field " + declared[i].name + ": C++ has " + std::string{to_text(native[i].type)} + "[" +
+           std::to_string(native[i].count) + "], the descriptor declares " + std::string{to_text(declared[i].type)} +
+           "[" + std::to_string(declared[i].count) + "]";
+  }
+  return {};
+}
+
+// --- LinkInputSlot ---------------------------------------------------------------------------------------------------
+
+LinkInputSlot::LinkInputSlot(const descriptor::Requires& terms, LinkInputPort* port, bool realtime) noexcept
+    : terms_{&terms}, port_{port}, age_limit_{realtime ? terms.age.realtime : terms.age.reduced} {
+  port_->valid_ = false;
+  port_->age_cycles_ = 0;
+  port_->status_ = LinkStatus::None;
+  port_->count_ = 0;
+}
+
+Result<> LinkInputSlot::plan(AttachedLink& link) const {
+  link.scatter.clear();
+  link.wire_offset.clear();
+  for (std::size_t wanted = 0; wanted < terms_->fields.size(); ++wanted) {
+    std::size_t offset = 0;
+    const auto found = std::ranges::find_if(link.agreement.fields, [&](const pus::st128::OfferedField& field) {
+      if (field.name == terms_->fields[wanted].name) return true;
+      offset += octets_of(field.type) * field.count;
+      return false;
+    });
+    if (found == link.agreement.fields.end()) return fail(ErrorCode::Mismatch, "the agreement lacks a required field");
+    const NativeField& place = port_->layout_[wanted];
+    link.scatter.push_back({place.type, place.count, place.offset});
+    link.wire_offset.push_back(offset);
+  }
+  return ok();
+}
+
+void LinkInputSlot::attach(AttachedLink* link) noexcept {
+  link_ = link;
+  port_->age_cycles_ = 0;
+}
+
+AttachedLink* LinkInputSlot::detach() noexcept {
+  port_->valid_ = false;
+  port_->status_ = LinkStatus::None;
+  return std::exchange(link_, nullptr);
+}
+
+void LinkInputSlot::read() noexcept {
+  if (link_ == nullptr) {
+    port_->valid_ = false;
+    return;
+  }
+  const LinkSample sample = link_->reader.read(link_->payload);
+  if (sample.flow == Flow::New) {
+    for (std::size_t i = 0; i < link_->scatter.size(); ++i) {
+      const LayoutField& field = link_->scatter[i];
+      const std::size_t octets = octets_of(field.type) * field.count;
+      decode(std::span{&field, 1}, Octets{link_->payload}.subspan(link_->wire_offset[i], octets), port_->native_,
+             link_->order);
+    }
+    port_->age_cycles_ = 0;
+    port_->count_ = sample.count;
+  } else if (port_->age_cycles_ < longest_silence) {
+    ++port_->age_cycles_;
+  }
+  port_->status_ = sample.status;
+  const bool fresh = port_->age_cycles_ <= age_limit_ * link_->producer_cycles_per_sample;
+  port_->valid_ = port_->count_ != 0 && fresh && sample.status != LinkStatus::Fault && sample.status != LinkStatus::Stopping;
+}
+
+// --- LinkOutputSlot --------------------------------------------------------------------------------------------------
+
+LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms,
+                               Dictionary& dictionary)
+    : terms_{&terms} {
+  for (const descriptor::ParameterRef& reference : terms.parameters) {
+    const ParameterCell* cell = dictionary.cell(reference.parameter);
+    const auto& layout = cell->fields();
+    const auto fields = descriptor::fields_of(subsystem, reference);
+    const std::size_t first = reference.member.value_or(0);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const NativeField& native = layout[first + i];
+      fields_.push_back({fields[i].name, fields[i].type, fields[i].count});
+      sources_.push_back({cell, {native.type, native.count, native.offset}});
+    }
+  }
+}
+
+bool LinkOutputSlot::attach(AttachedLink* link) noexcept {
+  for (AttachedLink*& place : links_)
+    if (place == nullptr) {
+      place = link;
+      return true;
+    }
+  return false;
+}
+
+void LinkOutputSlot::detach(AttachedLink* link) noexcept {
+  for (AttachedLink*& place : links_)
+    if (place == link) place = nullptr;
+}
+
+void LinkOutputSlot::write(TimePoint now, LinkStatus status) noexcept {
+  for (AttachedLink* link : links_) {
+    if (link == nullptr) continue;
+    std::size_t at = 0;
+    for (const Source& source : sources_) {
+      const std::size_t octets = octets_of(source.field.type) * source.field.count;
+      encode(std::span{&source.field, 1}, source.cell->live(), MutableOctets{link->payload}.subspan(at, octets),
+             link->order);
+      at += octets;
+    }
+    link->writer.write(link->payload, now, status);
+  }
+}
+
+// --- DeviceSlot ------------------------------------------------------------------------------------------------------
+
+DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::DeviceUse& use, DevicePortBase& port,
+                       std::unique_ptr<DataFlow> flow, bool realtime)
+    : device_{&device},
+      port_{&port},
+      flow_{std::move(flow)},
+      order_{endian_of(use.endnode.byte_order)},
+      silence_limit_{realtime ? use.silence.realtime : use.silence.reduced},
+      watchdog_us_{realtime ? use.watchdog_us : use.watchdog_reduced_us},
+      input_layout_{layout_fields(port.input_layout_)},
+      output_layout_{layout_fields(port.output_layout_)},
+      safe_payload_{safe_payload(device, order_)},
+      payload_(std::max(wire_octets(input_layout_), safe_payload_.size())),
+      frame_(max_device_frame_octets) {
+  port_->alive_ = false;
+  port_->fresh_ = false;
+  port_->damaged_frames_ = 0;
+}
+
+std::string DeviceSlot::difference(const descriptor::Device& device, const DevicePortBase& port) {
+  if (auto text = layout_difference(port.input_layout(), device.input); !text.empty()) return "input, " + text;
+  std::vector<descriptor::Field> outputs;
+  for (const auto& output : device.output) outputs.push_back(output.field);
+  auto text = layout_difference(port.output_layout(), outputs);
+  return text.empty() ? text : "output, " + text;
+}
+
+void DeviceSlot::read(bool count_silence) noexcept {
+  port_->fresh_ = false;
+  just_lost_ = false;
+  const auto received = flow_->receive(frame_);
+  if (received && received->flow == Flow::New) {
+    const auto status = read_status(Octets{frame_}.first(received->octets));
+    if (status && status->payload.size() == wire_octets(input_layout_)) {
+      decode(input_layout_, status->payload, port_->input_, order_);
+      // A frame that answers no newer command is a repetition: a frozen device must not look alive.
+      port_->fresh_ = status->sequence != echoed_ || !heard_;
+      echoed_ = status->sequence;
+      port_->flags_ = status->flags;
+    } else {
+      ++port_->damaged_frames_;
+    }
+  }
+  if (port_->fresh_) {
+    silent_cycles_ = 0;
+    heard_ = true;
+    port_->alive_ = true;
+    return;
+  }
+  if (!heard_ && !count_silence) return;
+  const bool hung_up = !received && heard_;
+  if (silent_cycles_ < longest_silence) ++silent_cycles_;
+  if (silent_cycles_ == silence_limit_ || (hung_up && port_->alive_)) {
+    just_lost_ = port_->alive_ || !heard_;
+    port_->alive_ = false;
+  }
+}
+
+void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {
+  const bool pass = active || !device_->actuator;
+  Octets payload = safe_payload_;
+  if (pass) {
+    const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());
+    encode(output_layout_, port_->output_, room, order_);
+    payload = room;
+  }
+  const DeviceMode mode = pass ? DeviceMode::Active : stopping ? DeviceMode::Stop : DeviceMode::Off;
+  const auto frame = write_command(frame_, DeviceCommand{.mode = mode,
+                                                         .epoch = epoch,
+                                                         .sequence = ++sequence_,
+                                                         .watchdog_us = watchdog_us_,
+                                                         .payload = payload});
+  // A device that does not listen is found by its silence, one cycle later: nothing to do here.
+  if (frame) static_cast<void>(flow_->send(*frame));
+}
+
+}  // namespace hirosco

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/subsystem.hpp"
+
+#include "hirosco/subsystem/generic_subsystem.hpp"
+
+namespace hirosco {
+namespace {
+
+[[nodiscard]] pus::FailureCode failure_code(ErrorCode code) noexcept {
+  switch (code) {
+    case ErrorCode::InvalidArgument:
+    case ErrorCode::OutOfRange: return pus::FailureCode::ValueNotAcceptable;
+    case ErrorCode::NotFound: return pus::FailureCode::UnknownIdentifier;
+    case ErrorCode::AlreadyExists: return pus::FailureCode::IdentifierExists;
+    case ErrorCode::NotPermitted: return pus::FailureCode::NotPermittedNow;
+    case ErrorCode::Unavailable: return pus::FailureCode::DeviceError;
+    case ErrorCode::ResourceExhausted: return pus::FailureCode::CapacityExceeded;
+    case ErrorCode::Timeout: return pus::FailureCode::Timeout;
+    default: return pus::FailureCode::ExecutionError;
+  }
+}
+
+}  // namespace
+
+Outcome::Outcome(const Result<>& result) noexcept
+    : kind{result ? Kind::Done : Kind::Refused}, code{result ? pus::FailureCode{} : failure_code(result.error().code)} {}
+
+void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
+void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
+void Subsystem::use_device(std::string_view name, DevicePortBase& port) { framework_->use_device(name, port); }
+
+void Subsystem::bind_function(std::string_view name, std::size_t arguments, FunctionHandler handler) {
+  framework_->bind_function(name, arguments, std::move(handler));
+}
+
+void Subsystem::raise(std::uint16_t event, std::initializer_list<double> arguments) noexcept {
+  framework_->cycle().raise(event, std::span{arguments.begin(), arguments.size()});
+}
+void Subsystem::inhibit_actuators() noexcept { framework_->cycle().inhibit(inhibited_by_author); }
+
+void Subsystem::progress(const Call& call, std::uint16_t step) noexcept {
+  framework_->cycle().report(ReportKind::Progressed, step, call.request);
+}
+void Subsystem::finish(const Call& call) noexcept {
+  framework_->cycle().report(ReportKind::Finished, 0, call.request);
+}
+void Subsystem::abort(const Call& call, pus::FailureCode code) noexcept {
+  framework_->cycle().report(ReportKind::Aborted, static_cast<std::uint16_t>(code), call.request);
+}
+
+Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
+  return framework_->submit_ground_telecommand(client, packet);
+}
+void Subsystem::raise_in_service(std::uint16_t event, std::initializer_list<double> arguments) {
+  framework_->raise_in_service(event, std::span{arguments.begin(), arguments.size()});
+}
+State Subsystem::state() const noexcept { return framework_->state(); }
+const descriptor::Subsystem& Subsystem::own_descriptor() const noexcept { return framework_->descriptor(); }
+
+}  // namespace hirosco

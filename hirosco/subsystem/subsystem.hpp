@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/parameter/parameter.hpp"
+#include "hirosco/pus/failure.hpp"
+#include "hirosco/pus/service.hpp"
+#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/subsystem/ports.hpp"
+#include "hirosco/subsystem/states.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// What a subsystem's author inherits and fills in (paper 4.2): one method per node of figure 4.
+namespace hirosco {
+
+class GenericSubsystem;
+
+/// Outcome of one phase of a transient state.
+enum class Step : std::uint8_t { Again, Done };
+inline constexpr Step again = Step::Again;
+inline constexpr Step done = Step::Done;
+
+/// The cycle that a steady state's node is called in.
+struct Cycle {
+  TimePoint planned{};               ///< when it was due
+  Duration period{};
+  std::uint64_t count{0};            ///< since the configuration was applied
+  State state{State::PreOperational};
+  bool first{false};                 ///< first cycle in this state
+  bool active{false};                ///< Operational and not inhibited: what is put out reaches the actuators
+};
+
+/// One running execution of a function: kept by an author to report progress and completion later.
+struct Call {
+  pus::Request request{};
+};
+
+/// What a function handler says at once (decision 13).
+struct Outcome {
+  enum class Kind : std::uint8_t { Done, Running, Refused };
+  Kind kind{Kind::Done};
+  pus::FailureCode code{};
+  constexpr Outcome(Kind what, pus::FailureCode why = {}) noexcept : kind{what}, code{why} {}
+  Outcome(const Result<>& result) noexcept;  // NOLINT: a handler may simply return a Result<>
+};
+inline constexpr Outcome running{Outcome::Kind::Running};
+[[nodiscard]] constexpr Outcome refused(pus::FailureCode code) noexcept { return {Outcome::Kind::Refused, code}; }
+
+/// Largest number of arguments of a function.
+using pus::max_function_arguments;
+using FunctionHandler = std::function<Outcome(const std::array<double, max_function_arguments>&, Call)>;
+
+namespace detail {
+template <class T>
+struct HandlerTraits;
+template <class C, class R, class... A>
+struct HandlerTraits<R (C::*)(A...) const> {
+  static constexpr bool takes_call = (std::is_same_v<A, Call> || ... || false);
+  static constexpr std::size_t arguments = sizeof...(A) - (takes_call ? 1 : 0);
+  template <class H, std::size_t... I>
+  static Outcome invoke(const H& handler, const std::array<double, max_function_arguments>& values, const Call& call,
+                        std::index_sequence<I...>) {
+    using Types = std::tuple<A...>;
+    if constexpr (takes_call) return handler(static_cast<std::tuple_element_t<I, Types>>(values[I])..., call);
+    else return handler(static_cast<std::tuple_element_t<I, Types>>(values[I])...);
+  }
+};
+}  // namespace detail
+
+/// Base of every subsystem. Steady nodes run in the cycle: noexcept, no allocation, no lock, no I/O. Everything else
+/// runs in the service loop.
+class Subsystem {
+ public:
+  Subsystem() = default;
+  Subsystem(const Subsystem&) = delete;
+  Subsystem& operator=(const Subsystem&) = delete;
+  virtual ~Subsystem() = default;
+
+ protected:
+  // --- the nodes of figure 4 ------------------------------------------------------------------------------------
+  /// Entered at start and at the end: custom services start here.
+  virtual Result<> offline() { return ok(); }
+  /// Publishes parameters, functions, links and devices. Called again while it returns `again`, within 10 s.
+  virtual Result<Step> software_init() { return done; }
+  /// Powers and tests hardware.
+  virtual Result<Step> hardware_init() { return done; }
+  /// Pre-Operational, once per CONFIGURE: parameters, links and devices of the configuration are already in place.
+  virtual Result<> configure(const descriptor::Configuration&) { return ok(); }
+  virtual Result<> pre_operational(const Cycle&) noexcept { return ok(); }
+  virtual Result<> safe_operational(const Cycle&) noexcept { return ok(); }
+  virtual Result<> operational(const Cycle&) noexcept { return ok(); }
+  virtual Result<> error_operational(const Cycle&) noexcept { return ok(); }
+  virtual Result<Step> post_operational() { return done; }
+  virtual Result<Step> hardware_deinit() { return done; }
+  virtual Result<Step> software_deinit() { return done; }
+  /// Every step of the service loop, in all states: work that is not real-time.
+  virtual void service(TimePoint) {}
+  /// Telemetry that the supervisor routes to this subsystem (the communication subsystem's ground link).
+  virtual void telemetry(Octets) {}
+
+  // --- in software_init() -----------------------------------------------------------------------------------------
+  /// Makes a parameter known under its descriptor name. A layout that differs from the descriptor's fails Software-Init.
+  void publish(std::string_view name, ParameterCell& parameter);
+  /// Names the author's view of a required set of real-time data.
+  void require_link(std::string_view set, LinkInputPort& port);
+  /// Names the author's view of a device.
+  void use_device(std::string_view name, DevicePortBase& port);
+  /// Gives a function of the descriptor its handler: any callable of up to eight numbers and, last, a Call if it wants
+  /// to report later. Returns Result<> or Outcome. Runs at a cycle boundary; must not throw.
+  template <class Handler>
+  void on_function(std::string_view name, Handler handler) {
+    using Traits = detail::HandlerTraits<decltype(&Handler::operator())>;
+    static_assert(Traits::arguments <= max_function_arguments);
+    bind_function(name, Traits::arguments,
+                  [handler](const std::array<double, max_function_arguments>& values, Call call) -> Outcome {
+                    return Traits::invoke(handler, values, call, std::make_index_sequence<Traits::arguments>{});
+                  });
+  }
+
+  // --- in the cycle and in function handlers ----------------------------------------------------------------------
+  /// Reports an event of the descriptor; arguments in their order and unit.  Realtime: wait-free.
+  void raise(std::uint16_t event, std::initializer_list<double> arguments = {}) noexcept;
+  /// Latches "actuators inhibited" in this cycle; released by the next entry into Operational.  Realtime: wait-free.
+  void inhibit_actuators() noexcept;
+  /// Later reports of a running function.  Realtime: wait-free.
+  void progress(const Call& call, std::uint16_t step) noexcept;
+  void finish(const Call& call) noexcept;
+  void abort(const Call& call, pus::FailureCode code) noexcept;
+
+  // --- in the service loop ----------------------------------------------------------------------------------------
+  /// Sends a telecommand that came from the ground link client `client` to the supervisor.
+  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
+  /// Reports an event from the service loop.
+  void raise_in_service(std::uint16_t event, std::initializer_list<double> arguments = {});
+  [[nodiscard]] State state() const noexcept;
+  [[nodiscard]] const descriptor::Subsystem& own_descriptor() const noexcept;
+
+ private:
+  friend class GenericSubsystem;
+  friend class CycleLoop;
+  void bind_function(std::string_view name, std::size_t arguments, FunctionHandler handler);
+  GenericSubsystem* framework_{nullptr};
+};
+
+}  // namespace hirosco

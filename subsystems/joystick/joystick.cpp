@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/joystick/joystick.hpp"
+
+#include <array>
+#include <optional>
+
+#include "subsystems/joystick/control_law.hpp"
+
+namespace hirosco {
+namespace {
+
+using joystick::Axes;
+
+class Joystick final : public Subsystem {
+  // Structures of joystick.xml: same members, same order.
+  struct CurrentValues {
+    std::int32_t state;
+    Axes position_rad;
+    Axes velocity_rad_per_s;
+    Axes torque_n_m;
+  };
+  struct Peer {
+    Axes position_rad;
+    Axes torque_n_m;
+    std::uint32_t age_cycles;
+  };
+  struct RobotState {
+    Axes position_rad;
+    Axes torque_n_m;
+    std::uint8_t active;
+  };
+  struct HandleInput {
+    Axes position_rad;
+    Axes velocity_rad_per_s;
+  };
+  struct HandleOutput {
+    Axes torque_n_m;
+  };
+
+  enum Event : std::uint16_t { force_clipped = 1103, passivity_active = 1104 };
+
+  Result<Step> software_init() override {
+    publish("CUR_VALUES", current_);
+    publish("DES_TORQUE", desired_torque_);
+    publish("FORCE_SCALE", force_scale_);
+    publish("PASSIVITY", passivity_);
+    publish("PO_ENERGY", observed_energy_);
+    publish("PC_DISSIPATED", dissipated_);
+    publish("PEER", peer_);
+    publish("ENABLE", enable_);
+    require_link("ROBOT_STATE", robot_);
+    use_device("JOYSTICK", handle_);
+    on_function("DISPLAY_TORQUE", [this](double t1, double t2) { return show({t1, t2}); });
+    on_function("CENTRE", [this]() { return show({0.0, 0.0}); });
+    on_function("SET_FORCE_SCALE", [this](double scale) -> Outcome {
+      force_scale_.store(scale);
+      return ok();
+    });
+    on_function("PASSIVITY", [this](double on) -> Outcome {
+      passivity_.store(on != 0.0 ? 1 : 0);
+      return ok();
+    });
+    return done;
+  }
+
+  Result<> configure(const descriptor::Configuration& configuration) override {
+    coupled_ = !configuration.requires_.empty();
+    display_.emplace(seconds(configuration.sampling));
+    commanded_ = {};
+    clipped_ = false;
+    passive_ = false;
+    return ok();
+  }
+
+  Result<> pre_operational(const Cycle& cycle) noexcept override {
+    measure(cycle, {});
+    return ok();
+  }
+  Result<> safe_operational(const Cycle& cycle) noexcept override {
+    if (cycle.first) restart();
+    measure(cycle, torque());
+    return ok();
+  }
+  Result<> operational(const Cycle& cycle) noexcept override {
+    if (cycle.first) restart();
+    measure(cycle, torque());
+    enable_.store(cycle.active ? 1 : 0);
+    return ok();
+  }
+  Result<> error_operational(const Cycle& cycle) noexcept override {
+    measure(cycle, {});
+    return ok();
+  }
+
+  void restart() noexcept {
+    display_->reset();
+    commanded_ = {};
+  }
+
+  [[nodiscard]] Axes torque() noexcept {
+    if (!coupled_) return commanded_;
+    const RobotState& robot = robot_.value();
+    const Axes shown = display_->torque({.velocity_rad_s = handle_.input().velocity_rad_per_s,
+                                         .peer_torque_n_m = robot.torque_n_m,
+                                         .peer_active = robot_.valid() && robot.active != 0},
+                                        {.force_scale = force_scale_.load(), .passivity = passivity_.load() != 0});
+    observed_energy_.store(display_->observed_energy_j());
+    dissipated_.store(display_->dissipated_j());
+    if (display_->clipped() && !clipped_) raise(force_clipped, {1.0, joystick::ForceDisplay::torque_max_n_m});
+    if (display_->controller_acted() && !passive_) raise(passivity_active, {display_->dissipated_j()});
+    clipped_ = display_->clipped();
+    passive_ = passive_ || display_->controller_acted();
+    return shown;
+  }
+
+  void measure(const Cycle& cycle, const Axes& torque_n_m) noexcept {
+    const HandleInput& in = handle_.input();
+    handle_.output().torque_n_m = torque_n_m;
+    desired_torque_.store(torque_n_m);
+    current_.store({static_cast<std::int32_t>(cycle.state), in.position_rad, in.velocity_rad_per_s,
+                    cycle.active ? torque_n_m : Axes{}});
+    peer_.store({robot_.value().position_rad, robot_.value().torque_n_m, robot_.age_cycles()});
+    enable_.store(0);
+  }
+
+  Outcome show(const Axes& torque_n_m) noexcept {
+    if (coupled_) return refused(pus::FailureCode::SetpointOwnedByLink);
+    commanded_ = torque_n_m;
+    return ok();
+  }
+
+  Parameter<CurrentValues> current_;
+  Parameter<Axes> desired_torque_;
+  Parameter<double> force_scale_;
+  Parameter<std::uint8_t> passivity_;
+  Parameter<Axes> observed_energy_;
+  Parameter<double> dissipated_;
+  Parameter<Peer> peer_;
+  Parameter<std::uint8_t> enable_;
+  LinkInput<RobotState> robot_;
+  DevicePort<HandleInput, HandleOutput> handle_;
+
+  std::optional<joystick::ForceDisplay> display_;
+  Axes commanded_{};
+  bool coupled_{false};
+  bool clipped_{false};
+  bool passive_{false};
+};
+
+}  // namespace
+
+std::unique_ptr<Subsystem> make_joystick() { return std::make_unique<Joystick>(); }
+
+}  // namespace hirosco

@@ -1,0 +1,284 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/manipulator/manipulator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "subsystems/manipulator/control_law.hpp"
+
+namespace hirosco {
+namespace {
+
+using manipulator::Joints;
+
+class Manipulator final : public Subsystem {
+  // Structures of manipulator.xml: same members, same order.
+  struct CurrentValues {
+    std::int32_t state;
+    Joints position_rad;
+    Joints velocity_rad_per_s;
+    Joints torque_n_m;
+    std::array<float, 2> temperature_deg_c;
+    std::uint16_t device_flags;
+  };
+  struct ClutchValues {
+    Joints robot_rad;
+    Joints handle_rad;
+  };
+  struct TrajectoryValues {
+    Joints target_rad;
+    double duration_s;
+    double progress;
+  };
+  struct JoystickState {
+    Joints position_rad;
+    Joints velocity_rad_per_s;
+    std::uint8_t enable;
+  };
+  struct RobotInput {
+    Joints motor_position_rad;
+    Joints motor_velocity_rad_per_s;
+    Joints position_rad;
+    Joints velocity_rad_per_s;
+    Joints torque_n_m;
+    std::array<float, 2> temperature_deg_c;
+  };
+  struct RobotOutput {
+    Joints torque_n_m;
+  };
+
+  enum Event : std::uint16_t {
+    motion_done = 1001,
+    temperature_warning = 1010,
+    temperature_critical = 1011,
+    temperature_maximum = 1012,
+    torque_limit_exceeded = 1020,
+    torque_hard_exceeded = 1021,
+  };
+
+  Result<Step> software_init() override {
+    publish("CUR_VALUES", current_);
+    publish("DES_POSITION", desired_position_);
+    publish("DES_VELOCITY", desired_velocity_);
+    publish("KP", kp_);
+    publish("KD", kd_);
+    publish("TORQUE_LIMIT", torque_limit_);
+    publish("TORQUE_HARD", torque_hard_);
+    publish("TEMP_LIMITS", temperature_limits_);
+    publish("POS_SCALE", position_scale_);
+    publish("CLUTCH", clutch_values_);
+    publish("TIP", tip_);
+    publish("TRAJ", trajectory_values_);
+    publish("TIP_FORCE", tip_force_);
+    publish("ACTIVE", active_);
+    require_link("JOYSTICK_STATE", joystick_);
+    use_device("ROBOT", robot_);
+    on_function("MOVE_TO", [this](double q1, double q2, double duration_s, Call call) {
+      return move({q1, q2}, duration_s, call);
+    });
+    on_function("HOME", [this](Call call) { return move(home_rad, home_duration_s, call); });
+    on_function("HOLD", [this]() -> Outcome {
+      if (coupled_) return refused(pus::FailureCode::SetpointOwnedByLink);
+      stop_motion();
+      return ok();
+    });
+    on_function("SET_GAINS", [this](double kp, double kd) -> Outcome {
+      kp_.store(kp);
+      kd_.store(kd);
+      return ok();
+    });
+    on_function("SET_TORQUE_LIMIT", [this](double limit_n_m) -> Outcome {
+      torque_limit_.store(limit_n_m);
+      return ok();
+    });
+    return done;
+  }
+
+  Result<> configure(const descriptor::Configuration& configuration) override {
+    coupled_ = !configuration.requires_.empty();
+    controller_.emplace(seconds(configuration.sampling));
+    move_.reset();
+    temperature_ = manipulator::TemperatureVerdict::Fine;
+    return ok();
+  }
+
+  Result<> pre_operational(const Cycle& cycle) noexcept override {
+    measure(cycle);
+    return ok();
+  }
+
+  /// The control law runs on the present position: what would be commanded is visible, nothing moves.
+  Result<> safe_operational(const Cycle& cycle) noexcept override {
+    measure(cycle);
+    if (cycle.first) {
+      stop_motion();
+      engage();
+    }
+    rest();
+    control();
+    return ok();
+  }
+
+  Result<> operational(const Cycle& cycle) noexcept override {
+    measure(cycle);
+    if (cycle.first) engage();
+    if (!cycle.active) rest();
+    else if (coupled_) follow();
+    else advance_motion(cycle);
+    control();
+    check_torque(cycle);
+    active_.store(cycle.active && !limited_ ? 1 : 0);
+    return ok();
+  }
+
+  Result<> error_operational(const Cycle& cycle) noexcept override {
+    measure(cycle);
+    if (cycle.first) stop_motion();
+    robot_.output() = {};
+    return ok();
+  }
+
+  void measure(const Cycle& cycle) noexcept {
+    const RobotInput& in = robot_.input();
+    current_.store({static_cast<std::int32_t>(cycle.state), in.position_rad, in.velocity_rad_per_s, in.torque_n_m,
+                    in.temperature_deg_c, robot_.flags()});
+    tip_.store(manipulator::tip(geometry_, in.position_rad));
+    tip_force_.store(manipulator::tip_force(geometry_, in.position_rad, in.torque_n_m));
+    active_.store(0);
+    check_temperature();
+  }
+
+  /// Takes the present position as the reference: entering Operational moves nothing.
+  void engage() noexcept {
+    const Joints here = robot_.input().motor_position_rad;
+    limited_ = false;
+    torque_guard_.reset();
+    controller_->reset(here);
+    trajectory_.start(here, here, 0.0);
+    clutch_.engage(here, joystick_.value().position_rad);
+    clutch_values_.store({clutch_.joint_rad(), clutch_.handle_rad()});
+    set_desired(here);
+  }
+
+  void rest() noexcept {
+    const Joints here = robot_.input().motor_position_rad;
+    controller_->reset(here);
+    set_desired(here);
+  }
+
+  void follow() noexcept {
+    if (!joystick_.valid() || joystick_.value().enable == 0) return;  // hold the last setpoint
+    set_desired(clutch_.desired(joystick_.value().position_rad, position_scale_.load()));
+  }
+
+  void advance_motion(const Cycle& cycle) noexcept {
+    set_desired(trajectory_.advance(seconds(cycle.period)));
+    trajectory_values_.store({trajectory_.target_rad(), trajectory_.duration_s(), trajectory_.progress()});
+    if (!move_) return;
+    if (!half_reported_ && trajectory_.progress() >= 0.5) {
+      half_reported_ = true;
+      progress(*move_, 1);
+    }
+    if (!trajectory_.done()) return;
+    raise(motion_done);
+    finish(*move_);
+    move_.reset();
+  }
+
+  void set_desired(const Joints& position_rad) noexcept {
+    desired_position_.store({std::clamp(position_rad[0], lowest_rad[0], highest_rad[0]),
+                             std::clamp(position_rad[1], lowest_rad[1], highest_rad[1])});
+  }
+
+  void control() noexcept {
+    const RobotInput& in = robot_.input();
+    const manipulator::Measured measured{in.motor_position_rad, in.motor_velocity_rad_per_s, in.position_rad,
+                                         in.velocity_rad_per_s, in.torque_n_m, in.temperature_deg_c};
+    robot_.output().torque_n_m =
+        controller_->motor_torque(desired_position_.load(), measured, {kp_.load(), kd_.load()});
+    desired_velocity_.store(controller_->desired_velocity_rad_s());
+  }
+
+  void check_torque(const Cycle& cycle) noexcept {
+    if (!cycle.active) return;
+    const Joints torque = robot_.input().torque_n_m;
+    const double soft = torque_limit_.load();
+    const double hard = torque_hard_.load();
+    const auto finding = torque_guard_.update(torque, soft, hard);
+    if (finding.verdict == manipulator::TorqueVerdict::Fine || limited_) return;
+    limited_ = true;
+    inhibit_actuators();
+    const bool is_hard = finding.verdict == manipulator::TorqueVerdict::Hard;
+    raise(is_hard ? torque_hard_exceeded : torque_limit_exceeded,
+          {static_cast<double>(finding.joint + 1), finding.value_n_m, is_hard ? hard : soft});
+  }
+
+  /// Reports each level once on the way up; a level is left only downwards.
+  void check_temperature() noexcept {
+    using manipulator::TemperatureVerdict;
+    const auto& limits = temperature_limits_.load();
+    const auto& values = robot_.input().temperature_deg_c;
+    const TemperatureVerdict verdict = manipulator::judge(values, {limits[0], limits[1], limits[2]});
+    if (verdict > temperature_) {
+      const bool second = values[1] > values[0];
+      const std::uint16_t event = verdict == TemperatureVerdict::Warning    ? temperature_warning
+                                  : verdict == TemperatureVerdict::Critical ? temperature_critical
+                                                                            : temperature_maximum;
+      raise(event, {second ? 2.0 : 1.0, static_cast<double>(values[second ? 1 : 0])});
+    }
+    temperature_ = verdict;
+  }
+
+  Outcome move(const Joints& target_rad, double duration_s, const Call& call) noexcept {
+    if (coupled_) return refused(pus::FailureCode::SetpointOwnedByLink);
+    if (move_) return refused(pus::FailureCode::Busy);
+    trajectory_.start(desired_position_.load(), target_rad, duration_s);
+    move_ = call;
+    half_reported_ = false;
+    return running;
+  }
+
+  void stop_motion() noexcept {
+    trajectory_.stop();
+    if (!move_) return;
+    abort(*move_, pus::FailureCode::Aborted);
+    move_.reset();
+  }
+
+  static constexpr Joints lowest_rad{-2.0, 0.2};
+  static constexpr Joints highest_rad{1.0, 2.6};
+  static constexpr Joints home_rad{-0.80, 1.60};
+  static constexpr double home_duration_s = 3.0;
+
+  Parameter<CurrentValues> current_;
+  Parameter<Joints> desired_position_;
+  Parameter<Joints> desired_velocity_;
+  Parameter<double> kp_, kd_, torque_limit_, torque_hard_, position_scale_;
+  Parameter<std::array<float, 3>> temperature_limits_;
+  Parameter<ClutchValues> clutch_values_;
+  Parameter<Joints> tip_;
+  Parameter<TrajectoryValues> trajectory_values_;
+  Parameter<Joints> tip_force_;
+  Parameter<std::uint8_t> active_;
+  LinkInput<JoystickState> joystick_;
+  DevicePort<RobotInput, RobotOutput> robot_;
+
+  manipulator::Geometry geometry_;
+  std::optional<manipulator::JointController> controller_;
+  manipulator::Trajectory trajectory_;
+  manipulator::Clutch clutch_;
+  manipulator::TorqueLimit torque_guard_;
+  manipulator::TemperatureVerdict temperature_{};
+  std::optional<Call> move_;
+  bool half_reported_{false};
+  bool coupled_{false};
+  bool limited_{false};
+};
+
+}  // namespace
+
+std::unique_ptr<Subsystem> make_manipulator() { return std::make_unique<Manipulator>(); }
+
+}  // namespace hirosco

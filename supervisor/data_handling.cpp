@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+
+#include "hirosco/pus/st08_function.hpp"
+#include "supervisor/supervisor.hpp"
+
+/// Data handling of the supervisor (paper 4.3): permits or refuses, logs and routes every telecommand, routes and logs
+/// every telemetry packet.
+namespace hirosco::supervisor {
+namespace {
+
+/// Source id of the supervisor's own telecommands (decision 27).
+constexpr std::uint16_t own_source = 1;
+constexpr Duration own_request_limit = 5s;
+/// Reports on damaged packets in one second (pus-c tailoring 5.3).
+constexpr int damaged_reports_per_second = 10;
+constexpr std::size_t most_waiting = 1024;
+
+[[nodiscard]] std::string telecommand_text(const pus::TelecommandView& telecommand) {
+  if (const auto call = called_function(telecommand)) {
+    std::string text{call->name};
+    if (call->first_argument) text += " " + std::to_string(*call->first_argument);
+    return text;
+  }
+  return "TC[" + std::to_string(telecommand.service()) + "," + std::to_string(telecommand.subtype()) + "]";
+}
+
+}  // namespace
+
+void Supervisor::handle_telecommand(const Incoming& incoming) {
+  ++counts_.telecommands;
+  const auto header = pus::read_primary_header(incoming.packet);
+  const auto telecommand = pus::TelecommandView::parse(incoming.packet);
+  if (!telecommand) {
+    if (header && header->apid == pus::idle_apid) return;  // idle packets are dropped silently
+    const std::uint32_t request_id = header ? header->request_id : 0;
+    if (now_ - report_window_ >= 1s) {
+      report_window_ = now_;
+      reports_in_window_ = 0;
+    }
+    ++reports_in_window_;
+    return reject(incoming, {request_id, 0, 0}, telecommand.error());
+  }
+  const pus::Request request = pus::request_of(*telecommand);
+  const std::uint16_t apid = telecommand->apid();
+  const auto decision = decide(*telecommand, incoming.sender, situation_of(apid));
+  if (!decision) return reject(incoming, request, decision.error());
+  if (decision->releases_stop)
+    if (Member* addressee = member(apid)) addressee->release_fence();
+
+  const std::string text = telecommand_text(*telecommand);
+  const LogEntry received{.kind = LogKind::TelecommandReceived,
+                          .source = incoming.source,
+                          .peer = apid,
+                          .packet = incoming.packet,
+                          .note = std::string_view{text}};
+  if (decision->essential) {
+    forward(apid, incoming.packet, incoming.memory, true, request);
+    static_cast<void>(parts_.log.append(received));
+    return;
+  }
+  const std::uint64_t number = parts_.log.append(received);
+  if (number == 0 || waiting_.size() == most_waiting)
+    return reject(incoming, request, pus::FailureNotice{pus::FailureCode::QueueFull});
+  waiting_.push_back({number, apid, {incoming.packet.begin(), incoming.packet.end()}, incoming.memory, request});
+  forward_durable();
+}
+
+/// Nothing that is not essential leaves before it is on the disk (decision 24).
+void Supervisor::forward_durable() {
+  while (!waiting_.empty() && waiting_.front().number <= parts_.log.durable()) {
+    const Waiting next = std::move(waiting_.front());
+    waiting_.pop_front();
+    forward(next.apid, next.packet, next.memory, false, next.request);
+  }
+}
+
+void Supervisor::forward(std::uint16_t apid, Octets packet, const MemoryHandle& memory, bool essential,
+                         const pus::Request& request) {
+  Channel* channel = channel_of(apid);
+  const Message message{.kind = MessageKind::Packet,
+                        .mode_epoch = essential ? 0 : mode_epoch_,
+                        .packet = packet,
+                        .memory = memory};
+  const bool sent = channel != nullptr && channel->send(message).has_value();
+  if (!sent) {
+    const auto code = channel == nullptr ? pus::FailureCode::UnknownApid : pus::FailureCode::QueueFull;
+    return reject({.packet = packet, .memory = {}}, request, pus::FailureNotice{code});
+  }
+  static_cast<void>(parts_.log.append({.kind = LogKind::TelecommandForwarded, .source = 1, .peer = apid, .packet = packet,
+                                       .note = essential ? "essential" : ""}));
+}
+
+void Supervisor::reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice) {
+  const auto code = static_cast<std::size_t>(notice.code());
+  ++rejections_[code < rejection_reasons ? code : 0];
+  const auto header = pus::read_primary_header(incoming.packet);
+  static_cast<void>(parts_.log.append({.kind = LogKind::TelecommandRefused,
+                                       .source = incoming.source,
+                                       .peer = header ? header->apid : std::uint16_t{0},
+                                       .packet = incoming.packet,
+                                       .note = to_text(notice.code())}));
+  const bool damaged = notice.code() == pus::FailureCode::ErrorControl || notice.code() == pus::FailureCode::IllegalLength ||
+                       notice.code() == pus::FailureCode::IllegalPrimaryHeader ||
+                       notice.code() == pus::FailureCode::IllegalSequenceFlags;
+  if (damaged && reports_in_window_ > damaged_reports_per_second) return;
+  if (notice.code() == pus::FailureCode::UnknownApid) engine_.verification().routing_failed(request, notice);
+  else engine_.verification().rejected(request, notice);
+}
+
+Situation Supervisor::situation_of(std::uint16_t apid) const {
+  Situation situation{.mission = mission_, .mode = *mode_, .links = links_.graph(), .state = std::nullopt};
+  if (apid == 1) {
+    situation.state = engine_.state();
+    situation.configuration = static_cast<std::uint8_t>(own_vital_->configuration.load(std::memory_order_relaxed));
+    return situation;
+  }
+  const auto found = std::ranges::find(members_, apid, &Member::apid);
+  if (found == members_.end() || !found->alive()) return situation;
+  situation.state = found->state();
+  situation.configuration = found->configuration();
+  return situation;
+}
+
+// --- telemetry ---------------------------------------------------------------------------------------------------------
+
+void Supervisor::handle_telemetry(std::uint16_t from, Octets packet) {
+  const auto report = pus::TelemetryView::parse(packet);
+  // Who sends is known from the channel (decision 2): a packet with another APID is not passed on.
+  if (!report || report->apid() != from) {
+    ++counts_.misdirected;
+    return;
+  }
+  ++counts_.telemetry;
+  const bool event = report->service() == 5 && report->subtype() <= 4;
+  static_cast<void>(parts_.log.append({.kind = event ? LogKind::Event : LogKind::Telemetry,
+                                       .source = from,
+                                       .peer = report->destination(),
+                                       .packet = packet}));
+  parts_.observer.routed(*report);
+  const auto* ground = mission_.find_subsystem(mission_.ground.subsystem);
+  if (ground != nullptr) {
+    Member* link = member(ground->subsystem.id);
+    // What the ground link cannot take now is in the log: telemetry never waits for it.
+    if (link != nullptr && link->alive() && link->state() != State::Offline)
+      static_cast<void>(link->channel()->send({.packet = packet}));
+  }
+  interpret(from, *report);
+}
+
+void Supervisor::interpret(std::uint16_t from, const pus::TelemetryView& report) {
+  if (report.service() == 1 && report.destination() == own_source) handle_verification(report);
+  if (report.service() == 5 && report.subtype() >= 1 && report.subtype() <= 4) handle_event(from, report);
+  if (report.service() == pus::st128::service_type) links_.handle(from, report);
+}
+
+void Supervisor::handle_verification(const pus::TelemetryView& report) {
+  OctetReader reader{report.source_data()};
+  const auto found = own_requests_.find(reader.get<std::uint32_t>());
+  if (found == own_requests_.end() || !reader.good()) return;
+  const bool failure = report.subtype() % 2 == 0;
+  const bool completed = report.subtype() == 7;
+  if (!failure && !completed) return;
+  OwnRequest request = std::move(found->second);
+  own_requests_.erase(found);
+  if (report.subtype() == 6) static_cast<void>(reader.get<std::uint16_t>());
+  const auto code = static_cast<pus::FailureCode>(failure ? reader.get<std::uint16_t>() : 0);
+  if (failure) tell(request.what + " failed: " + std::string{to_text(code)}, report.apid());
+  if (request.done) request.done(completed, failure ? std::string{to_text(code)} : std::string{});
+}
+
+// --- the supervisor's own telecommands ---------------------------------------------------------------------------------
+
+void Supervisor::command(std::uint16_t apid, std::string_view name, std::optional<double> argument, CommandDone done) {
+  const auto* member = apid == 1 ? nullptr : mission_.find_subsystem(apid);
+  const descriptor::Subsystem& subsystem = member != nullptr ? member->subsystem : mission_.supervisor;
+  static const auto built_in = pus::common_functions();
+  const auto common = std::ranges::find(built_in, name, &descriptor::Function::name);
+  const descriptor::Function* function = common != built_in.end() ? &*common : subsystem.find_function(name);
+  std::vector<double> values;
+  if (argument) values.push_back(*argument);
+  const auto data = function != nullptr ? pus::encode_call(*function, std::span<const double>{values})
+                                        : Result<std::vector<std::byte>>{fail(ErrorCode::NotFound, "unknown function")};
+  if (!data) {
+    if (done) done(false, data.error().text);
+    return;
+  }
+  send_own(apid, 8, 1, *data, {}, std::move(done));
+}
+
+void Supervisor::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) {
+  send_own(apid, pus::st128::service_type, subtype, data, memory, nullptr);
+}
+
+void Supervisor::send_own(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
+                          const MemoryHandle& memory, CommandDone done) {
+  std::array<std::byte, max_packet_octets> buffer;
+  constexpr std::uint16_t modulo = 16'384;
+  const std::uint16_t count = next_sequence_count_;
+  next_sequence_count_ = static_cast<std::uint16_t>((count + 1) % modulo);
+  const auto packet = pus::write_telecommand(buffer,
+                                             {.apid = apid,
+                                              .sequence_count = count,
+                                              .ack = pus::ack_acceptance | pus::ack_completion,
+                                              .service = service,
+                                              .subtype = subtype,
+                                              .source = own_source},
+                                             data);
+  if (!packet) {
+    if (done) done(false, packet.error().text);
+    return;
+  }
+  const auto telecommand = pus::TelecommandView::parse(*packet);
+  own_requests_[telecommand->request_id()] = {std::move(done), now_ + own_request_limit,
+                                              name_of(apid) + " " + telecommand_text(*telecommand)};
+  handle_telecommand({.packet = *packet, .sender = Sender::Supervisor, .source = 1, .memory = memory});
+}
+
+void Supervisor::expire_requests(TimePoint now) {
+  std::vector<OwnRequest> expired;
+  std::erase_if(own_requests_, [&](auto& entry) {
+    if (entry.second.deadline > now) return false;
+    expired.push_back(std::move(entry.second));
+    return true;
+  });
+  for (OwnRequest& request : expired) {
+    tell(request.what + ": no answer");
+    if (request.done) request.done(false, "no answer");
+  }
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/platform/process_launcher.hpp"
+
+#include <signal.h>
+
+#include <cstdlib>
+#include <new>
+#include <string>
+
+#include "hirosco/data_transfer/flows/socket_channel.hpp"
+#include "hirosco/subsystem/pages.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+// Descriptor numbers in the new process.
+constexpr int channel_number = 3;
+constexpr int vital_number = 4;
+constexpr int permit_number = 5;
+
+/// A page in memory of its own, constructed in place.
+template <class Page>
+[[nodiscard]] Result<std::pair<MemoryHandle, Mapping>> make_page(SealedMemory& memory, const char* name) {
+  HIROSCO_TRY_LET(MemoryHandle handle, memory.create(name, sizeof(Page)));
+  HIROSCO_TRY_LET(Mapping mapping, memory.map(handle, Access::ReadWrite));
+  ::new (mapping.octets.data()) Page;
+  return std::pair{std::move(handle), std::move(mapping)};
+}
+
+}  // namespace
+
+std::filesystem::path find_program(std::string_view name) {
+  std::error_code failed;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
+  if (!failed)
+    if (const auto beside = self.parent_path() / name; std::filesystem::exists(beside, failed)) return beside;
+  const char* path = std::getenv("PATH");
+  std::string_view rest = path != nullptr ? path : "";
+  while (!rest.empty()) {
+    const auto colon = rest.find(':');
+    const auto candidate = std::filesystem::path{rest.substr(0, colon)} / name;
+    if (std::filesystem::exists(candidate, failed)) return candidate;
+    rest = colon == std::string_view::npos ? std::string_view{} : rest.substr(colon + 1);
+  }
+  return {};
+}
+
+Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
+  const auto program = find_program(subsystem.executable);
+  if (program.empty()) return fail(ErrorCode::NotFound, "its executable is neither beside this program nor in PATH");
+  HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
+  HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
+  HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair());
+  ProcessStart start;
+  start.executable = program.string();
+  start.arguments = {"--descriptor", subsystem.subsystem.file.string(), "--channel", std::to_string(channel_number),
+                     "--vital",      std::to_string(vital_number),      "--permit",  std::to_string(permit_number)};
+  start.inherited = {{ends.second.get(), channel_number},
+                     {SealedMemory::descriptor(vital.first), vital_number},
+                     {SealedMemory::descriptor(permit.first), permit_number}};
+  HIROSCO_TRY_LET(Process process, Process::spawn(start));
+  LaunchedSubsystem launched;
+  launched.channel = std::make_unique<SocketChannel>(std::move(ends.first));
+  launched.vital = std::move(vital.second);
+  launched.permit = std::move(permit.second);
+  launched.process = next_++;
+  processes_.emplace(launched.process, std::move(process));
+  return launched;
+}
+
+std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
+  const auto found = processes_.find(process);
+  if (found == processes_.end()) return ProcessEnd{};
+  const auto status = found->second.poll();
+  if (!status || !*status) return std::nullopt;
+  const ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
+  processes_.erase(found);
+  return end;
+}
+
+void SystemLauncher::kill(std::uint32_t process) {
+  if (const auto found = processes_.find(process); found != processes_.end())
+    static_cast<void>(found->second.send_signal(SIGKILL));
+}
+
+bool SystemLauncher::any_running() {
+  std::erase_if(processes_, [](auto& entry) {
+    const auto status = entry.second.poll();
+    return !status || status->has_value();
+  });
+  return !processes_.empty();
+}
+
+int SystemLauncher::wait_descriptor(std::uint32_t process) {
+  const auto found = processes_.find(process);
+  return found != processes_.end() ? found->second.handle().get() : -1;
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "hirosco/data_transfer/flows/sealed_memory.hpp"
+#include "hirosco/utilities/os/process.hpp"
+#include "supervisor/platform/launcher.hpp"
+
+namespace hirosco::supervisor {
+
+/// Where the program of this name is: beside the running one, then in PATH; empty when nowhere.
+[[nodiscard]] std::filesystem::path find_program(std::string_view name);
+
+/// Starts each subsystem as a process of its own that inherits its end of the control channel and its two pages; who is
+/// who is proven by the inherited socket (decision 2).  Thread: the supervisor's.
+class SystemLauncher final : public ProcessLauncher {
+ public:
+  [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
+  void kill(std::uint32_t process) override;
+  /// True while a process that was started still runs.
+  [[nodiscard]] bool any_running();
+  /// Readable when the process has ended; -1 when unknown.
+  [[nodiscard]] int wait_descriptor(std::uint32_t process);
+
+ private:
+  SealedMemory memory_;
+  std::map<std::uint32_t, Process> processes_;
+  std::uint32_t next_{1};
+};
+
+}  // namespace hirosco::supervisor

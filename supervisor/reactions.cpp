@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "supervisor/supervision/event_handling/recovery.hpp"
+#include "supervisor/supervisor.hpp"
+
+/// Event handling, subsystem handling and real-time link handling of the supervisor (paper 4.3 and 5).
+namespace hirosco::supervisor {
+
+using descriptor::Severity;
+
+void Supervisor::handle_event(std::uint16_t from, const pus::TelemetryView& report) {
+  OctetReader reader{report.source_data()};
+  const auto id = reader.get<std::uint16_t>();
+  if (!reader.good()) return;
+  const auto severity = static_cast<Severity>(report.subtype());
+  const descriptor::Subsystem& subsystem =
+      from == 1 ? mission_.supervisor : mission_.find_subsystem(from)->subsystem;
+  const auto event = std::ranges::find(subsystem.events, id, &descriptor::Event::id);
+  const std::string name = event != subsystem.events.end() ? event->name : std::to_string(id);
+  parts_.observer.told(report.time(), "event " + std::string{to_text(severity)} + " " + subsystem.name + " " + name);
+  if (Member* origin = member(from); origin != nullptr && origin->alive()) react(*origin, name, severity);
+}
+
+void Supervisor::react(Member& origin, std::string_view event, Severity severity) {
+  const Reaction reaction = choose_reaction(mission_, {origin.descriptor().name, event, severity, mode_->name});
+  if (reaction.action == descriptor::Action::Log) return;
+  // One plan at a time for a subsystem; only something worse overrides it.
+  if (origin.recovering && *origin.recovering >= severity) return;
+  if (reaction.action == descriptor::Action::ShutDownNetwork) {
+    origin.recovering = severity;
+    return shut_down_network(origin, reaction.plan);
+  }
+  const auto state = origin.state();
+  const bool to_safe = reaction.state == State::SafeOperational;
+  if (to_safe && state != State::Operational) return;  // decision 11: elsewhere it is logged
+  origin.recovering = severity;
+  tell("plan " + std::string{reaction.plan} + ": " + origin.descriptor().name + " to " +
+           std::string{to_text(reaction.state)} + " because of " + std::string{event},
+       origin.apid());
+  const std::uint16_t apid = origin.apid();
+  command(apid, "SET_STATE", static_cast<double>(reaction.state), [this, apid](bool success, const std::string& why) {
+    recovered(apid);
+    Member* subject = member(apid);
+    if (success || subject == nullptr || !subject->alive()) return;
+    // A plan that fails escalates once, to the whole network; shutting down has no further step.
+    tell("plan failed (" + why + "): escalating", apid);
+    react(*subject, "RECOVERY_FAILED", Severity::High);
+  });
+}
+
+void Supervisor::recovered(std::uint16_t apid) {
+  if (Member* subject = member(apid)) subject->recovering.reset();
+}
+
+void Supervisor::shut_down_network(Member& origin, std::string_view plan) {
+  const auto network = links_.graph().network_of(origin.apid());
+  std::string names;
+  for (const std::uint16_t apid : network) names += (names.empty() ? "" : ", ") + name_of(apid);
+  // The actuators first, by shared memory: no packet, no queue and no disk is in that way.
+  for (const std::uint16_t apid : network)
+    if (Member* subject = member(apid)) subject->fence();
+  tell("plan " + std::string{plan} + ": network {" + names + "} to ErrorOperational and down", origin.apid());
+  for (const std::uint16_t apid : network) {
+    Member* subject = member(apid);
+    if (subject == nullptr || !subject->alive()) continue;
+    subject->recovering = Severity::High;
+    bring_down(*subject, plan);
+  }
+}
+
+void Supervisor::bring_down(Member& subject, std::string_view plan) {
+  const std::uint16_t apid = subject.apid();
+  const auto to_offline = [this, apid](bool, const std::string&) {
+    Member* again = member(apid);
+    if (again == nullptr || !again->alive() || again->state() == State::Offline) return recovered(apid);
+    command(apid, "SET_STATE", static_cast<double>(State::Offline), [this, apid](bool success, const std::string& why) {
+      recovered(apid);
+      tell(name_of(apid) + (success ? " is Offline" : " did not reach Offline: " + why), apid);
+    });
+  };
+  static_cast<void>(plan);
+  const auto state = subject.state();
+  const bool can_stop = state == State::PreOperational || state == State::SafeOperational || state == State::Operational;
+  if (!can_stop) return to_offline(true, {});
+  command(apid, "SET_STATE", static_cast<double>(State::ErrorOperational), to_offline);
+}
+
+void Supervisor::safe_all() {
+  for (Member& subject : members_)
+    if (subject.alive()) subject.fence();
+  tell("SAFE_ALL: every actuator inhibited", 1);
+  for (Member& subject : members_) {
+    // The ground link has no actuators and is needed now more than ever.
+    if (!subject.alive() || subject.state() != State::Operational) continue;
+    if (subject.descriptor().name == mission_.ground.subsystem) continue;
+    command(subject.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+  }
+}
+
+// --- subsystem handling ------------------------------------------------------------------------------------------------
+
+void Supervisor::watch_processes() {
+  for (Member& subject : members_) {
+    if (!subject.alive()) continue;
+    if (const auto end = parts_.launcher.ended(subject.process())) {
+      member_died(subject, *end);
+      continue;
+    }
+    if (!subject.hang_detected()) continue;
+    const double apid = subject.apid();
+    engine_.raise_in_service(102, {&apid, 1});
+    tell(subject.descriptor().name + " hangs: its cycle stands still", subject.apid());
+    react(subject, "HANG", Severity::High);
+  }
+}
+
+void Supervisor::member_died(Member& subject, const ProcessEnd& end) {
+  if (shutting_down_) return subject.died();
+  const std::uint16_t apid = subject.apid();
+  const std::string how = (end.by_signal ? "signal " : "exit code ") + std::to_string(end.value);
+  tell(subject.descriptor().name + " died: " + how, apid);
+  const double number = apid;
+  engine_.raise_in_service(101, {&number, 1});
+  // The network is what it was before the death: the others are told while the graph still has the links.
+  react(subject, "PROCESS_DIED", Severity::High);
+  subject.died();
+  links_.forget(apid);
+  std::erase_if(waiting_, [&](const Waiting& waiting) { return waiting.apid == apid; });
+}
+
+void Supervisor::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {
+  tell("link " + std::to_string(link.id) + " " + link.from + "." + link.provides + " -> " + link.to +
+       (up ? " up: " : " down: ") + text);
+}
+
+}  // namespace hirosco::supervisor

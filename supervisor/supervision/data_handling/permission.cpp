@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/permission.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace hirosco::supervisor {
+namespace {
+
+using descriptor::State;
+using pus::FailureCode;
+using pus::FailureNotice;
+
+constexpr std::size_t name_octets = 16;
+constexpr std::uint16_t supervisor_apid = 1;
+
+/// Services of every subsystem, and the subtypes that are requests.
+[[nodiscard]] bool known_subtype(std::uint8_t service, std::uint8_t subtype) {
+  switch (service) {
+    case 3: {
+      constexpr std::array requests{1, 3, 5, 6, 9, 27, 29, 31, 33};
+      return std::ranges::find(requests, int{subtype}) != requests.end();
+    }
+    case 5: return subtype >= 5 && subtype <= 7;
+    case 8: return subtype == 1;
+    case 17: return subtype == 1;
+    case 20: return subtype == 1 || subtype == 3;
+    case 128: return subtype >= 1 && subtype <= 4;
+    default: return false;
+  }
+}
+
+[[nodiscard]] bool known_service(std::uint8_t service) {
+  constexpr std::array services{3, 5, 8, 17, 20, 128};
+  return std::ranges::find(services, int{service}) != services.end();
+}
+
+[[nodiscard]] const descriptor::Subsystem* addressee(const descriptor::Mission& mission, std::uint16_t apid) {
+  if (apid == supervisor_apid) return &mission.supervisor;
+  const auto* found = mission.find_subsystem(apid);
+  return found != nullptr ? &found->subsystem : nullptr;
+}
+
+[[nodiscard]] bool listed(const std::vector<std::string>& names, std::string_view name) {
+  return std::ranges::any_of(names, [&](const std::string& entry) { return entry == "*" || entry == name; });
+}
+
+[[nodiscard]] bool mode_permits(const descriptor::Mode& mode, const descriptor::Subsystem& subsystem,
+                                std::uint8_t service, std::string_view function) {
+  return std::ranges::any_of(mode.permits, [&](const descriptor::Permit& permit) {
+    if (permit.subsystem != "*" && permit.subsystem != subsystem.name) return false;
+    if (std::ranges::find(permit.services, service) != permit.services.end()) return true;
+    return service == 8 && listed(permit.functions, function);
+  });
+}
+
+/// A required link of the configuration in force that is not up (paper 4.3).
+[[nodiscard]] bool lacks_link(const descriptor::Subsystem& subsystem, const Situation& situation) {
+  const auto* configuration = subsystem.find_configuration(situation.configuration);
+  if (configuration == nullptr) return false;
+  return std::ranges::any_of(configuration->requires_, [&](const descriptor::Requires& wanted) {
+    return wanted.required && !situation.links.is_up(situation.links.link_into(subsystem.id, wanted.name));
+  });
+}
+
+/// Towards safety: never delayed or refused by mode (decision 24).
+[[nodiscard]] bool towards_safety(const CalledFunction& call, std::optional<State> state) {
+  if (call.name != "SET_STATE" || !call.first_argument) return false;
+  const auto target = static_cast<State>(*call.first_argument);
+  return target == State::ErrorOperational || target == State::PostOperational ||
+         (target == State::SafeOperational && state == State::Operational);
+}
+
+}  // namespace
+
+std::optional<CalledFunction> called_function(const pus::TelecommandView& telecommand) {
+  if (telecommand.service() != 8 || telecommand.subtype() != 1) return std::nullopt;
+  const Octets data = telecommand.application_data();
+  if (data.size() < name_octets) return std::nullopt;
+  const auto* letters = reinterpret_cast<const char*>(data.data());
+  CalledFunction call;
+  call.name = std::string_view{letters, name_octets};
+  call.name = call.name.substr(0, call.name.find('\0'));
+  // N u8, argument id u8, value u8: the shape of SET_STATE and its kin.
+  if (data.size() == name_octets + 3) call.first_argument = std::to_integer<std::uint8_t>(data[name_octets + 2]);
+  return call;
+}
+
+std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telecommand, Sender sender,
+                                               const Situation& situation) {
+  const descriptor::Subsystem* subsystem = addressee(situation.mission, telecommand.apid());
+  if (subsystem == nullptr || !situation.state) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
+  const std::uint8_t service = telecommand.service();
+  const std::uint8_t subtype = telecommand.subtype();
+  if (!known_service(service)) return std::unexpected{FailureNotice{FailureCode::UnknownService}.with(service)};
+  if (!known_subtype(service, subtype))
+    return std::unexpected{FailureNotice{FailureCode::UnknownSubtype}.with(service).with(subtype)};
+  // The handshake of links is the supervisor's alone (decision 10).
+  if (service == 128 && sender != Sender::Supervisor)
+    return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
+  if (service == 17) return Permitted{.essential = true};
+
+  const auto call = called_function(telecommand);
+  const descriptor::Function* function = call ? subsystem->find_function(call->name) : nullptr;
+  const bool built_in = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
+  Permitted permitted;
+  if (call) {
+    permitted.essential = towards_safety(*call, situation.state) || (function != nullptr && function->essential);
+    const bool to_safe = call->name == "SET_STATE" && call->first_argument == static_cast<std::uint8_t>(State::SafeOperational);
+    if (to_safe && situation.state == State::PreOperational && lacks_link(*subsystem, situation))
+      return std::unexpected{FailureNotice{FailureCode::LinkAbsent}};
+    permitted.releases_stop = call->name == "SET_STATE" &&
+                              call->first_argument == static_cast<std::uint8_t>(State::Operational) &&
+                              situation.state == State::SafeOperational;
+    // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].
+    if (function == nullptr && !built_in) return permitted;
+  }
+  if (permitted.essential || sender == Sender::Supervisor) return permitted;
+  if (!mode_permits(situation.mode, *subsystem, service, call ? call->name : std::string_view{}))
+    return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
+  if (function != nullptr && !function->permitted_in(*situation.state))
+    return std::unexpected{FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(*situation.state))};
+  return permitted;
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string_view>
+
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/pus/failure.hpp"
+#include "hirosco/pus/packet.hpp"
+#include "supervisor/supervision/realtime_links/link_graph.hpp"
+
+/// The one decision whether a telecommand may be executed (paper 4.3: by state and mode). Pure: what is asked before
+/// sending and what is decided on sending are the same function.
+namespace hirosco::supervisor {
+
+enum class Sender : std::uint8_t { Ground, Subsystem, Supervisor };
+
+/// What the decision looks at besides the telecommand.
+struct Situation {
+  const descriptor::Mission& mission;
+  const descriptor::Mode& mode;
+  const LinkGraph& links;
+  /// Present state of the addressee; empty: it does not run.
+  std::optional<descriptor::State> state;
+  /// Configuration in force at the addressee, 0 = none.
+  std::uint8_t configuration{0};
+};
+
+struct Permitted {
+  bool essential{false};             ///< forwarded first, logged after (decision 24)
+  bool releases_stop{false};         ///< SET_STATE(Operational): lifts the addressee's stop flag
+};
+
+/// Acceptance checks 6, 8, 9 and 12 (pus-c tailoring 5.3) plus codes 13 and 14. A notice with code UnknownApid belongs
+/// into TM[1,10], every other into TM[1,2].
+[[nodiscard]] std::expected<Permitted, pus::FailureNotice> decide(const pus::TelecommandView& telecommand,
+                                                                  Sender sender, const Situation& situation);
+
+/// The function of TC[8,1] and its first argument, as far as they can be read; for logs and decisions.
+struct CalledFunction {
+  std::string_view name;             ///< views the telecommand
+  std::optional<std::uint8_t> first_argument;
+};
+[[nodiscard]] std::optional<CalledFunction> called_function(const pus::TelecommandView& telecommand);
+
+}  // namespace hirosco::supervisor

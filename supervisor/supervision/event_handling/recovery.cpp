@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/event_handling/recovery.hpp"
+
+#include <algorithm>
+
+namespace hirosco::supervisor {
+namespace {
+
+/// How specific a matching plan is; empty when it does not match.
+[[nodiscard]] std::optional<int> specificity(const descriptor::Plan& plan, const RaisedEvent& event) {
+  if (!plan.event.empty() && plan.event != event.event) return std::nullopt;
+  if (!plan.subsystem.empty() && plan.subsystem != event.subsystem) return std::nullopt;
+  if (!plan.mode.empty() && plan.mode != event.mode) return std::nullopt;
+  if (!plan.severities.empty() && std::ranges::find(plan.severities, event.severity) == plan.severities.end())
+    return std::nullopt;
+  return (plan.event.empty() ? 0 : 8) + (plan.subsystem.empty() ? 0 : 4) + (plan.mode.empty() ? 0 : 2) +
+         (plan.severities.empty() ? 0 : 1);
+}
+
+}  // namespace
+
+Reaction choose_reaction(const descriptor::Mission& mission, const RaisedEvent& event) {
+  const descriptor::Plan* best = nullptr;
+  int best_score = -1;
+  for (const auto& plan : mission.plans) {
+    const auto score = specificity(plan, event);
+    if (!score || *score <= best_score) continue;
+    best = &plan;
+    best_score = *score;
+  }
+  if (best != nullptr) return {best->name, best->action, best->state};
+  switch (event.severity) {
+    case descriptor::Severity::High: return {"default", descriptor::Action::ShutDownNetwork, {}};
+    case descriptor::Severity::Medium:
+      return {"default", descriptor::Action::SetState, descriptor::State::SafeOperational};
+    default: return {"default", descriptor::Action::Log, {}};
+  }
+}
+
+}  // namespace hirosco::supervisor

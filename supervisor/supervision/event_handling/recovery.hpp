@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "hirosco/descriptor/mission.hpp"
+
+/// Which plan answers an event (paper 4.3 and 5): the most specific of the mission, else the paper's default.
+namespace hirosco::supervisor {
+
+struct RaisedEvent {
+  std::string_view subsystem;
+  std::string_view event;            ///< name, or the number as text when the descriptor does not know it
+  descriptor::Severity severity{};
+  std::string_view mode;
+};
+
+struct Reaction {
+  std::string_view plan;             ///< name, "default" when no plan of the mission matched
+  descriptor::Action action{descriptor::Action::Log};
+  descriptor::State state{};         ///< for Action::SetState
+};
+
+/// Criteria count in the order event, subsystem, mode, severity; of equally specific plans the first wins.
+[[nodiscard]] Reaction choose_reaction(const descriptor::Mission& mission, const RaisedEvent& event);
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/realtime_links/link_graph.hpp"
+
+#include <algorithm>
+
+namespace hirosco::supervisor {
+
+LinkGraph::LinkGraph(const descriptor::Mission& mission) {
+  for (const auto& link : mission.links) {
+    const auto* from = mission.find_subsystem(link.from);
+    const auto* to = mission.find_subsystem(link.to);
+    if (from == nullptr || to == nullptr) continue;  // refused when the mission was read
+    edges_.push_back({link.id, from->subsystem.id, to->subsystem.id, link.requires_, false});
+  }
+}
+
+void LinkGraph::set_up(std::uint8_t link, bool up) {
+  for (Edge& edge : edges_)
+    if (edge.link == link) edge.up = up;
+}
+
+bool LinkGraph::is_up(std::uint8_t link) const noexcept {
+  return std::ranges::any_of(edges_, [&](const Edge& edge) { return edge.link == link && edge.up; });
+}
+
+std::size_t LinkGraph::up_count() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(edges_, &Edge::up));
+}
+
+std::vector<std::uint16_t> LinkGraph::network_of(std::uint16_t apid) const {
+  std::vector<std::uint16_t> members{apid};
+  for (std::size_t next = 0; next < members.size(); ++next) {
+    for (const Edge& edge : edges_) {
+      if (!edge.up) continue;
+      const std::uint16_t other = edge.from == members[next] ? edge.to : edge.to == members[next] ? edge.from : apid;
+      if (std::ranges::find(members, other) == members.end()) members.push_back(other);
+    }
+  }
+  std::ranges::sort(members);
+  return members;
+}
+
+std::vector<std::uint8_t> LinkGraph::links_of(std::uint16_t apid) const {
+  std::vector<std::uint8_t> links;
+  for (const Edge& edge : edges_)
+    if (edge.up && (edge.from == apid || edge.to == apid)) links.push_back(edge.link);
+  return links;
+}
+
+std::uint8_t LinkGraph::link_into(std::uint16_t consumer, std::string_view required_set) const noexcept {
+  for (const Edge& edge : edges_)
+    if (edge.to == consumer && edge.required_set == required_set) return edge.link;
+  return 0;
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/realtime_links/link_handling.hpp"
+
+#include <array>
+
+#include "hirosco/data_transfer/channel.hpp"
+#include "hirosco/data_transfer/realtime_link.hpp"
+
+namespace hirosco::supervisor {
+
+namespace st128 = pus::st128;
+
+namespace {
+
+/// Each stage of a handshake is one packet there and one back: a second is plenty, also beside a busy core.
+constexpr Duration stage_limit = 2s;
+
+[[nodiscard]] std::string terms_text(const st128::Agreement& agreement) {
+  const auto hertz = [](Duration period) { return std::to_string(std::chrono::nanoseconds{1s} / period) + " Hz"; };
+  return std::string{to_text(agreement.method)} + ", " + std::string{to_text(agreement.byte_order)} + " endian, " +
+         std::string{to_text(agreement.kind)} + ", " + hertz(agreement.producer_period) + " to " +
+         hertz(agreement.consumer_period) + ", " + std::to_string(agreement.payload_octets()) + " octets";
+}
+
+}  // namespace
+
+bool LinkHandling::establish(std::uint8_t id, TimePoint now, Done done) {
+  const auto* link = mission_.find_link(id);
+  if (link == nullptr || graph_.is_up(id) || handshakes_.contains(id)) return false;
+  const auto* from = mission_.find_subsystem(link->from);
+  const auto* to = mission_.find_subsystem(link->to);
+  if (from == nullptr || to == nullptr) return false;
+  Handshake& handshake = handshakes_[id];
+  handshake.link = link;
+  handshake.producer = from->subsystem.id;
+  handshake.consumer = to->subsystem.id;
+  handshake.deadline = now + stage_limit;
+  handshake.done = std::move(done);
+  std::array<std::byte, max_packet_octets> buffer;
+  if (const auto octets = st128::write_offer_request(buffer, {id, link->requires_}))
+    operator_.send_link_command(handshake.consumer, st128::request_offer, Octets{buffer}.first(*octets), {});
+  return true;
+}
+
+bool LinkHandling::release(std::uint8_t link, Done done) {
+  if (!graph_.is_up(link)) return false;
+  const auto* described = mission_.find_link(link);
+  releases_[link] = std::move(done);
+  const std::array data{std::byte{link}};
+  // The consumer first, so that it never sees a producer that left.
+  operator_.send_link_command(mission_.find_subsystem(described->to)->subsystem.id, st128::detach, data, {});
+  operator_.send_link_command(mission_.find_subsystem(described->from)->subsystem.id, st128::detach, data, {});
+  return true;
+}
+
+void LinkHandling::handle(std::uint16_t from, const pus::TelemetryView& report) {
+  const Octets data = report.source_data();
+  if (data.empty()) return;
+  const auto link = std::to_integer<std::uint8_t>(data[0]);
+  if (report.subtype() == st128::detached) return down(link, "detached by " + std::to_string(from));
+  const auto found = handshakes_.find(link);
+  if (found == handshakes_.end()) return;
+  Handshake& handshake = found->second;
+  if (from != handshake.producer && from != handshake.consumer) return;
+  switch (report.subtype()) {
+    case st128::offer:
+      if (const auto offer = st128::read_offer(data); offer && handshake.stage == Stage::AwaitOffer)
+        offered(handshake, offer->offer);
+      break;
+    case st128::agreement:
+      if (const auto terms = st128::read_agreement(data); terms && handshake.stage == Stage::AwaitAgreement)
+        agreed(handshake, terms->agreement);
+      break;
+    case st128::refusal:
+      if (const auto refusal = st128::read_refusal(data)) give_up(link, refusal->refusal.text);
+      break;
+    case st128::attached:
+      if (data.size() == 2) attached(handshake, static_cast<st128::Role>(data[1]));
+      break;
+    default: break;
+  }
+}
+
+void LinkHandling::offered(Handshake& handshake, const st128::Offer& offer) {
+  std::array<std::byte, max_packet_octets> buffer;
+  const auto octets =
+      st128::write_terms_request(buffer, {handshake.link->id, handshake.link->provides, offer});
+  if (!octets) return give_up(handshake.link->id, "the offer does not fit a packet");
+  handshake.stage = Stage::AwaitAgreement;
+  handshake.deadline += stage_limit;
+  operator_.send_link_command(handshake.producer, st128::negotiate_terms, Octets{buffer}.first(*octets), {});
+}
+
+void LinkHandling::agreed(Handshake& handshake, const st128::Agreement& agreement) {
+  const std::uint32_t payload = agreement.payload_octets();
+  constexpr std::uint32_t largest_payload = 65'536;
+  if (payload == 0 || payload > largest_payload) return give_up(handshake.link->id, "payload size out of range");
+  auto memory = memory_.create("hirosco-link", link_memory_octets(payload));
+  if (!memory) return give_up(handshake.link->id, memory.error().text);
+  handshake.agreement = agreement;
+  handshake.memory = std::move(*memory);
+  handshake.epoch = ++epoch_;
+  handshake.stage = Stage::AwaitProducer;
+  handshake.deadline += stage_limit;
+  attach(handshake, st128::Role::Producer);
+}
+
+void LinkHandling::attach(const Handshake& handshake, st128::Role role) {
+  const bool producer = role == st128::Role::Producer;
+  std::array<std::byte, max_packet_octets> buffer;
+  const auto octets = st128::write_attach_request(
+      buffer, {.link = handshake.link->id,
+               .role = role,
+               .epoch = handshake.epoch,
+               .set = producer ? handshake.link->provides : handshake.link->requires_,
+               .agreement = handshake.agreement});
+  if (!octets) return;  // the same agreement came in a packet: it fits; else the stage's time limit ends it
+  operator_.send_link_command(producer ? handshake.producer : handshake.consumer, st128::attach,
+                              Octets{buffer}.first(*octets), handshake.memory);
+}
+
+void LinkHandling::attached(Handshake& handshake, st128::Role role) {
+  if (handshake.stage == Stage::AwaitProducer && role == st128::Role::Producer) {
+    handshake.stage = Stage::AwaitConsumer;
+    handshake.deadline += stage_limit;
+    return attach(handshake, st128::Role::Consumer);
+  }
+  if (handshake.stage != Stage::AwaitConsumer || role != st128::Role::Consumer) return;
+  const std::uint8_t link = handshake.link->id;
+  Handshake finished = std::move(handshake);
+  handshakes_.erase(link);
+  established_[link] = finished.memory;
+  graph_.set_up(link, true);
+  operator_.link_changed(*finished.link, true, terms_text(finished.agreement));
+  if (finished.done) finished.done(true);
+}
+
+void LinkHandling::give_up(std::uint8_t link, const std::string& why) {
+  const auto found = handshakes_.find(link);
+  if (found == handshakes_.end()) return;
+  Handshake failed = std::move(found->second);
+  handshakes_.erase(found);
+  const bool producer_attached = failed.stage == Stage::AwaitConsumer;
+  if (producer_attached) {
+    const std::array data{std::byte{link}};
+    operator_.send_link_command(failed.producer, st128::detach, data, {});
+  }
+  operator_.link_changed(*failed.link, false, why);
+  if (failed.done) failed.done(false);
+}
+
+void LinkHandling::down(std::uint8_t link, const std::string& why) {
+  if (graph_.is_up(link)) {
+    graph_.set_up(link, false);
+    established_.erase(link);
+    operator_.link_changed(*mission_.find_link(link), false, why);
+  }
+  if (auto release = releases_.extract(link); !release.empty() && release.mapped()) release.mapped()(true);
+}
+
+void LinkHandling::forget(std::uint16_t apid) {
+  std::vector<std::uint8_t> broken;
+  for (const auto& [link, handshake] : handshakes_)
+    if (handshake.producer == apid || handshake.consumer == apid) broken.push_back(link);
+  for (const std::uint8_t link : broken) give_up(link, "a partner is gone");
+  for (const std::uint8_t link : graph_.links_of(apid)) down(link, "subsystem " + std::to_string(apid) + " is gone");
+}
+
+void LinkHandling::step(TimePoint now) {
+  std::vector<std::uint8_t> late;
+  for (const auto& [link, handshake] : handshakes_)
+    if (now > handshake.deadline) late.push_back(link);
+  for (const std::uint8_t link : late) give_up(link, "time limit of the handshake");
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/st128_realtime_link.hpp"
+#include "supervisor/supervision/realtime_links/link_graph.hpp"
+
+/// Leads the handshake of service 128 between two subsystems and keeps the graph (paper 4.3, decisions 19 and 20).
+namespace hirosco::supervisor {
+
+/// What link handling asks of the supervisor around it.
+class LinkOperator {
+ public:
+  virtual ~LinkOperator() = default;
+  /// Sends TC[128,subtype] through permit, route and log; memory travels beside it.
+  virtual void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) = 0;
+  /// A link came up, was taken down or could not be made; `text` says what was agreed or why not.
+  virtual void link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) = 0;
+};
+
+class LinkHandling {
+ public:
+  /// Called once with the outcome of an establish or release.
+  using Done = std::function<void(bool success)>;
+
+  LinkHandling(const descriptor::Mission& mission, MemoryProvider& memory, LinkOperator& supervisor)
+      : mission_{mission}, memory_{memory}, operator_{supervisor}, graph_{mission} {}
+
+  [[nodiscard]] const LinkGraph& graph() const noexcept { return graph_; }
+  /// Begins the handshake. False: unknown link, already up, or a handshake of it is under way.
+  [[nodiscard]] bool establish(std::uint8_t link, TimePoint now, Done done);
+  /// Takes a link down at both ends. False: it is not up.
+  [[nodiscard]] bool release(std::uint8_t link, Done done);
+  /// Reports of service 128.
+  void handle(std::uint16_t from, const pus::TelemetryView& report);
+  /// A subsystem is gone without reporting: all its links are down.
+  void forget(std::uint16_t apid);
+  /// Time limits of handshakes.
+  void step(TimePoint now);
+
+ private:
+  enum class Stage : std::uint8_t { AwaitOffer, AwaitAgreement, AwaitProducer, AwaitConsumer };
+  struct Handshake {
+    const descriptor::MissionLink* link{};
+    std::uint16_t producer{};
+    std::uint16_t consumer{};
+    Stage stage{Stage::AwaitOffer};
+    TimePoint deadline{};
+    std::uint32_t epoch{};
+    pus::st128::Agreement agreement;
+    MemoryHandle memory;
+    Done done;
+  };
+  void offered(Handshake& handshake, const pus::st128::Offer& offer);
+  void agreed(Handshake& handshake, const pus::st128::Agreement& agreement);
+  void attach(const Handshake& handshake, pus::st128::Role role);
+  void attached(Handshake& handshake, pus::st128::Role role);
+  void give_up(std::uint8_t link, const std::string& why);
+  void down(std::uint8_t link, const std::string& why);
+
+  const descriptor::Mission& mission_;
+  MemoryProvider& memory_;
+  LinkOperator& operator_;
+  LinkGraph graph_;
+  std::map<std::uint8_t, Handshake> handshakes_;
+  std::map<std::uint8_t, MemoryHandle> established_;
+  std::map<std::uint8_t, Done> releases_;
+  std::uint32_t epoch_{0};
+};
+
+}  // namespace hirosco::supervisor

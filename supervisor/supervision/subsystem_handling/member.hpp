@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/subsystem/pages.hpp"
+#include "hirosco/subsystem/states.hpp"
+#include "supervisor/platform/launcher.hpp"
+
+/// One started subsystem as the supervisor sees it: its channel, its two pages, whether it lives and moves.
+namespace hirosco::supervisor {
+
+class Member {
+ public:
+  explicit Member(const descriptor::MissionSubsystem& described) : described_{&described} {}
+
+  void started(LaunchedSubsystem launched);
+  void died();
+
+  [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept { return described_->subsystem; }
+  [[nodiscard]] const descriptor::MissionSubsystem& described() const noexcept { return *described_; }
+  [[nodiscard]] std::uint16_t apid() const noexcept { return described_->subsystem.id; }
+  [[nodiscard]] bool alive() const noexcept { return launched_.channel != nullptr; }
+  [[nodiscard]] Channel* channel() const noexcept { return launched_.channel.get(); }
+  [[nodiscard]] std::uint32_t process() const noexcept { return launched_.process; }
+  [[nodiscard]] const VitalPage* vital() const noexcept;
+  [[nodiscard]] PermitPage* permit() const noexcept;
+  /// As the vital page says; empty when it does not run or the page holds no state.
+  [[nodiscard]] std::optional<State> state() const noexcept;
+  [[nodiscard]] std::uint8_t configuration() const noexcept;
+
+  /// Actuators inhibited at its next cycle, and what a device hears from it afterwards carries an old epoch.
+  void fence() noexcept;
+  void release_fence() noexcept;
+  [[nodiscard]] bool fenced() const noexcept;
+
+  /// Once per supervisor step: true in the step in which the cycle has stood still for too long.
+  [[nodiscard]] bool hang_detected();
+
+  /// A recovery that runs for it: a second event of the same or lower severity does not start another.
+  std::optional<descriptor::Severity> recovering;
+
+ private:
+  const descriptor::MissionSubsystem* described_;
+  LaunchedSubsystem launched_;
+  std::uint64_t last_cycles_{0};
+  std::uint32_t still_steps_{0};
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/data_transfer/simulated/channel_pair.hpp"
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/parameter/parameter.hpp"
+#include "hirosco/subsystem/generic_subsystem.hpp"
+#include "hirosco/subsystem/subsystem.hpp"
+#include "supervisor/platform/launcher.hpp"
+#include "supervisor/platform/packet_log.hpp"
+#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/modes/sequence.hpp"
+#include "supervisor/supervision/realtime_links/link_handling.hpp"
+#include "supervisor/supervision/subsystem_handling/member.hpp"
+
+/// The superior subsystem (paper 4.3). Itself a subsystem with APID 1: its functions are telecommands like any other,
+/// its telemetry takes the same way through permission, log and route.
+namespace hirosco::supervisor {
+
+/// Who wants to see what happens: a console, a test. Called in the supervisor's thread; must not block.
+struct Observer {
+  virtual ~Observer() = default;
+  /// One line of the story, as the log has it too.
+  virtual void told(OnboardTime when, std::string_view line) = 0;
+  /// Every telemetry packet that is routed.
+  virtual void routed(const pus::TelemetryView& packet) { static_cast<void>(packet); }
+};
+
+/// Opens another database for SET_DATABASE; null when it cannot.
+using DatabaseOpener = std::function<std::unique_ptr<Database>(DatabaseStrategy)>;
+
+class Supervisor final : private Subsystem, private LinkOperator, private CommandDesk {
+ public:
+  struct Parts {
+    const descriptor::Mission& mission;
+    World world;
+    ProcessLauncher& launcher;
+    PacketLog& log;
+    DatabaseOpener open_database;
+    Observer& observer;
+    std::uint16_t first_sequence_count{0};  ///< of its own telecommands (decision 27)
+  };
+  explicit Supervisor(const Parts& parts);
+  ~Supervisor() override;
+
+  /// Starts the subsystems of the mission and begins commissioning.
+  void start();
+  /// One step; returns when the next is due at the latest. Messages should wake it earlier.
+  TimePoint step(TimePoint now);
+  /// Orderly shutdown: every subsystem back to Offline, then this one.
+  void request_shutdown();
+  [[nodiscard]] bool finished() const noexcept { return finished_; }
+  /// False when commissioning failed or the shutdown was not orderly.
+  [[nodiscard]] bool succeeded() const noexcept { return !failed_; }
+
+  [[nodiscard]] const std::vector<Member>& members() const noexcept { return members_; }
+  [[nodiscard]] const descriptor::Mode& mode() const noexcept { return *mode_; }
+  [[nodiscard]] const LinkGraph& links() const noexcept { return links_.graph(); }
+  /// What commissioning waits for; empty when nothing.
+  [[nodiscard]] std::string waiting_for() const { return sequence_.waiting_for(); }
+  [[nodiscard]] State own_state() const noexcept { return engine_.state(); }
+  [[nodiscard]] bool commissioned() const noexcept { return commissioned_; }
+  [[nodiscard]] const VitalPage& own_vital() const noexcept { return *own_vital_; }
+
+ private:
+  // Subsystem
+  Result<Step> software_init() override;
+  Result<> pre_operational(const Cycle& cycle) noexcept override { return show(cycle); }
+  Result<> safe_operational(const Cycle& cycle) noexcept override { return show(cycle); }
+  Result<> operational(const Cycle& cycle) noexcept override { return show(cycle); }
+  Result<> error_operational(const Cycle& cycle) noexcept override { return show(cycle); }
+  Result<> show(const Cycle& cycle) noexcept;
+  // LinkOperator
+  void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) override;
+  void link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) override;
+  // CommandDesk
+  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
+               CommandDone done) override;
+
+  // data handling
+  struct Incoming {
+    Octets packet;
+    Sender sender{Sender::Ground};
+    std::uint16_t source{0};         ///< APID of the sender, 0 = ground
+    MemoryHandle memory;
+  };
+  void handle_telecommand(const Incoming& incoming);
+  void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
+  void forward(std::uint16_t apid, Octets packet, const MemoryHandle& memory, bool essential, const pus::Request& request);
+  void forward_durable();
+  void handle_telemetry(std::uint16_t from, Octets packet);
+  void interpret(std::uint16_t from, const pus::TelemetryView& report);
+  void handle_verification(const pus::TelemetryView& report);
+  void handle_event(std::uint16_t from, const pus::TelemetryView& report);
+  void receive_from(Member& member);
+  void receive_from_self();
+  [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
+  [[nodiscard]] Channel* channel_of(std::uint16_t apid);
+  [[nodiscard]] Member* member(std::uint16_t apid);
+  [[nodiscard]] std::string name_of(std::uint16_t apid) const;
+
+  // event handling
+  void react(Member& origin, std::string_view event, descriptor::Severity severity);
+  void shut_down_network(Member& origin, std::string_view plan);
+  void bring_down(Member& member, std::string_view plan);
+  void recovered(std::uint16_t apid);
+
+  // subsystem handling
+  void watch_processes();
+  void member_died(Member& member, const ProcessEnd& end);
+
+  // modes and life
+  void begin_commissioning();
+  void begin_shutdown();
+  void set_mode(const descriptor::Mode& mode);
+  void safe_all();
+  void expire_requests(TimePoint now);
+  void tell(std::string_view line, std::uint16_t subject = 0);
+  void send_own(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
+                const MemoryHandle& memory, CommandDone done);
+
+  Parts parts_;
+  descriptor::Mission mission_;
+  std::vector<Member> members_;
+  const descriptor::Mode* mode_;
+  std::uint32_t mode_epoch_{1};
+
+  ChannelPair own_channels_;
+  std::unique_ptr<VitalPage> own_vital_;
+  std::unique_ptr<PermitPage> own_permit_;
+  GenericSubsystem engine_;
+  TimePoint next_cycle_{};
+  bool own_cycle_running_{false};
+  LinkHandling links_;
+  Sequence sequence_;
+
+  struct OwnRequest {
+    CommandDone done;
+    TimePoint deadline{};
+    std::string what;
+  };
+  std::map<std::uint32_t, OwnRequest> own_requests_;
+  std::uint16_t next_sequence_count_;
+  struct Waiting {
+    std::uint64_t number{};
+    std::uint16_t apid{};
+    std::vector<std::byte> packet;
+    MemoryHandle memory;
+    pus::Request request;
+  };
+  std::deque<Waiting> waiting_;
+
+  TimePoint now_{};
+  TimePoint next_watch_{};
+  TimePoint shutdown_deadline_{};
+  TimePoint report_window_{};
+  int reports_in_window_{0};
+  bool started_{false};
+  bool commissioned_{false};
+  bool shutting_down_{false};
+  bool finished_{false};
+  bool failed_{false};
+
+  static constexpr std::size_t rejection_reasons = 16;
+  Parameter<std::uint8_t> mode_parameter_;
+  struct LinkCounts {
+    std::uint32_t up{0};
+    std::uint32_t defined{0};
+  };
+  Parameter<LinkCounts> links_parameter_;
+  Parameter<std::array<std::uint32_t, rejection_reasons>> rejections_parameter_;
+  struct Counts {
+    std::uint32_t telecommands{0};
+    std::uint32_t telemetry{0};
+    std::uint32_t misdirected{0};    ///< packets that claimed another sender's APID
+  };
+  Parameter<Counts> counts_parameter_;
+  std::array<std::uint32_t, rejection_reasons> rejections_{};
+  Counts counts_{};
+  std::optional<Call> link_call_;
+};
+
+}  // namespace hirosco::supervisor
