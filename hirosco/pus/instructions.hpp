@@ -19,9 +19,15 @@ inline constexpr std::size_t max_instructions = 255;   ///< a count N is one oct
   return FailureNotice{FailureCode::UnknownSubtype}.with(telecommand.service()).with(telecommand.subtype());
 }
 
-/// Start failure of one instruction: index and identifier, big-endian (docs/failure-codes.md).
+/// Start failure of one instruction with the data that its code has: index and identifier, index alone, or none
+/// (docs/failure-codes.md).
 [[nodiscard]] inline FailureNotice instruction_failure(FailureCode code, std::size_t index, std::uint32_t id) noexcept {
-  return FailureNotice{code}.with(static_cast<std::uint8_t>(index)).with(id);
+  FailureNotice notice{code};
+  if (code == FailureCode::Busy) return notice;
+  notice.with(static_cast<std::uint8_t>(index));
+  using enum FailureCode;
+  if (code == CapacityExceeded || code == InThePast || code == NotPermittedNow) return notice;
+  return notice.with(id);
 }
 
 /// Reads the count of a list N x (fixed size) whose N must be 1 or more and must fill `data` exactly; the notice is that
