@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/detail/element_reader.hpp"
+#include "hirosco/descriptor/mission.hpp"
+
+namespace hirosco::descriptor::detail {
+
+/// Reads one <Mission> and the subsystem descriptors it names.
+class MissionReader {
+ public:
+  MissionReader(Problems& problems, const FileSource& source) : problems_{problems}, source_{source} {}
+  [[nodiscard]] Mission read(const xml::Element& root);
+  /// Problems of the subsystem files, each file's in its order.
+  [[nodiscard]] std::vector<Diagnostic> take_subsystem_problems();
+
+ private:
+  // read_mission.cpp
+  void read_supervisor(const xml::Element& element);
+  void read_database(const xml::Element& element);
+  void read_ground(const xml::Element& element);
+  void read_address(Attributes& attributes, std::string_view name, std::string& into);
+  void read_member(const xml::Element& element);
+  void read_simulated_device(const xml::Element& element);
+  /// The descriptor that the attribute names; reported when it cannot be taken.
+  [[nodiscard]] std::optional<Subsystem> read_descriptor(Attributes& attributes);
+  void check_endnodes(const Subsystem& subsystem);
+  [[nodiscard]] std::string executable(Attributes& attributes);
+
+  // read_modes.cpp
+  void read_link(const xml::Element& element);
+  /// "A.SET" split and its subsystem found.
+  [[nodiscard]] const Subsystem* read_end(Attributes& attributes, std::string_view name, std::string& subsystem,
+                                          std::string& set);
+  void check_link(const xml::Element& element, const Subsystem& producer, const Subsystem& consumer,
+                  const MissionLink& link);
+  void read_modes(const xml::Element& element);
+  void read_mode(const xml::Element& element);
+  void read_commission(const xml::Element& element, Mode& mode, Unique& names);
+  void read_establish(const xml::Element& element, Mode& mode, Unique& ids);
+  void read_permit(const xml::Element& element, Mode& mode);
+  void read_recovery(const xml::Element& element);
+  void read_plan(const xml::Element& element);
+  void read_when(const xml::Element& element, Plan& plan);
+  void read_do(const xml::Element& element, Plan& plan);
+  [[nodiscard]] State read_steady_state(Attributes& attributes, State fallback);
+  void check_functions(const xml::Attribute& at, const Permit& permit);
+
+  /// A subsystem of the mission, with `supervisor` also the supervisor; reported when there is none.
+  [[nodiscard]] const Subsystem* find(const xml::Attribute& at, std::string_view name, bool supervisor);
+  [[nodiscard]] bool whole() const noexcept { return !incomplete_; }
+
+  Problems& problems_;
+  const FileSource& source_;
+  Mission mission_;
+  std::vector<std::vector<Diagnostic>> subsystem_problems_;
+  bool incomplete_{false};           ///< a subsystem could not be read: names may be missing for that reason only
+  Unique subsystem_names_{"subsystem name", "E0301"};
+  Unique subsystem_ids_{"subsystem id", "E0302"};
+  Unique device_names_{"simulated device", "E0201"};
+  Unique played_{"device", "E0201"};
+  Unique link_ids_{"link id", "E0202"};
+  Unique mode_names_{"mode name", "E0201"};
+  Unique mode_ids_{"mode id", "E0202"};
+  Unique plan_names_{"plan name", "E0201"};
+};
+
+}  // namespace hirosco::descriptor::detail

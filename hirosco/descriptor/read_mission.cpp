@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "hirosco/descriptor/detail/mission_reader.hpp"
+
+namespace hirosco::descriptor {
+namespace detail {
+namespace {
+
+constexpr std::uint16_t supervisor_id = 1;
+/// A mission stands in missions/NAME/, what it may name in the tree two folders above.
+constexpr int folders_above = 2;
+
+/// What is wrong with a path that must stay inside; empty when nothing is.
+std::string_view refuse_path(std::string_view text, int above) {
+  const std::filesystem::path path{text};
+  if (text.empty() || text.size() > 1024) return "a path of 1 to 1024 octets is needed";
+  if (path.is_absolute() || text.find('\\') != std::string_view::npos) return "the path must be relative";
+  int depth = above;
+  for (const auto& part : path) {
+    if (part == "..") --depth;
+    else if (part != "." && !part.empty()) ++depth;
+    if (depth < 0) return above == 0 ? "the path must stay inside the folder" : "at most two folders up";
+  }
+  return "";
+}
+
+}  // namespace
+
+Mission MissionReader::read(const xml::Element& root) {
+  {
+    Attributes attributes{root, problems_};
+    mission_.name = attributes.name();
+    mission_.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
+  }
+  // What is referred to is read before what refers to it, whatever the order in the file.
+  std::vector<const xml::Element*> grounds, devices, links, modes, recoveries;
+  const auto later = [](auto& list) { return [&list](const xml::Element& element) { list.push_back(&element); }; };
+  bool supervised = false;
+  each_child(root, problems_,
+             {{"Supervisor",
+               [&](const xml::Element& element) {
+                 read_supervisor(element);
+                 supervised = true;
+               },
+               1},
+              {"Subsystem", [this](const auto& element) { read_member(element); }, 255},
+              {"SimulatedDevice", later(devices), 255},
+              {"Links", later(links), 1},
+              {"Modes", later(modes), 1},
+              {"Recovery", later(recoveries), 1}});
+  if (!supervised) problems_.add(root, "E0106", "<Mission> needs a <Supervisor>");
+  if (modes.empty()) problems_.add(root, "E0106", "<Mission> needs <Modes>");
+  for (const xml::Element& child : root.children)
+    if (child.name == "Supervisor")
+      for (const xml::Element& ground : child.children)
+        if (ground.name == "Ground") grounds.push_back(&ground);
+  for (const auto* element : grounds) {
+    read_ground(*element);
+    break;
+  }
+  for (const auto* element : devices) read_simulated_device(*element);
+  for (const auto* element : links) {
+    const Attributes none{*element, problems_};
+    each_child(*element, problems_, {{"Link", [this](const auto& child) { read_link(child); }, 255}});
+  }
+  for (const auto* element : modes) read_modes(*element);
+  for (const auto* element : recoveries) read_recovery(*element);
+  return std::move(mission_);
+}
+
+std::vector<Diagnostic> MissionReader::take_subsystem_problems() {
+  std::vector<Diagnostic> all;
+  for (auto& problems : subsystem_problems_) std::ranges::move(problems, std::back_inserter(all));
+  return all;
+}
+
+void MissionReader::read_supervisor(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  if (auto subsystem = read_descriptor(attributes)) {
+    const xml::Attribute& at = *element.find("descriptor");
+    if (subsystem->id != supervisor_id)
+      problems_.add(at, "E0303", fmt::format("the supervisor has id 1, '{}' has {}", subsystem->name, subsystem->id));
+    subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
+    mission_.supervisor = std::move(*subsystem);
+  }
+  mission_.database.path = "log/" + (mission_.name.empty() ? std::string{"mission"} : mission_.name) + ".db";
+  each_child(element, problems_,
+             {{"Database", [this](const auto& child) { read_database(child); }, 1},
+              {"Ground", [](const xml::Element&) {}, 1}});
+}
+
+void MissionReader::read_database(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  if (const auto* strategy = attributes.optional("strategy"); strategy != nullptr) {
+    mission_.database.strategy = strategy->value;
+    if (strategy->value != "sqlite" && strategy->value != "ascii")
+      attributes.unknown_word(*strategy, strategy->value, {"sqlite", "ascii"});
+  }
+  const auto* path = attributes.optional("path");
+  if (path == nullptr) return;
+  mission_.database.path = path->value;
+  if (const auto wrong = refuse_path(path->value, 0); !wrong.empty())
+    problems_.add(*path, "E0314", fmt::format("database path {} is not allowed", in_quotes(path->value)),
+                  std::string{wrong});
+}
+
+void MissionReader::read_ground(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  if (const auto* subsystem = attributes.required("subsystem"); subsystem != nullptr) {
+    mission_.ground.subsystem = subsystem->value;
+    static_cast<void>(find(*subsystem, subsystem->value, false));
+  }
+  read_address(attributes, "telemetry", mission_.ground.telemetry);
+  read_address(attributes, "telecommand", mission_.ground.telecommand);
+  if (mission_.ground.telemetry == mission_.ground.telecommand)
+    problems_.add(element, "E0313", "telemetry and telecommand need addresses of their own");
+}
+
+void MissionReader::read_address(Attributes& attributes, std::string_view name, std::string& into) {
+  const auto* address = attributes.optional(name);
+  if (address == nullptr) return;
+  into = address->value;
+  switch (classify_address(address->value)) {
+    case Address::Loopback: return;
+    case Address::Malformed:
+      return problems_.add(*address, "E0217", in_quotes(address->value) + " is no address",
+                           "host:port, for example 127.0.0.1:10015");
+    case Address::Foreign:
+      return problems_.add(*address, "E0313", in_quotes(address->value) + " leaves this computer",
+                           "only loopback addresses are allowed: 127.0.0.1");
+  }
+}
+
+std::string MissionReader::executable(Attributes& attributes) { return attributes.name("executable", NameKind::Loose); }
+
+void MissionReader::read_member(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  MissionSubsystem member;
+  member.at = place(element.at);
+  member.executable = executable(attributes);
+  auto subsystem = read_descriptor(attributes);
+  if (!subsystem) return;
+  const xml::Attribute& at = *element.find("descriptor");
+  subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
+  if (subsystem->id == supervisor_id)
+    problems_.add(at, "E0303", fmt::format("id 1 of '{}' is the supervisor's", subsystem->name));
+  else subsystem_ids_.add(std::to_string(subsystem->id), place(at.value_at), problems_, at.value.size());
+  member.subsystem = std::move(*subsystem);
+  mission_.subsystems.push_back(std::move(member));
+}
+
+std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) {
+  const auto* at = attributes.required("descriptor");
+  if (at == nullptr || !refuse_path(at->value, folders_above).empty()) {
+    incomplete_ = true;
+    if (at != nullptr)
+      problems_.add(*at, "E0314", fmt::format("descriptor path {} is not allowed", in_quotes(at->value)),
+                    std::string{refuse_path(at->value, folders_above)});
+    return std::nullopt;
+  }
+  const std::filesystem::path file = (problems_.file().parent_path() / at->value).lexically_normal();
+  Reading<Subsystem> reading = read_subsystem(file, source_);
+  const bool unreadable = std::ranges::any_of(reading.problems, [](const Diagnostic& d) { return d.code == "E0001"; });
+  if (unreadable)
+    problems_.add(*at, "E0315", fmt::format("descriptor {} cannot be read", in_quotes(at->value)),
+                  "the path is relative to the mission file");
+  else if (!reading.problems.empty()) subsystem_problems_.push_back(std::move(reading.problems));
+  if (!reading.value) incomplete_ = true;
+  else check_endnodes(*reading.value);
+  return std::move(reading.value);
+}
+
+void MissionReader::check_endnodes(const Subsystem& subsystem) {
+  Problems problems{subsystem.file};
+  for (const Configuration& configuration : subsystem.configurations)
+    for (const DeviceUse& use : configuration.devices) {
+      const bool network = use.endnode.transfer == Transfer::Udp || use.endnode.transfer == Transfer::Tcp;
+      if (network && classify_address(use.endnode.address) == Address::Foreign)
+        problems.add(use.endnode.at, "E0313", in_quotes(use.endnode.address) + " leaves this computer",
+                     "only loopback addresses are allowed: 127.0.0.1", 8);
+    }
+  if (problems.count() != 0) subsystem_problems_.push_back(problems.take());
+}
+
+void MissionReader::read_simulated_device(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  SimulatedDevice device;
+  device.at = place(element.at);
+  device.name = attributes.name("name", NameKind::Loose);
+  device.executable = executable(attributes);
+  device.seed = attributes.integer_or<std::uint64_t>("seed", 0, std::numeric_limits<std::int64_t>::max(), 1);
+  const auto* subsystem = attributes.required("subsystem");
+  const auto* played = attributes.required("device");
+  if (subsystem != nullptr) device.subsystem = subsystem->value;
+  if (played != nullptr) device.device = played->value;
+  const Subsystem* owner = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, false);
+  if (owner != nullptr && played != nullptr) {
+    std::vector<std::string_view> known;
+    for (const Device& candidate : owner->devices) known.push_back(candidate.name);
+    if (std::ranges::find(known, played->value) == known.end())
+      problems_.add(*played, "E0312", fmt::format("'{}' has no device {}", owner->name, in_quotes(played->value)),
+                    did_you_mean(played->value, known));
+    else played_.add(device.subsystem + "." + device.device, place(played->value_at), problems_, played->value.size());
+  }
+  Unique settings{"setting", "E0201"};
+  each_child(element, problems_,
+             {{"Setting",
+               [&](const xml::Element& child) {
+                 Attributes inner{child, problems_};
+                 no_children(child, problems_);
+                 std::string name = inner.name();
+                 const auto* value = inner.required("value");
+                 if (name.empty() || value == nullptr) return;
+                 if (value->value.size() > 256)
+                   problems_.add(*value, "E0114", "the value of a setting has at most 256 octets");
+                 settings.add(name, place(child.at), problems_, child.name.size() + 1);
+                 device.settings.emplace_back(std::move(name), value->value);
+               },
+               256}});
+  if (!device.name.empty()) device_names_.add(device.name, device.at, problems_, element.name.size() + 1);
+  mission_.devices.push_back(std::move(device));
+}
+
+const Subsystem* MissionReader::find(const xml::Attribute& at, std::string_view name, bool supervisor) {
+  if (const auto* member = mission_.find_subsystem(name); member != nullptr) return &member->subsystem;
+  if (supervisor && !name.empty() && mission_.supervisor.name == name) return &mission_.supervisor;
+  if (!whole()) return nullptr;
+  std::vector<std::string_view> known;
+  for (const MissionSubsystem& member : mission_.subsystems) known.push_back(member.subsystem.name);
+  if (supervisor) known.push_back(mission_.supervisor.name);
+  problems_.add(at, "E0304", fmt::format("subsystem {} is not in the mission", in_quotes(name)),
+                did_you_mean(name, known));
+  return nullptr;
+}
+
+}  // namespace detail
+
+Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source) {
+  detail::Problems problems{file};
+  std::string octets;
+  const auto root = detail::read_root(file, source, "Mission", octets, problems);
+  Reading<Mission> reading;
+  if (!root) return {std::nullopt, problems.take()};
+  detail::MissionReader reader{problems, source};
+  Mission mission = reader.read(*root);
+  mission.file = file;
+  reading.problems = problems.take();
+  std::ranges::move(reader.take_subsystem_problems(), std::back_inserter(reading.problems));
+  if (reading.problems.empty()) reading.value = std::move(mission);
+  return reading;
+}
+
+}  // namespace hirosco::descriptor

@@ -1,0 +1,333 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <array>
+#include <utility>
+
+#include "hirosco/descriptor/detail/mission_reader.hpp"
+
+namespace hirosco::descriptor::detail {
+namespace {
+
+/// Built in: in every subsystem, and in the supervisor besides (decision 10).
+constexpr std::array<std::string_view, 2> common_functions{"SET_STATE", "CONFIGURE"};
+constexpr std::array<std::string_view, 6> supervisor_functions{"SET_MODE",     "LINK",     "UNLINK",
+                                                               "SET_DATABASE", "SAFE_ALL", "SHUTDOWN"};
+
+constexpr bool is_steady(State state) noexcept {
+  return state == State::Offline || state == State::PreOperational || state == State::SafeOperational ||
+         state == State::Operational || state == State::ErrorOperational || state == State::PostOperational;
+}
+
+template <class E>
+bool share(const std::vector<E>& ours, const std::vector<E>& theirs) {
+  return std::ranges::any_of(ours, [&](E e) { return std::ranges::find(theirs, e) != theirs.end(); });
+}
+
+std::string describe(const Field& field) {
+  return fmt::format("{}{}{}", to_text(field.type), field.count == 1 ? "" : fmt::format("[{}]", field.count),
+                     field.unit.empty() ? "" : " " + field.unit);
+}
+
+/// Why the producer's set cannot feed the consumer's; empty when it can.
+std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_) {
+  std::vector<Field> offered;
+  for (const ParameterRef& reference : provides.parameters)
+    std::ranges::move(fields_of(producer, reference), std::back_inserter(offered));
+  for (const Field& wanted : requires_.fields) {
+    const auto found = std::ranges::find(offered, wanted.name, &Field::name);
+    if (found == offered.end()) return fmt::format("field '{}' is not in the provided set", wanted.name);
+    if (found->type != wanted.type || found->count != wanted.count || found->unit != wanted.unit)
+      return fmt::format("field '{}': {} against {}", wanted.name, describe(*found), describe(wanted));
+  }
+  if (!share(provides.terms.methods, requires_.terms.methods)) return "no common method";
+  if (!share(provides.terms.byte_orders, requires_.terms.byte_orders)) return "no common byte order";
+  if (!share(provides.terms.kinds, requires_.terms.kinds)) return "no common kind";
+  return {};
+}
+
+template <class Set>
+std::vector<std::string_view> names_of(const std::vector<const Set*>& sets) {
+  std::vector<std::string_view> names;
+  for (const Set* set : sets) names.push_back(set->name);
+  return names;
+}
+
+}  // namespace
+
+void MissionReader::read_link(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  MissionLink link;
+  link.at = place(element.at);
+  link.id = attributes.required_integer<std::uint8_t>("id", 1, 255);
+  const Subsystem* producer = read_end(attributes, "from", link.from, link.provides);
+  const Subsystem* consumer = read_end(attributes, "to", link.to, link.requires_);
+  if (producer != nullptr && consumer != nullptr) check_link(element, *producer, *consumer, link);
+  if (link.id != 0)
+    link_ids_.add(std::to_string(link.id), place(element.find("id")->value_at), problems_,
+                  element.find("id")->value.size());
+  mission_.links.push_back(std::move(link));
+}
+
+const Subsystem* MissionReader::read_end(Attributes& attributes, std::string_view name, std::string& subsystem,
+                                         std::string& set) {
+  const auto* at = attributes.required(name);
+  if (at == nullptr) return nullptr;
+  const std::size_t dot = at->value.find('.');
+  if (dot == std::string::npos || dot == 0 || dot + 1 == at->value.size()) {
+    problems_.add(*at, "E0110", in_quotes(at->value) + " does not name a set", "SUBSYSTEM.SET is needed");
+    return nullptr;
+  }
+  subsystem = at->value.substr(0, dot);
+  set = at->value.substr(dot + 1);
+  return find(*at, subsystem, false);
+}
+
+void MissionReader::check_link(const xml::Element& element, const Subsystem& producer, const Subsystem& consumer,
+                               const MissionLink& link) {
+  std::vector<const Provides*> provides, provided;
+  std::vector<const Requires*> requires_, required;
+  for (const Configuration& configuration : producer.configurations)
+    for (const Provides& set : configuration.provides)
+      (set.name == link.provides ? provides : provided).push_back(&set);
+  for (const Configuration& configuration : consumer.configurations)
+    for (const Requires& set : configuration.requires_)
+      (set.name == link.requires_ ? requires_ : required).push_back(&set);
+  if (provides.empty())
+    problems_.add(*element.find("from"), "E0307",
+                  fmt::format("no configuration of '{}' provides {}", link.from, in_quotes(link.provides)),
+                  did_you_mean(link.provides, names_of(provided)));
+  if (requires_.empty())
+    problems_.add(*element.find("to"), "E0307",
+                  fmt::format("no configuration of '{}' requires {}", link.to, in_quotes(link.requires_)),
+                  did_you_mean(link.requires_, names_of(required)));
+  if (link.from == link.to) problems_.add(*element.find("to"), "E0308", "a link joins two subsystems");
+  // A configuration may change a set; one pair that fits is enough, the handshake decides at run time.
+  std::string why;
+  for (const Requires* wanted : requires_)
+    for (const Provides* offered : provides) {
+      std::string reason = !wanted->from.empty() && wanted->from != link.from
+                               ? fmt::format("'{}' is required from '{}'", wanted->name, wanted->from)
+                               : mismatch(producer, *offered, *wanted);
+      if (reason.empty()) return;
+      if (why.empty()) why = std::move(reason);
+    }
+  if (!why.empty()) problems_.add(element, "E0308", fmt::format("link {} does not fit: {}", link.id, why));
+}
+
+void MissionReader::read_modes(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  each_child(element, problems_, {{"Mode", [this](const auto& child) { read_mode(child); }, 255}});
+  if (mission_.modes.empty()) problems_.add(element, "E0106", "<Modes> needs at least one <Mode>");
+  const auto mode = [&](const xml::Attribute* at) {
+    if (at == nullptr) return std::string{};
+    std::vector<std::string_view> known;
+    for (const Mode& candidate : mission_.modes) known.push_back(candidate.name);
+    if (mission_.find_mode(at->value) == nullptr)
+      problems_.add(*at, "E0305", fmt::format("mode {} is not defined", in_quotes(at->value)),
+                    did_you_mean(at->value, known));
+    return at->value;
+  };
+  mission_.initial_mode = mode(attributes.required("initial"));
+  mission_.start_mode = mode(attributes.optional("start"));
+}
+
+void MissionReader::read_mode(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Mode mode;
+  mode.at = place(element.at);
+  mode.name = attributes.name("name", NameKind::Loose);
+  // Counted from 1 in the order of the file, so that 0 means no mode.
+  mode.id = attributes.integer_or<std::uint8_t>("id", 1, 255, static_cast<std::uint8_t>(mission_.modes.size() + 1));
+  Unique commissioned{"subsystem", "E0201"}, established{"link", "E0202"};
+  each_child(element, problems_,
+             {{"Commission", [&](const auto& child) { read_commission(child, mode, commissioned); }, 255},
+              {"Establish", [&](const auto& child) { read_establish(child, mode, established); }, 255},
+              {"Permit", [&](const auto& child) { read_permit(child, mode); }, 255}});
+  const std::size_t length = element.name.size() + 1;
+  if (!mode.name.empty()) mode_names_.add(mode.name, mode.at, problems_, length);
+  mode_ids_.add(std::to_string(mode.id), mode.at, problems_, length, "a mode without id has its number in the file");
+  mission_.modes.push_back(std::move(mode));
+}
+
+State MissionReader::read_steady_state(Attributes& attributes, State fallback) {
+  const State state = attributes.one_of("state", fallback);
+  const auto* at = attributes.optional("state");
+  if (at != nullptr && !is_steady(state))
+    problems_.add(*at, "E0306", fmt::format("{} is passed through, not commanded", to_text(state)),
+                  "Offline, PreOperational, SafeOperational, Operational, ErrorOperational or PostOperational");
+  return state;
+}
+
+void MissionReader::read_commission(const xml::Element& element, Mode& mode, Unique& names) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  CommissionStep step;
+  step.at = place(element.at);
+  const auto* subsystem = attributes.required("subsystem");
+  const auto* configuration = attributes.required("configuration");
+  step.state = read_steady_state(attributes, State::Operational);
+  if (step.state == State::ErrorOperational || step.state == State::PostOperational || step.state == State::Offline)
+    problems_.add(*element.find("state"), "E0306",
+                  fmt::format("commissioning does not lead to {}", to_text(step.state)),
+                  "PreOperational, SafeOperational or Operational");
+  if (subsystem == nullptr || configuration == nullptr) return;
+  step.subsystem = subsystem->value;
+  step.configuration = configuration->value;
+  names.add(step.subsystem, place(subsystem->value_at), problems_, subsystem->value.size(),
+            "one configuration for each subsystem of a mode");
+  const Subsystem* found = find(*subsystem, step.subsystem, false);
+  if (found != nullptr && found->find_configuration(step.configuration) == nullptr) {
+    std::vector<std::string_view> known;
+    for (const Configuration& candidate : found->configurations) known.push_back(candidate.name);
+    problems_.add(*configuration, "E0316",
+                  fmt::format("'{}' has no configuration {}", found->name, in_quotes(step.configuration)),
+                  did_you_mean(step.configuration, known));
+  }
+  mode.commission.push_back(std::move(step));
+}
+
+void MissionReader::read_establish(const xml::Element& element, Mode& mode, Unique& ids) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const auto* at = attributes.required("link");
+  const auto id = attributes.integer("link", 1, 255);
+  if (at == nullptr || !id) return;
+  if (mission_.find_link(static_cast<std::uint8_t>(*id)) == nullptr)
+    problems_.add(*at, "E0309", fmt::format("link {} is not defined in <Links>", *id));
+  ids.add(std::to_string(*id), place(at->value_at), problems_, at->value.size());
+  mode.establish.push_back(static_cast<std::uint8_t>(*id));
+}
+
+void MissionReader::read_permit(const xml::Element& element, Mode& mode) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  Permit permit;
+  permit.at = place(element.at);
+  const auto* subsystem = attributes.required("subsystem");
+  const auto* functions = attributes.optional("functions");
+  const auto* services = attributes.optional("services");
+  if (functions == nullptr && services == nullptr)
+    problems_.add(element, "E0105", "<Permit> needs the attribute 'functions' or 'services'");
+  if (functions != nullptr) {
+    for (const auto function : words(functions->value)) permit.functions.emplace_back(function);
+    if (permit.functions.empty()) problems_.add(*functions, "E0109", "attribute 'functions' is empty");
+  }
+  if (services != nullptr) {
+    for (const auto word : words(services->value)) {
+      const auto service = to_integer(word);
+      if (!service) problems_.add(*services, "E0111", in_quotes(word) + " is not a whole number");
+      else if (*service < 1 || *service > 255)
+        problems_.add(*services, "E0112", fmt::format("service {} is out of range", *service), "1 to 255");
+      else permit.services.push_back(static_cast<std::uint8_t>(*service));
+    }
+    if (words(services->value).empty()) problems_.add(*services, "E0109", "attribute 'services' is empty");
+  }
+  if (subsystem == nullptr) return;
+  permit.subsystem = subsystem->value;
+  const bool known = permit.subsystem == "*" || find(*subsystem, permit.subsystem, true) != nullptr;
+  if (known && functions != nullptr) check_functions(*functions, permit);
+  mode.permits.push_back(std::move(permit));
+}
+
+void MissionReader::check_functions(const xml::Attribute& at, const Permit& permit) {
+  if (!whole()) return;
+  std::vector<std::string_view> known{"*"};
+  known.insert(known.end(), common_functions.begin(), common_functions.end());
+  const auto add = [&](const Subsystem& subsystem) {
+    if (permit.subsystem == "*" || permit.subsystem == subsystem.name)
+      for (const Function& function : subsystem.functions) known.push_back(function.name);
+  };
+  add(mission_.supervisor);
+  for (const MissionSubsystem& member : mission_.subsystems) add(member.subsystem);
+  if (permit.subsystem == "*" || permit.subsystem == mission_.supervisor.name)
+    known.insert(known.end(), supervisor_functions.begin(), supervisor_functions.end());
+  for (const std::string& function : permit.functions)
+    if (std::ranges::find(known, function) == known.end())
+      problems_.add(at, "E0310",
+                    permit.subsystem == "*"
+                        ? fmt::format("no subsystem has a function {}", in_quotes(function))
+                        : fmt::format("'{}' has no function {}", permit.subsystem, in_quotes(function)),
+                    did_you_mean(function, known));
+}
+
+void MissionReader::read_recovery(const xml::Element& element) {
+  const Attributes none{element, problems_};
+  each_child(element, problems_, {{"Plan", [this](const auto& child) { read_plan(child); }, 255}});
+}
+
+void MissionReader::read_plan(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Plan plan;
+  plan.at = place(element.at);
+  plan.name = attributes.name("name", NameKind::Loose);
+  bool condition = false, action = false;
+  each_child(element, problems_,
+             {{"When",
+               [&](const auto& child) {
+                 read_when(child, plan);
+                 condition = true;
+               },
+               1},
+              {"Do",
+               [&](const auto& child) {
+                 read_do(child, plan);
+                 action = true;
+               },
+               1}});
+  if (!condition) problems_.add(element, "E0106", "<Plan> needs a <When>");
+  if (!action) problems_.add(element, "E0106", "<Plan> needs a <Do>");
+  if (!plan.name.empty()) plan_names_.add(plan.name, plan.at, problems_, element.name.size() + 1);
+  mission_.plans.push_back(std::move(plan));
+}
+
+void MissionReader::read_when(const xml::Element& element, Plan& plan) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  plan.severities = attributes.list_of<Severity>("severity", {});
+  const auto* subsystem = attributes.optional("subsystem");
+  const auto* event = attributes.optional("event");
+  const auto* mode = attributes.optional("mode");
+  const Subsystem* found = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, true);
+  if (subsystem != nullptr) plan.subsystem = subsystem->value;
+  if (mode != nullptr) {
+    plan.mode = mode->value;
+    std::vector<std::string_view> known;
+    for (const Mode& candidate : mission_.modes) known.push_back(candidate.name);
+    if (mission_.find_mode(plan.mode) == nullptr)
+      problems_.add(*mode, "E0305", fmt::format("mode {} is not defined", in_quotes(plan.mode)),
+                    did_you_mean(plan.mode, known));
+  }
+  if (event == nullptr) return;
+  plan.event = event->value;
+  if (!whole() || (subsystem != nullptr && found == nullptr)) return;
+  std::vector<std::string_view> known;
+  const auto add = [&](const Subsystem& candidate) {
+    if (found == nullptr || found == &candidate)
+      for (const Event& e : candidate.events) known.push_back(e.name);
+  };
+  add(mission_.supervisor);
+  for (const MissionSubsystem& member : mission_.subsystems) add(member.subsystem);
+  if (std::ranges::find(known, plan.event) == known.end())
+    problems_.add(*event, "E0311",
+                  found == nullptr ? fmt::format("no subsystem has an event {}", in_quotes(plan.event))
+                                   : fmt::format("'{}' has no event {}", found->name, in_quotes(plan.event)),
+                  did_you_mean(plan.event, known));
+}
+
+void MissionReader::read_do(const xml::Element& element, Plan& plan) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const auto* at = attributes.required("action");
+  plan.action = attributes.one_of("action", Action::Log);
+  plan.state = read_steady_state(attributes, State::SafeOperational);
+  const auto* state = attributes.optional("state");
+  if (at != nullptr && plan.action == Action::SetState && state == nullptr)
+    problems_.add(element, "E0105", "<Do action=\"set_state\"> needs the attribute 'state'");
+  if (at != nullptr && plan.action != Action::SetState && state != nullptr)
+    problems_.add(*state, "E0317", fmt::format("the action '{}' takes no state", to_text(plan.action)));
+}
+
+}  // namespace hirosco::descriptor::detail
