@@ -125,7 +125,8 @@ Result<> GroundClients::telemetry(Octets packet) {
 
 Octets GroundClients::output(ClientId id) const noexcept {
   const Client* client = find(id);
-  if (client == nullptr || client->condemned || client->counters.port != GroundPort::TelemetryAndTelecommands) return {};
+  if (client == nullptr || client->condemned || client->counters.port != GroundPort::TelemetryAndTelecommands)
+    return {};
   const std::size_t start = client->read_to % ring_.size();
   const std::size_t waiting = static_cast<std::size_t>(written_ - client->read_to);
   return Octets{ring_}.subspan(start, std::min(waiting, ring_.size() - start));

@@ -29,9 +29,9 @@ enum class CloseReason : std::uint8_t {
 };
 inline constexpr std::size_t close_reasons = 8;
 
-/// Cuts a stream into telecommand packets. An implausible header ends the stream for good: searching for the next packet
-/// could find one that was embedded in another's data, and execute it.
-/// What is handed on has a plausible header and its announced length; its checksum and fields are for the receiver to judge.
+/// Cuts a stream into telecommand packets. An implausible header ends the stream for good: searching for the next
+/// packet could find one that was embedded in another's data, and execute it.
+/// What is handed on has a plausible header and its announced length; checksum and fields are the receiver's to judge.
 /// Realtime: bounded, does not allocate. Thread: one.
 class Deframer {
  public:
@@ -78,24 +78,24 @@ struct GroundTraffic {
 struct ClientCounters {
   GroundPort port{};
   TimePoint admitted{};
-  std::uint64_t packets{0};         ///< of plausible form
-  std::uint64_t valid_packets{0};   ///< whole and undamaged
+  std::uint64_t packets{0};  ///< of plausible form
+  std::uint64_t valid_packets{0};  ///< whole and undamaged
   std::uint64_t octets_received{0};
   std::uint64_t octets_sent{0};
 };
 struct LinkCounters {
-  std::uint64_t clients{0};         ///< connected now
+  std::uint64_t clients{0};  ///< connected now
   std::uint64_t admitted{0};
-  std::uint64_t refused{0};         ///< no place, and nobody to evict
+  std::uint64_t refused{0};  ///< no place, and nobody to evict
   std::uint64_t packets{0};
   std::uint64_t valid_packets{0};
   std::uint64_t idle_packets{0};
   std::uint64_t telemetry_packets{0};
-  std::array<std::uint64_t, close_reasons> closed{};   ///< by CloseReason
+  std::array<std::uint64_t, close_reasons> closed{};  ///< by CloseReason
 };
 
-/// All clients of the link. Telemetry is kept once, in a ring that every client reads at its own pace; who falls behind by
-/// more than the ring is cut, never waited for.
+/// All clients of the link. Telemetry is kept once, in a ring that every client reads at its own pace; who falls behind
+/// by more than the ring is cut, never waited for.
 /// When all places are taken, the oldest client that has never sent a valid packet gives way; a pure listener keeps its
 /// place by one ping. With nobody to evict, the newcomer is refused.
 /// Realtime: bounded; memory is taken by the constructor. Thread: one.
@@ -104,12 +104,12 @@ class GroundClients {
   static constexpr std::size_t most_clients = 256;
   struct Limits {
     std::size_t clients{most_clients};
-    std::size_t backlog_octets{1 << 20};   ///< telemetry that a client may leave unread
+    std::size_t backlog_octets{1 << 20};  ///< telemetry that a client may leave unread
     Duration incomplete{2s};
   };
   struct Admission {
     ClientId client{};
-    std::optional<ClientId> evicted{};   ///< its place is gone: close its connection
+    std::optional<ClientId> evicted{};  ///< its place is gone: close its connection
   };
 
   explicit GroundClients(const Limits& limits);
@@ -138,7 +138,7 @@ class GroundClients {
  private:
   struct Client {
     explicit Client(Duration incomplete) noexcept : deframer{incomplete} {}
-    ClientId id{0};   ///< 0: free
+    ClientId id{0};  ///< 0: free
     std::uint8_t generation{0};
     std::uint64_t order{0};
     std::uint64_t read_to{0};
@@ -185,8 +185,13 @@ template <>
 struct EnumTexts<communication::CloseReason> {
   using enum communication::CloseReason;
   static constexpr auto table = enum_table<communication::CloseReason>({
-      {PeerClosed, "closed by the client"}, {Version, "packet version"}, {NotTelecommand, "not a telecommand"},
-      {Length, "packet length"}, {Incomplete, "incomplete packet"}, {Slow, "too slow"}, {Evicted, "silent"},
+      {PeerClosed, "closed by the client"},
+      {Version, "packet version"},
+      {NotTelecommand, "not a telecommand"},
+      {Length, "packet length"},
+      {Incomplete, "incomplete packet"},
+      {Slow, "too slow"},
+      {Evicted, "silent"},
       {SocketError, "connection error"},
   });
 };

@@ -17,7 +17,8 @@ using testing::IsEmpty;
 std::vector<std::byte> telecommand(std::size_t data_octets = 0, std::uint16_t count = 0) {
   std::vector<std::byte> buffer(pus::max_telecommand_octets);
   const std::vector<std::byte> data(data_octets, std::byte{0x5A});
-  const auto packet = pus::write_telecommand(buffer, {.apid = 11, .sequence_count = count, .service = 17, .subtype = 1}, data);
+  const auto packet =
+      pus::write_telecommand(buffer, {.apid = 11, .sequence_count = count, .service = 17, .subtype = 1}, data);
   return {packet->begin(), packet->end()};
 }
 
@@ -39,7 +40,8 @@ struct Sink {
 };
 
 TEST(Deframer, CutsPacketsWhereverTheStreamIsDivided) {
-  const Packets sent{telecommand(), telecommand(100, 1), telecommand(pus::max_telecommand_octets - 13, 2), telecommand(1, 3)};
+  const Packets sent{telecommand(), telecommand(100, 1), telecommand(pus::max_telecommand_octets - 13, 2),
+                     telecommand(1, 3)};
   std::vector<std::byte> stream;
   for (const auto& packet : sent) append(stream, packet);
   for (const std::size_t piece : {std::size_t{1}, std::size_t{2}, std::size_t{5}, std::size_t{6}, std::size_t{7},

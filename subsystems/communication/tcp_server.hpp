@@ -15,30 +15,31 @@
 
 namespace hirosco::communication {
 
-/// The sockets of the ground link: two listening ports on a loopback address, everything non-blocking, no thread of its own.
-/// Whoever owns it waits for `descriptor()` to become readable or for the time that `step` named, then calls `step`.
-/// Anything but a loopback address is refused until connections are authenticated (decision 2); that check will stand between
+/// The sockets of the ground link: two listening ports on a loopback address, nothing blocks, no thread of its own.
+/// Its owner waits for `descriptor()` to become readable or for the time that `step` named, then calls `step`.
+/// Anything but a loopback address is refused until connections are authenticated; that check will stand between
 /// acceptance and the deframer, in `accept_clients`.
 /// Thread: one.
 class TcpServer {
  public:
   struct Options {
-    std::string address{"127.0.0.1"};          ///< an IPv4 address within 127.0.0.0/8
-    std::uint16_t telemetry_port{10'015};      ///< 0: any free one
+    std::string address{"127.0.0.1"};  ///< an IPv4 address within 127.0.0.0/8
+    std::uint16_t telemetry_port{10'015};  ///< 0: any free one
     std::uint16_t telecommand_port{10'025};
     GroundClients::Limits limits{};
   };
 
-  /// NotPermitted: not a loopback address. SystemFailure: errno, for instance port taken. `traffic` outlives the server.
+  /// NotPermitted: not a loopback address. SystemFailure: errno (port taken). `traffic` outlives the server.
   [[nodiscard]] static Result<std::unique_ptr<TcpServer>> open(const Options& options, GroundTraffic& traffic);
   ~TcpServer();
   TcpServer(const TcpServer&) = delete;
   TcpServer& operator=(const TcpServer&) = delete;
 
-  /// Accepts, reads, writes and closes what is due, a bounded amount for each client; never blocks. The next time at which it
-  /// has to be called even when `descriptor()` stays silent.
+  /// Accepts, reads, writes and closes what is due, a bounded amount for each client; never blocks. The next time at
+  /// which it has to be called even when `descriptor()` stays silent.
   std::optional<TimePoint> step(TimePoint now);
-  /// Queues a packet for all telemetry clients; it leaves with the next `step`. ResourceExhausted: longer than the backlog.
+  /// Queues a packet for all telemetry clients; it leaves with the next `step`. ResourceExhausted: longer than
+  /// the backlog.
   Result<> telemetry(Octets packet) { return clients_.telemetry(packet); }
 
   /// Readable when there is something to do; to be polled, not read.
@@ -51,8 +52,8 @@ class TcpServer {
   struct Connection {
     ClientId client{0};
     FileDescriptor socket;
-    bool full{false};      ///< the kernel takes no more for now
-    bool deaf{false};      ///< the client has ended its sending direction
+    bool full{false};  ///< the kernel takes no more for now
+    bool deaf{false};  ///< the client has ended its sending direction
   };
 
   TcpServer(const Options& options, GroundTraffic& traffic);
@@ -70,7 +71,7 @@ class TcpServer {
   GroundTraffic& traffic_;
   GroundClients clients_;
   FileDescriptor epoll_;
-  FileDescriptor spare_;   ///< given up for a moment to refuse a client when descriptors run out
+  FileDescriptor spare_;  ///< given up for a moment to refuse a client when descriptors run out
   std::array<FileDescriptor, 2> listeners_;
   std::array<Connection, GroundClients::most_clients> connections_;
 };

@@ -20,7 +20,8 @@ namespace {
 std::vector<std::byte> telecommand(std::uint16_t count = 0, std::size_t data_octets = 0) {
   std::vector<std::byte> buffer(pus::max_telecommand_octets);
   const std::vector<std::byte> data(data_octets, std::byte{0x5A});
-  const auto packet = pus::write_telecommand(buffer, {.apid = 11, .sequence_count = count, .service = 17, .subtype = 1}, data);
+  const auto packet =
+      pus::write_telecommand(buffer, {.apid = 11, .sequence_count = count, .service = 17, .subtype = 1}, data);
   return {packet->begin(), packet->end()};
 }
 
@@ -101,7 +102,9 @@ class TcpServerTest : public testing::Test {
   void until(Done done) {
     while (!done()) next_ = server_->step(now_);
   }
-  [[nodiscard]] std::uint16_t port(GroundPort port = GroundPort::TelemetryAndTelecommands) const { return server_->port(port); }
+  [[nodiscard]] std::uint16_t port(GroundPort port = GroundPort::TelemetryAndTelecommands) const {
+    return server_->port(port);
+  }
   void until_connected(std::uint64_t clients) {
     until([&] { return server_->counters().clients == clients; });
   }
@@ -142,7 +145,8 @@ class TcpServerTest : public testing::Test {
 TEST_F(TcpServerTest, RefusesEveryAddressButLoopback) {
   for (const char* address : {"0.0.0.0", "192.168.1.1", "8.8.8.8", "128.0.0.1"})
     EXPECT_EQ(TcpServer::open({.address = address, .telemetry_port = 0, .telecommand_port = 0}, echo_).error().code,
-              ErrorCode::NotPermitted) << address;
+              ErrorCode::NotPermitted)
+        << address;
   EXPECT_FALSE(TcpServer::open({.address = "localhost", .telemetry_port = 0, .telecommand_port = 0}, echo_));
   EXPECT_TRUE(TcpServer::open({.address = "127.0.0.2", .telemetry_port = 0, .telecommand_port = 0}, echo_));
 }
@@ -175,13 +179,11 @@ TEST_F(TcpServerTest, WakesItsOwnerByItsDescriptor) {
   server_->step(now_);
   EXPECT_FALSE(readable());
   Client client{port()};
-  while (!readable()) {
-  }
+  while (!readable()) {}
   until_connected(1);
   EXPECT_FALSE(readable());
   client.send(telecommand());
-  while (!readable()) {
-  }
+  while (!readable()) {}
   until([&] { return echo_.valid == 1; });
 }
 
@@ -249,7 +251,8 @@ TEST_F(TcpServerTest, ExecutesNoTelecommandWithAFlippedBit) {
 TEST_F(TcpServerTest, ServesHonestClientsBesideTwoHundredSilentOnes) {
   std::vector<std::unique_ptr<Client>> silent;
   for (int i = 0; i < 200; ++i) {
-    silent.push_back(std::make_unique<Client>(port(i % 2 == 0 ? GroundPort::TelemetryAndTelecommands : GroundPort::TelecommandsOnly)));
+    silent.push_back(std::make_unique<Client>(
+        port(i % 2 == 0 ? GroundPort::TelemetryAndTelecommands : GroundPort::TelecommandsOnly)));
     server_->step(now_);
   }
   until_connected(200);
@@ -366,7 +369,7 @@ TEST_F(TcpServerTest, StaysAliveWithoutFreeDescriptors) {
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
   Client knocking{port()};
   rlimit none = before;
-  none.rlim_cur = static_cast<rlim_t>(FileDescriptor{::dup(0)}.get());   // the lowest free number: nothing above is left
+  none.rlim_cur = static_cast<rlim_t>(FileDescriptor{::dup(0)}.get());  // the lowest free number: nothing above is left
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
   until([&] {
     knocking.receive();

@@ -101,8 +101,8 @@ bool ends_inside_a_line(int descriptor) {
 }  // namespace
 
 std::string ascii_line(const LogRecord& record) {
-  std::string line = std::to_string(record.number) + ' ' + time_text(record.run) + ' ' + time_text(record.stored) + ' ' +
-                     std::to_string(record.monotonic.time_since_epoch().count()) + ' ' +
+  std::string line = std::to_string(record.number) + ' ' + time_text(record.run) + ' ' + time_text(record.stored) +
+                     ' ' + std::to_string(record.monotonic.time_since_epoch().count()) + ' ' +
                      std::string{to_text(record.kind)} + ' ' + std::to_string(record.source) + ' ' +
                      std::to_string(record.peer) + ' ' + std::to_string(record.lost) + ' ';
   if (record.packet.empty()) line += '-';

@@ -6,8 +6,8 @@
 
 namespace hirosco::supervisor {
 
-/// One readable line per record, checksum at its end; format in the README. Written with one write and one fdatasync per
-/// batch. A torn or changed line is counted at reading and never mistaken for a record.
+/// One readable line per record, checksum at its end; format in the README. One write and one fdatasync per batch.
+/// A torn or changed line is counted at reading and never mistaken for a record.
 class AsciiDatabase final : public Database {
  public:
   [[nodiscard]] static Result<std::unique_ptr<Database>> open(const std::filesystem::path& path, DatabaseAccess access);
@@ -23,9 +23,9 @@ class AsciiDatabase final : public Database {
   [[nodiscard]] std::string_view do_strategy() const noexcept override { return "ascii"; }
 
   std::filesystem::path path_;
-  int descriptor_;      ///< -1: for reading only
-  bool torn_end_;       ///< the file ends inside a line that a crash has cut
-  std::string text_;    ///< of the batch being written; keeps its memory
+  int descriptor_;  ///< -1: for reading only
+  bool torn_end_;  ///< the file ends inside a line that a crash has cut
+  std::string text_;  ///< of the batch being written; keeps its memory
 };
 
 /// The line of a record without the line feed, and back (Malformed: wrong form or checksum).

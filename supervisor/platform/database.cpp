@@ -82,8 +82,8 @@ Result<OnboardTime> time_from_text(std::string_view text) {
 }
 
 std::string describe(const LogRecord& record) {
-  std::string line = std::to_string(record.number) + ' ' + time_text(record.stored) + ' ' +
-                     std::string{to_text(record.kind)};
+  std::string line =
+      std::to_string(record.number) + ' ' + time_text(record.stored) + ' ' + std::string{to_text(record.kind)};
   if (record.kind == LogKind::Gap) line += ' ' + std::to_string(record.lost) + " records lost";
   else line += ' ' + party(record.source) + '>' + party(record.peer);
   if (!record.packet.empty()) {

@@ -28,9 +28,9 @@ enum class LogKind : std::uint8_t {
   TelecommandForwarded,  ///< permitted and handed to peer
   Telemetry,             ///< source = the subsystem that made it; peer = the receiver (0 ground)
   Event,                 ///< an ST[05] report
-  Action,                ///< what the supervisor itself decided: mode, recovery step, start, link; the note says what
-  Switched,              ///< the log goes on in another database after this record
-  Gap,                   ///< `lost` records from this number on were not kept
+  Action,  ///< what the supervisor itself decided: mode, recovery step, start, link; the note says what
+  Switched,  ///< the log goes on in another database after this record
+  Gap,  ///< `lost` records from this number on were not kept
 };
 
 /// Bounded printable text; what does not fit is cut, what is not printable ASCII becomes '?'.
@@ -58,9 +58,9 @@ struct LogRecord {
   OnboardTime stored{};
   TimePoint monotonic{};
   LogKind kind{LogKind::Telemetry};
-  std::uint16_t source{};   ///< APID, 0 = ground
-  std::uint16_t peer{};     ///< APID, 0 = ground or nobody
-  std::uint32_t lost{};     ///< Gap only: how many numbers are missing
+  std::uint16_t source{};  ///< APID, 0 = ground
+  std::uint16_t peer{};  ///< APID, 0 = ground or nobody
+  std::uint32_t lost{};  ///< Gap only: how many numbers are missing
   Note note{};
   std::vector<std::byte> packet{};
 
@@ -84,18 +84,18 @@ struct PacketLabel {
 
 /// All conditions hold together; of what remains the last `last` records are answered, in order of storage.
 struct LogQuery {
-  std::optional<std::uint16_t> apid{};    ///< source, peer or the packet's own APID
+  std::optional<std::uint16_t> apid{};  ///< source, peer or the packet's own APID
   std::optional<std::uint8_t> service{};
-  std::string text{};                     ///< part of `describe`
-  std::uint64_t since{0};                 ///< numbers from here on
-  std::optional<OnboardTime> run{};       ///< one run only
+  std::string text{};  ///< part of `describe`
+  std::uint64_t since{0};  ///< numbers from here on
+  std::optional<OnboardTime> run{};  ///< one run only
   std::size_t last{1000};
 };
 [[nodiscard]] bool matches(const LogRecord& record, const LogQuery& query);
 
 struct LogPage {
   std::vector<LogRecord> records{};
-  std::uint64_t damaged{0};   ///< stored lines that do not carry their own checksum: torn or changed
+  std::uint64_t damaged{0};  ///< stored lines that do not carry their own checksum: torn or changed
 };
 
 /// Strategy seam: where records live. Longest packet: 65,542 octets.
@@ -105,10 +105,10 @@ class Database {
   static constexpr std::size_t max_packet_octets = 65'542;
   virtual ~Database() = default;
 
-  /// Stores all of `batch` or reports why not; durable when it returns. A record that is already there in the same words
-  /// is not stored twice. Unavailable: locked by somebody else, nothing was stored, try again. Any other error is final:
-  /// after it this object stores nothing more (a second fsync after a failed one proves nothing), the records go to
-  /// another database. May block.
+  /// Stores all of `batch` or says why not; durable when it returns. A record that is there already in the same words
+  /// is not stored twice. Unavailable: locked by somebody else, nothing was stored, try again. Any other error
+  /// is final: after it this object stores nothing more (a second fsync after a failed one proves nothing), the records
+  /// go to another database. May block.
   [[nodiscard]] Result<> append(std::span<const LogRecord> batch);
   [[nodiscard]] Result<LogPage> read(const LogQuery& query) { return do_read(query); }
   /// `sqlite`, `ascii`, `memory`.
@@ -134,7 +134,7 @@ class MemoryDatabase final : public Database {
 };
 
 enum class DatabaseStrategy : std::uint8_t { Sqlite, Ascii, Memory };
-enum class DatabaseAccess : std::uint8_t { Write, Read };   ///< Read never creates or changes the store
+enum class DatabaseAccess : std::uint8_t { Write, Read };  ///< Read never creates or changes the store
 
 /// NotFound: nothing to read there; Mismatch: another program's file or a later version; SystemFailure: errno.
 [[nodiscard]] Result<std::unique_ptr<Database>> open_database(DatabaseStrategy strategy,
@@ -148,9 +148,14 @@ template <>
 struct EnumTexts<supervisor::LogKind> {
   using enum supervisor::LogKind;
   static constexpr auto table = enum_table<supervisor::LogKind>({
-      {TelecommandReceived, "telecommand-received"}, {TelecommandRefused, "telecommand-refused"},
-      {TelecommandForwarded, "telecommand-forwarded"}, {Telemetry, "telemetry"}, {Event, "event"}, {Action, "action"},
-      {Switched, "switched"}, {Gap, "gap"},
+      {TelecommandReceived, "telecommand-received"},
+      {TelecommandRefused, "telecommand-refused"},
+      {TelecommandForwarded, "telecommand-forwarded"},
+      {Telemetry, "telemetry"},
+      {Event, "event"},
+      {Action, "action"},
+      {Switched, "switched"},
+      {Gap, "gap"},
   });
 };
 template <>

@@ -31,9 +31,15 @@ std::vector<std::byte> ping() {
 }
 
 LogRecord record(std::uint64_t number, LogKind kind = LogKind::Telemetry) {
-  return {.run = OnboardTime{2'145'916'837s}, .number = number,
-          .stored = OnboardTime{2'145'916'837s + Duration{number}}, .monotonic = TimePoint{Duration{number * 7}},
-          .kind = kind, .source = 11, .peer = 0, .note = "x", .packet = ping()};
+  return {.run = OnboardTime{2'145'916'837s},
+          .number = number,
+          .stored = OnboardTime{2'145'916'837s + Duration{number}},
+          .monotonic = TimePoint{Duration{number * 7}},
+          .kind = kind,
+          .source = 11,
+          .peer = 0,
+          .note = "x",
+          .packet = ping()};
 }
 
 std::vector<std::uint64_t> numbers(const LogPage& page) {
@@ -224,7 +230,9 @@ struct FailingDisk {
   static inline sqlite3_vfs layer{};
   static inline sqlite3_vfs* real = nullptr;
 
-  static sqlite3_file* inner(sqlite3_file* file) { return reinterpret_cast<sqlite3_file*>(reinterpret_cast<File*>(file) + 1); }
+  static sqlite3_file* inner(sqlite3_file* file) {
+    return reinterpret_cast<sqlite3_file*>(reinterpret_cast<File*>(file) + 1);
+  }
   template <auto member, class... Arguments>
   static auto pass(sqlite3_file* file, Arguments... arguments) {
     return (inner(file)->pMethods->*member)(inner(file), arguments...);
@@ -242,16 +250,25 @@ struct FailingDisk {
     const int code = real->xOpen(real, name, inner(file), flags, out_flags);
     if (code != SQLITE_OK) return code;
     using M = sqlite3_io_methods;
-    outer->methods = {.iVersion = 2, .xClose = pass<&M::xClose>, .xRead = pass<&M::xRead, void*, int, sqlite3_int64>,
+    outer->methods = {.iVersion = 2,
+                      .xClose = pass<&M::xClose>,
+                      .xRead = pass<&M::xRead, void*, int, sqlite3_int64>,
                       .xWrite = pass<&M::xWrite, const void*, int, sqlite3_int64>,
-                      .xTruncate = pass<&M::xTruncate, sqlite3_int64>, .xSync = sync,
-                      .xFileSize = pass<&M::xFileSize, sqlite3_int64*>, .xLock = pass<&M::xLock, int>,
-                      .xUnlock = pass<&M::xUnlock, int>, .xCheckReservedLock = pass<&M::xCheckReservedLock, int*>,
-                      .xFileControl = pass<&M::xFileControl, int, void*>, .xSectorSize = pass<&M::xSectorSize>,
+                      .xTruncate = pass<&M::xTruncate, sqlite3_int64>,
+                      .xSync = sync,
+                      .xFileSize = pass<&M::xFileSize, sqlite3_int64*>,
+                      .xLock = pass<&M::xLock, int>,
+                      .xUnlock = pass<&M::xUnlock, int>,
+                      .xCheckReservedLock = pass<&M::xCheckReservedLock, int*>,
+                      .xFileControl = pass<&M::xFileControl, int, void*>,
+                      .xSectorSize = pass<&M::xSectorSize>,
                       .xDeviceCharacteristics = pass<&M::xDeviceCharacteristics>,
                       .xShmMap = pass<&M::xShmMap, int, int, int, void volatile**>,
-                      .xShmLock = pass<&M::xShmLock, int, int, int>, .xShmBarrier = pass<&M::xShmBarrier>,
-                      .xShmUnmap = pass<&M::xShmUnmap, int>, .xFetch = nullptr, .xUnfetch = nullptr};
+                      .xShmLock = pass<&M::xShmLock, int, int, int>,
+                      .xShmBarrier = pass<&M::xShmBarrier>,
+                      .xShmUnmap = pass<&M::xShmUnmap, int>,
+                      .xFetch = nullptr,
+                      .xUnfetch = nullptr};
     outer->base.pMethods = &outer->methods;
     return SQLITE_OK;
   }

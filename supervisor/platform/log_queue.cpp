@@ -83,8 +83,14 @@ std::uint64_t LogQueue::push(const LogEntry& entry, OnboardTime stored, TimePoin
     return 0;
   }
   Ring& ring = may_be_lost(entry) ? telemetry_ : vital_;
-  ring.push({.number = number, .stored = stored, .monotonic = monotonic, .kind = entry.kind, .source = entry.source,
-             .peer = entry.peer, .note = entry.note, .octets = entry.packet.size()},
+  ring.push({.number = number,
+             .stored = stored,
+             .monotonic = monotonic,
+             .kind = entry.kind,
+             .source = entry.source,
+             .peer = entry.peer,
+             .note = entry.note,
+             .octets = entry.packet.size()},
             entry.packet);
   return number;
 }

@@ -118,7 +118,8 @@ TEST(LogQueue, LosesNothingUnsaidUnderRandomUse) {
       }
       std::vector<std::byte> packet(random() % 25);
       for (std::byte& octet : packet) octet = static_cast<std::byte>(random());
-      const LogEntry entry{.kind = random() % 2 == 0 ? LogKind::Telemetry : LogKind::TelecommandForwarded, .packet = packet};
+      const LogEntry entry{.kind = random() % 2 == 0 ? LogKind::Telemetry : LogKind::TelecommandForwarded,
+                           .packet = packet};
       if (const std::uint64_t number = push(queue, entry); number != 0) pushed[number] = packet;
     }
     const auto rest = take_all(queue);

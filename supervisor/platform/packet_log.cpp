@@ -127,9 +127,14 @@ class ThreadedPacketLog::Writer {
 
   [[nodiscard]] LogCounters counters() {
     const LockGuard lock{mutex_};
-    return {.accepted = queue_.last_number() - queue_.lost() - queue_.refused(), .lost = queue_.lost(),
-            .refused = queue_.refused(), .durable = durable(), .batches = batches_, .failures = failures_,
-            .switches = switches_, .high_water = high_water_};
+    return {.accepted = queue_.last_number() - queue_.lost() - queue_.refused(),
+            .lost = queue_.lost(),
+            .refused = queue_.refused(),
+            .durable = durable(),
+            .batches = batches_,
+            .failures = failures_,
+            .switches = switches_,
+            .high_water = high_water_};
   }
 
   Result<> flush(TimePoint deadline) {
@@ -178,8 +183,7 @@ class ThreadedPacketLog::Writer {
   }
 
   void work() {
-    while (next_step()) {
-    }
+    while (next_step()) {}
     ended_.post();
   }
 
@@ -235,8 +239,7 @@ class ThreadedPacketLog::Writer {
       if (next_database_) limit = switch_after_;
       queue_.take(batch_, records_per_lock, limit);
       more = !batch_.full() && queue_.next_waiting() <= limit && queue_.next_waiting() != LogQueue::none;
-      if (!batch_.empty())
-        durable_after_ = queue_.empty() ? queue_.last_number() : batch_.records().back().number;
+      if (!batch_.empty()) durable_after_ = queue_.empty() ? queue_.last_number() : batch_.records().back().number;
     }
   }
 
@@ -262,7 +265,7 @@ class ThreadedPacketLog::Writer {
   }
 
   const Clock& clock_;
-  Options options_;             // on_progress guarded by callback_mutex_
+  Options options_;  // on_progress guarded by callback_mutex_
   Mutex mutex_;
   Mutex callback_mutex_;
   Semaphore work_;
@@ -305,15 +308,11 @@ ThreadedPacketLog::~ThreadedPacketLog() { writer_->stop(clock_.now() + flush_lim
 
 Result<> ThreadedPacketLog::flush(Duration limit) { return writer_->flush(clock_.now() + limit); }
 
-std::uint64_t ThreadedPacketLog::do_append(const LogEntry& entry) {
-  return writer_->append(entry);
-}
+std::uint64_t ThreadedPacketLog::do_append(const LogEntry& entry) { return writer_->append(entry); }
 
 std::uint64_t ThreadedPacketLog::do_durable() const noexcept { return writer_->durable(); }
 
-void ThreadedPacketLog::do_switch_to(std::unique_ptr<Database> next) {
-  writer_->switch_to(std::move(next));
-}
+void ThreadedPacketLog::do_switch_to(std::unique_ptr<Database> next) { writer_->switch_to(std::move(next)); }
 
 LogCounters ThreadedPacketLog::do_counters() const { return writer_->counters(); }
 std::optional<Error> ThreadedPacketLog::do_failure() const { return writer_->failure(); }

@@ -119,7 +119,7 @@ class ThreadedPacketLog final : public PacketLog {
   class Writer;
   const Clock& clock_;
   Duration flush_limit_;
-  std::shared_ptr<Writer> writer_;   // shared with its thread, which may outlive this object
+  std::shared_ptr<Writer> writer_;  // shared with its thread, which may outlive this object
 };
 
 }  // namespace hirosco::supervisor

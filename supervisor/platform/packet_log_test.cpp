@@ -107,9 +107,10 @@ TEST(ThreadedPacketLog, AStalledDiskBlocksNobodyAndTelecommandsSurvive) {
   const SystemClock clock;
   auto memory = std::make_shared<MemoryDatabase>();
   auto stall = std::make_shared<Stall>();
-  ThreadedPacketLog log{clock, std::make_unique<StalledDatabase>(stall, memory),
-                        {.limits = {.telemetry_records = 100, .telemetry_octets = 1000, .vital_records = 400,
-                                    .vital_octets = 1000}}};
+  ThreadedPacketLog log{
+      clock,
+      std::make_unique<StalledDatabase>(stall, memory),
+      {.limits = {.telemetry_records = 100, .telemetry_octets = 1000, .vital_records = 400, .vital_octets = 1000}}};
   ASSERT_EQ(log.append(telecommand()), 1U);
   stall->reached.wait();
   for (int i = 0; i < 200; ++i) {
@@ -165,8 +166,7 @@ TEST(ThreadedPacketLog, AFailedDatabaseIsReportedAndItsRecordsGoToTheNext) {
   auto first = std::make_shared<MemoryDatabase>();
   auto second = std::make_shared<MemoryDatabase>();
   Semaphore progress;
-  ThreadedPacketLog log{clock, std::make_unique<BreakingDatabase>(1, first),
-                        {.on_progress = [&] { progress.post(); }}};
+  ThreadedPacketLog log{clock, std::make_unique<BreakingDatabase>(1, first), {.on_progress = [&] { progress.post(); }}};
   ASSERT_EQ(log.append(telecommand()), 1U);
   progress.wait();
   ASSERT_EQ(log.durable(), 1U);
@@ -239,8 +239,7 @@ TEST(ThreadedPacketLog, EverythingReportedDurableIsInTheFileAfterKill) {
     if (child == 0) log_until_killed(folder.path() / "log.db", pipe[1]);
     ::close(pipe[1]);
     std::uint64_t durable = 0;
-    while (durable < enough && ::read(pipe[0], &durable, sizeof durable) == sizeof durable) {
-    }
+    while (durable < enough && ::read(pipe[0], &durable, sizeof durable) == sizeof durable) {}
     ::kill(child, SIGKILL);
     std::uint64_t later{};
     while (::read(pipe[0], &later, sizeof later) == sizeof later) durable = later;
@@ -280,7 +279,8 @@ TEST(DirectPacketLog, KeepsWhatAFailedDatabaseDidNotTakeForTheNext) {
   const ManualClock clock;
   auto first = std::make_shared<MemoryDatabase>();
   auto second = std::make_shared<MemoryDatabase>();
-  DirectPacketLog log{clock, std::make_unique<BreakingDatabase>(1, first),
+  DirectPacketLog log{clock,
+                      std::make_unique<BreakingDatabase>(1, first),
                       {.telemetry_records = 2, .telemetry_octets = 10, .vital_records = 8, .vital_octets = 10}};
   for (int i = 0; i < 6; ++i) ASSERT_NE(log.append(telemetry()), 0U);
   EXPECT_EQ(log.durable(), 1U);

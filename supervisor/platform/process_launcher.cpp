@@ -85,10 +85,10 @@ void SystemLauncher::kill(std::uint32_t process) {
 }
 
 bool SystemLauncher::any_running() {
-  std::erase_if(processes_, [](auto& entry) {
-    const auto status = entry.second.poll();
-    return !status || status->has_value();
-  });
+  for (auto entry = processes_.begin(); entry != processes_.end();) {
+    const auto status = entry->second.poll();
+    entry = !status || status->has_value() ? processes_.erase(entry) : std::next(entry);
+  }
   return !processes_.empty();
 }
 

@@ -94,7 +94,8 @@ Result<> SqliteDatabase::set_up(DatabaseAccess access) {
   HIROSCO_TRY_LET(const std::int64_t owner, number_from("PRAGMA application_id"));
   if (owner != application_id) return fail(ErrorCode::Mismatch, "not a log database of ours", owner);
   if (version != schema_version) return fail(ErrorCode::Mismatch, "log database of another schema version", version);
-  HIROSCO_TRY_LET(find_, prepare((std::string{"SELECT "} + columns + " FROM log WHERE run = ?1 AND number = ?2").c_str()));
+  HIROSCO_TRY_LET(find_,
+                  prepare((std::string{"SELECT "} + columns + " FROM log WHERE run = ?1 AND number = ?2").c_str()));
   return ok();
 }
 
@@ -113,7 +114,8 @@ Result<> SqliteDatabase::make_or_check_schema() {
       "CREATE TABLE IF NOT EXISTS log ("
       " position INTEGER PRIMARY KEY, run INTEGER NOT NULL, number INTEGER NOT NULL, stored INTEGER NOT NULL,"
       " monotonic INTEGER NOT NULL, kind TEXT NOT NULL, source INTEGER NOT NULL, peer INTEGER NOT NULL,"
-      " lost INTEGER NOT NULL, note TEXT NOT NULL, packet BLOB NOT NULL, apid INTEGER, service INTEGER, subtype INTEGER,"
+      " lost INTEGER NOT NULL, note TEXT NOT NULL, packet BLOB NOT NULL, apid INTEGER, service INTEGER, subtype "
+      "INTEGER,"
       " UNIQUE (run, number));"
       "PRAGMA application_id = 1213354819;"
       "PRAGMA user_version = 1;"
