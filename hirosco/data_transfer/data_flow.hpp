@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,6 +12,9 @@
 #include "hirosco/utilities/time.hpp"
 
 namespace hirosco {
+
+/// Longest frame of a flow, whatever its means.
+inline constexpr std::size_t max_frame_octets = 1024;
 
 /// What a receive found.
 struct Received {
@@ -23,9 +27,12 @@ struct Received {
 class DataFlow {
  public:
   virtual ~DataFlow() = default;
-  /// Hands one frame over. Unavailable: nobody listens or no room; the frame is gone.
+  /// Hands one frame over. Unavailable: nobody listens or no room; the frame is gone. OutOfRange: it is longer than
+  /// max_frame_octets.
   [[nodiscard]] Result<> send(Octets frame) noexcept { return do_send(frame); }
-  /// Newest frame if one came since the last call. Unavailable: the peer is gone for good (hang-up).
+  /// Newest frame if one came since the last call. Unavailable: the peer is gone (hang-up); a flow
+  /// without connection reports that after the next send. Malformed: a frame came that is longer than `buffer`; it is
+  /// gone.
   [[nodiscard]] Result<Received> receive(MutableOctets buffer) noexcept { return do_receive(buffer); }
   /// Waits until a frame may be there, at most `timeout`; false on timeout. Blocks: never in a cycle.
   [[nodiscard]] bool wait(Duration timeout) noexcept { return do_wait(timeout); }
