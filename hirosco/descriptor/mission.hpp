@@ -113,7 +113,7 @@ namespace hirosco {
 template <>
 struct EnumTexts<descriptor::Action> {
   using enum descriptor::Action;
-  static constexpr auto table = enum_table<descriptor::Action>(
-      {{Log, "log"}, {SetState, "set_state"}, {ShutDownNetwork, "shut_down_network"}});
+  static constexpr auto table =
+      enum_table<descriptor::Action>({{Log, "log"}, {SetState, "set_state"}, {ShutDownNetwork, "shut_down_network"}});
 };
 }  // namespace hirosco

@@ -27,8 +27,16 @@ struct Location {
 
 /// The ten states (paper 4.2, figure 4). The transition table is in hirosco/subsystem/states.hpp.
 enum class State : std::uint8_t {
-  Offline = 0, SoftwareInit = 1, HardwareInit = 2, PreOperational = 3, SafeOperational = 4,
-  Operational = 5, ErrorOperational = 6, PostOperational = 7, HardwareDeinit = 8, SoftwareDeinit = 9,
+  Offline = 0,
+  SoftwareInit = 1,
+  HardwareInit = 2,
+  PreOperational = 3,
+  SafeOperational = 4,
+  Operational = 5,
+  ErrorOperational = 6,
+  PostOperational = 7,
+  HardwareDeinit = 8,
+  SoftwareDeinit = 9,
 };
 
 /// Severity of an event (PUS ST[05]); the value is the message subtype of its report.
@@ -257,10 +265,16 @@ template <>
 struct EnumTexts<descriptor::State> {
   using enum descriptor::State;
   static constexpr auto table = enum_table<descriptor::State>({
-      {Offline, "Offline"}, {SoftwareInit, "SoftwareInit"}, {HardwareInit, "HardwareInit"},
-      {PreOperational, "PreOperational"}, {SafeOperational, "SafeOperational"}, {Operational, "Operational"},
-      {ErrorOperational, "ErrorOperational"}, {PostOperational, "PostOperational"},
-      {HardwareDeinit, "HardwareDeinit"}, {SoftwareDeinit, "SoftwareDeinit"},
+      {Offline, "Offline"},
+      {SoftwareInit, "SoftwareInit"},
+      {HardwareInit, "HardwareInit"},
+      {PreOperational, "PreOperational"},
+      {SafeOperational, "SafeOperational"},
+      {Operational, "Operational"},
+      {ErrorOperational, "ErrorOperational"},
+      {PostOperational, "PostOperational"},
+      {HardwareDeinit, "HardwareDeinit"},
+      {SoftwareDeinit, "SoftwareDeinit"},
   });
   static_assert(table.size() == 10);
 };
@@ -273,8 +287,8 @@ struct EnumTexts<descriptor::Severity> {
 template <>
 struct EnumTexts<descriptor::Method> {
   using enum descriptor::Method;
-  static constexpr auto table = enum_table<descriptor::Method>({{SharedMemory, "shared_memory"}, {Udp, "udp"},
-      {Tcp, "tcp"}, {Unix, "unix"}, {Dds, "dds"}, {Tipc, "tipc"}});
+  static constexpr auto table = enum_table<descriptor::Method>(
+      {{SharedMemory, "shared_memory"}, {Udp, "udp"}, {Tcp, "tcp"}, {Unix, "unix"}, {Dds, "dds"}, {Tipc, "tipc"}});
 };
 template <>
 struct EnumTexts<descriptor::ByteOrder> {
@@ -295,6 +309,10 @@ template <>
 struct EnumTexts<descriptor::Transfer> {
   using enum descriptor::Transfer;
   static constexpr auto table = enum_table<descriptor::Transfer>({{SharedMemory, "shared_memory"},
-      {MessageQueue, "message_queue"}, {Unix, "unix"}, {Udp, "udp"}, {Tcp, "tcp"}, {Serial, "serial"}});
+                                                                  {MessageQueue, "message_queue"},
+                                                                  {Unix, "unix"},
+                                                                  {Udp, "udp"},
+                                                                  {Tcp, "tcp"},
+                                                                  {Serial, "serial"}});
 };
 }  // namespace hirosco

@@ -130,7 +130,10 @@ class Reader::Parser {
     self(data).on_text({octets, static_cast<std::size_t>(count)});
   }
   static void doctype(void* data, const XML_Char*, const XML_Char*, const XML_Char*, int) {
-    self(data).refuse(Refusal::NotAllowed, "document type declarations and entities are not allowed");
+    Parser& parser = self(data);
+    // Expat is already at the internal subset; people look for the beginning.
+    const std::size_t begin = parser.document_.rfind("<!DOCTYPE", parser.offset());
+    parser.refuse(Refusal::NotAllowed, "document type declarations and entities are not allowed", begin);
   }
   static void declaration(void* data, const XML_Char* /*version*/, const XML_Char* encoding, int) {
     if (encoding != nullptr && !is_utf8_name(encoding))
@@ -154,9 +157,10 @@ class Reader::Parser {
     problem_ = Problem{Refusal::NotWellFormed, cursor_.at(offset()), XML_ErrorString(XML_GetErrorCode(expat_))};
   }
 
-  void refuse(Refusal refusal, const char* reason) {
+  void refuse(Refusal refusal, const char* reason) { refuse(refusal, reason, offset()); }
+  void refuse(Refusal refusal, const char* reason, std::size_t where) {
     if (problem_) return;
-    problem_ = Problem{refusal, cursor_.at(offset()), reason};
+    problem_ = Problem{refusal, cursor_.at(where), reason};
     XML_StopParser(expat_, XML_FALSE);
   }
 

@@ -87,7 +87,7 @@ TEST(Reader, RefusesDocumentTypesBeforeAnyEntityGrows) {
       "\"&b;&b;&b;\">]>\n"
       "<l>&c;</l>");
   EXPECT_EQ(laughs.refusal, Refusal::NotAllowed);
-  EXPECT_EQ(laughs.at.line, 2);
+  EXPECT_EQ(laughs.at, (Position{2, 1}));
   EXPECT_EQ(problem_of("<!DOCTYPE a SYSTEM \"file:///etc/passwd\"><a/>").refusal, Refusal::NotAllowed);
   EXPECT_EQ(problem_of("<a>&unknown;</a>").reason, "undefined entity");
 }

@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "hirosco/descriptor/testing.hpp"
+
+namespace hirosco::descriptor {
+namespace {
+
+using testing::data;
+using testing::marked;
+using testing::rendered;
+
+/// Files in memory; what is not there is read from the test data.
+FileSource overlay(std::map<std::string, std::string> files) {
+  return [files = std::move(files)](const std::filesystem::path& file) -> std::optional<std::string> {
+    const auto found = files.find(file.filename().string());
+    return found == files.end() ? file_system()(file) : std::optional{found->second};
+  };
+}
+
+std::string good_mission() { return file_system()(data / "mission.xml").value(); }
+
+/// The good mission with the first `from` replaced.
+std::string changed(const std::string& from, const std::string& to, std::string text = good_mission()) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(MissionDescriptor, FillsTheWholeModel) {
+  const auto reading = read_mission(data / "mission.xml", file_system());
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const Mission& mission = *reading.value;
+  EXPECT_EQ(mission.name, "ROKVISS");
+  EXPECT_EQ(mission.id, 1);
+  EXPECT_EQ(mission.file, data / "mission.xml");
+  EXPECT_EQ(mission.supervisor.name, "SUPERVISOR");
+  EXPECT_EQ(mission.database.path, "log/rokviss.db");
+  EXPECT_EQ(mission.ground.subsystem, "COMMUNICATION");
+  ASSERT_EQ(mission.subsystems.size(), 3U);
+  EXPECT_EQ(mission.find_subsystem("JOYSTICK")->subsystem.id, 11);
+  EXPECT_EQ(mission.find_subsystem(std::uint16_t{10})->executable, "hirosco-manipulator");
+  EXPECT_EQ(mission.find_subsystem("SUPERVISOR"), nullptr);
+  EXPECT_EQ(mission.devices.at(0).seed, 7U);
+  EXPECT_EQ(mission.devices.at(0).settings.at(0).first, "NOISE");
+  EXPECT_EQ(mission.find_link(2)->requires_, "JOYSTICK_STATE");
+  EXPECT_EQ(mission.initial_mode, "commissioning");
+  EXPECT_EQ(mission.start_mode, "telepresence");
+}
+
+TEST(MissionDescriptor, FillsModesAndPlans) {
+  const Mission mission = read_mission(data / "mission.xml", file_system()).value.value();
+  EXPECT_EQ(mission.find_mode("commissioning")->id, 1) << "counted from 1 in file order";
+  const Mode& mode = *mission.find_mode("telepresence");
+  EXPECT_EQ(mode.id, 7);
+  EXPECT_EQ(mode.commission.at(0).state, State::SafeOperational);
+  EXPECT_EQ(mode.commission.at(1).state, State::Operational);
+  EXPECT_EQ(mode.establish, (std::vector<std::uint8_t>{1, 2}));
+  EXPECT_EQ(mode.permits.at(1).functions.at(0), "*");
+  EXPECT_EQ(mission.find_mode("commissioning")->permits.at(2).services, (std::vector<std::uint8_t>{3, 17, 20}));
+  EXPECT_EQ(mission.plans.at(0).action, Action::ShutDownNetwork);
+  EXPECT_EQ(mission.plans.at(1).state, State::SafeOperational);
+  EXPECT_EQ(mission.plans.at(1).event, "TORQUE_LIMIT_EXCEEDED");
+  EXPECT_EQ(mission.plans.at(2).severities, (std::vector{Severity::Low, Severity::Info}));
+}
+
+struct Bad {
+  const char* code;
+  const char* from;
+  const char* to;  ///< '@' marks the line and column that must be named
+  const char* hint = "";
+};
+
+// clang-format off
+constexpr Bad mistakes[] = {
+    {"E0102", "<Links>", "@<Link/><Links>", "'Links'"},
+    {"E0103", R"(seed="7")", R"(@sed="7")", "'seed'"},
+    {"E0105", R"(<Establish link="1"/>)", "@<Establish/>"},
+    {"E0106", R"(<Plan name="note"><When severity="low info"/>)", R"(@<Plan name="note">)"},
+    {"E0107", R"(<Do action="log"/>)", R"(<Do action="log"/>@<Do action="log"/>)"},
+    {"E0110", R"(executable="hirosco-joystick")", R"(executable="@../../bin/sh")"},
+    {"E0110", R"(from="MANIPULATOR.ROBOT_STATE")", R"(from="@ROBOT_STATE")"},
+    {"E0111", R"(services="3 17 20")", R"(services="@3 ping")"},
+    {"E0112", R"(services="3 17 20")", R"(services="@3 256")"},
+    {"E0112", R"(<Mission name="ROKVISS" id="1">)", R"(<Mission name="ROKVISS" id="@65536">)"},
+    {"E0113", R"(action="shut_down_network")", R"(action="@shut_down_net")"},
+    {"E0113", R"(strategy="sqlite")", R"(strategy="@sqlit")", "'sqlite'"},
+    {"E0113", R"(severity="low info")", R"(severity="@low inof")", "'info'"},
+    {"E0113", R"(state="SafeOperational"/>
+    </Plan>)", R"(state="@SafeOperationl"/>
+    </Plan>)", "'SafeOperational'"},
+    {"E0201", R"(<Plan name="note">)", R"(@<Plan name="to-safe">)"},
+    {"E0201", R"(subsystem="JOYSTICK" configuration="COUPLED")", R"(subsystem="@MANIPULATOR" configuration="COUPLED")"},
+    {"E0202", R"(<Establish link="2"/>)", R"(<Establish link="@1"/>)"},
+    {"E0202", R"(id="7">)", R"(id="1">)"},
+    {"E0217", R"(telemetry="127.0.0.1:10015")", R"(telemetry="@127.0.0.1")"},
+    {"E0304", R"(<Permit subsystem="JOYSTICK")", R"(<Permit subsystem="@JOYSTIK")", "'JOYSTICK'"},
+    {"E0304", R"(<Ground subsystem="COMMUNICATION")", R"(<Ground subsystem="@COMM")"},
+    {"E0304", R"(from="JOYSTICK.JOYSTICK_STATE")", R"(from="@JOYSTICKS.JOYSTICK_STATE")"},
+    {"E0305", R"(start="telepresence")", R"(start="@telepresense")", "'telepresence'"},
+    {"E0305", R"(mode="telepresence")", R"(mode="@none")"},
+    {"E0306", R"(state="SafeOperational"/>
+    </Plan>)", R"(state="@HardwareInit"/>
+    </Plan>)"},
+    {"E0306", R"(configuration="COUPLED" state="SafeOperational")", R"(configuration="COUPLED" state="@PostOperational")"},
+    {"E0307", R"(to="JOYSTICK.ROBOT_STATE")", R"(to="@JOYSTICK.ROBOT_STATES")", "'ROBOT_STATE'"},
+    {"E0307", R"(from="MANIPULATOR.ROBOT_STATE")", R"(from="@MANIPULATOR.ROBOT")"},
+    {"E0308", R"(<Link id="2" from="JOYSTICK.JOYSTICK_STATE" to="MANIPULATOR.JOYSTICK_STATE"/>)",
+              R"(@<Link id="2" from="JOYSTICK.JOYSTICK_STATE" to="JOYSTICK.ROBOT_STATE"/>)"},
+    {"E0309", R"(<Establish link="2"/>)", R"(<Establish link="@3"/>)"},
+    {"E0310", R"(functions="SET_FORCE_SCALE")", R"(functions="@SET_FORCE_SCALES")", "'SET_FORCE_SCALE'"},
+    {"E0310", R"(functions="SET_STATE CONFIGURE")", R"(functions="@SET_STATE NONE")"},
+    {"E0310", R"(<Permit subsystem="JOYSTICK" functions="SET_FORCE_SCALE")", R"(<Permit subsystem="JOYSTICK" functions="@SET_MODE")"},
+    {"E0311", R"(event="TORQUE_LIMIT_EXCEEDED")", R"(event="@TORQUE_LIMIT_EXCEDED")", "'TORQUE_LIMIT_EXCEEDED'"},
+    {"E0312", R"(device="ROBOT")", R"(device="@ROBOTS")", "'ROBOT'"},
+    {"E0313", R"(telemetry="127.0.0.1:10015")", R"(telemetry="@0.0.0.0:10015")", "loopback"},
+    {"E0313", R"(telecommand="127.0.0.1:10025")", R"(telecommand="@127.0.0.1.example.org:10025")"},
+    {"E0314", R"(path="log/rokviss.db")", R"(path="@/tmp/rokviss.db")"},
+    {"E0314", R"(path="log/rokviss.db")", R"(path="@log/../../rokviss.db")"},
+    {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@/etc/passwd")"},
+    {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@../../../joystick.xml")"},
+    {"E0315", R"(descriptor="joystick.xml")", R"(descriptor="@../joystick.xml.none")"},
+    {"E0316", R"(configuration="COUPLED" state)", R"(configuration="@COUPLE" state)", "'COUPLED'"},
+    {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
+};
+// clang-format on
+
+TEST(MissionErrors, AreReportedWhereTheyStand) {
+  for (const Bad& bad : mistakes) {
+    const auto expected = marked(changed(bad.from, bad.to));
+    const bool anywhere = std::string_view{bad.to}.find('@') == std::string_view::npos;
+    const auto source = overlay({{"mission.xml", expected.text}});
+    const auto reading = read_mission(data / "mission.xml", source);
+    const std::string found = rendered(reading.problems, source);
+    EXPECT_FALSE(reading.value) << bad.to;
+    ASSERT_FALSE(reading.problems.empty()) << bad.to;
+    const bool there = std::ranges::any_of(reading.problems, [&](const Diagnostic& problem) {
+      return problem.code == bad.code && problem.hint.find(bad.hint) != std::string::npos &&
+             (anywhere || (problem.at.line == expected.at.line && problem.at.column == expected.at.column));
+    });
+    EXPECT_TRUE(there) << bad.code << " expected at " << expected.at.line << ":" << expected.at.column << " for "
+                       << bad.to << "\nfound:\n"
+                       << found;
+    EXPECT_LE(reading.problems.size(), 2U) << "follow-up problems:\n" << found;
+  }
+}
+
+TEST(MissionErrors, ProblemsOfASubsystemCarryItsOwnFile) {
+  const std::string joystick = file_system()(data / "joystick.xml").value();
+  const auto reading = read_mission(data / "mission.xml",
+                                    overlay({{"joystick.xml", changed("type=\"UINT8\"", "type=\"UNIT8\"", joystick)}}));
+  ASSERT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, file_system());
+  EXPECT_EQ(reading.problems[0].file, data / "joystick.xml");
+  EXPECT_EQ(reading.problems[0].code, "E0104");
+}
+
+TEST(MissionErrors, FieldsOfALinkMustMatch) {
+  const std::string joystick = file_system()(data / "joystick.xml").value();
+  const auto with = [&](const std::string& from, const std::string& to) {
+    const auto reading = read_mission(data / "mission.xml", overlay({{"joystick.xml", changed(from, to, joystick)}}));
+    EXPECT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, file_system());
+    return reading.problems.empty() ? std::string{} : reading.problems[0].message;
+  };
+  const std::string torque = "name=\"TORQUE\" type=\"DOUBLE\" count=\"2\" unit=\"N m\"";
+  EXPECT_EQ(with(torque, "name=\"TORQUE\" type=\"FLOAT\" count=\"2\" unit=\"N m\""),
+            "link 1 does not fit: field 'TORQUE': DOUBLE[2] N m against FLOAT[2] N m");
+  EXPECT_EQ(with(torque, "name=\"TORQUE\" type=\"DOUBLE\" count=\"2\" unit=\"mN m\""),
+            "link 1 does not fit: field 'TORQUE': DOUBLE[2] N m against DOUBLE[2] mN m");
+  EXPECT_EQ(with(torque, "name=\"FORCE\" type=\"DOUBLE\""),
+            "link 1 does not fit: field 'FORCE' is not in the provided set");
+  EXPECT_EQ(with("from=\"MANIPULATOR\"", "from=\"OTHER\""),
+            "link 1 does not fit: 'ROBOT_STATE' is required from 'OTHER'");
+  EXPECT_EQ(with("from=\"MANIPULATOR\"", "methods=\"tipc\""), "link 1 does not fit: no common method");
+}
+
+TEST(MissionErrors, NamesAndIdsOfSubsystemsAreUnique) {
+  const std::string joystick = file_system()(data / "joystick.xml").value();
+  const auto code = [&](const std::string& from, const std::string& to) {
+    const auto reading = read_mission(data / "mission.xml", overlay({{"joystick.xml", changed(from, to, joystick)}}));
+    EXPECT_FALSE(reading.problems.empty());
+    return reading.problems.empty() ? std::string{} : reading.problems[0].code;
+  };
+  EXPECT_EQ(code("id=\"11\"", "id=\"10\""), "E0302");
+  EXPECT_EQ(code("id=\"11\"", "id=\"1\""), "E0303");
+  EXPECT_EQ(code("name=\"JOYSTICK\"", "name=\"MANIPULATOR\""), "E0301");
+  const std::string supervisor = file_system()(data / "supervisor.xml").value();
+  const auto reading =
+      read_mission(data / "mission.xml", overlay({{"supervisor.xml", changed("id=\"1\"", "id=\"3\"", supervisor)}}));
+  ASSERT_FALSE(reading.problems.empty());
+  EXPECT_EQ(reading.problems[0].code, "E0303");
+}
+
+TEST(MissionErrors, EndnodesStayOnThisComputer) {
+  const std::string robot = file_system()(data / "manipulator.xml").value();
+  const auto reading = read_mission(data / "mission.xml",
+                                    overlay({{"manipulator.xml", changed("127.0.0.1:5001", "192.0.2.1:5001", robot)}}));
+  ASSERT_EQ(reading.problems.size(), 1U);
+  EXPECT_EQ(reading.problems[0].code, "E0313");
+  EXPECT_EQ(reading.problems[0].file, data / "manipulator.xml");
+}
+
+TEST(MissionErrors, EveryTruncationIsRefused) {
+  std::string text = good_mission();
+  while (text.ends_with('\n')) text.pop_back();
+  for (std::size_t octets = 0; octets < text.size(); ++octets)
+    EXPECT_FALSE(read_mission(data / "mission.xml", overlay({{"mission.xml", text.substr(0, octets)}})).value)
+        << octets;
+}
+
+}  // namespace
+}  // namespace hirosco::descriptor

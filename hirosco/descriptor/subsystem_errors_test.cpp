@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "hirosco/descriptor/testing.hpp"
+
+namespace hirosco::descriptor {
+namespace {
+
+using testing::marked;
+using testing::read_text;
+using testing::rendered;
+using testing::text_source;
+
+/// One mistake each; '@' marks the line and column that must be named.
+struct Bad {
+  const char* code;
+  const char* body;
+  const char* hint = nullptr;  ///< part of the hint, where it matters
+};
+
+/// `body` stands inside this subsystem, from its second line on.
+std::string whole(const std::string& body) {
+  return "<Subsystem name=\"S\" id=\"10\">\n" + body +
+         "\n<StructRef name=\"CUR_VALUES\" id=\"0\" type=\"STRUCT\">"
+         "<ParamRef name=\"STATE\" id=\"0\" type=\"INT32\"/><ParamRef name=\"POSITION\" id=\"0\" type=\"DOUBLE\" "
+         "count=\"2\"/>"
+         "</StructRef>\n<ParamRef name=\"GOAL\" id=\"1\" type=\"DOUBLE\" minimum=\"-1\" maximum=\"1\"/>\n"
+         "<Device name=\"ROBOT\"><Input><Field name=\"Q\" type=\"DOUBLE\"/></Input></Device>\n</Subsystem>";
+}
+
+// clang-format off
+constexpr Bad bad_elements[] = {
+    {"E0102", R"(@<Paramter name="X"/>)", "'Parameters'"},
+    {"E0102", R"(<Parameters>@<Device name="X"/></Parameters>)"},
+    {"E0102", R"(<StructRef name="A" id="1"><ParamRef name="X" id="9" type="INT8"/>@<StructRef name="B" id="2"/></StructRef>)"},
+    {"E0102", R"(<TestService>@<Event/></TestService>)"},
+    {"E0103", R"(<ParamRef name="X" id="2" type="DOUBLE" @units="m"/>)", "'unit'"},
+    {"E0103", R"(<Parameters @name="X"/>)"},
+    {"E0104", R"(<ParamRef name="X" id="2" type="@DUBLE"/>)", "'DOUBLE'"},
+    {"E0104", R"(<ParamRef name="X" id="2" type="@STRUCT"/>)"},
+    {"E0104", R"(<StructRef name="A" id="1" type="@DOUBLE"><ParamRef name="X" id="9" type="INT8"/></StructRef>)"},
+    {"E0105", R"(@<ParamRef id="2" type="DOUBLE"/>)"},
+    {"E0105", R"(@<ParamRef name="X" id="2"/>)"},
+    {"E0105", R"(@<ParamRef name="X" type="DOUBLE"/>)"},
+    {"E0105", R"(<EventService>@<Event name="X" id="3"/></EventService>)"},
+    {"E0106", R"(@<StructRef name="A" id="1"/>)"},
+    {"E0106", R"(@<Enumeration name="A"/>)"},
+    {"E0106", R"(@<HKService id="1" interval="1"/>)"},
+    {"E0106", R"(<HKService id="1" interval="1">@<SampledOnce/></HKService>)"},
+    {"E0106", R"(@<Device name="X"/>)"},
+    {"E0107", "<Parameters/>\n@<Parameters/>", "line 2"},
+    {"E0107", "<Hang/>@<Hang/>"},
+    {"E0108", "@text"},
+    {"E0108", "<Parameters> \n  @x</Parameters>"},
+    {"E0109", R"(<ParamRef name="X" id="2" type="DOUBLE" init="@ "/>)"},
+    {"E0109", R"(<Enumeration name="A">@<Text value="1"> </Text></Enumeration>)"},
+    {"E0110", R"(<ParamRef name="@A-B" id="2" type="DOUBLE"/>)"},
+    {"E0110", R"(<ParamRef name="@" id="2" type="DOUBLE"/>)"},
+    {"E0110", R"(<ParamRef name="@9A" id="2" type="DOUBLE"/>)"},
+    {"E0110", R"(<FunctionService><Function name="@Move"/></FunctionService>)", "upper-case"},
+    {"E0110", R"(<FunctionService><Function name="@ABCDEFGHIJKLMNOPQ"/></FunctionService>)"},
+};
+constexpr Bad bad_values[] = {
+    {"E0111", R"(<ParamRef name="X" id="@one" type="DOUBLE"/>)"},
+    {"E0111", R"(<ParamRef name="X" id="@1.5" type="DOUBLE"/>)"},
+    {"E0111", R"(<ParamRef name="X" id="2" type="DOUBLE" init="@nan"/>)"},
+    {"E0111", R"(<ParamRef name="X" id="2" type="DOUBLE" maximum="@inf"/>)"},
+    {"E0111", R"(<ParamRef name="X" id="2" type="DOUBLE" init="@1e400"/>)"},
+    {"E0111", R"(<ParamRef name="X" id="2" type="DOUBLE" init="@1,5"/>)"},
+    {"E0111", R"(<ParamRef name="X" id="2" type="DOUBLE" count="2" init="@1 2x"/>)"},
+    {"E0111", R"(<ParamRef name="X" id="@99999999999999999999" type="DOUBLE"/>)"},
+    {"E0111", R"(<Resources><Memory maximum="@64MB"/></Resources>)", "MiB"},
+    {"E0111", R"(<Resources><Memory maximum="@9000000000GiB"/></Resources>)"},
+    {"E0112", R"(<ParamRef name="X" id="@256" type="DOUBLE"/>)"},
+    {"E0112", R"(<ParamRef name="X" id="@-1" type="DOUBLE"/>)"},
+    {"E0112", R"(<ParamRef name="X" id="2" type="DOUBLE" count="@0"/>)"},
+    {"E0112", R"(<EventService><Event name="X" id="@65536" severity="low"/></EventService>)"},
+    {"E0112", R"(<HKService id="1" interval="@0"><SampledOnce><ParamRef name="GOAL"/></SampledOnce></HKService>)"},
+    {"E0112", R"(<HKService id="1" interval="@4294967296"><SampledOnce><ParamRef name="GOAL"/></SampledOnce></HKService>)"},
+    {"E0112", R"(<HKService id="1" interval="@-1"><SampledOnce><ParamRef name="GOAL"/></SampledOnce></HKService>)"},
+    {"E0112", R"(<HKService id="1" interval="5"><SampledNREPTimes nrep="@0"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="@0"/>)"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="1" priority="@99"/>)"},
+    {"E0112", R"(<Configuration name="C" id="@0" sampling_us="1"/>)"},
+    {"E0112", R"(<Resources><Pool block="@0" count="1"/></Resources>)"},
+    {"E0112", R"(<Hang realtime="@0"/>)"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT" watchdog_ms="@0"><Endnode transfer="unix" address="x"/></Device></Configuration>)"},
+    {"E0113", R"(<ParamRef name="X" id="2" type="DOUBLE" read_only="@true"/>)"},
+    {"E0113", R"(<EventService><Event name="X" id="1" severity="@meduim"/></EventService>)", "'medium'"},
+    {"E0113", R"(<FunctionService><Function name="X" states="@Operational SaveOperational"/></FunctionService>)", "'SafeOperational'"},
+    {"E0113", R"(<FunctionService><Function name="X" states="@Operational Operational"/></FunctionService>)"},
+    {"E0113", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT"><Endnode transfer="@usb" address="x"/></Device></Configuration>)", "one of"},
+    {"E0114", R"(<ParamRef name="X" id="2" type="DOUBLE" unit="@123456789012345678901234567890123"/>)"},
+    {"E0206", R"(<ParamRef name="X" id="2" type="DOUBLE" minimum="@2" maximum="1"/>)"},
+    {"E0207", R"(<ParamRef name="X" id="2" type="DOUBLE" maximum="1" init="@2"/>)"},
+    {"E0207", R"(@<ParamRef name="X" id="2" type="DOUBLE" minimum="1"/>)", "init"},
+    {"E0207", R"(<FunctionService><Function name="X"><Argument name="A" type="DOUBLE" minimum="1" default="@0"/></Function></FunctionService>)"},
+    {"E0207", R"(<Configuration name="C" id="1" sampling_us="1"><Initial><ParamRef name="GOAL" value="@2"/></Initial></Configuration>)"},
+    {"E0208", R"(<ParamRef name="X" id="2" type="UINT8" init="@1.5"/>)"},
+    {"E0208", R"(<ParamRef name="X" id="2" type="UINT8" init="@256"/>)"},
+    {"E0208", R"(<ParamRef name="X" id="2" type="INT64" init="@1e300"/>)"},
+    {"E0208", R"(<ParamRef name="X" id="2" type="FLOAT" init="@1e39"/>)"},
+    {"E0208", R"(<ParamRef name="X" id="2" type="INT8" minimum="@-129"/>)"},
+    {"E0208", "<Enumeration name=\"A\"><Text value=\"1\">a</Text></Enumeration>\n<ParamRef name=\"X\" id=\"2\" type=\"DOUBLE\" enumeration=\"@A\"/>"},
+    {"E0209", R"(<ParamRef name="X" id="2" type="DOUBLE" count="2" init="@1"/>)"},
+    {"E0209", R"(<Device name="X"><Output><Field name="Y" type="DOUBLE" safe="@0 0"/></Output></Device>)"},
+    {"E0209", R"(<Configuration name="C" id="1" sampling_us="1"><Initial><ParamRef name="CUR_VALUES" value="@1 2"/></Initial></Configuration>)"},
+};
+constexpr Bad bad_meaning[] = {
+    {"E0201", "<ParamRef name=\"X\" id=\"2\" type=\"INT8\"/>\n@<ParamRef name=\"X\" id=\"3\" type=\"INT8\"/>"},
+    {"E0201", R"(<StructRef name="A" id="1"><ParamRef name="X" id="2" type="INT8"/>@<ParamRef name="X" id="3" type="INT8"/></StructRef>)"},
+    {"E0201", "<FunctionService><Function name=\"A\"/></FunctionService>\n<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"><FunctionService>@<Function name=\"A\"/></FunctionService></Configuration>"},
+    {"E0201", R"(<FunctionService><Function name="A"><Argument name="X" type="INT8"/>@<Argument name="X" type="INT8"/></Function></FunctionService>)"},
+    {"E0201", R"(<EventService><Event name="A" id="1" severity="low"/>@<Event name="A" id="2" severity="low"/></EventService>)"},
+    {"E0201", "<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"/>\n@<Configuration name=\"C\" id=\"2\" sampling_us=\"1\"/>"},
+    {"E0201", "<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"><RealTimeLinkService><Provides name=\"P\"><ParamRef name=\"GOAL\"/><ParamRef name=\"@GOAL\"/></Provides></RealTimeLinkService></Configuration>"},
+    {"E0202", R"(<EventService><Event name="A" id="1" severity="low"/><Event name="B" id="@1" severity="low"/></EventService>)"},
+    {"E0202", "<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"/>\n<Configuration name=\"D\" id=\"@1\" sampling_us=\"1\"/>"},
+    {"E0202", R"(<Enumeration name="A"><Text value="1">a</Text>@<Text value="1">b</Text></Enumeration>)"},
+    {"E0203", "<ParamRef name=\"X\" id=\"2\" type=\"INT8\"/>\n<ParamRef name=\"Y\" id=\"@2\" type=\"INT8\"/>", "together"},
+    {"E0203", R"(<ParamRef name="X" id="2" type="INT8"/><StructRef name="A" id="1"><ParamRef name="Y" id="@2" type="INT8"/></StructRef>)"},
+    {"E0204", R"(<HKService id="1" interval="1"><SampledOnce><ParamRef name="@CUR_VALUE"/></SampledOnce></HKService>)", "'CUR_VALUES'? (line 3)"},
+    {"E0204", R"(<HKService id="1" interval="1"><SampledOnce><ParamRef name="@CUR_VALUES.SPEED"/></SampledOnce></HKService>)"},
+    {"E0204", R"(<Configuration name="C" id="1" sampling_us="1"><Initial><ParamRef name="@GAOL" value="0"/></Initial></Configuration>)", "'GOAL'"},
+    {"E0205", R"(<StructRef name="A" id="1"><ParamRef name="STATE" id="2" type="INT8"/></StructRef><HKService id="1" interval="1"><SampledOnce><ParamRef name="@STATE"/></SampledOnce></HKService>)", "'A.STATE' 'CUR_VALUES.STATE'"},
+    {"E0210", R"(<ParamRef name="X" id="2" type="INT8" enumeration="@STATES"/>)"},
+    {"E0211", "<HKService id=\"1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService>\n<HKService id=\"@1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService>"},
+    {"E0211", "<HKService id=\"1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService>\n<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"><HKService id=\"@1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService></Configuration>"},
+    {"E0212", "<FunctionService/>\n@<FunctionService/>", "line 2"},
+    {"E0212", "<EventService/>\n@<EventService/>"},
+    {"E0212", "<TestService/>@<TestService/>"},
+    {"E0212", "<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"><EventService/>@<EventService/></Configuration>"},
+    {"E0213", R"(<FunctionService><Function name="@SET_STATE"/></FunctionService>)"},
+    {"E0214", R"(<HKService id="1" interval="500"><SampledNREPTimes nrep="@3"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
+    {"E0214", R"(<HKService id="1" interval="5"><SampledNREPTimes nrep="@10"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
+    {"E0215", R"(@<HKService id="1" interval="510"><SampledNREPTimes nrep="510"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)", "4072"},
+    {"E0216", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="@ROBOTS"><Endnode transfer="unix" address="x"/></Device></Configuration>)", "'ROBOT'"},
+    {"E0106", R"(<Configuration name="C" id="1" sampling_us="1">@<Device name="ROBOT"/></Configuration>)"},
+    {"E0106", R"(<Configuration name="C" id="1" sampling_us="1"><RealTimeLinkService>@<Requires name="R"/></RealTimeLinkService></Configuration>)"},
+    {"E0217", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT"><Endnode transfer="udp" address="@here"/></Device></Configuration>)"},
+    {"E0217", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT"><Endnode transfer="unix" address="@../x"/></Device></Configuration>)"},
+    {"E0217", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT"><Endnode transfer="serial" address="@/dev/../etc/x"/></Device></Configuration>)"},
+    {"E0218", R"(<Device name="X" actuator="yes"><Output>@<Field name="Y" type="DOUBLE"/></Output></Device>)", "safe"},
+    {"E0106", R"(@<Device name="X" actuator="yes"><Input><Field name="Y" type="DOUBLE"/></Input></Device>)"},
+};
+// clang-format on
+
+void expect_problem(const Bad& bad, const std::string& text) {
+  const auto expected = marked(text);
+  const auto reading = read_text(expected.text);
+  const std::string found = rendered(reading.problems, text_source(expected.text));
+  EXPECT_FALSE(reading.value) << expected.text;
+  ASSERT_EQ(reading.problems.size(), 1U) << bad.code << " expected for\n" << text << "\nfound:\n" << found;
+  const Diagnostic& problem = reading.problems.front();
+  EXPECT_EQ(problem.code, bad.code) << found;
+  EXPECT_EQ(problem.at.line, expected.at.line) << found;
+  EXPECT_EQ(problem.at.column, expected.at.column) << found;
+  EXPECT_FALSE(problem.message.empty());
+  EXPECT_NE(problem.hint.find(bad.hint == nullptr ? "" : bad.hint), std::string::npos) << found;
+}
+
+TEST(SubsystemErrors, TheSubsystemAroundTheMistakesIsGood) {
+  const auto reading = read_text(whole(""));
+  EXPECT_TRUE(reading.value.has_value()) << rendered(reading.problems, text_source(whole("")));
+}
+TEST(SubsystemErrors, ElementsAndAttributesAreReportedWhereTheyStand) {
+  for (const Bad& bad : bad_elements) expect_problem(bad, whole(bad.body));
+}
+TEST(SubsystemErrors, ValuesAreReportedWhereTheyStand) {
+  for (const Bad& bad : bad_values) expect_problem(bad, whole(bad.body));
+}
+TEST(SubsystemErrors, ContradictionsAreReportedWhereTheyStand) {
+  for (const Bad& bad : bad_meaning) expect_problem(bad, whole(bad.body));
+}
+TEST(SubsystemErrors, TheTableIsAsLongAsPromised) {
+  EXPECT_GE(std::size(bad_elements) + std::size(bad_values) + std::size(bad_meaning), 100U);
+}
+
+TEST(SubsystemErrors, TheHeadIsChecked) {
+  expect_problem({"E0101", ""}, "@<Mission name=\"S\" id=\"10\"/>");
+  expect_problem({"E0105", ""}, "@<Subsystem id=\"10\"/>");
+  expect_problem({"E0112", ""}, "<Subsystem name=\"S\" id=\"@2040\"/>");
+  expect_problem({"E0112", ""}, "<Subsystem name=\"S\" id=\"@0\"/>");
+  expect_problem({"E0002", ""}, "<Subsystem name=\"S\" id=\"10\">\n  <Parameters>\n</@Subsystem>");
+  expect_problem({"E0003", ""}, "@<!DOCTYPE Subsystem []><Subsystem name=\"S\" id=\"10\"/>");
+}
+
+TEST(SubsystemErrors, AUsedIdNamesBothPlaces) {
+  const auto reading = read_text(
+      "<Subsystem name=\"S\" id=\"1\">\n  <ParamRef name=\"X\" id=\"2\" type=\"INT8\"/>\n"
+      "  <ParamRef name=\"Y\" id=\"2\" type=\"INT8\"/>\n</Subsystem>");
+  ASSERT_EQ(reading.problems.size(), 1U);
+  EXPECT_EQ(reading.problems[0].message, "parameter id 'INT8 2' is already used in 2:26");
+  EXPECT_EQ(reading.problems[0].at.line, 3);
+  EXPECT_EQ(reading.problems[0].at.column, 26);
+}
+
+TEST(SubsystemErrors, AllAreReportedAtOnceInFileOrder) {
+  const auto reading = read_text(
+      "<Subsystem name=\"S\" id=\"1\">\n<HKService id=\"1\" interval=\"0\"><SampledOnce><ParamRef "
+      "name=\"NONE\"/></SampledOnce></HKService>\n<ParamRef name=\"X\" id=\"300\" type=\"REAL\"/>\n"
+      "<Nonsense/>\n</Subsystem>");
+  std::string codes;
+  for (const Diagnostic& problem : reading.problems) codes += problem.code + " ";
+  EXPECT_EQ(codes, "E0112 E0204 E0112 E0104 E0102 ");
+}
+
+TEST(SubsystemErrors, AFileThatCannotBeReadIsAProblem) {
+  const auto reading = read_subsystem("none.xml", [](const auto&) { return std::nullopt; });
+  ASSERT_EQ(reading.problems.size(), 1U);
+  EXPECT_EQ(reading.problems[0].code, "E0001");
+  EXPECT_FALSE(file_system()(testing::data).has_value()) << "a folder is not a file";
+  EXPECT_FALSE(file_system()(testing::data / "none.xml").has_value());
+  EXPECT_FALSE(file_system()("/dev/zero").has_value()) << "an endless file must not be read";
+}
+
+}  // namespace
+}  // namespace hirosco::descriptor
