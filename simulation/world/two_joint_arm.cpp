@@ -100,7 +100,8 @@ Contact contact_at(const ContourParameters& contour, const Vec2& tip, const Vec2
 }
 
 TwoJointArm::TwoJointArm(const ArmParameters& parameters) noexcept
-    : parameters_{parameters},
+    : made_{parameters},
+      parameters_{parameters},
       state_{.motor_rad = parameters.home_rad, .motor_rad_s = {}, .link_rad = parameters.home_rad, .link_rad_s = {}},
       temperature_c_{parameters.thermal.ambient_c, parameters.thermal.ambient_c} {}
 
@@ -182,6 +183,8 @@ double TwoJointArm::energy_j() const noexcept {
   const double stretch = std::max(0.0, std::hypot(along[0], along[1]) - spring.free_length_m);
   return energy + spring.stiffness_n_per_m * square(stretch) / 2;
 }
+
+void TwoJointArm::set_friction(bool on) noexcept { parameters_ = on ? made_ : made_.without_friction(); }
 
 bool TwoJointArm::hook_spring(std::size_t spring) noexcept {
   if (spring >= parameters_.springs.size()) return false;

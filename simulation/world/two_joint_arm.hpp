@@ -115,6 +115,9 @@ class TwoJointArm {
   [[nodiscard]] const Vec2& temperature_c() const noexcept { return temperature_c_; }
   void set_temperature(std::size_t joint, double celsius) noexcept { temperature_c_[joint] = celsius; }
 
+  /// Joint and contact friction as they were made, or none.
+  void set_friction(bool on) noexcept;
+
   /// False when the tip is not within reach of the spring's slack end.
   bool hook_spring(std::size_t spring) noexcept;
   void release_spring() noexcept { hooked_.reset(); }
@@ -127,6 +130,7 @@ class TwoJointArm {
   [[nodiscard]] Vec2 spring_force_at(const Vec2& tip) const noexcept;
   void heat(const Vec2& motor_torque_n_m, double seconds) noexcept;
 
+  ArmParameters made_;
   ArmParameters parameters_;
   ArmState state_;
   Vec2 temperature_c_;

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/devices/joystick_device.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "simulation/world/two_joint_arm.hpp"
+
+namespace hirosco::simulation {
+namespace {
+
+Mat2 robot_home_jacobian() noexcept {
+  const ArmParameters robot;
+  return jacobian_of(robot, robot.home_rad);
+}
+
+constexpr double farthest_m = 0.2;
+
+}  // namespace
+
+JoystickDevice::JoystickDevice(FlowFactory& flows, FlowAddress address, const Settings& settings,
+                               const HandleParameters& handle)
+    : SimulatedDevice{flows, std::move(address), settings}, handle_{settings.seed, robot_home_jacobian(), handle} {}
+
+Result<> JoystickDevice::take(OctetReader payload) noexcept {
+  const Vec2 torque{payload.get<double>(), payload.get<double>()};
+  if (!payload.exhausted()) return fail(ErrorCode::Malformed, "joystick command size");
+  for (std::size_t i = 0; i < 2; ++i) commanded_[i] = std::isfinite(torque[i]) ? torque[i] : 0;
+  return ok();
+}
+
+void JoystickDevice::advance(Duration cycle) noexcept {
+  const double limit = handle_.parameters().torque_max_n_m;
+  applied_ = mode() == DeviceMode::Active ? commanded_ : Vec2{};
+  raise(device_flag::torque_saturated, std::abs(applied_[0]) > limit || std::abs(applied_[1]) > limit);
+  for (double& torque : applied_) torque = std::clamp(torque, -limit, limit);
+  handle_.step(applied_, cycle);
+}
+
+void JoystickDevice::write_sensors(OctetWriter& payload) noexcept {
+  payload.put(handle_.angle_rad()[0]).put(handle_.angle_rad()[1]);
+  payload.put(handle_.rate_rad_s()[0]).put(handle_.rate_rad_s()[1]);
+}
+
+Result<> JoystickDevice::hand(std::string_view line) { return fault("hand " + std::string{line}); }
+
+Result<> JoystickDevice::do_fault(const Words& words) {
+  if (words[0] != "hand") return fail(ErrorCode::InvalidArgument, "unknown fault");
+  OperatorHand& hand = handle_.hand();
+  const std::string_view what = words[1];
+  if (what == "wander") {
+    HIROSCO_TRY(words.expect(2));
+    hand.wander();
+    return ok();
+  }
+  if (what == "hold") {
+    HIROSCO_TRY(words.expect(4));
+    HIROSCO_TRY_LET(const double first, words.number(2, -1, 1));
+    HIROSCO_TRY_LET(const double second, words.number(3, -1, 1));
+    hand.hold({first, second});
+    return ok();
+  }
+  if (what == "sine") {
+    HIROSCO_TRY(words.expect(words.count() == 6 ? 6 : 5));
+    HIROSCO_TRY_LET(const double axis, words.number(2, 1, 2));
+    HIROSCO_TRY_LET(const double amplitude, words.number(3, 0, 1));
+    HIROSCO_TRY_LET(const double frequency, words.number(4, 0, 20));
+    double phase = 0;
+    if (words.count() == 6) {
+      HIROSCO_TRY_LET(phase, words.number(5, -7, 7));
+    }
+    hand.sine(static_cast<std::size_t>(axis) - 1, amplitude, frequency, phase);
+    return ok();
+  }
+  if (what == "ramp" || what == "cartesian") {
+    HIROSCO_TRY(words.expect(5));
+    HIROSCO_TRY_LET(const double dx, words.number(2, -farthest_m, farthest_m));
+    HIROSCO_TRY_LET(const double dy, words.number(3, -farthest_m, farthest_m));
+    HIROSCO_TRY_LET(const double pace, words.number(4, 1e-4, 1e4));
+    what == "ramp" ? hand.ramp({dx, dy}, pace) : hand.cartesian({dx, dy}, pace);
+    return ok();
+  }
+  return fail(ErrorCode::InvalidArgument, "hand: hold, sine, ramp, cartesian or wander");
+}
+
+std::string JoystickDevice::do_truth() const {
+  const Vec2 hand = handle_.hand_torque_n_m();
+  return fmt::format("angle_1={:.6f} angle_2={:.6f} hand_torque_1={:.5f} hand_torque_2={:.5f} motor_1={:.5f} "
+                     "motor_2={:.5f} flags={}",
+                     handle_.angle_rad()[0], handle_.angle_rad()[1], hand[0], hand[1], applied_[0], applied_[1],
+                     flags());
+}
+
+}  // namespace hirosco::simulation

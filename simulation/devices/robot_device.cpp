@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/devices/robot_device.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace hirosco::simulation {
+namespace {
+
+constexpr double over_temperature_c = 80;
+constexpr double gear_ratio = 160;
+constexpr double encoder_step_rad = 2 * std::numbers::pi / 131'072;  // 17 bit
+
+double quantized(double angle_rad, double step_rad) noexcept { return std::round(angle_rad / step_rad) * step_rad; }
+
+void put(OctetWriter& writer, const Vec2& values) noexcept { writer.put(values[0]).put(values[1]); }
+
+}  // namespace
+
+RobotDevice::RobotDevice(FlowFactory& flows, FlowAddress address, const Settings& settings, const ArmParameters& arm,
+                         const RobotSensors& sensors)
+    : SimulatedDevice{flows, std::move(address), settings}, arm_{arm}, sensors_{sensors}, random_{settings.seed} {}
+
+Result<> RobotDevice::take(OctetReader payload) noexcept {
+  const Vec2 torque{payload.get<double>(), payload.get<double>()};
+  if (!payload.exhausted()) return fail(ErrorCode::Malformed, "robot command size");
+  for (std::size_t i = 0; i < 2; ++i) commanded_[i] = std::isfinite(torque[i]) ? torque[i] : 0;
+  return ok();
+}
+
+void RobotDevice::advance(Duration cycle) noexcept {
+  const double limit = arm_.parameters().joint.torque_max_n_m;
+  applied_ = {};
+  if (mode() == DeviceMode::Active) applied_ = commanded_;
+  // Drives in short circuit: heavily damped, no torque at rest.
+  constexpr double braking_n_m_s = 60;
+  if (mode() == DeviceMode::Stop) applied_ = -braking_n_m_s * arm_.state().motor_rad_s;
+  raise(device_flag::torque_saturated, std::abs(applied_[0]) > limit || std::abs(applied_[1]) > limit);
+  for (double& torque : applied_) torque = std::clamp(torque, -limit, limit);
+  arm_.step(applied_, cycle);
+  const Vec2& celsius = arm_.temperature_c();
+  raise(device_flag::over_temperature, std::max(celsius[0], celsius[1]) >= over_temperature_c);
+}
+
+void RobotDevice::write_sensors(OctetWriter& payload) noexcept {
+  const ArmState& state = arm_.state();
+  Vec2 motor = state.motor_rad;
+  Vec2 link = state.link_rad;
+  Vec2 torque = arm_.joint_torque_n_m();
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (sensors_.quantized) motor[i] = quantized(motor[i], encoder_step_rad / gear_ratio);
+    if (sensors_.quantized) link[i] = quantized(link[i], encoder_step_rad);
+    if (sensors_.torque_noise_n_m > 0) torque[i] += sensors_.torque_noise_n_m * random_.normal();
+  }
+  put(payload, motor);
+  put(payload, state.motor_rad_s);
+  put(payload, link);
+  put(payload, state.link_rad_s);
+  put(payload, torque);
+  for (const double celsius : arm_.temperature_c()) payload.put(static_cast<float>(celsius));
+}
+
+Result<> RobotDevice::do_fault(const Words& words) {
+  const std::string_view what = words[0];
+  if (what == "temperature") {
+    HIROSCO_TRY(words.expect(3));
+    HIROSCO_TRY_LET(const double joint, words.number(1, 1, 2));
+    HIROSCO_TRY_LET(const double celsius, words.number(2, -273, 1000));
+    arm_.set_temperature(static_cast<std::size_t>(joint) - 1, celsius);
+    return ok();
+  }
+  if (what == "hook") {
+    HIROSCO_TRY(words.expect(2));
+    HIROSCO_TRY_LET(const double spring, words.number(1, 1, 2));
+    if (!arm_.hook_spring(static_cast<std::size_t>(spring) - 1))
+      return fail(ErrorCode::Unavailable, "spring not within reach of the tip");
+    return ok();
+  }
+  if (what == "release") {
+    HIROSCO_TRY(words.expect(1));
+    arm_.release_spring();
+    return ok();
+  }
+  if (what == "friction") {
+    HIROSCO_TRY(words.expect(2));
+    if (words[1] != "on" && words[1] != "off") return fail(ErrorCode::InvalidArgument, "friction on or off");
+    arm_.set_friction(words[1] == "on");
+    return ok();
+  }
+  if (what == "noise") {
+    HIROSCO_TRY(words.expect(2));
+    HIROSCO_TRY_LET(sensors_.torque_noise_n_m, words.number(1, 0, 10));
+    return ok();
+  }
+  return fail(ErrorCode::InvalidArgument, "unknown fault");
+}
+
+std::string RobotDevice::do_truth() const {
+  const Contact contact = arm_.contact();
+  const Vec2 tip = arm_.tip_m();
+  const Vec2 torque = arm_.joint_torque_n_m();
+  return fmt::format("tip_x={:.6f} tip_y={:.6f} force={:.4f} penetration_mm={:.5f} torque_1={:.5f} torque_2={:.5f} "
+                     "temperature_1={:.2f} temperature_2={:.2f} motor_1={:.4f} motor_2={:.4f} flags={}",
+                     tip[0], tip[1], contact.normal_force_n, 1e3 * contact.penetration_m, torque[0], torque[1],
+                     arm_.temperature_c()[0], arm_.temperature_c()[1], applied_[0], applied_[1], flags());
+}
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "simulation/devices/simulated_device.hpp"
+#include "simulation/world/random.hpp"
+#include "simulation/world/two_joint_arm.hpp"
+
+namespace hirosco::simulation {
+
+struct RobotSensors {
+  bool quantized{true};              ///< 17 bit per turn: motor side before the gear of 160, link side behind it
+  double torque_noise_n_m{0};        ///< standard deviation
+};
+
+/// The rokviss robot behind its joint bus.
+/// To the subsystem: MOTOR_POSITION DOUBLE[2], MOTOR_VELOCITY DOUBLE[2], POSITION DOUBLE[2], VELOCITY DOUBLE[2],
+/// TORQUE DOUBLE[2], TEMPERATURE FLOAT[2] (rad, rad/s, N m, C). From it: TORQUE DOUBLE[2] of the motors.
+/// Stop mode: the drives brake by themselves; Off: no torque (the arm has no brakes).
+/// Faults besides the common ones:
+///   temperature JOINT C | hook SPRING | release | friction on|off | noise N_M     (joints and springs count from 1)
+class RobotDevice final : public SimulatedDevice {
+ public:
+  static constexpr std::size_t sensor_octets = 5 * 16 + 2 * 4;
+  static constexpr std::size_t command_octets = 16;
+
+  RobotDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {},
+              const ArmParameters& arm = {}, const RobotSensors& sensors = {});
+
+  /// World truth: tip, contact, joint torque, temperature.
+  [[nodiscard]] const TwoJointArm& arm() const noexcept { return arm_; }
+  [[nodiscard]] TwoJointArm& arm() noexcept { return arm_; }
+  /// What the motors did in the last cycle.
+  [[nodiscard]] const Vec2& motor_torque_n_m() const noexcept { return applied_; }
+
+ private:
+  void advance(Duration cycle) noexcept override;
+  [[nodiscard]] Result<> take(OctetReader payload) noexcept override;
+  void write_sensors(OctetWriter& payload) noexcept override;
+  [[nodiscard]] Result<> do_fault(const Words& words) override;
+  [[nodiscard]] std::string do_truth() const override;
+
+  TwoJointArm arm_;
+  RobotSensors sensors_;
+  Random random_;
+  Vec2 commanded_{};
+  Vec2 applied_{};
+};
+
+}  // namespace hirosco::simulation

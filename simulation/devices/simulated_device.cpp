@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/devices/simulated_device.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace hirosco::simulation {
+namespace {
+
+constexpr std::int64_t most_cycles_at_once = 40;          // of catching up after the process itself was held up
+constexpr std::size_t most_delayed_frames = 2048;         // 1 s at 2 kHz
+constexpr std::size_t most_injections = 10'000;           // then the record ends; the faults still work
+constexpr Duration longest_watchdog = std::chrono::seconds{1};
+
+Duration milliseconds_of(double ms) noexcept { return Duration{std::llround(ms * 1e6)}; }
+
+}  // namespace
+
+Words::Words(std::string_view line) noexcept {
+  constexpr std::string_view blank = " \t\r\n";
+  while (true) {
+    const auto start = line.find_first_not_of(blank);
+    if (start == std::string_view::npos) return;
+    line.remove_prefix(start);
+    const auto length = std::min(line.find_first_of(blank), line.size());
+    if (count_ == words_.size()) {
+      too_many_ = true;
+      return;
+    }
+    words_[count_++] = line.substr(0, length);
+    line.remove_prefix(length);
+  }
+}
+
+Result<double> Words::number(std::size_t i, double low, double high) const noexcept {
+  const std::string_view word = (*this)[i];
+  double value = 0;
+  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (problem != std::errc{} || end != word.data() + word.size() || !std::isfinite(value))
+    return fail(ErrorCode::InvalidArgument, "not a number", static_cast<std::int64_t>(i));
+  if (value < low || value > high) return fail(ErrorCode::OutOfRange, "number", static_cast<std::int64_t>(i));
+  return value;
+}
+
+Result<> Words::expect(std::size_t expected) const noexcept {
+  if (too_many_ || count_ != expected)
+    return fail(ErrorCode::InvalidArgument, "wrong number of words", static_cast<std::int64_t>(count_));
+  return ok();
+}
+
+SimulatedDevice::SimulatedDevice(FlowFactory& flows, FlowAddress address, const Settings& settings)
+    : flows_{flows}, address_{std::move(address)}, settings_{settings}, delayed_(most_delayed_frames) {}
+
+Result<> SimulatedDevice::plug() {
+  if (flow_ != nullptr) return ok();
+  HIROSCO_TRY_LET(flow_, flows_.open(address_, FlowSide::Device));
+  return ok();
+}
+
+void SimulatedDevice::step(TimePoint now) {
+  if (!started_) world_time_ = now;
+  started_ = true;
+  now_ = now;
+  const bool exchanged = receive(now);
+  watch(now);
+  const std::int64_t due = due_cycles(now, exchanged);
+  for (std::int64_t i = 0; i < due; ++i) advance(settings_.cycle);
+  cycles_ += static_cast<std::uint64_t>(due);
+  if (!exchanged) own_cycles_ += static_cast<std::uint64_t>(due);
+  if (due > 0) answer(now);
+  send_due(now);
+}
+
+TimePoint SimulatedDevice::next_wake() const noexcept {
+  if (!started_) return now_;
+  TimePoint wake = world_time_ + settings_.cycle * (by_own_clock_ ? 1 : 2);
+  if (mode_ != DeviceMode::Off && !watchdog_tripped()) wake = std::min(wake, watchdog_at_);
+  if (delayed_count_ > 0) wake = std::min(wake, delayed_[delayed_first_].due);
+  return wake;
+}
+
+/// True when an acceptable command came.
+bool SimulatedDevice::receive(TimePoint now) noexcept {
+  if (flow_ == nullptr) return false;
+  std::array<std::byte, max_device_frame_octets> buffer;
+  const auto received = flow_->receive(buffer);
+  if (!received || received->flow != Flow::New) return false;
+  const auto command = read_command(Octets{buffer}.first(std::min(received->octets, buffer.size())));
+  if (!command) {
+    ++damaged_commands_;
+    return false;
+  }
+  return accept(*command, now);
+}
+
+bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexcept {
+  if (command.epoch < epoch_) {
+    raise(device_flag::old_epoch_refused, true);
+    return false;
+  }
+  if (command.mode == DeviceMode::Active && !take(OctetReader{command.payload, settings_.byte_order})) {
+    ++damaged_commands_;
+    return false;
+  }
+  raise(device_flag::old_epoch_refused, false);
+  // An expired watchdog trips before a late command of the same epoch can hide it.
+  watch(now);
+  if (command.epoch > epoch_) raise(device_flag::watchdog_tripped, false);
+  epoch_ = command.epoch;
+  sequence_ = command.sequence;
+  mode_ = command.mode;
+  const Duration wanted = std::chrono::microseconds{command.watchdog_us};
+  watchdog_at_ = now + (command.watchdog_us == 0 ? settings_.watchdog : std::min(wanted, longest_watchdog));
+  return true;
+}
+
+void SimulatedDevice::watch(TimePoint now) noexcept {
+  if (mode_ != DeviceMode::Off && now >= watchdog_at_) raise(device_flag::watchdog_tripped, true);
+}
+
+/// One cycle per exchange; without one nothing until a command is overdue by a cycle, then by the clock.
+std::int64_t SimulatedDevice::due_cycles(TimePoint now, bool exchanged) noexcept {
+  const Duration behind = now - world_time_;
+  std::int64_t due = 0;
+  if (exchanged) {
+    due = std::max<std::int64_t>(1, (behind + settings_.cycle / 2) / settings_.cycle);
+    by_own_clock_ = false;
+    world_time_ = now;
+  } else {
+    if (behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;
+    due = behind / settings_.cycle;
+    by_own_clock_ = true;
+    world_time_ += settings_.cycle * due;
+  }
+  return std::min(due, most_cycles_at_once);
+}
+
+void SimulatedDevice::answer(TimePoint now) noexcept {
+  if (now >= frozen_until_ || last_.size == 0) compose(last_);
+  if (flow_ == nullptr || now < silent_until_) return;
+  if (delayed_count_ == delayed_.size()) return;
+  Frame& frame = delayed_[(delayed_first_ + delayed_count_) % delayed_.size()];
+  frame = last_;
+  frame.due = now + delay_;
+  ++delayed_count_;
+}
+
+void SimulatedDevice::send_due(TimePoint now) noexcept {
+  while (delayed_count_ > 0 && delayed_[delayed_first_].due <= now) {
+    Frame& frame = delayed_[delayed_first_];
+    if (corrupt_frames_ > 0) {
+      --corrupt_frames_;
+      frame.octets[frame.size / 2] ^= std::byte{0x40};
+    }
+    // Nobody listening is no matter of a device's.
+    if (flow_ != nullptr && now >= silent_until_) (void)flow_->send(Octets{frame.octets}.first(frame.size));
+    delayed_first_ = (delayed_first_ + 1) % delayed_.size();
+    --delayed_count_;
+  }
+}
+
+void SimulatedDevice::compose(Frame& frame) noexcept {
+  std::array<std::byte, max_device_payload_octets> payload;
+  OctetWriter writer{payload, settings_.byte_order};
+  write_sensors(writer);
+  const auto written = write_status(
+      frame.octets, {.epoch = epoch_, .sequence = sequence_, .flags = flags_, .payload = writer.written()});
+  frame.size = written ? written->size() : 0;
+}
+
+Result<> SimulatedDevice::fault(std::string_view line) {
+  const Words words{line};
+  HIROSCO_TRY(apply_fault(words));
+  if (injections_.size() < most_injections) injections_.push_back({now_, std::string{line}});
+  return ok();
+}
+
+void SimulatedDevice::heal() noexcept {
+  silent_until_ = frozen_until_ = {};
+  delay_ = {};
+  corrupt_frames_ = 0;
+}
+
+Result<> SimulatedDevice::apply_fault(const Words& words) {
+  const std::string_view what = words[0];
+  if (what == "unplug" || what == "plug" || what == "silent" || what == "heal") {
+    HIROSCO_TRY(words.expect(1));
+    if (what == "silent") silent_until_ = TimePoint::max();
+    if (what == "heal") heal();
+    if (what == "plug") return plug();
+    if (what != "unplug") return ok();
+    flow_.reset();
+    delayed_count_ = 0;
+    return ok();
+  }
+  if (what == "stall" || what == "freeze" || what == "delay") {
+    HIROSCO_TRY(words.expect(2));
+    const double longest_ms = what == "delay" ? 500 : 3'600'000;
+    HIROSCO_TRY_LET(const double ms, words.number(1, 0, longest_ms));
+    if (what == "stall") silent_until_ = now_ + milliseconds_of(ms);
+    if (what == "freeze") frozen_until_ = now_ + milliseconds_of(ms);
+    if (what == "delay") delay_ = milliseconds_of(ms);
+    return ok();
+  }
+  if (what == "corrupt") {
+    HIROSCO_TRY(words.expect(2));
+    HIROSCO_TRY_LET(const double frames, words.number(1, 0, 1e9));
+    corrupt_frames_ = static_cast<std::uint32_t>(frames);
+    return ok();
+  }
+  return do_fault(words);
+}
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/data_transfer/data_flow.hpp"
+#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco::simulation {
+
+/// Words of one line of text, at most eight.
+class Words {
+ public:
+  explicit Words(std::string_view line) noexcept;
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] std::string_view operator[](std::size_t i) const noexcept { return i < count_ ? words_[i] : ""; }
+  /// Word `i` as a finite number within low..high.
+  [[nodiscard]] Result<double> number(std::size_t i, double low, double high) const noexcept;
+  /// InvalidArgument unless there are exactly `expected` words.
+  [[nodiscard]] Result<> expect(std::size_t expected) const noexcept;
+
+ private:
+  std::array<std::string_view, 8> words_{};
+  std::size_t count_{0};
+  bool too_many_{false};
+};
+
+/// A device as its subsystem meets it: answers each command frame with a status frame, keeps a watchdog of its own,
+/// fences old epochs, and can be made to fail. Pure logic, stepped from outside: by the exchange of frames, and by the
+/// clock once a command is overdue by a cycle, so that the world does not freeze when its subsystem dies (decision 29).
+/// Watchdog: armed by the first command that is not Off. When it trips the output is off, latched, until a command with a
+/// higher epoch arrives (decision 7).
+/// Realtime: step() is bounded and does not allocate while plugged. Thread: one.
+class SimulatedDevice {
+ public:
+  struct Settings {
+    Duration cycle{std::chrono::microseconds{500}};
+    Duration watchdog{std::chrono::milliseconds{10}};  ///< while commands ask for none
+    std::endian byte_order{std::endian::little};       ///< of the payload
+    std::uint64_t seed{1};
+  };
+  struct Injection {
+    TimePoint at{};
+    std::string line;
+  };
+
+  virtual ~SimulatedDevice() = default;
+  SimulatedDevice(const SimulatedDevice&) = delete;
+  SimulatedDevice& operator=(const SimulatedDevice&) = delete;
+
+  /// Opens the flow (the device's side). `flows` must outlive the device.
+  [[nodiscard]] Result<> plug();
+  [[nodiscard]] bool plugged() const noexcept { return flow_ != nullptr; }
+
+  /// Takes what came, moves the world, answers.
+  void step(TimePoint now);
+  /// When step() is due even if no frame comes.
+  [[nodiscard]] TimePoint next_wake() const noexcept;
+  /// Waits for a frame. Blocks; false at once while unplugged.
+  [[nodiscard]] bool wait(Duration timeout) noexcept { return flow_ != nullptr && flow_->wait(timeout); }
+
+  /// Injects a fault from one line of text and records it with the time of the last step:
+  ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | heal
+  /// and what the device adds. InvalidArgument, OutOfRange: nothing was done.
+  [[nodiscard]] Result<> fault(std::string_view line);
+  [[nodiscard]] const std::vector<Injection>& injections() const noexcept { return injections_; }
+
+  [[nodiscard]] std::uint16_t flags() const noexcept { return flags_; }
+  [[nodiscard]] bool watchdog_tripped() const noexcept { return (flags_ & device_flag::watchdog_tripped) != 0; }
+  /// True while payloads of commands reach the motors.
+  [[nodiscard]] bool active() const noexcept { return mode_ == DeviceMode::Active && !watchdog_tripped(); }
+  /// Cycles that the world has moved, and how many of them the own clock drove.
+  [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_; }
+  [[nodiscard]] std::uint64_t own_cycles() const noexcept { return own_cycles_; }
+  [[nodiscard]] std::uint64_t damaged_commands() const noexcept { return damaged_commands_; }
+  [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
+  /// World truth as one line of "name=value" words, for people and pages.
+  [[nodiscard]] std::string truth() const { return do_truth(); }
+
+ protected:
+  SimulatedDevice(FlowFactory& flows, FlowAddress address, const Settings& settings);
+
+  void raise(std::uint16_t flag, bool on) noexcept {
+    flags_ = static_cast<std::uint16_t>(on ? flags_ | flag : flags_ & ~flag);
+  }
+  [[nodiscard]] DeviceMode mode() const noexcept { return watchdog_tripped() ? DeviceMode::Off : mode_; }
+  [[nodiscard]] std::endian byte_order() const noexcept { return settings_.byte_order; }
+
+ private:
+  struct Frame {
+    std::array<std::byte, max_device_frame_octets> octets;
+    std::size_t size{0};
+    TimePoint due{};
+  };
+
+  /// Moves the world by one cycle under the last accepted payload; mode() tells what to do with it.
+  virtual void advance(Duration cycle) noexcept = 0;
+  /// Takes the payload of an accepted active command. Malformed: wrong size.
+  [[nodiscard]] virtual Result<> take(OctetReader payload) noexcept = 0;
+  virtual void write_sensors(OctetWriter& payload) noexcept = 0;
+  /// A fault line of the device's own. InvalidArgument: not known here either.
+  [[nodiscard]] virtual Result<> do_fault(const Words& words) = 0;
+  [[nodiscard]] virtual std::string do_truth() const = 0;
+
+  [[nodiscard]] bool receive(TimePoint now) noexcept;
+  [[nodiscard]] bool accept(const DeviceCommand& command, TimePoint now) noexcept;
+  void watch(TimePoint now) noexcept;
+  [[nodiscard]] std::int64_t due_cycles(TimePoint now, bool exchanged) noexcept;
+  void answer(TimePoint now) noexcept;
+  void send_due(TimePoint now) noexcept;
+  void compose(Frame& frame) noexcept;
+  [[nodiscard]] Result<> apply_fault(const Words& words);
+  void heal() noexcept;
+
+  FlowFactory& flows_;
+  FlowAddress address_;
+  Settings settings_;
+  std::unique_ptr<DataFlow> flow_;
+
+  bool started_{false};
+  bool by_own_clock_{true};
+  TimePoint now_{};
+  TimePoint world_time_{};           // up to where the world has moved
+  std::uint64_t cycles_{0};
+  std::uint64_t own_cycles_{0};
+  std::uint64_t damaged_commands_{0};
+
+  DeviceMode mode_{DeviceMode::Off};
+  std::uint32_t epoch_{0};
+  std::uint32_t sequence_{0};
+  std::uint16_t flags_{0};
+  TimePoint watchdog_at_{TimePoint::max()};
+
+  TimePoint silent_until_{};
+  TimePoint frozen_until_{};
+  Duration delay_{0};
+  std::uint32_t corrupt_frames_{0};
+  Frame last_{};
+  std::vector<Frame> delayed_;       // ring, sized once
+  std::size_t delayed_first_{0};
+  std::size_t delayed_count_{0};
+  std::vector<Injection> injections_;
+};
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,339 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/devices/simulated_device.hpp"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "simulation/devices/joystick_device.hpp"
+#include "simulation/devices/robot_device.hpp"
+
+namespace hirosco::simulation {
+namespace {
+
+constexpr Duration cycle = std::chrono::microseconds{500};
+
+struct Status {
+  DeviceStatus head;
+  std::vector<std::byte> payload;
+  [[nodiscard]] double value(std::size_t index) const {
+    OctetReader reader{payload, std::endian::little};
+    (void)reader.get(8 * index);
+    return reader.get<double>();
+  }
+};
+
+/// The subsystem's side of a device, by hand.
+template <class Device>
+class Bench {
+ public:
+  Bench() : device{flows, address, {}} {
+    EXPECT_TRUE(device.plug());
+    flow = flows.open(address, FlowSide::Subsystem).value();
+  }
+  void command(DeviceMode mode, std::uint32_t epoch, double torque_1 = 0, double torque_2 = 0,
+               std::uint32_t watchdog_us = 0) {
+    std::array<std::byte, 16> payload;
+    OctetWriter writer{payload, std::endian::little};
+    writer.put(torque_1).put(torque_2);
+    std::array<std::byte, max_device_frame_octets> buffer;
+    (void)flow->send(write_command(buffer, {mode, epoch, ++sequence, watchdog_us, payload}).value());
+  }
+  /// One cycle later.
+  void step() { device.step(now += cycle); }
+  void active(double torque_1 = 0, std::uint32_t epoch = 1) {
+    command(DeviceMode::Active, epoch, torque_1);
+    step();
+  }
+  /// Newest frame as it came; empty when none did.
+  std::vector<std::byte> raw() {
+    std::array<std::byte, max_device_frame_octets> buffer;
+    const auto received = flow->receive(buffer);
+    if (!received || received->flow != Flow::New) return {};
+    return {buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(received->octets)};
+  }
+  std::optional<Status> status() {
+    const auto frame = raw();
+    const auto read = read_status(frame);
+    if (!read) return std::nullopt;
+    return Status{*read, {read->payload.begin(), read->payload.end()}};
+  }
+
+  SimulatedFlows flows;
+  FlowAddress address{0, "device"};
+  Device device;
+  std::unique_ptr<DataFlow> flow;
+  TimePoint now{};
+  std::uint32_t sequence{0};
+};
+
+using RobotBench = Bench<RobotDevice>;
+using JoystickBench = Bench<JoystickDevice>;
+
+TEST(RobotDevice, AnswersEachCommandWithItsSensors) {
+  RobotBench bench;
+  bench.active();
+  const auto status = bench.status();
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->head.sequence, 1U);
+  EXPECT_EQ(status->head.epoch, 1U);
+  EXPECT_EQ(status->payload.size(), RobotDevice::sensor_octets);
+  EXPECT_NEAR(status->value(0), -0.80, 1e-6);
+  EXPECT_NEAR(status->value(5), 1.60, 5e-5);
+  OctetReader tail{Octets{status->payload}.last(8), std::endian::little};
+  EXPECT_EQ(tail.get<float>(), 20.0F);
+}
+
+TEST(RobotDevice, MovesByTheCommandedTorqueOneCyclePerExchange) {
+  RobotBench bench;
+  TwoJointArm alone;
+  for (int k = 0; k < 100; ++k) {
+    bench.active(5);
+    alone.step({5, 0}, cycle);
+  }
+  EXPECT_EQ(bench.device.arm().state().link_rad, alone.state().link_rad);
+  EXPECT_EQ(bench.device.cycles(), 100U);
+  EXPECT_EQ(bench.device.own_cycles(), 0U);
+}
+
+TEST(RobotDevice, AppliesNothingWhileOffAndBrakesInStop) {
+  RobotBench bench;
+  bench.command(DeviceMode::Off, 1, 50);
+  bench.step();
+  EXPECT_EQ(bench.device.motor_torque_n_m(), (Vec2{}));
+  for (int k = 0; k < 50; ++k) bench.active(20);
+  const double rate = bench.device.arm().state().motor_rad_s[0];
+  for (int k = 0; k < 200; ++k) {
+    bench.command(DeviceMode::Stop, 1);
+    bench.step();
+  }
+  EXPECT_GT(rate, 0.1);
+  EXPECT_LT(std::abs(bench.device.arm().state().motor_rad_s[0]), 0.1 * rate);
+}
+
+TEST(RobotDevice, SaysWhenItSaturatesAndWhenItIsHot) {
+  RobotBench bench;
+  bench.active(61);
+  EXPECT_TRUE(bench.status()->head.flags & device_flag::torque_saturated);
+  ASSERT_TRUE(bench.device.fault("temperature 2 85.5"));
+  bench.active(0);
+  const auto status = bench.status();
+  EXPECT_EQ(status->head.flags, device_flag::over_temperature);
+  OctetReader tail{Octets{status->payload}.last(4), std::endian::little};
+  EXPECT_NEAR(tail.get<float>(), 85.5F, 0.01F);
+}
+
+TEST(RobotDevice, HooksASpringAtHome) {
+  RobotBench bench;
+  EXPECT_FALSE(bench.device.fault("hook 1"));
+  EXPECT_TRUE(bench.device.fault("hook 2"));
+  EXPECT_EQ(bench.device.arm().hooked_spring(), 1U);
+  EXPECT_TRUE(bench.device.fault("release"));
+  EXPECT_FALSE(bench.device.arm().hooked_spring());
+}
+
+TEST(Watchdog, SwitchesTheTorqueOffAfterItsTimeAndLatchesUntilAHigherEpoch) {
+  RobotBench bench;
+  bench.active(5);
+  for (int k = 0; k < 19; ++k) bench.step();
+  EXPECT_FALSE(bench.device.watchdog_tripped());
+  EXPECT_EQ(bench.device.motor_torque_n_m()[0], 5);
+  bench.step();  // 10 ms after the command
+  EXPECT_TRUE(bench.device.watchdog_tripped());
+  EXPECT_EQ(bench.device.motor_torque_n_m()[0], 0);
+  bench.active(5);
+  EXPECT_EQ(bench.device.motor_torque_n_m()[0], 0) << "the same epoch does not wake it";
+  EXPECT_TRUE(bench.status()->head.flags & device_flag::watchdog_tripped);
+  bench.active(5, 2);
+  EXPECT_EQ(bench.device.motor_torque_n_m()[0], 5);
+  EXPECT_EQ(bench.status()->head.flags, 0);
+}
+
+TEST(Watchdog, TakesTheTimeThatTheCommandAsksFor) {
+  RobotBench bench;
+  bench.command(DeviceMode::Active, 1, 5, 0, 50'000);
+  bench.step();
+  for (int k = 0; k < 99; ++k) bench.step();
+  EXPECT_FALSE(bench.device.watchdog_tripped());
+  bench.step();
+  EXPECT_TRUE(bench.device.watchdog_tripped());
+}
+
+TEST(Watchdog, IsNotArmedWhileOff) {
+  RobotBench bench;
+  bench.command(DeviceMode::Off, 1);
+  for (int k = 0; k < 1000; ++k) bench.step();
+  EXPECT_FALSE(bench.device.watchdog_tripped());
+}
+
+TEST(Watchdog, TripsEvenWhenThePendingCommandComesBeforeTheClockWasLookedAt) {
+  RobotBench bench;
+  bench.active(5);
+  bench.command(DeviceMode::Active, 1, 5);
+  bench.device.step(bench.now += std::chrono::milliseconds{11});
+  EXPECT_TRUE(bench.device.watchdog_tripped());
+}
+
+TEST(Fence, RefusesAnOldEpochAndItDoesNotFeedTheWatchdog) {
+  RobotBench bench;
+  bench.active(5, 7);
+  for (int k = 0; k < 20; ++k) bench.active(50, 6);
+  EXPECT_TRUE(bench.device.watchdog_tripped());
+  EXPECT_TRUE(bench.status()->head.flags & device_flag::old_epoch_refused);
+  bench.active(5, 8);
+  EXPECT_EQ(bench.status()->head.flags, 0);
+  EXPECT_EQ(bench.device.motor_torque_n_m()[0], 5);
+}
+
+TEST(Commands, ThatAreDamagedAreCountedAndIgnored) {
+  RobotBench bench;
+  bench.active(5);
+  std::array<std::byte, max_device_frame_octets> buffer;
+  const std::array<std::byte, 15> too_short{};
+  (void)bench.flow->send(write_command(buffer, {DeviceMode::Active, 1, 9, 0, too_short}).value());
+  bench.step();
+  (void)bench.flow->send(Octets{buffer}.first(7));
+  bench.step();
+  EXPECT_EQ(bench.device.damaged_commands(), 2U);
+  EXPECT_EQ(bench.device.motor_torque_n_m()[0], 5) << "the last good one holds until the watchdog";
+}
+
+TEST(OwnClock, TakesOverWhenACommandIsOverdueByACycleAndTheWorldGoesOn) {
+  RobotBench bench;
+  bench.active(5);
+  const auto first = bench.device.cycles();
+  EXPECT_EQ(bench.device.next_wake(), bench.now + 2 * cycle);
+  bench.step();
+  EXPECT_EQ(bench.device.cycles(), first) << "not overdue yet";
+  bench.step();
+  EXPECT_EQ(bench.device.cycles(), first + 2);
+  EXPECT_EQ(bench.device.next_wake(), bench.now + cycle);
+  for (int k = 0; k < 100; ++k) bench.step();
+  EXPECT_EQ(bench.device.cycles(), first + 102);
+  EXPECT_TRUE(bench.status()) << "the device speaks on";
+}
+
+TEST(OwnClock, CatchesUpBoundedlyAfterTheProcessWasHeldUp) {
+  RobotBench bench;
+  bench.active();
+  bench.device.step(bench.now += std::chrono::hours{1});
+  EXPECT_LE(bench.device.cycles(), 41U);
+  EXPECT_GT(bench.device.next_wake(), bench.now);
+}
+
+TEST(Faults, UnplugHangsUpAndPlugComesBack) {
+  RobotBench bench;
+  bench.active(5);
+  (void)bench.status();
+  ASSERT_TRUE(bench.device.fault("unplug"));
+  EXPECT_FALSE(bench.device.plugged());
+  std::array<std::byte, max_device_frame_octets> buffer;
+  EXPECT_EQ(bench.flow->receive(buffer).error().code, ErrorCode::Unavailable);
+  for (int k = 0; k < 30; ++k) bench.step();
+  EXPECT_TRUE(bench.device.watchdog_tripped());
+  ASSERT_TRUE(bench.device.fault("plug"));
+  bench.flow.reset();
+  bench.flow = bench.flows.open(bench.address, FlowSide::Subsystem).value();
+  bench.active(5, 2);
+  EXPECT_TRUE(bench.status());
+}
+
+TEST(Faults, FreezeRepeatsTheLastFrameWhileTheWorldGoesOn) {
+  RobotBench bench;
+  bench.active(20);
+  const auto before = bench.raw();
+  ASSERT_TRUE(bench.device.fault("freeze 5"));
+  for (int k = 0; k < 9; ++k) {
+    bench.active(20);
+    EXPECT_EQ(bench.raw(), before) << k;
+  }
+  bench.active(20);
+  EXPECT_NE(bench.raw(), before);
+  EXPECT_EQ(bench.device.cycles(), 11U);
+}
+
+TEST(Faults, SilenceAndStallSayNothingButListen) {
+  RobotBench bench;
+  bench.active();
+  (void)bench.raw();
+  ASSERT_TRUE(bench.device.fault("stall 2"));
+  for (int k = 0; k < 3; ++k) {
+    bench.active();
+    EXPECT_TRUE(bench.raw().empty()) << k;
+  }
+  bench.active();
+  EXPECT_FALSE(bench.raw().empty());
+  ASSERT_TRUE(bench.device.fault("silent"));
+  for (int k = 0; k < 100; ++k) bench.active();
+  EXPECT_TRUE(bench.raw().empty());
+  EXPECT_FALSE(bench.device.watchdog_tripped());
+  ASSERT_TRUE(bench.device.fault("heal"));
+  bench.active();
+  EXPECT_FALSE(bench.raw().empty());
+}
+
+TEST(Faults, CorruptDamagesExactlyThatManyFrames) {
+  RobotBench bench;
+  ASSERT_TRUE(bench.device.fault("corrupt 20"));
+  int damaged = 0;
+  for (int k = 0; k < 50; ++k) {
+    bench.active();
+    if (!bench.status()) ++damaged;
+  }
+  EXPECT_EQ(damaged, 20);
+}
+
+TEST(Faults, DelayHoldsFramesBack) {
+  RobotBench bench;
+  ASSERT_TRUE(bench.device.fault("delay 3"));
+  for (std::uint32_t k = 1; k <= 20; ++k) {
+    bench.active();
+    const auto status = bench.status();
+    if (k <= 6) EXPECT_FALSE(status) << k;
+    else EXPECT_EQ(status->head.sequence, k - 6);
+  }
+}
+
+TEST(Faults, AreRecordedWithTheirTimeAndWrongOnesDoNothing) {
+  RobotBench bench;
+  for (int k = 0; k < 4; ++k) bench.step();
+  for (const char* wrong : {"", "explode", "corrupt", "corrupt x", "corrupt -1", "freeze 1 2", "freeze nan", "plug now",
+                            "temperature 3 20", "temperature 1 1e9", "hook 0", "a b c d e f g h i j"})
+    EXPECT_FALSE(bench.device.fault(wrong)) << wrong;
+  EXPECT_TRUE(bench.device.injections().empty());
+  ASSERT_TRUE(bench.device.fault("corrupt 1"));
+  ASSERT_EQ(bench.device.injections().size(), 1U);
+  EXPECT_EQ(bench.device.injections()[0].line, "corrupt 1");
+  EXPECT_EQ(bench.device.injections()[0].at, TimePoint{} + 4 * cycle);
+}
+
+TEST(JoystickDevice, ObeysTheHandAndItsMotors) {
+  JoystickBench bench;
+  ASSERT_TRUE(bench.device.hand("hold 0.1 -0.1"));
+  for (int k = 0; k < 6000; ++k) {
+    bench.command(DeviceMode::Active, 1, -0.215, 0);
+    bench.step();
+  }
+  const auto status = bench.status();
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->payload.size(), JoystickDevice::sensor_octets);
+  EXPECT_NEAR(status->value(0), 0.1 - 0.215 / 4.3, 1e-6);
+  EXPECT_NEAR(status->value(1), -0.1, 1e-6);
+  EXPECT_EQ(bench.device.injections().at(0).line, "hand hold 0.1 -0.1");
+}
+
+TEST(JoystickDevice, UnderstandsEveryHandLineAndRefusesOthers) {
+  JoystickBench bench;
+  for (const char* line : {"hold 0 0", "sine 1 0.15 0.5", "sine 2 0.15 0.5 1.57", "ramp 0.065 0 0.04",
+                           "cartesian 0.0176 0 1", "wander"})
+    EXPECT_TRUE(bench.device.hand(line)) << line;
+  for (const char* line : {"", "hold 0", "hold 2 0", "sine 3 0.1 1", "sine 1 0.1", "ramp 1 0 0.04", "ramp 0 0 0", "sit"})
+    EXPECT_FALSE(bench.device.hand(line)) << line;
+}
+
+}  // namespace
+}  // namespace hirosco::simulation

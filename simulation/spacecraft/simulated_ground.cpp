@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/spacecraft/simulated_ground.hpp"
+
+#include <utility>
+
+namespace hirosco::simulation {
+
+class SimulatedGround::OnBoardEnd final : public GroundTransport {
+ public:
+  OnBoardEnd(SimulatedGround& ground, communication::GroundTraffic& traffic) : ground_{ground}, traffic_{traffic} {
+    ground_.end_ = this;
+    counters_.clients = 1;
+    counters_.admitted = 1;
+  }
+  ~OnBoardEnd() override { ground_.end_ = nullptr; }
+
+  void step(TimePoint) override {
+    while (!uplink_.empty()) {
+      const auto packet = std::move(uplink_.front());
+      uplink_.pop_front();
+      ++counters_.packets;
+      constexpr communication::ClientId only_client = 1;
+      traffic_.telecommand(only_client, packet);
+    }
+  }
+  void telemetry(Octets packet) override {
+    ++counters_.telemetry_packets;
+    if (ground_.receive_) ground_.receive_(packet);
+  }
+  [[nodiscard]] const communication::LinkCounters& counters() const override { return counters_; }
+  void arrive(Octets packet) { uplink_.emplace_back(packet.begin(), packet.end()); }
+
+ private:
+  SimulatedGround& ground_;
+  communication::GroundTraffic& traffic_;
+  std::deque<std::vector<std::byte>> uplink_;
+  communication::LinkCounters counters_;
+};
+
+OpenGroundTransport SimulatedGround::transport() {
+  return [this](communication::GroundTraffic& traffic) -> Result<std::unique_ptr<GroundTransport>> {
+    if (end_ != nullptr) return fail(ErrorCode::AlreadyExists, "the ground link is open");
+    return std::make_unique<OnBoardEnd>(*this, traffic);
+  };
+}
+
+void SimulatedGround::send(Octets packet) {
+  if (end_ != nullptr) end_->arrive(packet);
+}
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "subsystems/communication/communication.hpp"
+
+/// A ground station without sockets: what it sends arrives at the communication subsystem's ground link, what that sends
+/// arrives here.
+namespace hirosco::simulation {
+
+class SimulatedGround {
+ public:
+  /// For the communication subsystem: opens the on-board end. One at a time.
+  [[nodiscard]] OpenGroundTransport transport();
+  /// Sends a telecommand packet up; lost while the on-board end is closed, as on a dead link.
+  void send(Octets packet);
+  /// Called for every packet that comes down.
+  void on_telemetry(std::function<void(Octets)> receive) { receive_ = std::move(receive); }
+
+ private:
+  class OnBoardEnd;
+  OnBoardEnd* end_{nullptr};
+  std::function<void(Octets)> receive_;
+};
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/spacecraft/spacecraft.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "hirosco/pus/st08_function.hpp"
+
+namespace hirosco::simulation {
+namespace {
+
+constexpr std::uint16_t ground_source = 0;
+constexpr TimePoint never = TimePoint::max();
+
+/// Hands the records of the supervisor's log on to a database that somebody else keeps.
+class BorrowedDatabase final : public supervisor::Database {
+ public:
+  explicit BorrowedDatabase(supervisor::Database& target) : target_{target} {}
+
+ private:
+  Result<> do_append(std::span<const supervisor::LogRecord> batch) override { return target_.append(batch); }
+  Result<supervisor::LogPage> do_read(const supervisor::LogQuery& query) override { return target_.read(query); }
+  [[nodiscard]] std::string_view do_strategy() const noexcept override { return target_.strategy(); }
+  supervisor::Database& target_;
+};
+
+[[nodiscard]] std::uint16_t first_count(std::uint64_t seed) {
+  constexpr std::uint64_t multiplier = 0x9E37'79B9'7F4A'7C15;
+  return static_cast<std::uint16_t>((seed * multiplier) >> 50);
+}
+
+}  // namespace
+
+/// One subsystem as an object: what a process would hold.
+struct Spacecraft::Member {
+  Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, const World& world)
+      : described{&what}, author{std::move(make)}, vital{std::make_shared<VitalPage>()},
+        permit{std::make_shared<PermitPage>()} {
+    engine.emplace(*author, what.subsystem, world, channels.subsystem_end(), *vital, *permit);
+  }
+
+  const descriptor::MissionSubsystem* described;
+  std::unique_ptr<Subsystem> author;
+  ChannelPair channels;
+  std::shared_ptr<VitalPage> vital;
+  std::shared_ptr<PermitPage> permit;
+  std::optional<GenericSubsystem> engine;
+  TimePoint service_wake{};
+  TimePoint cycle_wake{never};
+  bool cycling{false};
+  bool stopped{false};
+  std::optional<supervisor::ProcessEnd> end;
+};
+
+namespace {
+
+/// The supervisor's end of a simulated channel: closing it ends the subsystem, as the end of a process would.
+class ChannelEnd final : public Channel {
+ public:
+  explicit ChannelEnd(ChannelPair& pair) : pair_{pair} {}
+  ~ChannelEnd() override { pair_.close_supervisor_end(); }
+  Result<> send(const Message& message) override { return pair_.supervisor_end().send(message); }
+  Result<Found> receive(MessageBuffer& buffer) override { return pair_.supervisor_end().receive(buffer); }
+
+ private:
+  ChannelPair& pair_;
+};
+
+template <class Page>
+[[nodiscard]] Mapping mapping_of(const std::shared_ptr<Page>& page) {
+  return {page, {reinterpret_cast<std::byte*>(page.get()), sizeof(Page)}};
+}
+
+}  // namespace
+
+Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
+  // Away from zero, so that spans before the start stay positive.
+  clock_.set(TimePoint{1s});
+  log_ = std::make_unique<supervisor::DirectPacketLog>(clock_, std::make_unique<BorrowedDatabase>(parts.log));
+  for (const auto& described : parts.mission.devices) {
+    const auto* subsystem = parts.mission.find_subsystem(described.subsystem);
+    const auto make = parts.devices.find(described.executable);
+    if (subsystem == nullptr || make == parts.devices.end()) continue;
+    for (const auto& configuration : subsystem->subsystem.configurations) {
+      const auto use = std::ranges::find_if(configuration.devices, [&](const auto& candidate) {
+        return subsystem->subsystem.devices[candidate.device].name == described.device;
+      });
+      if (use == configuration.devices.end()) continue;
+      SimulatedDevice::Settings settings;
+      settings.cycle = configuration.sampling;
+      settings.seed = described.seed * 1000 + parts.seed;
+      auto device = make->second(flows_, {static_cast<std::uint8_t>(use->endnode.transfer), use->endnode.address}, settings);
+      if (device->plug()) devices_.push_back({&described, std::move(device)});
+      break;
+    }
+  }
+  const World world{.clock = clock_, .memory = memory_, .flows = flows_, .realtime = parts.realtime, .explain = {}};
+  supervisor_ = std::make_unique<supervisor::Supervisor>(supervisor::Supervisor::Parts{
+      .mission = parts.mission,
+      .world = world,
+      .launcher = *this,
+      .log = *log_,
+      .open_database = [](supervisor::DatabaseStrategy) { return std::make_unique<supervisor::MemoryDatabase>(); },
+      .observer = parts.observer,
+      .first_sequence_count = first_count(parts.seed)});
+  supervisor_wake_ = clock_.now();
+  supervisor_->start();
+}
+
+Spacecraft::~Spacecraft() = default;
+
+Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::MissionSubsystem& described) {
+  const auto make = parts_.subsystems.find(described.executable);
+  std::unique_ptr<Subsystem> author;
+  if (make != parts_.subsystems.end()) author = make->second();
+  else if (described.subsystem.name == parts_.mission.ground.subsystem) author = make_communication(ground_.transport());
+  if (!author) return fail(ErrorCode::NotFound, "no such subsystem in this program");
+  const World world{.clock = clock_,
+                    .memory = memory_,
+                    .flows = flows_,
+                    .realtime = parts_.realtime,
+                    .explain = [this](std::string_view text) { parts_.observer.told(clock_.onboard(), text); }};
+  members_.push_back(std::make_unique<Member>(described, std::move(author), world));
+  Member& member = *members_.back();
+  member.service_wake = clock_.now();
+  supervisor::LaunchedSubsystem launched;
+  launched.channel = std::make_unique<ChannelEnd>(member.channels);
+  launched.vital = mapping_of(member.vital);
+  launched.permit = mapping_of(member.permit);
+  launched.process = static_cast<std::uint32_t>(members_.size());
+  return launched;
+}
+
+std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) {
+  return members_[process - 1]->end;
+}
+
+void Spacecraft::kill(std::uint32_t process) {
+  Member& member = *members_[process - 1];
+  if (member.end) return;
+  constexpr int killed = 9;
+  member.end = supervisor::ProcessEnd{true, killed};
+  member.engine.reset();
+  member.channels.close_subsystem_end();
+}
+
+void Spacecraft::kill(std::string_view name) {
+  for (std::size_t i = 0; i < members_.size(); ++i)
+    if (members_[i]->described->subsystem.name == name && !members_[i]->end) kill(static_cast<std::uint32_t>(i + 1));
+}
+
+void Spacecraft::stop(std::string_view name, bool stopped) {
+  if (Member* member = find(name)) member->stopped = stopped;
+}
+
+// --- virtual time ------------------------------------------------------------------------------------------------------
+
+void Spacecraft::run(Duration span) {
+  const TimePoint end = clock_.now() + span;
+  while (advance(end)) {
+  }
+}
+
+bool Spacecraft::run_until(const std::function<bool()>& condition, Duration limit) {
+  const TimePoint end = clock_.now() + limit;
+  while (!condition())
+    if (!advance(end)) return condition();
+  return true;
+}
+
+/// Goes to the next thing that is due and does it. At one instant the order is fixed: devices, cycles, service loops,
+/// supervisor, each in mission order. False when nothing is left before `end`.
+bool Spacecraft::advance(TimePoint end) {
+  if (supervisor_->finished()) return false;
+  TimePoint next = supervisor_wake_;
+  for (const Device& device : devices_) next = std::min(next, device.device->next_wake());
+  for (const auto& member : members_) {
+    if (!member->engine || member->stopped) continue;
+    next = std::min({next, member->service_wake, member->cycle_wake});
+  }
+  if (next > end) {
+    clock_.set(end);
+    return false;
+  }
+  next = std::max(next, clock_.now());
+  clock_.set(next);
+  for (std::size_t i = 0; i < devices_.size(); ++i)
+    if (devices_[i].device->next_wake() <= next) step_device(i);
+  for (const auto& member : members_)
+    if (member->engine && !member->stopped && member->cycle_wake <= next) step_cycle(*member);
+  for (const auto& member : members_)
+    if (member->engine && !member->stopped && member->service_wake <= next) step_service(*member);
+  if (supervisor_wake_ <= next) supervisor_wake_ = supervisor_->step(next);
+  return true;
+}
+
+void Spacecraft::step_device(std::size_t device) { devices_[device].device->step(clock_.now()); }
+
+void Spacecraft::step_cycle(Member& member) {
+  const auto demand = member.engine->cycle_demand();
+  if (!demand.wanted) {
+    member.engine->cycle_parked(demand.ticket);
+    member.cycling = false;
+    member.cycle_wake = never;
+    return;
+  }
+  member.cycle_wake = member.engine->cycle_step(member.cycle_wake);
+  // The device answers the exchange at once: its status is there for the next cycle (decision 29).
+  for (std::size_t i = 0; i < devices_.size(); ++i)
+    if (devices_[i].described->subsystem == member.described->subsystem.name) step_device(i);
+  if (watch_) watch_(member.described->subsystem.name, clock_.now());
+}
+
+void Spacecraft::step_service(Member& member) {
+  member.service_wake = member.engine->service_step(clock_.now());
+  const auto demand = member.engine->cycle_demand();
+  if (demand.wanted && !member.cycling) {
+    member.cycling = true;
+    member.cycle_wake = clock_.now() + demand.period;
+  } else if (!demand.wanted && !member.cycling) {
+    member.engine->cycle_parked(demand.ticket);
+  }
+  if (!member.engine->finished()) return;
+  member.end = supervisor::ProcessEnd{};
+  member.engine.reset();
+  member.channels.close_subsystem_end();
+}
+
+// --- looking in --------------------------------------------------------------------------------------------------------
+
+Spacecraft::Member* Spacecraft::find(std::string_view name) noexcept {
+  const auto found = std::ranges::find_if(members_, [&](const auto& member) {
+    return member->described->subsystem.name == name && !member->end;
+  });
+  return found != members_.end() ? found->get() : nullptr;
+}
+const Spacecraft::Member* Spacecraft::find(std::string_view name) const noexcept {
+  return const_cast<Spacecraft*>(this)->find(name);
+}
+
+SimulatedDevice* Spacecraft::device(std::string_view name) noexcept {
+  const auto found = std::ranges::find_if(devices_, [&](const Device& device) { return device.described->name == name; });
+  return found != devices_.end() ? found->device.get() : nullptr;
+}
+
+const GenericSubsystem* Spacecraft::subsystem(std::string_view name) const noexcept {
+  const Member* member = find(name);
+  return member != nullptr && member->engine ? &*member->engine : nullptr;
+}
+
+const VitalPage* Spacecraft::vital(std::string_view name) const noexcept {
+  const Member* member = find(name);
+  return member != nullptr ? member->vital.get() : nullptr;
+}
+
+CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view name,
+                                   const std::vector<double>& arguments, Duration limit) {
+  CommandOutcome outcome;
+  const auto* member = parts_.mission.find_subsystem(subsystem);
+  const descriptor::Subsystem& target = member != nullptr ? member->subsystem : parts_.mission.supervisor;
+  const auto common = pus::common_functions();
+  const auto built_in = std::ranges::find(common, name, &descriptor::Function::name);
+  const auto* function = built_in != common.end() ? &*built_in : target.find_function(name);
+  if (function == nullptr) return outcome;
+  const auto data = pus::encode_call(*function, std::span<const double>{arguments});
+  if (!data) return outcome;
+  static constexpr std::uint16_t modulo = 16'384;
+  std::array<std::byte, max_packet_octets> buffer;
+  sequence_ = static_cast<std::uint16_t>((sequence_ + 1) % modulo);
+  const auto packet = pus::write_telecommand(buffer,
+                                             {.apid = target.id, .sequence_count = sequence_, .ack = pus::ack_all,
+                                              .service = 8, .subtype = 1, .source = ground_source},
+                                             *data);
+  if (!packet) return outcome;
+  const std::uint32_t id = pus::read_primary_header(*packet)->request_id;
+  ground_.on_telemetry([&](Octets octets) {
+    const auto report = pus::TelemetryView::parse(octets);
+    if (!report || report->service() != 1) return;
+    OctetReader reader{report->source_data()};
+    if (reader.get<std::uint32_t>() != id) return;
+    switch (report->subtype()) {
+      case 1: outcome.accepted = true; return;
+      case 3: outcome.started = true; return;
+      case 5: ++outcome.progress_reports; return;
+      case 7: outcome.completed = true; return;
+      default: break;
+    }
+    if (report->subtype() == 6) static_cast<void>(reader.get<std::uint16_t>());
+    outcome.failure = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
+    outcome.failure_subtype = report->subtype();
+  });
+  ground_.send(*packet);
+  static_cast<void>(run_until([&] { return outcome.completed || outcome.failure.has_value(); }, limit));
+  ground_.on_telemetry({});
+  return outcome;
+}
+
+}  // namespace hirosco::simulation

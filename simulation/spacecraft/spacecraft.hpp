@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/data_transfer/simulated/channel_pair.hpp"
+#include "hirosco/data_transfer/simulated/heap_memory.hpp"
+#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/subsystem/generic_subsystem.hpp"
+#include "simulation/devices/simulated_device.hpp"
+#include "simulation/spacecraft/simulated_ground.hpp"
+#include "supervisor/platform/launcher.hpp"
+#include "supervisor/supervisor.hpp"
+
+/// The whole spacecraft in one process on virtual time: the same supervisor and subsystem objects as in the executables,
+/// deterministic from one seed (architecture, rule 3; mission row B1). No clock, socket or random call while it runs.
+namespace hirosco::simulation {
+
+/// Makes the author's object of an executable of the mission.
+using SubsystemCatalogue = std::map<std::string, std::function<std::unique_ptr<Subsystem>()>, std::less<>>;
+/// Makes the simulated device of an executable, at the device's side of an endnode.
+using MakeDevice = std::function<std::unique_ptr<SimulatedDevice>(FlowFactory&, const FlowAddress&,
+                                                                  const SimulatedDevice::Settings&)>;
+using DeviceCatalogue = std::map<std::string, MakeDevice, std::less<>>;
+
+/// How a telecommand of the simulated ground ended.
+struct CommandOutcome {
+  bool accepted{false};
+  bool started{false};
+  int progress_reports{0};
+  bool completed{false};
+  std::optional<pus::FailureCode> failure;
+  std::uint8_t failure_subtype{0};
+};
+
+class Spacecraft final : private supervisor::ProcessLauncher {
+ public:
+  struct Parts {
+    const descriptor::Mission& mission;
+    const SubsystemCatalogue& subsystems;
+    const DeviceCatalogue& devices;
+    supervisor::Database& log;       ///< receives everything that the supervisor logs
+    supervisor::Observer& observer;
+    std::uint64_t seed{1};
+    bool realtime{true};             ///< which set of limits holds
+  };
+  explicit Spacecraft(const Parts& parts);
+  ~Spacecraft() override;
+
+  /// Runs for a span of virtual time, or until the supervisor has finished.
+  void run(Duration span);
+  /// Runs until the condition holds, at most for `limit`; false when it never did.
+  bool run_until(const std::function<bool()>& condition, Duration limit);
+  [[nodiscard]] TimePoint now() const noexcept { return clock_.now(); }
+
+  [[nodiscard]] supervisor::Supervisor& supervisor() noexcept { return *supervisor_; }
+  [[nodiscard]] SimulatedGround& ground() noexcept { return ground_; }
+  [[nodiscard]] SimulatedDevice* device(std::string_view name) noexcept;
+  [[nodiscard]] const GenericSubsystem* subsystem(std::string_view name) const noexcept;
+  [[nodiscard]] const VitalPage* vital(std::string_view name) const noexcept;
+  /// The process ends without a word, as by kill -9.
+  void kill(std::string_view name);
+  /// The process stands still, as by SIGSTOP, and goes on.
+  void stop(std::string_view name, bool stopped);
+  /// Called after every cycle of the fastest subsystem, for traces and checks at cycle rate.
+  void on_cycle(std::function<void(std::string_view subsystem, TimePoint)> watch) { watch_ = std::move(watch); }
+
+  /// Sends a function from ground with all acknowledgements and runs until it has ended, at most for `limit`.
+  CommandOutcome command(std::string_view subsystem, std::string_view function, const std::vector<double>& arguments,
+                         Duration limit = 10s);
+
+ private:
+  struct Member;
+  // ProcessLauncher
+  Result<supervisor::LaunchedSubsystem> launch(const descriptor::MissionSubsystem& described) override;
+  std::optional<supervisor::ProcessEnd> ended(std::uint32_t process) override;
+  void kill(std::uint32_t process) override;
+
+  bool advance(TimePoint end);
+  void step_device(std::size_t device);
+  void step_cycle(Member& member);
+  void step_service(Member& member);
+  [[nodiscard]] Member* find(std::string_view name) noexcept;
+  [[nodiscard]] const Member* find(std::string_view name) const noexcept;
+
+  Parts parts_;
+  ManualClock clock_;
+  HeapMemory memory_;
+  SimulatedFlows flows_;
+  SimulatedGround ground_;
+  std::unique_ptr<supervisor::PacketLog> log_;
+  std::vector<std::unique_ptr<Member>> members_;
+  struct Device {
+    const descriptor::SimulatedDevice* described;
+    std::unique_ptr<SimulatedDevice> device;
+  };
+  std::vector<Device> devices_;
+  std::unique_ptr<supervisor::Supervisor> supervisor_;
+  TimePoint supervisor_wake_{};
+  std::function<void(std::string_view, TimePoint)> watch_;
+  std::uint16_t sequence_{0};        ///< of the ground's telecommands
+};
+
+}  // namespace hirosco::simulation
