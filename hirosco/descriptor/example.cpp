@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include "hirosco/descriptor/read.hpp"
+
+using namespace hirosco::descriptor;
+
+int main() {
+  const FileSource source = [](const std::filesystem::path&) {
+    return std::optional<std::string>{
+        "<Subsystem name=\"HELLO\" id=\"7\">\n"
+        "  <ParamRef name=\"GOAL\" id=\"1\" type=\"DUBLE\"/>\n"
+        "</Subsystem>\n"};
+  };
+  const Reading<Subsystem> reading = read_subsystem("hello.xml", source);
+  for (const Diagnostic& problem : reading.problems) std::fputs(render(problem, source, false).c_str(), stdout);
+  // hello.xml:2:38: error: unknown parameter type 'DUBLE'
+  //     2 |   <ParamRef name="GOAL" id="1" type="DUBLE"/>
+  //       |                                      ^~~~~ did you mean 'DOUBLE'?
+  return reading.problems.size() == 1 ? 0 : 1;
+}

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+
+#include "hirosco/descriptor/testing.hpp"
+
+namespace hirosco::descriptor {
+namespace {
+
+const std::filesystem::path folder = std::filesystem::path{HIROSCO_SOURCE_DIR} / "hirosco/descriptor";
+
+bool run(const std::string& command) { return std::system((command + " >/dev/null 2>&1").c_str()) == 0; }
+
+bool validates(const std::string& schema, const std::filesystem::path& file) {
+  return run("xmllint --noout --nonet --schema '" + (folder / schema).string() + "' '" + file.string() + "'");
+}
+
+TEST(Schema, AcceptsTheExamples) {
+  if (!run("xmllint --version")) GTEST_SKIP() << "xmllint (libxml2-utils) is not installed";
+  for (const char* name : {"hello.xml", "manipulator.xml", "joystick.xml", "supervisor.xml", "communication.xml"})
+    EXPECT_TRUE(validates("subsystem.xsd", testing::data / name)) << name;
+  EXPECT_TRUE(validates("mission.xsd", testing::data / "mission.xml"));
+}
+
+TEST(Schema, RefusesWhatTheReaderRefuses) {
+  if (!run("xmllint --version")) GTEST_SKIP() << "xmllint (libxml2-utils) is not installed";
+  const auto file = std::filesystem::path{HIROSCO_BINARY_DIR} / "schema_test.xml";
+  for (const char* body : {"<ParamRef name=\"X\" id=\"1\" type=\"DUBLE\"/>", "<Paramters/>", "<TestService x=\"1\"/>",
+                           "<ParamRef name=\"X\" id=\"256\" type=\"DOUBLE\"/>", "<StructRef name=\"A\" id=\"1\"/>"}) {
+    const std::string text = std::string{"<Subsystem name=\"S\" id=\"10\">"} + body + "</Subsystem>";
+    std::ofstream{file} << text;
+    EXPECT_FALSE(validates("subsystem.xsd", file)) << body;
+    EXPECT_FALSE(testing::read_text(text).value) << body;
+  }
+  std::filesystem::remove(file);
+}
+
+std::set<std::string> codes_in(const std::filesystem::path& file, const std::regex& form) {
+  std::ifstream stream{file};
+  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  std::set<std::string> codes;
+  for (std::sregex_iterator it{text.begin(), text.end(), form}, end; it != end; ++it) codes.insert((*it)[1]);
+  return codes;
+}
+
+TEST(ErrorCodes, AreListedInTheDocumentationAndOnlyThose) {
+  std::set<std::string> emitted;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator{folder}) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with("_test.cpp") || (!name.ends_with(".cpp") && !name.ends_with("reader.hpp"))) continue;
+    emitted.merge(codes_in(entry.path(), std::regex{"\"(E[0-9]{4})\""}));
+  }
+  const auto listed = codes_in(std::filesystem::path{HIROSCO_SOURCE_DIR} / "docs/descriptor-errors.md",
+                               std::regex{"\\| (E[0-9]{4}) \\|"});
+  EXPECT_GT(emitted.size(), 40U);
+  EXPECT_EQ(emitted, listed);
+}
+
+}  // namespace
+}  // namespace hirosco::descriptor
