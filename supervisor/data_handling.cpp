@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -20,11 +22,10 @@ constexpr std::size_t most_waiting = 1024;
 
 [[nodiscard]] std::string telecommand_text(const pus::TelecommandView& telecommand) {
   if (const auto call = called_function(telecommand)) {
-    std::string text{call->name};
-    if (call->first_argument) text += " " + std::to_string(*call->first_argument);
-    return text;
+    if (call->first_argument) return fmt::format("{} {}", call->name, *call->first_argument);
+    return std::string{call->name};
   }
-  return "TC[" + std::to_string(telecommand.service()) + "," + std::to_string(telecommand.subtype()) + "]";
+  return fmt::format("TC[{},{}]", telecommand.service(), telecommand.subtype());
 }
 
 }  // namespace

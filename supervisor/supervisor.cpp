@@ -16,12 +16,6 @@ constexpr Duration watch_period = 10ms;
 constexpr Duration shutdown_limit = 5s;
 constexpr int messages_per_step = 256;
 
-[[nodiscard]] std::size_t longest_name(const descriptor::Mission& mission) {
-  std::size_t longest = 10;
-  for (const auto& member : mission.subsystems) longest = std::max(longest, member.subsystem.name.size());
-  return longest;
-}
-
 }  // namespace
 
 Supervisor::Supervisor(const Parts& parts)

@@ -140,7 +140,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
 
   SystemClock clock;
   SealedMemory memory;
-  SystemFlowFactory flows{clock};
+  SystemFlowFactory flows;
   SocketChannel channel{FileDescriptor{options.channel}};
   const Mapping vital = map_page(memory, options.vital, Access::ReadWrite);
   const Mapping permit = map_page(memory, options.permit, Access::ReadOnly);

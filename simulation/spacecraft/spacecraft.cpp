@@ -92,7 +92,10 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       settings.cycle = configuration.sampling;
       settings.seed = described.seed * 1000 + parts.seed;
       auto device = make->second(flows_, {static_cast<std::uint8_t>(use->endnode.transfer), use->endnode.address}, settings);
-      if (device->plug()) devices_.push_back({&described, std::move(device)});
+      if (!device->plug()) break;
+      // Settings of a simulated device are lines of its fault script: <Setting name="hand" value="wander"/>.
+      for (const auto& [name, value] : described.settings) static_cast<void>(device->fault(name + " " + value));
+      devices_.push_back({&described, std::move(device)});
       break;
     }
   }

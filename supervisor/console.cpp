@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/console.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace hirosco::supervisor {
+namespace {
+
+constexpr std::size_t most_lines = 4096;
+constexpr Duration writer_patience = 500ms;
+
+/// Names and event texts come from descriptors: nothing but printable characters reaches the terminal or the JSON.
+[[nodiscard]] std::string printable(std::string_view text) {
+  std::string clean;
+  for (const char letter : text) clean += letter >= ' ' && letter != 127 ? letter : '?';
+  return clean;
+}
+
+[[nodiscard]] std::string json_string(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char letter : printable(text)) {
+    if (letter == '"' || letter == '\\') quoted += '\\';
+    quoted += letter;
+  }
+  return quoted + "\"";
+}
+
+[[nodiscard]] std::string vector_text(const std::vector<double>& values, const char* format) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i != 0) text += ", ";
+    text += fmt::format(fmt::runtime(format), values[i]);
+  }
+  return text + ")";
+}
+
+}  // namespace
+
+Console::Console(const descriptor::Mission& mission, Style style) : mission_{mission}, style_{style} {
+  for (const auto& member : mission.subsystems)
+    decoders_.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
+  if (style != Style::Quiet) writer_ = std::thread{[this] { write_lines(); }};
+}
+
+Console::~Console() {
+  {
+    const std::lock_guard guard{mutex_};
+    ending_ = true;
+  }
+  wake_.notify_all();
+  if (writer_.joinable()) writer_.join();
+}
+
+void Console::told(OnboardTime when, std::string_view line) {
+  if (first_ == OnboardTime{}) first_ = when;
+  const double at_s = seconds(when - first_);
+  if (style_ == Style::Json) print(fmt::format("{{\"at_s\":{:.4f},\"told\":{}}}\n", at_s, json_string(line)));
+  else print(fmt::format("{:9.4f} s  {}\n", at_s, printable(line)));
+}
+
+void Console::routed(const pus::TelemetryView& packet) {
+  if (packet.service() != 3 || packet.subtype() != 25) return;
+  const auto decoder = decoders_.find(packet.apid());
+  if (decoder == decoders_.end()) return;
+  const auto values = decoder->second.decode(packet.source_data());
+  if (!values) return;
+  const std::string& name = mission_.find_subsystem(packet.apid())->subsystem.name;
+  for (const auto& value : *values) values_[name + "." + value.name] = value.values;
+}
+
+void Console::show(const Supervisor& supervisor, Duration since_start) {
+  print(style_ == Style::Json ? status_json(supervisor, since_start) : status_text(supervisor, since_start));
+}
+
+std::string Console::status_text(const Supervisor& supervisor, Duration since_start) const {
+  std::string text = fmt::format("[{:6.1f} s] {}", seconds(since_start), supervisor.mode().name);
+  for (const Member& member : supervisor.members()) {
+    const auto state = member.state();
+    text += fmt::format(" | {} {}", printable(member.descriptor().name),
+                        member.alive() && state ? to_text(*state) : std::string_view{"not running"});
+    const VitalPage* vital = member.vital();
+    if (vital == nullptr || vital->cycling.load() == 0) continue;
+    text += fmt::format(" {:.0f} Hz exec {:.1f} us late max {:.0f} us overruns {}",
+                        1e9 / static_cast<double>(std::max<std::uint64_t>(vital->period_ns.load(), 1)),
+                        vital->execution_mean_ns.load() * 1e-3, vital->latency_max_ns.load() * 1e-3,
+                        vital->overruns.load());
+    if (vital->inhibited.load() != 0) text += " INHIBITED";
+    if (vital->realtime.load() == 0) text += " (reduced promise: no real-time scheduling)";
+  }
+  text += fmt::format(" | links {}/{}", supervisor.links().up_count(), supervisor.links().defined_count());
+  const auto show_value = [&](const char* name, const char* label, const char* format, const char* unit) {
+    if (const auto value = values_.find(name); value != values_.end())
+      text += fmt::format(" {} {} {}", label, vector_text(value->second, format), unit);
+  };
+  show_value("JOYSTICK.CUR_VALUES.POSITION", "| hand", "{:+.3f}", "rad");
+  show_value("MANIPULATOR.CUR_VALUES.POSITION", "| robot", "{:+.3f}", "rad");
+  show_value("MANIPULATOR.TIP_FORCE", "| tip force", "{:+.2f}", "N");
+  show_value("JOYSTICK.CUR_VALUES.TORQUE", "| felt", "{:+.4f}", "N m");
+  if (const std::string waiting = supervisor.waiting_for(); !waiting.empty()) text += " | waits for " + printable(waiting);
+  return text + "\n";
+}
+
+std::string Console::status_json(const Supervisor& supervisor, Duration since_start) const {
+  std::string text = fmt::format("{{\"up_s\":{:.3f},\"mode\":{},\"links_up\":{},\"links_defined\":{},\"subsystems\":[",
+                                 seconds(since_start), json_string(supervisor.mode().name),
+                                 supervisor.links().up_count(), supervisor.links().defined_count());
+  bool first = true;
+  for (const Member& member : supervisor.members()) {
+    const auto state = member.state();
+    const VitalPage* vital = member.vital();
+    text += fmt::format("{}{{\"name\":{},\"state\":{}", first ? "" : ",", json_string(member.descriptor().name),
+                        json_string(member.alive() && state ? to_text(*state) : std::string_view{"not running"}));
+    if (vital != nullptr)
+      text += fmt::format(",\"cycles\":{},\"overruns\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{},\"realtime\":{}",
+                          vital->cycles.load(), vital->overruns.load(), vital->latency_max_ns.load(),
+                          vital->execution_mean_ns.load(), vital->inhibited.load(), vital->realtime.load());
+    text += "}";
+    first = false;
+  }
+  text += "],\"values\":{";
+  first = true;
+  for (const auto& [name, values] : values_) {
+    text += fmt::format("{}{}:[", first ? "" : ",", json_string(name));
+    for (std::size_t i = 0; i < values.size(); ++i) text += fmt::format("{}{}", i != 0 ? "," : "", values[i] == values[i] ? fmt::format("{}", values[i]) : "null");
+    text += "]";
+    first = false;
+  }
+  return text + "}}\n";
+}
+
+void Console::print(std::string line) {
+  if (style_ == Style::Quiet) return;
+  {
+    const std::lock_guard guard{mutex_};
+    if (lines_.size() == most_lines) lines_.pop_front();
+    lines_.push_back(std::move(line));
+  }
+  wake_.notify_one();
+}
+
+void Console::write_lines() {
+  std::unique_lock lock{mutex_};
+  for (;;) {
+    wake_.wait_for(lock, writer_patience, [this] { return ending_ || !lines_.empty(); });
+    if (lines_.empty() && ending_) return;
+    std::deque<std::string> taken;
+    taken.swap(lines_);
+    lock.unlock();
+    for (const std::string& line : taken) std::fputs(line.c_str(), stdout);
+    std::fflush(stdout);
+    lock.lock();
+  }
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hirosco/pus/housekeeping_decoder.hpp"
+#include "supervisor/supervisor.hpp"
+
+/// What a person at the terminal sees: the story of commissioning and recovery, then a live line every second.
+namespace hirosco::supervisor {
+
+class Console final : public Observer {
+ public:
+  enum class Style : std::uint8_t { Text, Json, Quiet };
+  Console(const descriptor::Mission& mission, Style style);
+  ~Console() override;
+
+  void told(OnboardTime when, std::string_view line) override;
+  void routed(const pus::TelemetryView& packet) override;
+  /// One live status line; call about once a second from the supervisor's thread.
+  void show(const Supervisor& supervisor, Duration since_start);
+
+ private:
+  void print(std::string line);
+  void write_lines();
+  [[nodiscard]] std::string status_text(const Supervisor& supervisor, Duration since_start) const;
+  [[nodiscard]] std::string status_json(const Supervisor& supervisor, Duration since_start) const;
+
+  const descriptor::Mission& mission_;
+  Style style_;
+  OnboardTime first_{};
+  std::map<std::uint16_t, pus::HousekeepingDecoder> decoders_;
+  std::map<std::string, std::vector<double>> values_;   ///< newest, by "SUBSYSTEM.PARAMETER"
+  // A stopped terminal must not stop the supervisor: lines wait here for a thread of their own, oldest out first.
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<std::string> lines_;
+  bool ending_{false};
+  std::thread writer_;
+};
+
+}  // namespace hirosco::supervisor

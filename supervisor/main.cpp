@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <signal.h>
+#include <fcntl.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <set>
+
+#include "hirosco/data_transfer/flows/sealed_memory.hpp"
+#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/descriptor/read.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/utilities/os/wait_set.hpp"
+#include "supervisor/console.hpp"
+#include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/process_launcher.hpp"
+#include "supervisor/supervisor.hpp"
+
+/// The process shell of the supervisor: sockets, signals, clock and log of the operating system around its steps.
+namespace {
+
+using namespace hirosco;
+using namespace hirosco::supervisor;
+
+constexpr int exit_finding = 1;
+constexpr int exit_usage = 2;
+constexpr int exit_environment = 3;
+/// Below every cycle, above ordinary work.
+constexpr int supervisor_priority = 30;
+constexpr Duration status_period = 1s;
+constexpr Duration last_wait = 2s;
+
+struct Options {
+  std::filesystem::path mission;
+  Console::Style style{Console::Style::Text};
+};
+
+[[nodiscard]] Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word{argv[i]};
+    if (word == "--mission" && i + 1 < argc) options.mission = argv[++i];
+    else if (word == "--json") options.style = Console::Style::Json;
+    else if (word == "--quiet") options.style = Console::Style::Quiet;
+  }
+  return options;
+}
+
+[[nodiscard]] Result<std::unique_ptr<Database>> open_log(DatabaseStrategy strategy, std::filesystem::path path) {
+  if (strategy == DatabaseStrategy::Ascii) path.replace_extension(".log");
+  std::error_code failed;
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
+  return open_database(strategy, path);
+}
+
+/// Descriptors that may wake the supervisor; follows the set of living members.
+class Waker {
+ public:
+  explicit Waker(std::initializer_list<int> always) {
+    for (const int descriptor : always)
+      if (descriptor >= 0) static_cast<void>(set_.add(descriptor));
+  }
+  void follow(const Supervisor& supervisor, SystemLauncher& launcher) {
+    std::set<int> now;
+    for (const Member& member : supervisor.members()) {
+      if (!member.alive()) continue;
+      now.insert(member.channel()->wait_descriptor());
+      now.insert(launcher.wait_descriptor(member.process()));
+    }
+    now.erase(-1);
+    for (const int old : members_)
+      if (!now.contains(old)) set_.remove(old);
+    for (const int fresh : now)
+      if (!members_.contains(fresh)) static_cast<void>(set_.add(fresh));
+    members_ = std::move(now);
+  }
+  [[nodiscard]] std::span<const Ready> wait(Duration limit) {
+    const auto ready = set_.wait(std::max(limit, Duration{0}));
+    return ready ? *ready : std::span<const Ready>{};
+  }
+
+ private:
+  WaitSet set_;
+  std::set<int> members_;
+};
+
+int serve(const descriptor::Mission& mission, const Options& options) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  const FileDescriptor signal_descriptor{::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK)};
+
+  const SystemClock clock;
+  SealedMemory memory;
+  SystemFlowFactory flows;
+  SystemLauncher launcher;
+  const auto strategy = from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);
+  auto database = open_log(strategy, mission.database.path);
+  if (!database) {
+    fmt::print(stderr, "hirosco: cannot open the log {}: {}\n", mission.database.path.string(), database.error().text);
+    return exit_environment;
+  }
+  auto log_progress = WakeEvent::create();
+  if (!log_progress) return exit_environment;
+  Console console{mission, options.style};
+  ThreadedPacketLog::Options log_options;
+  log_options.on_progress = [&] { log_progress->notify(); };
+  ThreadedPacketLog log{clock, std::move(*database), std::move(log_options)};
+  const bool realtime = realtime_permitted();
+  // The log's and the console's threads exist already: they stay ordinary.
+  if (realtime) static_cast<void>(set_fifo_priority(supervisor_priority));
+  Supervisor supervisor{
+      {.mission = mission,
+       .world = {.clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = {}},
+       .launcher = launcher,
+       .log = log,
+       .open_database = [&](DatabaseStrategy wanted) -> std::unique_ptr<Database> {
+         auto opened = open_log(wanted, mission.database.path);
+         return opened ? std::move(*opened) : nullptr;
+       },
+       .observer = console,
+       .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384)}};
+  if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
+
+  const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
+  Waker waker{signal_descriptor.get(), log_progress->descriptor(), kept ? keeper_descriptor : -1};
+  const TimePoint started = clock.now();
+  TimePoint next_status = started + status_period;
+  supervisor.start();
+  while (!supervisor.finished()) {
+    const TimePoint wake = supervisor.step(clock.now());
+    waker.follow(supervisor, launcher);
+    for (const Ready& ready : waker.wait(std::min(wake, next_status) - clock.now())) {
+      const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;
+      if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
+      if (ready.descriptor == signal_descriptor.get()) {
+        signalfd_siginfo info;
+        static_cast<void>(!::read(signal_descriptor.get(), &info, sizeof info));
+      }
+      if (ready.descriptor == signal_descriptor.get() || keeper_gone) supervisor.request_shutdown();
+    }
+    if (clock.now() < next_status) continue;
+    next_status += status_period;
+    console.show(supervisor, clock.now() - started);
+  }
+  for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;)
+    static_cast<void>(waker.wait(10ms));
+  static_cast<void>(log.flush(last_wait));
+  return supervisor.succeeded() ? 0 : exit_finding;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = read_options(argc, argv);
+  if (options.mission.empty()) {
+    fmt::print(stderr, "{}: started by 'hirosco run MISSION'\n  --mission FILE [--json|--quiet]\n", argv[0]);
+    return exit_usage;
+  }
+  const auto source = descriptor::file_system();
+  const auto reading = descriptor::read_mission(options.mission, source);
+  for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
+  if (!reading.value) return exit_finding;
+  return serve(*reading.value, options);
+}
