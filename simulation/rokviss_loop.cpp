@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/rokviss_loop.hpp"
+
+#include <algorithm>
+
+namespace hirosco::simulation {
+namespace {
+
+const FlowAddress robot_address{0, "robot"};
+const FlowAddress joystick_address{0, "joystick"};
+constexpr Duration cycle = std::chrono::microseconds{500};
+
+Vec2 get(OctetReader& reader) noexcept {
+  const double first = reader.get<double>();
+  return {first, reader.get<double>()};
+}
+
+}  // namespace
+
+RokvissLoop::Sample RokvissLoop::Link::pass(const Sample& written) noexcept {
+  samples_[at_ % longest] = written;
+  const auto back = static_cast<std::size_t>(cycles_);
+  const Sample read = at_ >= back ? samples_[(at_ - back) % longest] : Sample{};
+  ++at_;
+  return read;
+}
+
+RokvissLoop::RokvissLoop(const Settings& settings)
+    : settings_{settings},
+      robot_{flows_, robot_address, {}, settings.friction ? settings.arm : settings.arm.without_friction()},
+      joystick_{flows_, joystick_address, {}, settings.handle},
+      to_manipulator_{settings.link_cycles},
+      to_display_{settings.link_cycles} {
+  // A pair of mailboxes in memory opens or the caller gave two of the same address; both sides are ours.
+  (void)robot_.plug();
+  (void)joystick_.plug();
+  to_robot_ = std::move(flows_.open(robot_address, FlowSide::Subsystem).value());
+  to_joystick_ = std::move(flows_.open(joystick_address, FlowSide::Subsystem).value());
+  robot_.step(TimePoint{});
+  joystick_.step(TimePoint{});
+  trace_.robot.motor_position_rad = trace_.robot.position_rad = settings_.arm.home_rad;
+  trace_.desired_rad = settings_.arm.home_rad;
+  clutch_.engage(settings_.arm.home_rad, {});
+  controller_.reset(settings_.arm.home_rad);
+}
+
+void RokvissLoop::read_robot() noexcept {
+  std::array<std::byte, max_device_frame_octets> buffer;
+  const auto received = to_robot_->receive(buffer);
+  if (!received || received->flow != Flow::New) return;
+  const auto status = read_status(Octets{buffer}.first(received->octets));
+  if (!status) return;
+  OctetReader reader{status->payload, std::endian::little};
+  manipulator::Measured& robot = trace_.robot;
+  for (auto* field : {&robot.motor_position_rad, &robot.motor_velocity_rad_s, &robot.position_rad, &robot.velocity_rad_s,
+                      &robot.torque_n_m})
+    *field = get(reader);
+}
+
+void RokvissLoop::read_joystick() noexcept {
+  std::array<std::byte, max_device_frame_octets> buffer;
+  const auto received = to_joystick_->receive(buffer);
+  if (!received || received->flow != Flow::New) return;
+  const auto status = read_status(Octets{buffer}.first(received->octets));
+  if (!status) return;
+  OctetReader reader{status->payload, std::endian::little};
+  trace_.joystick_rad = get(reader);
+  trace_.joystick_rad_s = get(reader);
+}
+
+Vec2 RokvissLoop::manipulator_cycle(const Sample& handle) noexcept {
+  if (handle.active) trace_.desired_rad = clutch_.desired(handle.value, 1.0);
+  const auto finding = limit_.update(trace_.robot.torque_n_m, settings_.soft_limit_n_m, settings_.hard_limit_n_m);
+  if (finding.verdict != manipulator::TorqueVerdict::Fine && !trip_)
+    trip_ = Trip{time_s_, finding, robot_.arm().contact().normal_force_n};
+  const Vec2 torque = controller_.motor_torque(trace_.desired_rad, trace_.robot, {});
+  if (!trip_) return torque;
+  return manipulator::relieving(torque, trace_.robot.torque_n_m, settings_.soft_limit_n_m);  // FC1: in the same cycle
+}
+
+void RokvissLoop::command(DataFlow& flow, DeviceMode mode, std::uint32_t sequence, const Vec2& torque_n_m) noexcept {
+  std::array<std::byte, 16> payload;
+  OctetWriter writer{payload, std::endian::little};
+  writer.put(torque_n_m[0]).put(torque_n_m[1]);
+  std::array<std::byte, max_device_frame_octets> buffer;
+  const auto frame = write_command(buffer, {mode, 1, sequence, 10'000, payload});
+  if (frame) (void)flow.send(*frame);
+}
+
+void RokvissLoop::step() {
+  read_robot();
+  read_joystick();
+  trace_.contact = robot_.arm().contact();
+  trace_.tip_m = robot_.arm().tip_m();
+  const Sample handle = to_manipulator_.pass({trace_.joystick_rad, true});
+  const Vec2 motor = manipulator_cycle(handle);
+  const bool off = torque_off();
+  if (trip_) ++cycles_since_trip_;
+  const Sample felt = to_display_.pass({trace_.robot.torque_n_m, !trip_});
+  trace_.display_n_m = display_.torque({trace_.joystick_rad_s, felt.value, felt.active},
+                                       {settings_.force_scale, settings_.passivity});
+  ++cycle_;
+  command(*to_robot_, off ? DeviceMode::Off : DeviceMode::Active, cycle_, motor);
+  command(*to_joystick_, DeviceMode::Active, cycle_, trace_.display_n_m);
+  const TimePoint now{cycle * cycle_};
+  robot_.step(now);
+  joystick_.step(now);
+  time_s_ = period_s * cycle_;
+}
+
+}  // namespace hirosco::simulation
