@@ -24,10 +24,10 @@ enum class MessageKind : std::uint8_t {
 /// a link attachment, the handle of the link's memory.
 struct Message {
   MessageKind kind{MessageKind::Packet};
-  std::uint32_t mode_epoch{0};       ///< supervisor's mode epoch at permission (decision 27)
-  std::uint16_t link{0};             ///< ground link client that a GroundTelecommand came from; else 0
+  std::uint32_t mode_epoch{0};  ///< supervisor's mode epoch at permission (decision 27)
+  std::uint16_t link{0};  ///< ground link client that a GroundTelecommand came from; else 0
   Octets packet{};
-  MemoryHandle memory{};             ///< usually empty
+  MemoryHandle memory{};  ///< usually empty
 };
 
 struct MessageBuffer {
@@ -44,7 +44,7 @@ class Channel {
   /// Next message into `buffer`; Flow::None in `found` when there is none. Unavailable: the peer is gone and all is read.
   struct Found {
     Flow flow{Flow::None};
-    Message message;                 ///< `packet` views `buffer`
+    Message message;  ///< `packet` views `buffer`
   };
   [[nodiscard]] virtual Result<Found> receive(MessageBuffer& buffer) = 0;
   /// Descriptor to poll for readability, -1 where there is none (simulated).

@@ -48,8 +48,8 @@ enum class FlowSide : std::uint8_t { Subsystem, Device };
 
 /// The part of an endnode descriptor that a flow needs.
 struct FlowAddress {
-  std::uint8_t transfer{};           ///< descriptor::Transfer
-  std::string address;               ///< a name, a path, or host:port
+  std::uint8_t transfer{};  ///< descriptor::Transfer
+  std::string address;  ///< a name, a path, or host:port
 };
 
 /// Opens data flows. Real: by means of transfer; simulated: a pair of mailboxes in memory.  Realtime: allocates.

@@ -30,7 +30,7 @@ class MemoryHandle {
 /// Memory mapped into this process; unmapped with the last copy. `octets` is 64-octet aligned.
 struct Mapping {
   std::shared_ptr<void> keep;
-  MutableOctets octets;              ///< of a read-only mapping: must not be written (real: faults)
+  MutableOctets octets;  ///< of a read-only mapping: must not be written (real: faults)
 };
 
 enum class Access : std::uint8_t { ReadOnly, ReadWrite };

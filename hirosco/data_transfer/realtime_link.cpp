@@ -29,6 +29,8 @@ static_assert(std::atomic_ref<Word>::is_always_lock_free);
 constexpr std::size_t line = 64;
 constexpr std::uint32_t max_payload_octets = 65'536;
 constexpr int attempts = 8;
+constexpr int attempts_without_pause = 4;
+constexpr std::size_t claimed_octets = 1024;
 
 constexpr std::size_t words_of(std::uint32_t octets) noexcept { return (octets + sizeof(Word) - 1) / sizeof(Word); }
 
@@ -58,6 +60,15 @@ void relax() noexcept {
   __builtin_ia32_pause();
 #elif defined(__aarch64__)
   asm volatile("yield");
+#endif
+}
+
+// Asks for a line to be written soon, so that all lines of a sample come at the same time and not one after another.
+void claim(std::byte* place) noexcept {
+#if defined(__x86_64__)
+  asm volatile("prefetchw %0" : : "m"(*place));
+#else
+  __builtin_prefetch(place, 1);
 #endif
 }
 
@@ -94,6 +105,8 @@ void LinkWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status) 
   const auto publish = [this](std::size_t at, Word value) {
     word(memory_, at).store(value, std::memory_order_release);
   };
+  const std::size_t end = link_memory::payload_at + payload_octets_;
+  for (std::size_t at = link_memory::sequence_at; at < end && at < claimed_octets; at += line) claim(memory_ + at);
   word(memory_, link_memory::sequence_at).store(sequence_ + 1, std::memory_order_relaxed);
   publish(link_memory::status_at, std::to_underlying(status));
   publish(link_memory::count_at, ++count_);
@@ -131,11 +144,13 @@ Result<LinkReader> LinkReader::make(Octets memory, const LinkLayout& layout) noe
   if (load(start, link_memory::magic_at, std::memory_order_acquire) != link_memory::magic)
     return fail(ErrorCode::Mismatch, "link memory has no header");
   if (get(link_memory::version_epoch_at) >> 32 != link_memory::version)
-    return fail(ErrorCode::Mismatch, "link version", static_cast<std::int64_t>(get(link_memory::version_epoch_at) >> 32));
+    return fail(ErrorCode::Mismatch, "link version",
+                static_cast<std::int64_t>(get(link_memory::version_epoch_at) >> 32));
   if (get(link_memory::version_epoch_at) != version_epoch(layout))
     return fail(ErrorCode::Mismatch, "link epoch", static_cast<std::uint32_t>(get(link_memory::version_epoch_at)));
   if (get(link_memory::payload_octets_at) != layout.payload_octets)
-    return fail(ErrorCode::Mismatch, "link payload size", std::bit_cast<std::int64_t>(get(link_memory::payload_octets_at)));
+    return fail(ErrorCode::Mismatch, "link payload size",
+                std::bit_cast<std::int64_t>(get(link_memory::payload_octets_at)));
   if (get(link_memory::layout_hash_at) != layout.layout_hash)
     return fail(ErrorCode::Mismatch, "link layout", std::bit_cast<std::int64_t>(get(link_memory::layout_hash_at)));
 
@@ -154,22 +169,29 @@ LinkSample LinkReader::read(MutableOctets payload) noexcept {
     const Word sequence = load(memory_, link_memory::sequence_at, std::memory_order_acquire);
     if (sequence == last_sequence_) return last(payload);
     LinkSample sample;
-    if (sequence % 2 == 0 && copy(sequence, sample)) {
+    if (sequence % 2 == 0 && copy(sequence, sample, payload)) {
       last_sequence_ = sequence;
       return accept(sample, payload);
     }
-    relax();
+    if (attempt >= attempts_without_pause) relax();
   }
   return last(payload);
 }
 
-bool LinkReader::copy(std::uint64_t sequence, LinkSample& sample) noexcept {
+// Into both places word by word: a second copy of what was stored a moment ago would wait for the store buffer. What is
+// torn in `payload` is put right by last(); before the first sample it could not be, so accept() fills it then.
+bool LinkReader::copy(std::uint64_t sequence, LinkSample& sample, MutableOctets payload) noexcept {
   const auto get = [this](std::size_t at) { return load(memory_, at, std::memory_order_acquire); };
   sample.status = static_cast<LinkStatus>(static_cast<std::uint32_t>(get(link_memory::status_at)));
   sample.count = get(link_memory::count_at);
   sample.sampled_at = TimePoint{Duration{std::bit_cast<std::int64_t>(get(link_memory::stamp_at))}};
-  const std::size_t words = words_of(payload_octets_);
-  for (std::size_t i = 0; i < words; ++i) arriving_[i] = get(link_memory::payload_at + i * sizeof(Word));
+  const std::size_t direct = last_.count == 0 ? 0 : payload_octets_ / sizeof(Word);
+  for (std::size_t i = 0; i < direct; ++i) {
+    const Word value = arriving_[i] = get(link_memory::payload_at + i * sizeof(Word));
+    std::memcpy(payload.data() + i * sizeof value, &value, sizeof value);
+  }
+  for (std::size_t i = direct; i < words_of(payload_octets_); ++i)
+    arriving_[i] = get(link_memory::payload_at + i * sizeof(Word));
   return load(memory_, link_memory::sequence_at, std::memory_order_relaxed) == sequence;
 }
 
@@ -185,7 +207,10 @@ LinkSample LinkReader::accept(LinkSample sample, MutableOctets payload) noexcept
   const std::uint64_t before = std::exchange(last_, sample).count;
   if (sample.count == before) return last(payload);
   std::swap(kept_, arriving_);
-  std::memcpy(payload.data(), kept_.get(), payload_octets_);
+  const std::size_t direct = before == 0 ? 0 : payload_octets_ / sizeof(Word) * sizeof(Word);
+  if (direct != payload_octets_)
+    std::memcpy(payload.data() + direct, reinterpret_cast<const std::byte*>(kept_.get()) + direct,
+                payload_octets_ - direct);
   sample.flow = Flow::New;
   sample.lost = before != 0 && sample.count > before ? sample.count - before - 1 : 0;
   return sample;

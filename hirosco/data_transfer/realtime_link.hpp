@@ -86,15 +86,15 @@ class LinkReader {
 
  private:
   const std::byte* memory_{nullptr};
-  [[nodiscard]] bool copy(std::uint64_t sequence, LinkSample& sample) noexcept;
+  [[nodiscard]] bool copy(std::uint64_t sequence, LinkSample& sample, MutableOctets payload) noexcept;
   [[nodiscard]] LinkSample last(MutableOctets payload) const noexcept;
   [[nodiscard]] LinkSample accept(LinkSample sample, MutableOctets payload) noexcept;
 
   std::uint32_t payload_octets_{0};
   std::uint64_t last_sequence_{0};
   LinkSample last_{};
-  std::unique_ptr<std::uint64_t[]> kept_;     ///< payload of last_
-  std::unique_ptr<std::uint64_t[]> arriving_; ///< the copy that is not yet known to be whole
+  std::unique_ptr<std::uint64_t[]> kept_;  ///< payload of last_
+  std::unique_ptr<std::uint64_t[]> arriving_;  ///< the copy that is not yet known to be whole
 };
 
 }  // namespace hirosco

@@ -10,11 +10,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <time.h>
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <time.h>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
@@ -109,7 +109,8 @@ Result<Address> loopback(const std::string& text) {
   internet.sin_port = htons(port);
   if (::inet_pton(AF_INET, host.c_str(), &internet.sin_addr) != 1)
     return fail(ErrorCode::InvalidArgument, "host is not an IPv4 address");
-  if (ntohl(internet.sin_addr.s_addr) >> 24 != 127) return fail(ErrorCode::NotPermitted, "address is not a loopback one");
+  if (ntohl(internet.sin_addr.s_addr) >> 24 != 127)
+    return fail(ErrorCode::NotPermitted, "address is not a loopback one");
   Address address;
   std::memcpy(&address.storage, &internet, sizeof internet);
   address.octets = sizeof internet;
@@ -140,7 +141,7 @@ Result<> bind_to(const FileDescriptor& socket, const Address& address) noexcept 
 
 /// Removes what a dead process left at a path, never what is alive or is no socket.
 void remove_stale(const std::string& path, const Address& address) noexcept {
-  struct stat status {};
+  struct stat status{};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISSOCK(status.st_mode)) return;
   const FileDescriptor probe{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
   if (probe && ::connect(probe.get(), address.get(), address.octets) != 0 && errno == ECONNREFUSED)

@@ -20,7 +20,7 @@ struct SealedBlock final : MemoryHandle::Block {
 constexpr auto foreign = "memory handle is not of this provider";
 
 Result<std::size_t> size_of(int descriptor) noexcept {
-  struct stat status {};
+  struct stat status{};
   if (::fstat(descriptor, &status) != 0) return fail(ErrorCode::SystemFailure, "size of shared memory", errno);
   if (status.st_size <= 0) return fail(ErrorCode::Mismatch, "size of shared memory", status.st_size);
   return static_cast<std::size_t>(status.st_size);
@@ -38,8 +38,9 @@ Result<Mapping> SealedMemory::map(const MemoryHandle& handle, Access access) {
   if (number < 0) return fail(ErrorCode::InvalidArgument, foreign);
   HIROSCO_TRY_LET(const std::size_t octets, size_of(number));
   HIROSCO_TRY(memfd::verify(number, octets, false));
-  HIROSCO_TRY_LET(MappedMemory memory, MappedMemory::map(number, octets, access == Access::ReadOnly ? MapMode::ReadOnly
-                                                                                                  : MapMode::ReadWrite));
+  HIROSCO_TRY_LET(
+      MappedMemory memory,
+      MappedMemory::map(number, octets, access == Access::ReadOnly ? MapMode::ReadOnly : MapMode::ReadWrite));
   auto keep = std::make_shared<MappedMemory>(std::move(memory));
   const MutableOctets all = keep->octets();
   return Mapping{std::move(keep), all};

@@ -47,7 +47,7 @@ std::int64_t now_ns() noexcept {
 
 /// An open-file-description lock on one octet: also two flows of one process exclude each other.
 bool lock(int file, std::size_t octet) noexcept {
-  struct flock range {};
+  struct flock range{};
   range.l_type = F_WRLCK;
   range.l_whence = SEEK_SET;
   range.l_start = static_cast<off_t>(octet);
@@ -56,7 +56,7 @@ bool lock(int file, std::size_t octet) noexcept {
 }
 
 bool is_locked_by_another(int file, std::size_t octet) noexcept {
-  struct flock range {};
+  struct flock range{};
   range.l_type = F_WRLCK;
   range.l_whence = SEEK_SET;
   range.l_start = static_cast<off_t>(octet);
@@ -66,8 +66,8 @@ bool is_locked_by_another(int file, std::size_t octet) noexcept {
 
 bool names(const std::string& name, int file) noexcept {
   const FileDescriptor named{::shm_open(name.c_str(), O_RDWR | O_CLOEXEC, 0)};
-  struct stat ours {};
-  struct stat theirs {};
+  struct stat ours{};
+  struct stat theirs{};
   return named && ::fstat(file, &ours) == 0 && ::fstat(named.get(), &theirs) == 0 && ours.st_ino == theirs.st_ino;
 }
 
@@ -82,14 +82,14 @@ struct SharedMemoryFlow::Mailbox {
   alignas(64) std::atomic<Word> sequence;
   std::atomic<Word> octets;
   std::array<std::atomic<Word>, max_frame_octets / sizeof(Word)> words;
-  alignas(64) std::atomic<std::uint32_t> bell;     ///< futex of the reader
+  alignas(64) std::atomic<std::uint32_t> bell;  ///< futex of the reader
   std::atomic<std::uint32_t> waiting;
 };
 
 struct SharedMemoryFlow::Segment {
   std::atomic<Word> magic;
   alignas(64) std::array<std::atomic<Word>, 2> opened;
-  std::array<Mailbox, 2> mailboxes;                ///< to side 0, to side 1
+  std::array<Mailbox, 2> mailboxes;  ///< to side 0, to side 1
 };
 
 Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& address, FlowSide side) {
@@ -101,7 +101,8 @@ Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& addr
   Result<std::unique_ptr<SharedMemoryFlow>> opened = fail(ErrorCode::Unavailable, "shared memory");
   for (int i = 0; i < opening_attempts; ++i) {
     opened = try_open(name, side);
-    if (opened || (opened.error().code != ErrorCode::AlreadyExists && opened.error().code != ErrorCode::Unavailable)) break;
+    if (opened || (opened.error().code != ErrorCode::AlreadyExists && opened.error().code != ErrorCode::Unavailable))
+      break;
     pause_opening();
   }
   if (!opened) return fail(opened.error());
@@ -120,8 +121,7 @@ Result<std::unique_ptr<SharedMemoryFlow>> SharedMemoryFlow::try_open(const std::
   Word found = 0;
   if (!segment.magic.compare_exchange_strong(found, magic) && found != magic)
     return fail(ErrorCode::Mismatch, "shared memory is not a flow's", static_cast<std::int64_t>(found));
-  std::unique_ptr<SharedMemoryFlow> flow{
-      new SharedMemoryFlow{name, std::move(file), std::move(memory), side}};
+  std::unique_ptr<SharedMemoryFlow> flow{new SharedMemoryFlow{name, std::move(file), std::move(memory), side}};
   flow->take_over();
   return flow;
 }

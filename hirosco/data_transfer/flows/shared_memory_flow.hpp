@@ -37,13 +37,13 @@ class SharedMemoryFlow final : public DataFlow {
   [[nodiscard]] bool peer_hung_up() const noexcept;
 
   std::string name_;
-  FileDescriptor file_;               ///< its lock on one octet is the claim to this side; it goes with the process
+  FileDescriptor file_;  ///< its lock on one octet is the claim to this side; it goes with the process
   MappedMemory memory_;
   Segment& segment_;
-  std::size_t own_;                   ///< index of this side: 0 subsystem, 1 device
+  std::size_t own_;  ///< index of this side: 0 subsystem, 1 device
   std::uint64_t sent_sequence_{0};
   std::uint64_t seen_sequence_{0};
-  std::uint64_t peer_at_start_{0};    ///< peer's opening count when this side was opened
+  std::uint64_t peer_at_start_{0};  ///< peer's opening count when this side was opened
 };
 
 }  // namespace hirosco

@@ -119,9 +119,11 @@ Result<Channel::Found> SocketChannel::receive(MessageBuffer& buffer) {
   }
   Arrived arrived = take_descriptors(header);
   if (octets == 0 && hung_up(socket_.get())) return fail(ErrorCode::Unavailable, "peer of control channel is gone");
-  if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0) return fail(ErrorCode::Malformed, "message is too long", octets);
+  if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0)
+    return fail(ErrorCode::Malformed, "message is too long", octets);
   if (arrived.count > 1) return fail(ErrorCode::Malformed, "message carries several descriptors");
-  if (static_cast<std::size_t>(octets) < envelope_octets) return fail(ErrorCode::Malformed, "message is too short", octets);
+  if (static_cast<std::size_t>(octets) < envelope_octets)
+    return fail(ErrorCode::Malformed, "message is too short", octets);
 
   OctetReader reader{envelope};
   const auto kind = reader.get<std::uint8_t>();

@@ -22,7 +22,7 @@ namespace hirosco::testing {
 namespace {
 
 ino_t inode(int descriptor) {
-  struct stat status {};
+  struct stat status{};
   EXPECT_EQ(::fstat(descriptor, &status), 0);
   return status.st_ino;
 }
@@ -98,8 +98,8 @@ class SocketChannelAbuse : public ::testing::Test {
   FileDescriptor peer_;
   std::optional<SocketChannel> channel_;
   MessageBuffer buffer_{};
-  static constexpr std::array good{std::byte{1}, std::byte{0}, std::byte{0}, std::byte{0},
-                                   std::byte{0}, std::byte{0}, std::byte{0}, std::byte{5}, std::byte{0xAA}};
+  static constexpr std::array good{std::byte{1}, std::byte{0}, std::byte{0}, std::byte{0},   std::byte{0},
+                                   std::byte{0}, std::byte{0}, std::byte{5}, std::byte{0xAA}};
 };
 
 TEST_F(SocketChannelAbuse, EnvelopeIsBigEndianAndEightOctetsLong) {
