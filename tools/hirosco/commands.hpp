@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// The commands behind `hirosco`. Each returns its exit code: 0 ok, 1 finding, 2 usage, 3 environment, 4 internal.
+namespace hirosco::tools {
+
+inline constexpr int exit_ok = 0;
+inline constexpr int exit_finding = 1;
+inline constexpr int exit_usage = 2;
+inline constexpr int exit_environment = 3;
+inline constexpr int exit_internal = 4;
+
+struct RunOptions {
+  std::string mission;
+  std::optional<Duration> run_for;
+  bool quiet{false};
+  bool json{false};
+};
+int run(const RunOptions& options);
+
+struct CheckOptions {
+  std::vector<std::string> files;
+  bool json{false};
+  bool show{false};                  ///< print what was read
+};
+int check(const CheckOptions& options);
+
+struct SimulateOptions {
+  std::string mission;
+  Duration run_for{std::chrono::seconds{10}};
+  std::uint64_t seed{1};
+  std::string trace;                 ///< CSV at cycle rate; empty = none
+  std::vector<std::string> at;       ///< "SECONDS DEVICE LINE": injections
+  bool summary{false};               ///< counts only, not the log
+};
+int simulate(const SimulateOptions& options);
+
+/// How clients reach the spacecraft.
+struct Connection {
+  std::string mission{"rokviss"};
+  std::string address{"127.0.0.1"};
+  std::uint16_t port{10'015};
+  bool json{false};
+};
+struct TelecommandOptions {
+  Connection connection;
+  std::string subsystem;
+  std::string function;              ///< or "ping"
+  std::vector<std::string> arguments;///< values in order, or NAME=VALUE
+  Duration limit{std::chrono::seconds{70}};
+};
+int telecommand(const TelecommandOptions& options);
+int status(const Connection& connection);
+
+struct LogOptions {
+  std::string mission{"rokviss"};
+  std::string path;                  ///< of the store; empty = the mission's
+  std::optional<std::uint16_t> apid;
+  std::optional<std::uint8_t> service;
+  std::string text;
+  std::size_t last{40};
+  bool json{false};
+};
+int log(const LogOptions& options);
+
+struct FaultOptions {
+  std::string mission{"rokviss"};
+  std::string device;
+  std::vector<std::string> words;
+};
+int fault(const FaultOptions& options);
+
+// --- shared ------------------------------------------------------------------------------------------------------------
+/// "rokviss" or a path: the mission file; a name is looked for in missions/NAME/mission.xml from the working directory and
+/// from this program upwards. Empty: nowhere.
+[[nodiscard]] std::filesystem::path find_mission(const std::string& name_or_path);
+/// Reads the mission and prints what is wrong with it to standard error.
+[[nodiscard]] std::optional<descriptor::Mission> load_mission(const std::string& name_or_path);
+/// Where the running mission keeps its lock and the control sockets of its simulated devices.
+[[nodiscard]] std::filesystem::path runtime_folder(const descriptor::Mission& mission);
+
+}  // namespace hirosco::tools

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "supervisor/platform/database.hpp"
+#include "tools/hirosco/commands.hpp"
+
+namespace hirosco::tools {
+namespace {
+
+[[nodiscard]] std::string json_text(std::string_view text) {
+  std::string quoted;
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') quoted += '\\';
+    quoted += letter >= ' ' ? letter : ' ';
+  }
+  return quoted;
+}
+
+}  // namespace
+
+int log(const LogOptions& options) {
+  std::filesystem::path path = options.path;
+  std::string strategy = path.extension() == ".log" ? "ascii" : "sqlite";
+  if (path.empty()) {
+    const auto mission = load_mission(options.mission);
+    if (!mission) return exit_finding;
+    path = mission->database.path;
+    strategy = mission->database.strategy;
+  }
+  const auto kind = from_text<supervisor::DatabaseStrategy>(strategy);
+  auto database = supervisor::open_database(kind.value_or(supervisor::DatabaseStrategy::Sqlite), path,
+                                            supervisor::DatabaseAccess::Read);
+  if (!database) {
+    fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), database.error().text);
+    return exit_environment;
+  }
+  const auto page = (*database)->read(
+      {.apid = options.apid, .service = options.service, .text = options.text, .last = options.last});
+  if (!page) {
+    fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
+    return exit_environment;
+  }
+  for (const auto& record : page->records) {
+    if (options.json)
+      fmt::print("{{\"number\":{},\"stored\":\"{}\",\"kind\":\"{}\",\"source\":{},\"peer\":{},\"text\":\"{}\"}}\n", record.number,
+                 supervisor::time_text(record.stored), to_text(record.kind), record.source, record.peer,
+                 json_text(supervisor::describe(record)));
+    else fmt::print("{}\n", supervisor::describe(record));
+  }
+  if (page->damaged != 0) fmt::print(stderr, "hirosco log: {} damaged records left out\n", page->damaged);
+  return page->damaged == 0 ? exit_ok : exit_finding;
+}
+
+}  // namespace hirosco::tools

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
+#include "tools/hirosco/commands.hpp"
+
+/// `hirosco`: one command for everything. The command line is read here and nowhere else.
+namespace {
+
+using namespace hirosco;
+using namespace hirosco::tools;
+
+/// "90s", "1500ms", "10min", "2" (seconds).
+[[nodiscard]] Duration duration_of(const std::string& text) {
+  std::size_t used = 0;
+  double number = 0.0;
+  try {
+    number = std::stod(text, &used);
+  } catch (const std::exception&) {
+    throw CLI::ValidationError("not a duration: '" + text + "' (for example 60s, 500ms, 10min)");
+  }
+  const std::string unit = text.substr(used);
+  const double scale = unit == "ms" ? 1e-3 : unit == "min" ? 60.0 : unit == "h" ? 3600.0 : unit.empty() || unit == "s" ? 1.0 : -1.0;
+  constexpr double longest_s = 1e7;
+  if (scale < 0 || !(number >= 0) || number * scale > longest_s)
+    throw CLI::ValidationError("not a duration: '" + text + "' (for example 60s, 500ms, 10min)");
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(number * scale));
+}
+
+void add_connection(CLI::App& command, Connection& connection) {
+  command.add_option("--mission", connection.mission, "Mission whose descriptors decode the packets")->capture_default_str();
+  command.add_option("--host", connection.address, "Address of the ground link")->capture_default_str();
+  command.add_option("--port", connection.port, "Port of the ground link")->capture_default_str();
+  command.add_flag("--json", connection.json, "One JSON object instead of text");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"HIROSCO, a high-level robotic spacecraft controller"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "hirosco 0.1.0");
+
+  RunOptions run_options;
+  std::string run_for;
+  auto* run_command = app.add_subcommand("run", "Fly a mission with real processes until Ctrl-C");
+  run_command->add_option("mission", run_options.mission, "Name (rokviss, hello) or path of a mission")->required();
+  run_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
+  run_command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");
+  run_command->add_flag("--json", run_options.json, "One JSON object a line");
+
+  CheckOptions check_options;
+  auto* check_command = app.add_subcommand("check", "Check descriptors and missions, all problems at once");
+  check_command->add_option("files", check_options.files, "Descriptor or mission files")->required();
+  check_command->add_flag("--show", check_options.show, "Print what was read");
+  check_command->add_flag("--json", check_options.json, "Problems as JSON, one a line");
+
+  SimulateOptions simulate_options;
+  std::string simulate_for = "10s";
+  auto* simulate_command = app.add_subcommand("simulate", "Fly a mission in one process on virtual time and print its log");
+  simulate_command->add_option("mission", simulate_options.mission, "Name or path of a mission")->required();
+  simulate_command->add_option("--for", simulate_for, "Virtual time")->capture_default_str();
+  simulate_command->add_option("--seed", simulate_options.seed, "Seed of everything random")->capture_default_str();
+  simulate_command->add_option("--trace", simulate_options.trace, "Write link and world truth at cycle rate as CSV");
+  simulate_command->add_option("--at", simulate_options.at, "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
+  simulate_command->add_flag("--summary", simulate_options.summary, "Print counts instead of the log");
+
+  TelecommandOptions tc_options;
+  std::string tc_limit = "70s";
+  auto* tc_command = app.add_subcommand("tc", "Send a telecommand by name and wait for its verification reports");
+  tc_command->add_option("subsystem", tc_options.subsystem, "Name of the subsystem")->required();
+  tc_command->add_option("function", tc_options.function, "Name of the function, or ping")->required();
+  tc_command->add_option("arguments", tc_options.arguments, "Values in order, or NAME=VALUE")->allow_extra_args();
+  tc_command->add_option("--limit", tc_limit, "How long to wait for the end")->capture_default_str();
+  add_connection(*tc_command, tc_options.connection);
+
+  Connection status_options;
+  auto* status_command = app.add_subcommand("status", "Newest housekeeping of every subsystem");
+  add_connection(*status_command, status_options);
+
+  LogOptions log_options;
+  auto* log_command = app.add_subcommand("log", "Read the supervisor's log");
+  log_command->add_option("--mission", log_options.mission, "Mission whose log is read")->capture_default_str();
+  log_command->add_option("--path", log_options.path, "Another log store");
+  log_command->add_option("--apid", log_options.apid, "Only this subsystem");
+  log_command->add_option("--service", log_options.service, "Only this service");
+  log_command->add_option("--text", log_options.text, "Only lines with this text");
+  log_command->add_option("--last", log_options.last, "So many of the newest")->capture_default_str();
+  log_command->add_flag("--json", log_options.json, "One JSON object a line");
+
+  FaultOptions fault_options;
+  auto* fault_command = app.add_subcommand("fault", "Inject a fault into a simulated device, or move the operator's hand");
+  fault_command->add_option("device", fault_options.device, "Name of the device (robot, joystick)")->required();
+  fault_command->add_option("line", fault_options.words, "unplug, plug, freeze MS, corrupt N, hand wander, ...")
+      ->required()->allow_extra_args();
+  fault_command->add_option("--mission", fault_options.mission, "Mission that runs")->capture_default_str();
+  // Values such as -0.8 are arguments, not options.
+  tc_command->prefix_command(false);
+
+  try {
+    app.parse(argc, argv);
+    if (!run_for.empty()) run_options.run_for = duration_of(run_for);
+    simulate_options.run_for = duration_of(simulate_for);
+    tc_options.limit = duration_of(tc_limit);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? exit_ok : exit_usage;
+  }
+  if (*run_command) return run(run_options);
+  if (*check_command) return check(check_options);
+  if (*simulate_command) return simulate(simulate_options);
+  if (*tc_command) return telecommand(tc_options);
+  if (*status_command) return status(status_options);
+  if (*log_command) return log(log_options);
+  return fault(fault_options);
+}

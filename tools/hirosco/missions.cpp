@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "hirosco/descriptor/read.hpp"
+#include "tools/hirosco/commands.hpp"
+
+namespace hirosco::tools {
+
+namespace fs = std::filesystem;
+
+fs::path find_mission(const std::string& name_or_path) {
+  std::error_code failed;
+  const fs::path given{name_or_path};
+  if (fs::is_regular_file(given, failed)) return given;
+  if (fs::is_regular_file(given / "mission.xml", failed)) return given / "mission.xml";
+  if (name_or_path.find('/') != std::string::npos) return {};
+  std::vector<fs::path> starts{fs::current_path(failed)};
+  if (const auto self = fs::read_symlink("/proc/self/exe", failed); !failed) starts.push_back(self.parent_path());
+  for (fs::path folder : starts)
+    for (;;) {
+      const fs::path candidate = folder / "missions" / name_or_path / "mission.xml";
+      if (fs::is_regular_file(candidate, failed)) return candidate;
+      if (!folder.has_relative_path()) break;
+      folder = folder.parent_path();
+    }
+  return {};
+}
+
+std::optional<descriptor::Mission> load_mission(const std::string& name_or_path) {
+  const fs::path file = find_mission(name_or_path);
+  if (file.empty()) {
+    fmt::print(stderr, "hirosco: no mission '{}': neither a file nor missions/{}/mission.xml here or above this program\n",
+               name_or_path, name_or_path);
+    return std::nullopt;
+  }
+  const auto source = descriptor::file_system();
+  auto reading = descriptor::read_mission(file, source);
+  const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
+  return std::move(reading.value);
+}
+
+fs::path runtime_folder(const descriptor::Mission& mission) {
+  const char* base = std::getenv("XDG_RUNTIME_DIR");
+  const fs::path root = base != nullptr && *base != '\0' ? fs::path{base} : fs::temp_directory_path();
+  return root / fmt::format("hirosco-{}-{}", ::getuid(), mission.name);
+}
+
+}  // namespace hirosco::tools

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/process_launcher.hpp"
+#include "tools/hirosco/commands.hpp"
+
+namespace hirosco::tools {
+namespace {
+
+/// One flight of a mission at a time: the lock lives as long as the process.
+[[nodiscard]] FileDescriptor take_lock(const std::filesystem::path& folder) {
+  FileDescriptor lock{::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)};
+  if (lock && ::flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return lock;
+  return {};
+}
+
+[[nodiscard]] const descriptor::Endnode* endnode_of(const descriptor::Mission& mission,
+                                                    const descriptor::SimulatedDevice& device) {
+  const auto* member = mission.find_subsystem(device.subsystem);
+  if (member == nullptr) return nullptr;
+  for (const auto& configuration : member->subsystem.configurations)
+    for (const auto& use : configuration.devices)
+      if (member->subsystem.devices[use.device].name == device.device) return &use.endnode;
+  return nullptr;
+}
+
+[[nodiscard]] std::optional<ProcessStart> device_start(const descriptor::Mission& mission,
+                                                       const descriptor::SimulatedDevice& device,
+                                                       const std::filesystem::path& folder) {
+  const auto program = supervisor::find_program(device.executable);
+  const auto* endnode = endnode_of(mission, device);
+  if (program.empty() || endnode == nullptr) {
+    fmt::print(stderr, "hirosco run: no program {} for the simulated device {}\n", device.executable, device.name);
+    return std::nullopt;
+  }
+  ProcessStart start;
+  start.executable = program.string();
+  start.arguments = {"--transfer", std::string{to_text(endnode->transfer)}, "--address", endnode->address,
+                     "--seed",     std::to_string(device.seed),             "--control", (folder / device.name).string()};
+  for (const auto& [name, value] : device.settings) start.arguments.insert(start.arguments.end(), {"--set", name + " " + value});
+  return start;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  const auto mission = load_mission(options.mission);
+  if (!mission) return exit_finding;
+  const auto folder = runtime_folder(*mission);
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all, failed);
+  const FileDescriptor lock = take_lock(folder);
+  if (!lock) {
+    fmt::print(stderr, "hirosco run: {} flies already, or {} cannot be written\n", mission->name, folder.string());
+    return exit_environment;
+  }
+  supervisor::KeeperPlan plan;
+  plan.run_for = options.run_for;
+  for (const auto& device : mission->devices) {
+    auto start = device_start(*mission, device, folder);
+    if (!start) return exit_environment;
+    plan.devices.push_back(std::move(*start));
+  }
+  const auto program = supervisor::find_program("hirosco-supervisor");
+  if (program.empty()) {
+    fmt::print(stderr, "hirosco run: no program hirosco-supervisor beside this one or in PATH\n");
+    return exit_environment;
+  }
+  plan.supervisor.executable = program.string();
+  plan.supervisor.arguments = {"--mission", mission->file.string()};
+  if (options.json) plan.supervisor.arguments.emplace_back("--json");
+  if (options.quiet) plan.supervisor.arguments.emplace_back("--quiet");
+  return supervisor::keep(std::move(plan));
+}
+
+}  // namespace hirosco::tools

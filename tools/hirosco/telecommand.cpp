@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+
+#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/st08_function.hpp"
+#include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/ground_connection.hpp"
+
+namespace hirosco::tools {
+namespace {
+
+[[nodiscard]] std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+/// A number, a state, mode or configuration by name, or an enumeration text.
+[[nodiscard]] std::optional<double> value_of(const std::string& text, const std::string& function,
+                                             const descriptor::Mission& mission, const descriptor::Subsystem& subsystem) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc{} && end == text.data() + text.size()) return number;
+  const std::string wanted = lower(text);
+  if (function == "SET_STATE")
+    for (const auto& row : EnumTexts<descriptor::State>::table)
+      if (lower(std::string{row.text}) == wanted) return static_cast<double>(row.value);
+  if (function == "CONFIGURE")
+    for (const auto& configuration : subsystem.configurations)
+      if (lower(configuration.name) == wanted) return configuration.id;
+  if (function == "SET_MODE")
+    for (const auto& mode : mission.modes)
+      if (lower(mode.name) == wanted) return mode.id;
+  if (function == "SET_DATABASE") return wanted == "sqlite" ? std::optional{0.0} : wanted == "ascii" ? std::optional{1.0} : std::nullopt;
+  if (wanted == "on") return 1.0;
+  if (wanted == "off") return 0.0;
+  return std::nullopt;
+}
+
+[[nodiscard]] const descriptor::Subsystem* find_subsystem(const descriptor::Mission& mission, const std::string& name) {
+  const std::string wanted = lower(name);
+  if (wanted == lower(mission.supervisor.name)) return &mission.supervisor;
+  for (const auto& member : mission.subsystems)
+    if (lower(member.subsystem.name) == wanted) return &member.subsystem;
+  fmt::print(stderr, "hirosco tc: no subsystem '{}'; the mission has {}", name, mission.supervisor.name);
+  for (const auto& member : mission.subsystems) fmt::print(stderr, ", {}", member.subsystem.name);
+  fmt::print(stderr, "\n");
+  return nullptr;
+}
+
+void print_usage(const descriptor::Function& function) {
+  fmt::print(stderr, "  {}", function.name);
+  for (const auto& argument : function.arguments) {
+    const auto& field = argument.field;
+    fmt::print(stderr, " {}", field.name);
+    if (field.minimum && field.maximum) fmt::print(stderr, "[{}..{}{}{}]", *field.minimum, *field.maximum, field.unit.empty() ? "" : " ", field.unit);
+  }
+  fmt::print(stderr, "\n");
+}
+
+[[nodiscard]] std::optional<std::vector<std::byte>> encode(const TelecommandOptions& options,
+                                                           const descriptor::Mission& mission,
+                                                           const descriptor::Subsystem& subsystem) {
+  std::vector<descriptor::Function> functions = pus::common_functions();
+  functions.insert(functions.end(), subsystem.functions.begin(), subsystem.functions.end());
+  const auto function = std::ranges::find_if(functions, [&](const auto& f) { return lower(f.name) == lower(options.function); });
+  if (function == functions.end()) {
+    fmt::print(stderr, "hirosco tc: {} has no function '{}'; it has\n", subsystem.name, options.function);
+    for (const auto& known : functions) print_usage(known);
+    return std::nullopt;
+  }
+  std::vector<std::optional<double>> values(function->arguments.size());
+  std::size_t next = 0;
+  for (const std::string& word : options.arguments) {
+    const auto equals = word.find('=');
+    std::size_t index = next;
+    if (equals != std::string::npos) {
+      const auto named = std::ranges::find_if(function->arguments, [&](const auto& a) { return lower(a.field.name) == lower(word.substr(0, equals)); });
+      index = static_cast<std::size_t>(named - function->arguments.begin());
+    } else {
+      ++next;
+    }
+    const std::string text = equals == std::string::npos ? word : word.substr(equals + 1);
+    const auto value = value_of(text, function->name, mission, subsystem);
+    if (index >= values.size() || !value) {
+      fmt::print(stderr, "hirosco tc: argument '{}' does not fit; usage:\n", word);
+      print_usage(*function);
+      return std::nullopt;
+    }
+    values[index] = value;
+  }
+  auto data = pus::encode_call(*function, std::span<const std::optional<double>>{values});
+  if (data) return std::move(*data);
+  fmt::print(stderr, "hirosco tc: {}; usage:\n", data.error().text);
+  print_usage(*function);
+  return std::nullopt;
+}
+
+/// Prints one verification report; true when it was the last of the request.
+[[nodiscard]] bool print_report(const pus::TelemetryView& report, double after_ms, bool json, bool& success) {
+  OctetReader reader{report.source_data()};
+  static_cast<void>(reader.get<std::uint32_t>());
+  constexpr std::array names{"", "accepted", "refused", "started", "start failed", "step", "step failed",
+                             "completed", "failed", "", "not routed"};
+  const std::uint8_t subtype = report.subtype();
+  if (subtype >= names.size()) return false;
+  const bool failure = subtype % 2 == 0;
+  std::string detail;
+  if (subtype == 5 || subtype == 6) detail = fmt::format(" {}", reader.get<std::uint16_t>());
+  if (failure) {
+    const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
+    detail += fmt::format(": {} (code {})", to_text(code), static_cast<unsigned>(code));
+  }
+  if (json) fmt::print("{{\"report\":\"1,{}\",\"text\":\"{}{}\",\"from\":{},\"after_ms\":{:.2f}}}\n", subtype, names[subtype], detail, report.apid(), after_ms);
+  else fmt::print("{:9.2f} ms  TM[1,{}] {}{}\n", after_ms, subtype, names[subtype], detail);
+  success = subtype == 7;
+  return subtype == 7 || (failure && subtype != 6);
+}
+
+}  // namespace
+
+int telecommand(const TelecommandOptions& options) {
+  const auto mission = load_mission(options.connection.mission);
+  if (!mission) return exit_finding;
+  const auto* subsystem = find_subsystem(*mission, options.subsystem);
+  if (subsystem == nullptr) return exit_usage;
+  const bool ping = lower(options.function) == "ping";
+  std::vector<std::byte> data;
+  if (!ping) {
+    auto encoded = encode(options, *mission, *subsystem);
+    if (!encoded) return exit_usage;
+    data = std::move(*encoded);
+  }
+  auto connection = GroundConnection::open(options.connection.address, options.connection.port);
+  if (!connection) {
+    fmt::print(stderr, "hirosco tc: {}:{}: {}\n", options.connection.address, options.connection.port, connection.error().text);
+    return exit_environment;
+  }
+  // A source id and a first count of its own: reports find back to this call and to no other (decision 27).
+  const auto source = static_cast<std::uint16_t>(0x4000 | (::getpid() & 0x3FFF));
+  const auto count = static_cast<std::uint16_t>(std::chrono::steady_clock::now().time_since_epoch().count() & 0x3FFF);
+  std::array<std::byte, pus::max_telecommand_octets> buffer;
+  const auto packet = pus::write_telecommand(buffer,
+                                             {.apid = subsystem->id, .sequence_count = count, .ack = pus::ack_all,
+                                              .service = static_cast<std::uint8_t>(ping ? 17 : 8), .subtype = 1, .source = source},
+                                             data);
+  if (!packet || !connection->send(*packet)) {
+    fmt::print(stderr, "hirosco tc: the telecommand could not be sent\n");
+    return exit_environment;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const std::uint32_t id = pus::read_primary_header(*packet)->request_id;
+  for (;;) {
+    const auto left = options.limit - (std::chrono::steady_clock::now() - start);
+    const auto received = connection->receive(std::max(std::chrono::duration_cast<Duration>(left), Duration{0}));
+    if (!received || !*received) {
+      fmt::print(stderr, "hirosco tc: {}\n", received ? "no final report within the limit" : received.error().text);
+      return exit_finding;
+    }
+    const auto report = pus::TelemetryView::parse(**received);
+    if (!report || report->destination() != source || report->service() != 1) continue;
+    if (OctetReader{report->source_data()}.get<std::uint32_t>() != id) continue;
+    const double after_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    bool success = false;
+    if (print_report(*report, after_ms, options.connection.json, success)) return success ? exit_ok : exit_finding;
+  }
+}
+
+}  // namespace hirosco::tools
