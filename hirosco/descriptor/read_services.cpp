@@ -13,7 +13,8 @@ namespace {
 constexpr std::int64_t max_cycles = 1'000'000;
 constexpr std::size_t max_arguments = 255;
 constexpr std::size_t max_structures = 256;
-constexpr std::size_t max_sets = 64;
+constexpr std::size_t max_sets = 32;
+constexpr std::size_t max_set_fields = 64;
 
 }  // namespace
 
@@ -195,10 +196,12 @@ void SubsystemReader::read_provides(const xml::Element& element, Services& servi
   const std::string user = fmt::format("set '{}'", set.name);
   read_sampled(element, set.parameters, user);
   Unique names{"field name", "E0201"};
-  std::size_t octets = 0;
+  std::size_t octets = 0, fields = 0;
   for (const ParameterRef& reference : set.parameters) {
     octets += octets_of_reference(reference);
-    if (octets > max_link_octets) break;
+    const auto& members = subsystem_.parameters[reference.parameter].members;
+    fields += reference.member || members.empty() ? 1 : members.size();
+    if (octets > max_link_octets || fields > max_set_fields) break;
     for (const Field& field : fields_of(subsystem_, reference))
       if (!field.name.empty() &&
           !names.add(field.name, reference.at, problems_, reference.text.size(), "fields of a set are matched by name"))
@@ -207,6 +210,9 @@ void SubsystemReader::read_provides(const xml::Element& element, Services& servi
   if (octets > max_link_octets)
     problems_.add(element, "E0215", fmt::format("{} takes {} octets or more in one sample", user, octets),
                   fmt::format("at most {}", max_link_octets));
+  if (fields > max_set_fields)
+    problems_.add(element, "E0215", fmt::format("{} has {} fields or more", user, fields),
+                  fmt::format("at most {}", max_set_fields));
   if (!set.name.empty()) services.provided.add(set.name, set.at, problems_, element.name.size() + 1);
   services.provides.push_back(std::move(set));
 }
@@ -222,7 +228,8 @@ void SubsystemReader::read_requires(const xml::Element& element, Services& servi
   set.age = read_limit(attributes, "age", "age_reduced", set.age);
   set.missing = attributes.one_of("missing", MissingPolicy::Inhibit);
   Unique names{"field name", "E0201"};
-  each_child(element, problems_, {{"Field", [&](const auto& child) { read_plain_field(child, set.fields, names); }}});
+  each_child(element, problems_,
+             {{"Field", [&](const auto& child) { read_plain_field(child, set.fields, names); }, max_set_fields}});
   if (set.fields.empty()) problems_.add(element, "E0106", "<Requires> needs at least one <Field>");
   std::size_t octets = 0;
   for (const Field& field : set.fields) octets += field.octets();

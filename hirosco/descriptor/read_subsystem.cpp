@@ -12,6 +12,8 @@ namespace detail {
 namespace {
 
 constexpr std::size_t max_description = 4096;
+/// Each has its own copy of what the subsystem declares for all of them.
+constexpr std::size_t max_configurations = 64;
 constexpr std::int64_t max_octets = std::int64_t{1} << 40;
 
 /// "64MiB", "512KiB", "4096"; empty when it is none or more than a tebibyte.
@@ -60,7 +62,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                               {"Enumeration", [this](const auto& element) { read_enumeration(element); }},
                               {"Device", [this](const auto& element) { read_device(element); }, 255},
                               {"Hang", [this](const auto& element) { read_hang(element); }, 1},
-                              {"Configuration", later(configurations), 255}};
+                              {"Configuration", later(configurations), max_configurations}};
   Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_};
   const std::vector<Child> service_rows = service_children(services);
   for (const Child& row : service_rows) children.push_back({row.name, later(services_elements), row.most});

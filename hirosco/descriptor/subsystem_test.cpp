@@ -188,6 +188,31 @@ TEST(SubsystemDescriptor, HostileDocumentsAreRefusedWithAPlace) {
   refused("<!DOCTYPE Subsystem [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;\">]><Subsystem name=\"&b;\"/>", "E0003");
 }
 
+TEST(SubsystemDescriptor, CountsAreBounded) {
+  const auto configurations = [](int count) {
+    std::string text = "<Subsystem name=\"S\" id=\"1\">";
+    for (int i = 1; i <= count; ++i) {
+      const std::string id = std::to_string(i);
+      text += "<Configuration name=\"C" + id + "\" id=\"" + id + "\" sampling_us=\"1\"/>";
+    }
+    return text + "</Subsystem>";
+  };
+  EXPECT_TRUE(read_text(configurations(64)).value);
+  EXPECT_EQ(read_text(configurations(65)).problems.at(0).code, "E0107");
+  const auto provided = [](int members) {
+    std::string text = "<Subsystem name=\"S\" id=\"1\"><StructRef name=\"A\" id=\"0\">";
+    for (int i = 1; i <= members; ++i) {
+      const std::string id = std::to_string(i);
+      text += "<ParamRef name=\"M" + id + "\" id=\"" + id + "\" type=\"INT8\"/>";
+    }
+    return text +
+           "</StructRef><RealTimeLinkService><Provides name=\"P\"><ParamRef name=\"A\"/></Provides>"
+           "</RealTimeLinkService></Subsystem>";
+  };
+  EXPECT_TRUE(read_text(provided(64)).value);
+  EXPECT_EQ(read_text(provided(65)).problems.at(0).code, "E0215");
+}
+
 TEST(SubsystemDescriptor, ManyProblemsEndTheReading) {
   std::string text = "<Subsystem name=\"S\" id=\"1\">";
   for (int i = 0; i < 40'000; ++i) text += "<ParamRef name=\"X\" id=\"1\" type=\"INTT8\"/>";

@@ -33,7 +33,7 @@ class Cursor {
       }
     }
     if (offset_ >= document_.size() || !is_continuation(document_[offset_])) return position_;
-    return {position_.line, position_.column - 1};
+    return {position_.line, position_.column > 1 ? position_.column - 1 : 1};
   }
 
  private:

@@ -99,6 +99,7 @@ TEST(Reader, RefusesOtherEncodings) {
 
 TEST(Reader, RefusesInvalidUtf8AndNul) {
   EXPECT_EQ(problem_of("<a>\n\xFF</a>").at, (Position{2, 1}));
+  EXPECT_EQ(problem_of("<a>\n\x80</a>").at, (Position{2, 1}));  // the tail of a character that never began
   EXPECT_EQ(problem_of("<a x=\"\xC0\xAF\"/>").reason, "invalid UTF-8");      // overlong
   EXPECT_EQ(problem_of("<a x=\"\xED\xA0\x80\"/>").reason, "invalid UTF-8");  // surrogate
   EXPECT_EQ(problem_of("<a x=\"\xF4\x90\x80\x80\"/>").reason, "invalid UTF-8");
