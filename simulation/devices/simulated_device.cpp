@@ -86,6 +86,7 @@ bool SimulatedDevice::receive(TimePoint now) noexcept {
   if (flow_ == nullptr) return false;
   std::array<std::byte, max_device_frame_octets> buffer;
   const auto received = flow_->receive(buffer);
+  peer_gone_ = !received && received.error().code == ErrorCode::Unavailable;
   if (!received || received->flow != Flow::New) return false;
   const auto command = read_command(Octets{buffer}.first(std::min(received->octets, buffer.size())));
   if (!command) {

@@ -67,8 +67,8 @@ class SimulatedDevice {
   void step(TimePoint now);
   /// When step() is due even if no frame comes.
   [[nodiscard]] TimePoint next_wake() const noexcept;
-  /// Waits for a frame. Blocks; false at once while unplugged.
-  [[nodiscard]] bool wait(Duration timeout) noexcept { return flow_ != nullptr && flow_->wait(timeout); }
+  /// Waits for a frame. Blocks; false at once while there is no peer to wait for (a hang-up would end every wait).
+  [[nodiscard]] bool wait(Duration timeout) noexcept { return flow_ != nullptr && !peer_gone_ && flow_->wait(timeout); }
 
   /// Injects a fault from one line of text and records it with the time of the last step:
   ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | heal
@@ -128,6 +128,7 @@ class SimulatedDevice {
   Settings settings_;
   std::unique_ptr<DataFlow> flow_;
 
+  bool peer_gone_{false};
   bool started_{false};
   bool by_own_clock_{true};
   TimePoint now_{};

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "simulation/rokviss_loop.hpp"
+#include "tests/figures/rokviss_loop.hpp"
 
 namespace hirosco::simulation {
 namespace {

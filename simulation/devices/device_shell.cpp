@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/devices/device_shell.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <iostream>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+#include "simulation/devices/control_socket.hpp"
+
+namespace hirosco::simulation {
+namespace {
+
+constexpr int priority = 85;         // above every cycle: a device does not wait for those whom it serves
+constexpr Duration control_period = std::chrono::milliseconds{10};
+
+// Numbers of descriptor::Transfer, which ranks above the flows that this program opens.
+const std::map<std::string, std::uint8_t> transfers{{"shared_memory", 0}, {"unix", 2}, {"udp", 3}};
+
+struct Options {
+  std::uint8_t transfer{0};
+  std::string address;
+  std::string control;
+  std::uint64_t seed{1};
+  std::int64_t cycle_us{500};
+  std::vector<std::string> settings;
+};
+
+/// An exit code when the program is to end here.
+std::optional<int> read_options(int argc, char** argv, const char* name, Options& options) {
+  CLI::App app{"Simulated device of the rokviss mission", name};
+  app.add_option("--transfer", options.transfer, "Means of transfer")->transform(CLI::CheckedTransformer{transfers});
+  app.add_option("--address", options.address, "Address of the data flow")->required();
+  app.add_option("--control", options.control, "Path of the control socket");
+  app.add_option("--seed", options.seed, "Seed of all that is random");
+  app.add_option("--cycle-us", options.cycle_us, "Device cycle")->check(CLI::Range(100, 100'000));
+  app.add_option("--set", options.settings, "NAME=VALUE, carried out at the start");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem);
+  }
+  return std::nullopt;
+}
+
+std::string text_of(const Error& error) { return fmt::format("{}: {} ({})", to_text(error.code), error.text, error.value); }
+
+std::string answer(SimulatedDevice& device, std::string_view line) {
+  if (Words{line}[0] == "truth") return "ok " + device.truth();
+  const auto done = device.fault(line);
+  return done ? "ok" : "error " + text_of(done.error());
+}
+
+/// Signals that end the program stay pending and are looked at: no handler, no global.
+void hold_back_ending_signals() noexcept {
+  sigset_t ending;
+  sigemptyset(&ending);
+  sigaddset(&ending, SIGTERM);
+  sigaddset(&ending, SIGINT);
+  (void)::sigprocmask(SIG_BLOCK, &ending, nullptr);
+}
+
+bool signalled_to_end() noexcept {
+  sigset_t pending;
+  if (::sigpending(&pending) != 0) return false;
+  return sigismember(&pending, SIGTERM) == 1 || sigismember(&pending, SIGINT) == 1;
+}
+
+/// True when standard input is a pipe or socket of a starter: its end is the starter's.
+bool input_tells_of_starter() noexcept {
+  struct stat about {};
+  return ::fstat(STDIN_FILENO, &about) == 0 && (S_ISFIFO(about.st_mode) || S_ISSOCK(about.st_mode));
+}
+
+bool input_closed() noexcept {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (::poll(&input, 1, 0) <= 0) return false;
+  if ((input.revents & POLLIN) == 0) return true;  // hang-up alone
+  std::array<char, 256> ignored;
+  return ::read(STDIN_FILENO, ignored.data(), ignored.size()) == 0;
+}
+
+void run(SimulatedDevice& device, ControlSocket& control) {
+  const SystemClock clock;
+  const bool watch_input = input_tells_of_starter();
+  TimePoint look_at = clock.now();
+  while (true) {
+    const TimePoint wake = std::min(device.next_wake(), look_at);
+    if (const Duration rest = wake - clock.now(); rest > Duration::zero() && !device.wait(rest)) sleep_until(wake);
+    device.step(clock.now());
+    if (clock.now() < look_at) continue;
+    look_at = clock.now() + control_period;
+    if (signalled_to_end() || (watch_input && input_closed())) return;
+    control.serve([&device](std::string_view line) { return answer(device, line); });
+  }
+}
+
+Result<> prepare(SimulatedDevice& device, ControlSocket& control, const Options& options) {
+  HIROSCO_TRY(device.plug());
+  if (!options.control.empty()) HIROSCO_TRY(control.listen(options.control));
+  for (std::string line : options.settings) {
+    std::ranges::replace(line, '=', ' ');
+    HIROSCO_TRY(device.fault(line));
+  }
+  return ok();
+}
+
+}  // namespace
+
+int run_device(int argc, char** argv, const char* name, const MakeDevice& make) {
+  Options options;
+  if (const auto code = read_options(argc, argv, name, options)) return *code;
+  hold_back_ending_signals();
+  SystemFlowFactory flows;
+  const SimulatedDevice::Settings settings{.cycle = std::chrono::microseconds{options.cycle_us}, .seed = options.seed};
+  const auto device = make(flows, {options.transfer, options.address}, settings);
+  ControlSocket control;
+  if (const auto ready = prepare(*device, control, options); !ready) {
+    std::cerr << name << ": " << text_of(ready.error()) << '\n';
+    return 1;
+  }
+  // Both are wishes: without the rights the device runs as well as it can, and its subsystem's limits are announced wider.
+  (void)lock_memory();
+  (void)set_fifo_priority(priority);
+  run(*device, control);
+  return 0;
+}
+
+}  // namespace hirosco::simulation
