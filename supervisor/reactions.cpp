@@ -19,7 +19,8 @@ void Supervisor::handle_event(std::uint16_t from, const pus::TelemetryView& repo
       from == 1 ? mission_.supervisor : mission_.find_subsystem(from)->subsystem;
   const auto event = std::ranges::find(subsystem.events, id, &descriptor::Event::id);
   const std::string name = event != subsystem.events.end() ? event->name : std::to_string(id);
-  parts_.observer.told(report.time(), "event " + std::string{to_text(severity)} + " " + subsystem.name + " " + name);
+  parts_.observer.told(report.time(), subsystem.name + " " + std::string{to_text(severity)} + " " +
+                                          describer_.describe_event(from, report.source_data()));
   if (Member* origin = member(from); origin != nullptr && origin->alive()) react(*origin, name, severity);
 }
 

@@ -27,6 +27,7 @@ Supervisor::Supervisor(const Parts& parts)
       engine_{*this, mission_.supervisor, parts.world, own_channels_.subsystem_end(), *own_vital_, *own_permit_},
       links_{mission_, parts.world.memory, *this},
       sequence_{*this},
+      describer_{mission_},
       next_sequence_count_{parts.first_sequence_count} {
   members_.reserve(mission_.subsystems.size());
   for (const auto& described : mission_.subsystems) members_.emplace_back(described);

@@ -16,6 +16,7 @@
 #include "hirosco/data_transfer/simulated/channel_pair.hpp"
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/parameter/parameter.hpp"
+#include "hirosco/pus/describe.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
 #include "supervisor/platform/launcher.hpp"
@@ -145,6 +146,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   bool own_cycle_running_{false};
   LinkHandling links_;
   Sequence sequence_;
+  pus::PacketDescriber describer_;
 
   struct OwnRequest {
     CommandDone done;

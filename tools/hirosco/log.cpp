@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "hirosco/pus/describe.hpp"
 #include "supervisor/platform/database.hpp"
 #include "tools/hirosco/commands.hpp"
 
@@ -41,12 +42,21 @@ int log(const LogOptions& options) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
     return exit_environment;
   }
+  const auto mission = find_mission(options.mission).empty() ? std::nullopt : load_mission(options.mission);
+  const auto text_of = [&](const supervisor::LogRecord& record) {
+    if (!mission || record.packet.empty()) return supervisor::describe(record);
+    const pus::PacketDescriber describer{*mission};
+    std::string text = fmt::format("{} {} {} {}", record.number, supervisor::time_text(record.stored), to_text(record.kind),
+                                   describer.describe(record.packet));
+    if (!record.note.view().empty()) text += fmt::format(" \"{}\"", record.note.view());
+    return text;
+  };
   for (const auto& record : page->records) {
     if (options.json)
       fmt::print("{{\"number\":{},\"stored\":\"{}\",\"kind\":\"{}\",\"source\":{},\"peer\":{},\"text\":\"{}\"}}\n", record.number,
                  supervisor::time_text(record.stored), to_text(record.kind), record.source, record.peer,
-                 json_text(supervisor::describe(record)));
-    else fmt::print("{}\n", supervisor::describe(record));
+                 json_text(text_of(record)));
+    else fmt::print("{}\n", text_of(record));
   }
   if (page->damaged != 0) fmt::print(stderr, "hirosco log: {} damaged records left out\n", page->damaged);
   return page->damaged == 0 ? exit_ok : exit_finding;

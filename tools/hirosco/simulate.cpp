@@ -7,6 +7,7 @@
 #include <memory>
 #include <sstream>
 
+#include "hirosco/pus/describe.hpp"
 #include "simulation/devices/joystick_device.hpp"
 #include "simulation/devices/robot_device.hpp"
 #include "simulation/spacecraft/catalogue.hpp"
@@ -37,6 +38,18 @@ struct Injection {
 }
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+/// One line for one record: time, kind, ways, words, octets.
+void print_record(const supervisor::LogRecord& record, const pus::PacketDescriber& describer) {
+  fmt::print("{:12.6f} {:<21} {} -> {}", seconds(record.monotonic - TimePoint{1s}), to_text(record.kind),
+             record.source == 0 ? "ground" : describer.name_of(record.source),
+             record.peer == 0 ? "ground" : describer.name_of(record.peer));
+  if (!record.packet.empty()) fmt::print(" {}", describer.describe(record.packet));
+  if (!record.note.view().empty()) fmt::print(" \"{}\"", record.note.view());
+  if (!record.packet.empty()) fmt::print(" ");
+  for (const std::byte octet : record.packet) fmt::print("{:02x}", std::to_integer<unsigned>(octet));
+  fmt::print("\n");
+}
 
 /// World truth at the robot's cycle rate.
 void write_trace_line(std::FILE* trace, TimePoint now, simulation::Spacecraft& craft) {
@@ -102,9 +115,10 @@ int simulate(const SimulateOptions& options) {
   const auto page = log.read({.last = SIZE_MAX});
   if (!page) return exit_internal;
   std::size_t packets = 0;
+  const pus::PacketDescriber describer{*mission};
   for (const auto& record : page->records) {
     if (!record.packet.empty()) ++packets;
-    if (!options.summary) fmt::print("{}\n", supervisor::describe(record));
+    if (!options.summary) print_record(record, describer);
   }
   if (options.summary)
     fmt::print("{} s simulated, {} log records, {} packets, mode {}, {} of {} links up\n", seconds(options.run_for),
