@@ -54,8 +54,9 @@ TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const TimePoint next = planned + plan_.configuration->sampling;
   const TimePoint finished = parts_.clock.now();
   if (finished <= next) return next;
-  // Missed cycles are skipped, not made up for: a burst of late cycles would be worse than a gap.
-  return next + (finished - next) / plan_.configuration->sampling * plan_.configuration->sampling;
+  // Missed cycles are skipped, not made up for: the next one is due on the grid and in the future, so that one pause
+  // counts as one overrun and not as the first of a burst.
+  return next + ((finished - next) / plan_.configuration->sampling + 1) * plan_.configuration->sampling;
 }
 
 bool CycleLoop::controlling() const noexcept {
@@ -166,7 +167,8 @@ LinkStatus CycleLoop::link_status() const noexcept {
 
 void CycleLoop::write_outputs(TimePoint planned) noexcept {
   const bool active = state_ == State::Operational && inhibited_ == 0;
-  const bool stopping = state_ == State::ErrorOperational || inhibited_ != 0;
+  // Inhibited means the declared safe output; only Error-Operational brings the device to a controlled stop (decision 22).
+  const bool stopping = state_ == State::ErrorOperational;
   const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
   for (DeviceSlot& device : plan_.devices) device.write(epoch, active, stopping);
   for (LinkOutputSlot& output : plan_.outputs) output.write(planned, link_status());

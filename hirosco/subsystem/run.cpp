@@ -78,6 +78,7 @@ class CycleThread {
 
  private:
   void run() {
+    if (realtime_) static_cast<void>(pin_to_cycle_cpu());
     while (!ending_.load(std::memory_order_acquire)) {
       const auto demand = subsystem_.cycle_demand();
       if (!demand.wanted) {
@@ -113,11 +114,14 @@ void serve(GenericSubsystem& subsystem, const Clock& clock, const Channel& chann
   WaitSet waits;
   static_cast<void>(waits.add(channel.wait_descriptor()));
   bool cycling = false;
+  std::uint32_t ticket = 0;
   while (!subsystem.finished()) {
     const TimePoint wake = subsystem.service_step(clock.now());
-    const bool wanted = subsystem.cycle_demand().wanted;
-    if (wanted && !cycling) cycle.wake();
-    cycling = wanted;
+    const auto demand = subsystem.cycle_demand();
+    // A cycle may be wanted and called off within one step: its thread must answer that order to rest, too.
+    if ((demand.wanted && !cycling) || demand.ticket != ticket) cycle.wake();
+    cycling = demand.wanted;
+    ticket = demand.ticket;
     static_cast<void>(waits.wait(std::max(wake - clock.now(), Duration{0})));
   }
 }

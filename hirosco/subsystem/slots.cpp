@@ -82,6 +82,9 @@ Result<> LinkInputSlot::plan(AttachedLink& link) const {
 void LinkInputSlot::attach(AttachedLink* link) noexcept {
   link_ = link;
   port_->age_cycles_ = 0;
+  // What an earlier link brought must not pass for a sample of this one.
+  port_->count_ = 0;
+  port_->status_ = LinkStatus::None;
 }
 
 AttachedLink* LinkInputSlot::detach() noexcept {
@@ -199,6 +202,8 @@ void DeviceSlot::read(bool count_silence) noexcept {
       port_->fresh_ = status->sequence != echoed_ || !heard_;
       echoed_ = status->sequence;
       port_->flags_ = status->flags;
+      // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say.
+      if ((status->flags & device_flag::watchdog_tripped) != 0 && active_cycles_ > silence_limit_) port_->fresh_ = false;
     } else {
       ++port_->damaged_frames_;
     }
@@ -220,6 +225,7 @@ void DeviceSlot::read(bool count_silence) noexcept {
 
 void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {
   const bool pass = active || !device_->actuator;
+  active_cycles_ = active ? std::min(active_cycles_ + 1, longest_silence) : 0;
   Octets payload = safe_payload_;
   if (pass) {
     const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());

@@ -114,6 +114,7 @@ class DeviceSlot {
   std::uint32_t sequence_{0};
   std::uint32_t silent_cycles_{0};
   std::uint32_t echoed_{0};          ///< command sequence that the newest status frame answers
+  std::uint32_t active_cycles_{0};   ///< in a row in which outputs were to reach the actuators
   bool heard_{false};
   bool just_lost_{false};
 };

@@ -9,6 +9,7 @@
 namespace hirosco::simulation {
 namespace {
 
+constexpr int longest_step_cycles = 4;  // of the device's own clock, jitter included
 constexpr std::int64_t most_cycles_at_once = 40;          // of catching up after the process itself was held up
 constexpr std::size_t most_delayed_frames = 2048;         // 1 s at 2 kHz
 constexpr std::size_t most_injections = 10'000;           // then the record ends; the faults still work
@@ -61,6 +62,7 @@ Result<> SimulatedDevice::plug() {
 
 void SimulatedDevice::step(TimePoint now) {
   if (!started_) world_time_ = now;
+  else forgive_pause(now);
   started_ = true;
   now_ = now;
   const bool exchanged = receive(now);
@@ -115,6 +117,15 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
   const Duration wanted = std::chrono::microseconds{command.watchdog_us};
   watchdog_at_ = now + (command.watchdog_us == 0 ? settings_.watchdog : std::min(wanted, longest_watchdog));
   return true;
+}
+
+/// A pause of this very program (a stopped virtual machine, a debugger) is no time that the device had: real hardware
+/// would have run on, so neither its world nor its watchdog may jump. While it runs it wakes every two cycles at most.
+void SimulatedDevice::forgive_pause(TimePoint now) noexcept {
+  const Duration pause = now - now_ - settings_.cycle * longest_step_cycles;
+  if (pause <= Duration{0}) return;
+  world_time_ += pause;
+  if (mode_ != DeviceMode::Off) watchdog_at_ += pause;
 }
 
 void SimulatedDevice::watch(TimePoint now) noexcept {

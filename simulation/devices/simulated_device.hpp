@@ -115,6 +115,7 @@ class SimulatedDevice {
 
   [[nodiscard]] bool receive(TimePoint now) noexcept;
   [[nodiscard]] bool accept(const DeviceCommand& command, TimePoint now) noexcept;
+  void forgive_pause(TimePoint now) noexcept;
   void watch(TimePoint now) noexcept;
   [[nodiscard]] std::int64_t due_cycles(TimePoint now, bool exchanged) noexcept;
   void answer(TimePoint now) noexcept;

@@ -30,6 +30,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
     std::uint32_t bad_length;
     std::uint32_t incomplete;
   };
+  static constexpr Duration ground_patience = 2s;
   enum Event : std::uint16_t { ground_link_lost = 201, ground_link_restored = 202, client_cut = 203 };
 
   Result<Step> software_init() override {
@@ -76,9 +77,14 @@ class Communication final : public Subsystem, private communication::GroundTraff
     const auto u32 = [](std::uint64_t number) { return static_cast<std::uint32_t>(number); };
     const auto closed = [&](CloseReason reason) { return u32(counters.closed[static_cast<std::size_t>(reason)]); };
     const bool connected = counters.clients > 0;
+    if (connected) last_client_ = now;
     if (connected && !had_client_) raise_in_service(ground_link_restored);
-    if (!connected && had_client_) raise_in_service(ground_link_lost);
-    had_client_ = connected;
+    if (connected) had_client_ = true;
+    // A tool that asks and goes is no loss of the ground: only a silence is, and only after somebody was there.
+    if (had_client_ && now - last_client_ > ground_patience) {
+      had_client_ = false;
+      raise_in_service(ground_link_lost);
+    }
     if (closed(CloseReason::Slow) > cut_) raise_in_service(client_cut);
     cut_ = closed(CloseReason::Slow);
     const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(now - last_rx_).count();
@@ -111,6 +117,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
   Clients next_clients_{};
   TimePoint now_{};
   TimePoint last_rx_{};
+  TimePoint last_client_{};
   std::uint32_t dropped_{0};
   std::uint32_t cut_{0};
   bool had_client_{false};

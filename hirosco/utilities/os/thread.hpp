@@ -46,6 +46,9 @@ class Thread {
 [[nodiscard]] bool realtime_permitted() noexcept;
 /// Keeps the calling thread on one processor, counted from 0; Unavailable where the system has no such call.
 [[nodiscard]] Result<> pin_to_cpu(unsigned cpu) noexcept;
+/// Ties the calling thread to the last processor that it may use: the one that all cycles and devices of a node share
+/// (docs/adr/0007). Unavailable where the system has no affinity.
+[[nodiscard]] Result<> pin_to_cycle_cpu() noexcept;
 /// Names the calling thread (first 15 octets); for tools only, so a refusal is silent.
 void set_thread_name(const char* name) noexcept;
 

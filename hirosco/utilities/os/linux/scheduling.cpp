@@ -46,6 +46,16 @@ bool realtime_permitted() noexcept {
   return true;
 }
 
+Result<> pin_to_cycle_cpu() noexcept {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (const int error = pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed); error != 0)
+    return fail(ErrorCode::SystemFailure, "processor affinity", error);
+  for (unsigned cpu = CPU_SETSIZE; cpu-- > 0;)
+    if (CPU_ISSET(cpu, &allowed)) return pin_to_cpu(cpu);
+  return fail(ErrorCode::Internal, "no processor");
+}
+
 Result<> pin_to_cpu(unsigned cpu) noexcept {
   if (cpu >= CPU_SETSIZE) return fail(ErrorCode::OutOfRange, "processor", cpu);
   cpu_set_t set;
