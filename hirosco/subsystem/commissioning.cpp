@@ -135,6 +135,9 @@ void GenericSubsystem::release_configuration() {
     if (forgotten.kind == CommandKind::Function)
       verification_.start_failed(forgotten.request, pus::FailureNotice{pus::FailureCode::Aborted});
   }
+  for (const pus::Request& open : open_calls_)
+    verification_.completion_failed(open, pus::FailureNotice{pus::FailureCode::Aborted});
+  open_calls_.clear();
   writes_.apply(dictionary_);
   cycle_.release();
   housekeeping_service_.reset();

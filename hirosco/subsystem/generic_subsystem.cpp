@@ -174,14 +174,20 @@ void GenericSubsystem::take_cycle_report(const CycleReport& head, Octets payload
   switch (head.kind) {
     case ReportKind::Housekeeping: report(3, 25, 0, payload); break;
     case ReportKind::Event: static_cast<void>(event_service_.raise(head.index, payload)); break;
-    case ReportKind::Started: verification_.started(head.request); break;
+    case ReportKind::Started:
+      open_calls_.push_back(head.request);
+      verification_.started(head.request);
+      break;
     case ReportKind::Refused:
       verification_.start_failed(head.request, pus::FailureNotice{static_cast<pus::FailureCode>(head.index)});
       break;
     case ReportKind::Progressed: verification_.progressed(head.request, head.index); break;
-    case ReportKind::Finished: verification_.completed(head.request); break;
+    case ReportKind::Finished:
+      if (close_call(head.request)) verification_.completed(head.request);
+      break;
     case ReportKind::Aborted:
-      verification_.completion_failed(head.request, pus::FailureNotice{static_cast<pus::FailureCode>(head.index)});
+      if (close_call(head.request))
+        verification_.completion_failed(head.request, pus::FailureNotice{static_cast<pus::FailureCode>(head.index)});
       break;
     case ReportKind::StateEntered:
       if (awaiting_cycle_ && way_ && static_cast<State>(head.index) == way_->states[way_at_]) {
@@ -189,7 +195,11 @@ void GenericSubsystem::take_cycle_report(const CycleReport& head, Octets payload
         arrive(way_->states[way_at_]);
       }
       break;
-    case ReportKind::NodeFailed: fail_transition(static_cast<State>(head.index), "node failed"); break;
+    case ReportKind::NodeFailed:
+      // While the cycle comes to rest the subsystem is on its way down already: Error-Operational has no cycle there.
+      if (wanted_.load(std::memory_order_relaxed)) fail_transition(static_cast<State>(head.index), "node failed");
+      else announce("STATE_FAILED", {static_cast<double>(head.index)});
+      break;
     case ReportKind::InputDetached:
     case ReportKind::OutputDetached:
       std::erase_if(leaving_links_, [&](const auto& link) { return link.get() == head.link; });
@@ -265,6 +275,16 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
   std::ranges::copy(call.arguments, command.arguments.begin());
   if (!push(command)) return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
   return {};
+}
+
+/// False when the call had its final report already.
+bool GenericSubsystem::close_call(const pus::Request& request) {
+  const auto found = std::ranges::find_if(open_calls_, [&](const pus::Request& open) {
+    return open.id == request.id && open.source == request.source;
+  });
+  if (found == open_calls_.end()) return false;
+  open_calls_.erase(found);
+  return true;
 }
 
 bool GenericSubsystem::push(const CycleCommand& command) { return handover_.commands.try_push(command); }

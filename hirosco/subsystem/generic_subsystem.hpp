@@ -62,7 +62,9 @@ class GenericSubsystem final : private pus::TelemetrySink,
     Duration period{};
     int priority{0};
     std::uint32_t generation{0};     ///< rises with every new configuration
-    std::uint32_t ticket{0};         ///< of the newest order to rest: goes back with cycle_parked()
+    /// Of the newest order to rest: goes back with cycle_parked(), also when the cycle was wanted and called off again
+    /// before its thread could see it.
+    std::uint32_t ticket{0};
   };
   [[nodiscard]] Demand cycle_demand() const noexcept;
   /// One cycle; call only while cycle_demand().wanted.  Realtime: bounded, no allocation. Thread: cycle.
@@ -125,6 +127,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void release_configuration();
   void announce(std::string_view event_name, std::initializer_list<double> arguments);
   bool push(const CycleCommand& command);
+  bool close_call(const pus::Request& request);
   [[nodiscard]] bool required_links_attached() const noexcept;
   [[nodiscard]] std::uint16_t event_id(std::string_view name) const noexcept;
   void send(const Message& message);
@@ -160,6 +163,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   };
   std::map<std::uint8_t, LinkEnd> link_ends_;
   std::vector<std::unique_ptr<AttachedLink>> leaving_links_;
+  std::vector<pus::Request> open_calls_;   ///< functions that run: each gets exactly one final report
 
   State state_{State::Offline};
   const descriptor::Configuration* configuration_{nullptr};

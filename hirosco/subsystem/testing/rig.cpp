@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/testing/rig.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "hirosco/descriptor/read.hpp"
+
+namespace hirosco::testing {
+
+namespace st128 = pus::st128;
+
+std::string hex(Octets octets) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text;
+  for (const std::byte octet : octets) {
+    text += digits[std::to_integer<std::size_t>(octet) >> 4];
+    text += digits[std::to_integer<std::size_t>(octet) & 15];
+  }
+  return text;
+}
+
+descriptor::Subsystem read_descriptor(const std::string& text) {
+  const descriptor::FileSource source = [&](const std::filesystem::path&) { return std::optional{text}; };
+  auto reading = descriptor::read_subsystem("probe.xml", source);
+  std::string problems;
+  for (const auto& problem : reading.problems) problems += descriptor::render(problem, source, false);
+  if (!reading.value) throw std::runtime_error{problems};
+  return std::move(*reading.value);
+}
+
+Rig::Rig(Subsystem& author, const std::string& descriptor_text, bool realtime)
+    : subsystem{author,
+                read_descriptor(descriptor_text),
+                {.clock = clock,
+                 .memory = memory,
+                 .flows = flows,
+                 .realtime = realtime,
+                 .explain = [this](std::string_view text) { explanations.emplace_back(text); }},
+                channels.subsystem_end(),
+                vital,
+                permit} {}
+
+void Rig::service() {
+  if (!supervisor_silent) permit.heartbeat.fetch_add(1);
+  static_cast<void>(subsystem.service_step(clock.now()));
+  MessageBuffer buffer;
+  for (;;) {
+    const auto found = channels.supervisor_end().receive(buffer);
+    if (!found || found->flow == Flow::None) return;
+    const auto view = pus::TelemetryView::parse(found->message.packet);
+    if (!view) throw std::runtime_error{"the subsystem sent something that is not telemetry"};
+    const Octets data = view->source_data();
+    telemetry.push_back({view->service(), view->subtype(), view->destination(), {data.begin(), data.end()}});
+  }
+}
+
+void Rig::cycle(int count) {
+  for (int i = 0; i < count; ++i) {
+    const auto demand = subsystem.cycle_demand();
+    if (!demand.wanted) return subsystem.cycle_parked(demand.ticket);
+    clock.advance(demand.period);
+    static_cast<void>(subsystem.cycle_step(clock.now()));
+  }
+}
+
+void Rig::settle(int rounds) {
+  for (int i = 0; i < rounds; ++i) {
+    service();
+    cycle();
+  }
+  service();
+}
+
+Sent Rig::send(std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& beside,
+               std::uint32_t mode_epoch) {
+  std::vector<std::byte> buffer(max_packet_octets);
+  const auto packet = pus::write_telecommand(buffer,
+                                             {.apid = subsystem.descriptor().id,
+                                              .sequence_count = ++count_,
+                                              .ack = pus::ack_all,
+                                              .service = service,
+                                              .subtype = subtype,
+                                              .source = source},
+                                             data);
+  const auto sent = channels.supervisor_end().send({.mode_epoch = mode_epoch, .packet = packet.value(), .memory = beside});
+  if (!sent) throw std::runtime_error{sent.error().text};
+  return {pus::TelecommandView::parse(packet.value()).value().request_id()};
+}
+
+Sent Rig::call(std::string_view function, std::initializer_list<double> arguments) {
+  const descriptor::Function* found = subsystem.descriptor().find_function(function);
+  const auto common = pus::common_functions();
+  for (const auto& candidate : common)
+    if (candidate.name == function) found = &candidate;
+  if (found == nullptr) throw std::runtime_error{"no function of this name"};
+  const auto data = pus::encode_call(*found, std::span{arguments.begin(), arguments.size()});
+  return send(8, 1, data.value());
+}
+
+std::string Rig::set_state_now(State target) {
+  const Sent request = set_state(target);
+  settle();
+  return outcome(request);
+}
+
+std::string Rig::configure_now(std::uint8_t id) {
+  const Sent request = configure(id);
+  settle();
+  return outcome(request);
+}
+
+void Rig::bring_to(State target, std::uint8_t id) {
+  const auto step = [&](State state) {
+    if (const auto text = set_state_now(state); text != "1 3 7")
+      throw std::runtime_error{std::string{to_text(state)} + ": " + text};
+  };
+  if (target == State::Offline) return;
+  step(State::PreOperational);
+  if (id != 0 && configure_now(id) != "1 3 7") throw std::runtime_error{"CONFIGURE failed"};
+  if (target == State::PreOperational) return;
+  if (target == State::PostOperational || target == State::ErrorOperational) return step(target);
+  step(State::SafeOperational);
+  if (target == State::Operational) step(State::Operational);
+}
+
+std::string Rig::outcome(Sent request) const {
+  std::string text;
+  for (const Telemetry& report : telemetry) {
+    if (report.service != 1 || report.data.size() < 4) continue;
+    OctetReader reader{report.data};
+    if (reader.get<std::uint32_t>() != request.id) continue;
+    if (!text.empty()) text += ' ';
+    text += std::to_string(report.subtype);
+    if (report.data.size() > 4) text.append(1, ':').append(hex(Octets{report.data}.subspan(4)));
+  }
+  return text;
+}
+
+std::vector<std::string> Rig::reports(std::uint8_t service, std::uint8_t subtype) const {
+  std::vector<std::string> found;
+  for (const Telemetry& report : telemetry)
+    if (report.service == service && report.subtype == subtype) found.push_back(hex(report.data));
+  return found;
+}
+
+int Rig::events(std::uint16_t id) const {
+  return static_cast<int>(std::ranges::count_if(telemetry, [&](const Telemetry& report) {
+    if (report.service != 5 || report.subtype > 4) return false;
+    OctetReader reader{report.data};
+    return reader.get<std::uint16_t>() == id;
+  }));
+}
+
+Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set,
+                         std::vector<st128::OfferedField> fields, std::string* outcome_text, Duration producer_period) {
+  const st128::AttachRequest request{.link = link,
+                                     .role = role,
+                                     .epoch = 5,
+                                     .set = std::move(set),
+                                     .agreement = {.method = descriptor::Method::SharedMemory,
+                                                   .byte_order = descriptor::ByteOrder::Little,
+                                                   .kind = descriptor::LinkKind::Latest,
+                                                   .producer_period = producer_period,
+                                                   .consumer_period = subsystem.cycle_demand().period,
+                                                   .fields = std::move(fields)}};
+  const LinkLayout layout{.epoch = request.epoch,
+                          .payload_octets = request.agreement.payload_octets(),
+                          .layout_hash = request.agreement.layout_hash(),
+                          .period = producer_period};
+  Partner partner;
+  partner.memory = memory.create("link", link_memory_octets(layout.payload_octets)).value();
+  const bool we_produce = role == st128::Role::Consumer;
+  if (we_produce) {
+    partner.mapping = memory.map(partner.memory, Access::ReadWrite).value();
+    partner.writer = LinkWriter::make(partner.mapping.octets, layout).value();
+    static_cast<void>(memory.seal_writers(partner.memory));
+  }
+  std::vector<std::byte> buffer(max_packet_octets);
+  const std::size_t octets = st128::write_attach_request(buffer, request).value();
+  const Sent sent = send(128, st128::attach, Octets{buffer}.first(octets), partner.memory);
+  service();
+  cycle();
+  if (outcome_text != nullptr) *outcome_text = outcome(sent);
+  if (!we_produce) {
+    partner.mapping = memory.map(partner.memory, Access::ReadOnly).value();
+    if (auto reader = LinkReader::make(partner.mapping.octets, layout)) partner.reader = std::move(*reader);
+  }
+  return partner;
+}
+
+Sent Rig::detach(std::uint8_t link) {
+  const std::byte data{link};
+  return send(128, st128::detach, std::span{&data, 1});
+}
+
+}  // namespace hirosco::testing

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/data_transfer/simulated/channel_pair.hpp"
+#include "hirosco/data_transfer/simulated/heap_memory.hpp"
+#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/subsystem/generic_subsystem.hpp"
+
+/// One subsystem stepped by hand: the test is its supervisor, its clock, its threads and its devices. The parts around it
+/// are the simulated set, no mocks.
+namespace hirosco::testing {
+
+/// A telecommand on its way: its acknowledgements are found by its request id.
+struct Sent {
+  std::uint32_t id{0};
+};
+
+struct Telemetry {
+  std::uint8_t service{};
+  std::uint8_t subtype{};
+  std::uint16_t destination{};
+  std::vector<std::byte> data;
+};
+
+class Rig {
+ public:
+  static constexpr std::uint16_t source = 7;
+
+  Rig(Subsystem& author, const std::string& descriptor_text, bool realtime = true);
+
+  // --- stepping -----------------------------------------------------------------------------------------------------
+  /// One step of the service loop; collects what the subsystem sent. The supervisor's heart beats unless it is silent.
+  void service();
+  /// What a cycle thread does: runs `count` cycles of the configuration while they are wanted, else parks.
+  void cycle(int count = 1);
+  /// Both in turn until nothing can be under way any more.
+  void settle(int rounds = 12);
+  void advance(Duration span) { clock.advance(span); }
+
+  // --- commanding ---------------------------------------------------------------------------------------------------
+  Sent send(std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory = {},
+            std::uint32_t mode_epoch = 0);
+  Sent call(std::string_view function, std::initializer_list<double> arguments = {});
+  Sent set_state(State target) { return call("SET_STATE", {static_cast<double>(target)}); }
+  Sent configure(std::uint8_t id) { return call("CONFIGURE", {static_cast<double>(id)}); }
+  /// Sends, settles, and gives outcome().
+  std::string set_state_now(State target);
+  std::string configure_now(std::uint8_t id);
+  /// The orderly way up to a state in configuration `id`.
+  void bring_to(State state, std::uint8_t id = 1);
+
+  // --- looking ------------------------------------------------------------------------------------------------------
+  /// The verification reports of a request: "1 3 7", "1 4:000a03" (subtype, colon, code and data of a failure).
+  [[nodiscard]] std::string outcome(Sent request) const;
+  /// Source data of all reports of a type, in order, as hexadecimal text.
+  [[nodiscard]] std::vector<std::string> reports(std::uint8_t service, std::uint8_t subtype) const;
+  /// How often the event with this number came.
+  [[nodiscard]] int events(std::uint16_t id) const;
+  void forget_telemetry() { telemetry.clear(); }
+  [[nodiscard]] State state() const { return subsystem.state(); }
+  [[nodiscard]] std::uint32_t inhibited() const { return vital.inhibited.load(); }
+
+  // --- a partner's end of a link ------------------------------------------------------------------------------------
+  struct Partner {
+    MemoryHandle memory;
+    Mapping mapping;
+    LinkWriter writer;
+    LinkReader reader;
+  };
+  /// Attaches the subsystem's end of a link with the fields of the agreement; the test holds the other end.
+  Partner attach(std::uint8_t link, pus::st128::Role role, std::string set,
+                 std::vector<pus::st128::OfferedField> fields, std::string* outcome_text = nullptr,
+                 Duration producer_period = 1ms);
+  Sent detach(std::uint8_t link);
+
+  ManualClock clock;
+  HeapMemory memory;
+  SimulatedFlows flows;
+  ChannelPair channels{4096};
+  VitalPage vital{};
+  PermitPage permit{};
+  std::vector<std::string> explanations;
+  std::vector<Telemetry> telemetry;
+  bool supervisor_silent{false};
+  GenericSubsystem subsystem;
+
+ private:
+  std::uint16_t count_{0};
+};
+
+[[nodiscard]] std::string hex(Octets octets);
+[[nodiscard]] descriptor::Subsystem read_descriptor(const std::string& text);
+
+}  // namespace hirosco::testing
