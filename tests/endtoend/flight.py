@@ -1,0 +1,369 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""A real flight for a test: `hirosco run --json` in a folder of its own, its story as it is told, telecommands, faults,
+telemetry, and the certainty that nothing of it is left afterwards. Python's standard library only.
+
+HIROSCO_BIN names the folder of the executables; by default the one of the release preset."""
+import contextlib
+import dataclasses
+import json
+import math
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import uuid
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+BINARIES = pathlib.Path(os.environ.get("HIROSCO_BIN", REPOSITORY / "build/release/bin"))
+ROKVISS = REPOSITORY / "missions/rokviss/mission.xml"
+PORT = 10015
+MANIPULATOR, JOYSTICK = 10, 11
+SKIPPED = 77
+MARK = "HIROSCO_TEST_FLIGHT"      # in the environment of every process of a flight, orphans included
+
+
+def skip(reason):
+    """Ends the test program as skipped (ctest's SKIP_RETURN_CODE)."""
+    print(f"skipped: {reason}")
+    sys.exit(SKIPPED)
+
+
+def main():
+    """As unittest.main(), but says at the end what was measured."""
+    program = unittest.main(module="__main__", exit=False, verbosity=2)
+    for line in measured:
+        print(line)
+    sys.exit(0 if program.result.wasSuccessful() else 1)
+
+
+measured = []
+
+
+def measure(text):
+    """A figure for the report at the end."""
+    measured.append(f"measured: {text}")
+
+
+def segments():
+    """Named shared memory of the project on this computer."""
+    with contextlib.suppress(FileNotFoundError):
+        return sorted(path.name for path in pathlib.Path("/dev/shm").iterdir() if path.name.startswith("hirosco"))
+    return []
+
+
+def marked_processes(mark):
+    """{pid: name} of the living processes with this mark in their environment."""
+    found = {}
+    for folder in pathlib.Path("/proc").iterdir():
+        if not folder.name.isdigit():
+            continue
+        with contextlib.suppress(OSError):
+            if f"{MARK}={mark}".encode() not in (folder / "environ").read_bytes().split(b"\0"):
+                continue
+            state = (folder / "stat").read_text().rsplit(")", 1)[1].split()[0]
+            if state not in "ZX":
+                found[int(folder.name)] = pathlib.Path(os.readlink(folder / "exe")).name
+    return found
+
+
+@dataclasses.dataclass
+class Line:
+    received: float               # time.monotonic()
+    content: dict
+
+    @property
+    def told(self):
+        return self.content.get("told", "")
+
+    @property
+    def at_s(self):
+        return self.content.get("at_s")
+
+
+class Flight:
+    """`with Flight() as flight:` — at the end of the block the flight is shut down in order if it still runs."""
+
+    def __init__(self, mission=ROKVISS, binaries=None, prefix=(), environment=None, folder=None, owner=None):
+        self.mission, self.binaries = str(mission), pathlib.Path(binaries or BINARIES)
+        self.prefix, self.extra = list(prefix), dict(environment or {})
+        self.mark = uuid.uuid4().hex
+        self.own_folder = folder is None
+        self.folder = pathlib.Path(folder or tempfile.mkdtemp(prefix="hirosco-flight-"))
+        self.owner = owner
+        self.lines, self.process = [], None
+        self._arrived = threading.Condition()
+        self._ended = False
+        self._readers = []
+
+    # Life.
+
+    def __enter__(self):
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", PORT), 1.0):
+            raise RuntimeError(f"something listens on port {PORT} already: another flight?")
+        runtime = self.folder / "runtime"
+        runtime.mkdir(exist_ok=True)
+        if self.owner is not None:
+            os.chown(self.folder, self.owner, -1)
+            os.chown(runtime, self.owner, -1)
+        self.environment = {**os.environ, "XDG_RUNTIME_DIR": str(runtime), "NO_COLOR": "1", MARK: self.mark, **self.extra}
+        self.started = time.monotonic()
+        self.process = subprocess.Popen(
+            [*self.prefix, str(self.binaries / "hirosco"), "run", self.mission, "--json"], cwd=self.folder,
+            env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.errors = []
+        self._readers = [threading.Thread(target=self._read_lines, daemon=True),
+                         threading.Thread(target=self._read_errors, daemon=True)]
+        for reader in self._readers:
+            reader.start()
+        return self
+
+    def __exit__(self, kind, *_):
+        try:
+            if kind is not None:
+                print(self.story(), file=sys.stderr)
+            if self.process.poll() is None:
+                self.process.send_signal(signal.SIGTERM)
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    self.process.wait(15.0)
+        finally:
+            left = self.end_by_force()
+            for reader, pipe in zip(self._readers, (self.process.stdout, self.process.stderr)):
+                reader.join(5.0)
+                if not reader.is_alive():
+                    pipe.close()
+            if self.own_folder:
+                shutil.rmtree(self.folder, ignore_errors=True)
+        if left and kind is None:
+            raise AssertionError(f"processes were left behind: {left}")
+
+    def end_by_force(self):
+        """Kills what is left of the flight; returns what that was."""
+        left = self.wait_until_gone(0.5)
+        for pid in left:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self.process.wait(5.0)
+        return left
+
+    def end(self, number=signal.SIGTERM, seconds=15.0):
+        """Asks for an orderly end; the exit code."""
+        self.process.send_signal(number)
+        code = self.process.wait(seconds)
+        for reader in self._readers:
+            reader.join(5.0)
+        return code
+
+    def _read_lines(self):
+        for text in self.process.stdout:    # ends when the last process that holds it has ended
+            now = time.monotonic()
+            try:
+                content = json.loads(text)
+            except ValueError:
+                content = {"garbled": text.decode(errors="replace")}
+            with self._arrived:
+                self.lines.append(Line(now, content))
+                self._arrived.notify_all()
+        with self._arrived:
+            self._ended = True
+            self._arrived.notify_all()
+
+    def _read_errors(self):
+        for text in self.process.stderr:
+            self.errors.append(text.decode(errors="replace").rstrip())
+
+    # What is told.
+
+    def story(self):
+        with self._arrived:
+            told = [f"{line.at_s:9.4f} s  {line.told}" for line in self.lines if line.told]
+        return "\n".join(["what the flight told:", *told, *(f"stderr: {text}" for text in self.errors)])
+
+    def wait_line(self, wanted, seconds, start=0):
+        """First line, past or future, from number `start` on, for which `wanted(line)`."""
+        end = time.monotonic() + seconds
+        place = start
+        with self._arrived:
+            while True:
+                while place < len(self.lines):
+                    if wanted(self.lines[place]):
+                        return self.lines[place]
+                    place += 1
+                if self._ended or end <= time.monotonic():
+                    return None
+                self._arrived.wait(end - time.monotonic())
+
+    def wait_told(self, text, seconds=10.0, start=0):
+        """The line that tells `text`; fails when it does not come."""
+        line = self.wait_line(lambda l: text in l.told, seconds, start)
+        if line is None:
+            raise AssertionError(f"not told within {seconds:g} s: {text!r}")
+        return line
+
+    def wait_commissioned(self, seconds=20.0):
+        return self.wait_told("commissioned: mode telepresence", seconds)
+
+    def wait_status(self, wanted, seconds):
+        """First live status, now or later, for which `wanted(status)`."""
+        line = self.wait_line(lambda l: "subsystems" in l.content and wanted(l.content), seconds, self.count())
+        return line.content if line else None
+
+    def count(self):
+        with self._arrived:
+            return len(self.lines)
+
+    def told(self, start=0):
+        with self._arrived:
+            return [line for line in self.lines[start:] if line.told]
+
+    # Hands.
+
+    def hirosco(self, *words, seconds=30.0):
+        """Runs `hirosco WORDS` beside the flight."""
+        return subprocess.run([str(self.binaries / "hirosco"), *words], cwd=self.folder, env={**self.environment, MARK: ""},
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=seconds, check=False)
+
+    def tc(self, subsystem, function, *arguments, seconds=30.0):
+        """`hirosco tc`: (exit code, ["1,1", "1,3", ...])."""
+        done = self.hirosco("tc", subsystem, function, *map(str, arguments), "--mission", self.mission, "--json",
+                            seconds=seconds)
+        return done.returncode, [json.loads(line)["report"] for line in done.stdout.splitlines() if line.startswith("{")]
+
+    def fault(self, device, *words):
+        done = self.hirosco("fault", device, *map(str, words), "--mission", self.mission)
+        if done.returncode != 0:
+            raise AssertionError(f"hirosco fault {device} {words}: {done.stdout}{done.stderr}")
+        return done.stdout.strip()
+
+    def truth(self, device):
+        """{name: number} of the simulated device's world."""
+        return {name: float(value) for name, value in (word.split("=") for word in self.fault(device, "truth").split()
+                                                       if "=" in word)}
+
+    def log(self, *words, last=100000):
+        """The texts of the log's records, oldest first."""
+        done = self.hirosco("log", "--mission", self.mission, "--json", "--last", str(last), *words)
+        if done.returncode != 0:
+            raise AssertionError(f"hirosco log: {done.stderr}")
+        return [json.loads(line) for line in done.stdout.splitlines()]
+
+    def processes(self):
+        return marked_processes(self.mark)
+
+    def pid_of(self, name):
+        found = [pid for pid, program in self.processes().items() if program == name]
+        if len(found) != 1:
+            raise AssertionError(f"{name}: pids {found}")
+        return found[0]
+
+    def kill(self, name, number=signal.SIGKILL):
+        """Sends a signal to one process of the flight; the time just before."""
+        pid = self.pid_of(name)
+        now = time.monotonic()
+        os.kill(pid, number)
+        return now
+
+    def wait_until_gone(self, seconds):
+        """{} once no process of the flight lives, else those that still do."""
+        end = time.monotonic() + seconds
+        while True:
+            left = self.processes()
+            if not left or time.monotonic() >= end:
+                return left
+            time.sleep(0.05)
+
+
+# Telemetry. No more of the standard than the tests of one flight need; a foreign implementation is tests/client.
+
+STRUCTURES = {
+    4713: (MANIPULATOR, ">2d2d2d2d", (("position", 2), ("torque", 2), ("desired", 2), ("tip_force", 2))),
+    4721: (JOYSTICK, ">i2d2d2d2d2dI2d", (("state", 1), ("position", 2), ("velocity", 2), ("torque", 2),
+                                         ("peer_position", 2), ("peer_torque", 2), ("peer_age", 1), ("energy", 2))),
+}
+
+
+@dataclasses.dataclass
+class Report:
+    received: float
+    apid: int
+    service: int
+    subtype: int
+    time_s: float                 # on board, TAI
+    data: bytes
+
+    def housekeeping(self, identifier):
+        """{name: value or tuple} when this is the structure, else None."""
+        apid, form, names = STRUCTURES[identifier]
+        if (self.apid, self.service, self.subtype) != (apid, 3, 25) or self.data[:2] != struct.pack(">H", identifier):
+            return None
+        numbers = list(struct.unpack(form, self.data[2:]))
+        values = {}
+        for name, count in names:
+            taken, numbers = numbers[:count], numbers[count:]
+            values[name] = taken[0] if count == 1 else tuple(taken)
+        return values
+
+
+class Telemetry:
+    """A listener on the telemetry port."""
+
+    def __init__(self, port=PORT):
+        self.reports = []
+        self._mutex = threading.Lock()
+        self._socket = socket.create_connection(("127.0.0.1", port), 5.0)
+        self._socket.settimeout(None)
+        threading.Thread(target=self._receive, daemon=True).start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        with contextlib.suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
+        self._socket.close()
+
+    def _receive(self):
+        buffer = bytearray()
+        with contextlib.suppress(OSError):
+            while octets := self._socket.recv(65536):
+                buffer += octets
+                while len(buffer) >= 6 and len(buffer) >= (size := 7 + int.from_bytes(buffer[4:6], "big")):
+                    self._take(bytes(buffer[:size]))
+                    del buffer[:size]
+
+    def _take(self, packet):
+        whole, part = int.from_bytes(packet[13:17], "big"), int.from_bytes(packet[17:20], "big")
+        report = Report(time.monotonic(), int.from_bytes(packet[:2], "big") & 0x7FF, packet[7], packet[8],
+                        whole + part / 2**24, packet[20:-2])
+        with self._mutex:
+            self.reports.append(report)
+
+    def housekeeping(self, identifier):
+        """[(time on board, values)] of all reports of a structure so far."""
+        with self._mutex:
+            reports = list(self.reports)
+        return [(r.time_s, values) for r in reports if (values := r.housekeeping(identifier)) is not None]
+
+    def forget(self):
+        with self._mutex:
+            self.reports.clear()
+
+
+def correlation(first, second):
+    """Pearson's; 0 when one of them stands still."""
+    count = len(first)
+    if count < 2:
+        return 0.0
+    mean_1, mean_2 = sum(first) / count, sum(second) / count
+    product = sum((a - mean_1) * (b - mean_2) for a, b in zip(first, second))
+    norm = math.sqrt(sum((a - mean_1) ** 2 for a in first) * sum((b - mean_2) ** 2 for b in second))
+    return product / norm if norm > 0 else 0.0

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""The demonstrator flies for real: commissioned in time, coupled, felt, and gone without a trace."""
+import time
+import unittest
+
+import flight
+
+
+class Rokviss(unittest.TestCase):
+    def test_it_flies_coupled_and_leaves_nothing_behind(self):
+        before = flight.segments()
+        with flight.Flight() as rokviss:
+            commissioned = rokviss.wait_commissioned()
+            took = commissioned.received - rokviss.started
+            flight.measure(f"commissioned to telepresence {took:.3f} s after the start")
+            self.assertLess(took, 3.0)
+            with flight.Telemetry() as telemetry:
+                self.the_robot_follows_the_hand(rokviss, telemetry)
+                self.the_wall_is_felt(rokviss, telemetry)
+            code = rokviss.end()
+            self.assertEqual(code, 0, rokviss.errors)
+            self.assertEqual(rokviss.wait_until_gone(5.0), {})
+            self.it_went_down_in_order(rokviss)
+        self.assertEqual(flight.segments(), before)
+
+    def the_robot_follows_the_hand(self, rokviss, telemetry):
+        for axis, phase in ((1, 0.0), (2, 1.5708)):
+            rokviss.fault("joystick", "hand", "sine", axis, 0.05, 0.5, phase)
+        time.sleep(1.0)
+        telemetry.forget()
+        time.sleep(4.0)
+        follows = [values for _, values in telemetry.housekeeping(4713)]
+        felt = [values for _, values in telemetry.housekeeping(4721)]
+        self.assertGreater(len(follows), 40)
+        self.assertGreater(len(felt), 10)
+        for axis in range(2):
+            hand = [values["position"][axis] for values in felt]
+            robot = [values["peer_position"][axis] for values in felt]
+            coupled = flight.correlation(hand, robot)
+            tracked = flight.correlation([v["desired"][axis] for v in follows], [v["position"][axis] for v in follows])
+            span = max(hand) - min(hand)
+            flight.measure(f"axis {axis + 1}: hand spans {span:.3f} rad, correlation hand to robot {coupled:.4f}, "
+                           f"robot desired to measured {tracked:.4f}")
+            self.assertGreater(span, 0.05)
+            self.assertGreater(coupled, 0.95)
+            self.assertGreater(tracked, 0.95)
+
+    def the_wall_is_felt(self, rokviss, telemetry):
+        # RO2's middle case, so there is a closed form; it knows no friction.
+        rokviss.fault("robot", "friction", "off")
+        rokviss.fault("joystick", "hand", "cartesian", 0.0226, 0, 2)
+        time.sleep(3.0)
+        telemetry.forget()
+        time.sleep(1.0)
+        force = rokviss.truth("robot")["force"]
+        pressed = [values for _, values in telemetry.housekeeping(4713)][-1]
+        felt = [values for _, values in telemetry.housekeeping(4721)][-1]
+        flight.measure(f"wall: {force:.2f} N true (closed form 43.52), {pressed['tip_force'][0]:.2f} N from the joints, "
+                       f"felt ({felt['torque'][0]:+.4f}, {felt['torque'][1]:+.4f}) N m")
+        self.assertAlmostEqual(force, 43.52, delta=0.01 * 43.52)
+        self.assertAlmostEqual(abs(pressed["tip_force"][0]), force, delta=0.02 * force)
+        for axis in range(2):
+            self.assertAlmostEqual(felt["torque"][axis], -0.02 * felt["peer_torque"][axis], delta=0.005)
+        self.assertGreater(abs(felt["torque"][1]), 0.1)
+
+    def it_went_down_in_order(self, rokviss):
+        after = [line.told for line in rokviss.told()]
+        after = after[after.index("shutdown"):]
+        self.assertFalse([text for text in after if "no answer" in text or "time limit" in text], after)
+        for name in ("MANIPULATOR", "JOYSTICK", "COMMUNICATION"):
+            places = [after.index(f"{name} info STATE_CHANGED STATE={state}")
+                      for state in ("SafeOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit", "Offline")]
+            self.assertEqual(places, sorted(places), after)
+
+
+if __name__ == "__main__":
+    flight.main()
