@@ -130,7 +130,7 @@ TEST_F(Devices, TheStopFlagActsInTheSameCycleAndIsLatched) {
   rig.permit.stop = 1;
   const Command stopped = exchange();
   EXPECT_EQ(stopped.value, -1.0);
-  EXPECT_EQ(stopped.mode, DeviceMode::Stop);
+  EXPECT_EQ(stopped.mode, DeviceMode::Off);
   EXPECT_FALSE(probe.last.active);
   EXPECT_EQ(rig.inhibited(), inhibited_by_stop);
   rig.permit.stop = 0;
@@ -470,7 +470,7 @@ TEST(Overruns, ThreeInARowAreReportedOnceAndMissedCyclesAreSkipped) {
   TimePoint planned = rig.clock.now();
   for (int i = 0; i < 6; ++i) {
     const TimePoint next = rig.subsystem.cycle_step(planned);
-    EXPECT_EQ(next - planned, 2ms);  // of three periods begun two are over
+    EXPECT_EQ(next - planned, 3ms);  // on the grid and in the future
     planned = next;
     rig.clock.set(planned);
   }
