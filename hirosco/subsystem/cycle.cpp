@@ -194,6 +194,8 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   statistics_.store({static_cast<std::uint32_t>(overruns_), static_cast<float>(execution_max_ns_) * 1e-3F,
                      static_cast<float>(execution_mean_ns_ * 1e-3)});
   VitalPage& vital = parts_.vital;
+  if (inhibited_ != 0 && vital.inhibited.load(std::memory_order_relaxed) == 0)
+    vital.inhibited_at_cycle.store(vital.cycles.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   vital.inhibited.store(inhibited_, std::memory_order_relaxed);
   vital.overruns.store(overruns_, std::memory_order_relaxed);
   vital.latency_max_ns.store(latency_max_ns_, std::memory_order_relaxed);

@@ -43,6 +43,7 @@ struct VitalPage {
   std::atomic<std::uint32_t> execution_max_ns{0};
   std::atomic<std::uint32_t> execution_mean_ns{0};  ///< over about the last 1,000 cycles
   std::atomic<std::uint32_t> lost_reports{0};    ///< cycle-side reports that found no room
+  std::atomic<std::uint64_t> inhibited_at_cycle{0};  ///< `cycles` in which the actuators were inhibited last
   pus::CounterBlock counters;                    ///< outlive the process (decision 8b)
 };
 
@@ -54,6 +55,7 @@ struct PermitPage {
   std::atomic<std::uint32_t> stop{0};            ///< 1: actuators inhibited at the next cycle
   std::atomic<std::uint32_t> mode_epoch{0};      ///< rises with every mode change
   std::atomic<std::uint64_t> heartbeat{0};       ///< advances with every step of the supervisor
+  std::atomic<std::uint64_t> stopped_at_cycle{0};  ///< VitalPage::cycles that the supervisor read when it set `stop`
 };
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free);
