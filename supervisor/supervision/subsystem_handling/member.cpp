@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/subsystem_handling/member.hpp"
 
+#include <algorithm>
+
 namespace hirosco::supervisor {
 
 void Member::started(LaunchedSubsystem launched) {
@@ -40,6 +42,8 @@ std::uint8_t Member::configuration() const noexcept {
 void Member::fence() noexcept {
   PermitPage* page = permit();
   if (page == nullptr) return;
+  if (const VitalPage* own = vital(); own != nullptr && page->stop.load(std::memory_order_relaxed) == 0)
+    page->stopped_at_cycle.store(own->cycles.load(std::memory_order_acquire), std::memory_order_relaxed);
   page->stop.store(1, std::memory_order_release);
   page->epoch.fetch_add(1, std::memory_order_acq_rel);
 }
@@ -63,7 +67,11 @@ bool Member::hang_detected() {
   still_steps_ = cycles == last_cycles_ ? still_steps_ + 1 : 0;
   last_cycles_ = cycles;
   const bool realtime = page->realtime.load(std::memory_order_relaxed) != 0;
-  return still_steps_ == (realtime ? descriptor().hang.realtime : descriptor().hang.reduced);
+  const std::uint32_t limit = realtime ? descriptor().hang.realtime : descriptor().hang.reduced;
+  // A slow cycle stands still between its steps: three of its own periods are granted at least.
+  const auto* configured = descriptor().find_configuration(configuration());
+  const auto slow = configured != nullptr ? 3 * configured->sampling / observation_period : 0;
+  return still_steps_ == std::max(limit, static_cast<std::uint32_t>(slow));
 }
 
 }  // namespace hirosco::supervisor

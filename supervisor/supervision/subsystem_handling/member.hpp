@@ -39,7 +39,9 @@ class Member {
   void release_fence() noexcept;
   [[nodiscard]] bool fenced() const noexcept;
 
-  /// Once per supervisor step: true in the step in which the cycle has stood still for too long.
+  /// How often hang_detected() is asked.
+  static constexpr Duration observation_period = std::chrono::milliseconds{10};
+  /// True in the observation in which the cycle has stood still for too long.
   [[nodiscard]] bool hang_detected();
 
   /// A recovery that runs for it: a second event of the same or lower severity does not start another.
