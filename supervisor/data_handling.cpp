@@ -16,6 +16,10 @@ namespace {
 /// Source id of the supervisor's own telecommands (decision 27).
 constexpr std::uint16_t own_source = 1;
 constexpr Duration own_request_limit = 5s;
+/// A telecommand that is not durable after this time is refused: late execution surprises whoever gave it up. As long as
+/// the supervisor waits for its own, so that none of those is executed after it was reported as failed.
+constexpr Duration durable_limit = own_request_limit;
+constexpr Duration log_patience = 1s;
 /// Reports on damaged packets in one second (pus-c tailoring 5.3).
 constexpr int damaged_reports_per_second = 10;
 constexpr std::size_t most_waiting = 1024;
@@ -46,11 +50,16 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
   }
   const pus::Request request = pus::request_of(*telecommand);
   const std::uint16_t apid = telecommand->apid();
+  // Its own source id is nobody else's: reports to a forged one would end its own requests.
+  if (incoming.sender != Sender::Supervisor && request.source == own_source)
+    return reject(incoming, {request.id, 0, 0}, pus::FailureNotice{pus::FailureCode::IllegalField});
   const auto decision = decide(*telecommand, incoming.sender, situation_of(apid));
   if (!decision) return reject(incoming, request, decision.error());
-  if (decision->releases_stop)
-    if (Member* addressee = member(apid)) addressee->release_fence();
-
+  if (Member* addressee = member(apid); decision->releases_stop && addressee != nullptr) {
+    // What a recovery has stopped is not released by a command that crosses it.
+    if (addressee->recovering) return reject(incoming, request, pus::FailureNotice{pus::FailureCode::WrongState});
+    addressee->release_fence();
+  }
   const std::string text = telecommand_text(*telecommand);
   const LogEntry received{.kind = LogKind::TelecommandReceived,
                           .source = incoming.source,
@@ -58,14 +67,17 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
                           .packet = incoming.packet,
                           .note = std::string_view{text}};
   if (decision->essential) {
-    forward(apid, incoming.packet, incoming.memory, true, request);
+    forward({apid, incoming.packet, incoming.memory, request, 0, true});
     static_cast<void>(parts_.log.append(received));
     return;
   }
   const std::uint64_t number = parts_.log.append(received);
   if (number == 0 || waiting_.size() == most_waiting)
     return reject(incoming, request, pus::FailureNotice{pus::FailureCode::QueueFull});
-  waiting_.push_back({number, apid, {incoming.packet.begin(), incoming.packet.end()}, incoming.memory, request});
+  // Its own telecommands were not permitted by the mode, so a change of mode does not void them.
+  const std::uint32_t mode_epoch = incoming.sender == Sender::Supervisor ? 0 : mode_epoch_;
+  waiting_.push_back(
+      {number, apid, {incoming.packet.begin(), incoming.packet.end()}, incoming.memory, request, mode_epoch, now_});
   forward_durable();
 }
 
@@ -74,17 +86,31 @@ void Supervisor::forward_durable() {
   while (!waiting_.empty() && waiting_.front().number <= parts_.log.durable()) {
     const Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
-    forward(next.apid, next.packet, next.memory, false, next.request);
+    forward({next.apid, next.packet, next.memory, next.request, next.mode_epoch, false});
   }
 }
 
-void Supervisor::forward(std::uint16_t apid, Octets packet, const MemoryHandle& memory, bool essential,
-                         const pus::Request& request) {
+/// A store that fails or stands still: said once, and nothing waits for it for ever.
+void Supervisor::watch_log(TimePoint now) {
+  const bool failing = parts_.log.failure().has_value() ||
+                       (!waiting_.empty() && now - waiting_.front().since > log_patience);
+  if (failing != log_failing_) {
+    log_failing_ = failing;
+    tell(failing ? "log storage fails: telecommands that must be durable are held back" : "log storage works", 1);
+    if (failing) engine_.raise_in_service(103, std::span<const double>{});
+  }
+  while (!waiting_.empty() && now - waiting_.front().since >= durable_limit) {
+    const Waiting late = std::move(waiting_.front());
+    waiting_.pop_front();
+    reject({.packet = late.packet, .memory = {}}, late.request, pus::FailureNotice{pus::FailureCode::QueueFull});
+  }
+}
+
+void Supervisor::forward(const Outgoing& outgoing) {
+  const auto& [apid, packet, memory, request, mode_epoch, essential] = outgoing;
   Channel* channel = channel_of(apid);
-  const Message message{.kind = MessageKind::Packet,
-                        .mode_epoch = essential ? 0 : mode_epoch_,
-                        .packet = packet,
-                        .memory = memory};
+  const Message message{
+      .kind = MessageKind::Packet, .mode_epoch = mode_epoch, .packet = packet, .memory = memory};
   const bool sent = channel != nullptr && channel->send(message).has_value();
   if (!sent) {
     const auto code = channel == nullptr ? pus::FailureCode::UnknownApid : pus::FailureCode::QueueFull;
@@ -97,16 +123,17 @@ void Supervisor::forward(std::uint16_t apid, Octets packet, const MemoryHandle& 
 void Supervisor::reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice) {
   const auto code = static_cast<std::size_t>(notice.code());
   ++rejections_[code < rejection_reasons ? code : 0];
+  const bool damaged = notice.code() == pus::FailureCode::ErrorControl || notice.code() == pus::FailureCode::IllegalLength ||
+                       notice.code() == pus::FailureCode::IllegalPrimaryHeader ||
+                       notice.code() == pus::FailureCode::IllegalSequenceFlags;
+  // Beyond the cap they are counted only: a flood of them must not fill the log's queue before honest telecommands.
+  if (damaged && reports_in_window_ > damaged_reports_per_second) return;
   const auto header = pus::read_primary_header(incoming.packet);
   static_cast<void>(parts_.log.append({.kind = LogKind::TelecommandRefused,
                                        .source = incoming.source,
                                        .peer = header ? header->apid : std::uint16_t{0},
                                        .packet = incoming.packet,
                                        .note = to_text(notice.code())}));
-  const bool damaged = notice.code() == pus::FailureCode::ErrorControl || notice.code() == pus::FailureCode::IllegalLength ||
-                       notice.code() == pus::FailureCode::IllegalPrimaryHeader ||
-                       notice.code() == pus::FailureCode::IllegalSequenceFlags;
-  if (damaged && reports_in_window_ > damaged_reports_per_second) return;
   if (notice.code() == pus::FailureCode::UnknownApid) engine_.verification().routing_failed(request, notice);
   else engine_.verification().rejected(request, notice);
 }
@@ -215,7 +242,7 @@ void Supervisor::send_own(std::uint16_t apid, std::uint8_t service, std::uint8_t
   }
   const auto telecommand = pus::TelecommandView::parse(*packet);
   own_requests_[telecommand->request_id()] = {std::move(done), now_ + own_request_limit,
-                                              name_of(apid) + " " + telecommand_text(*telecommand)};
+                                              name_of(apid) + " " + telecommand_text(*telecommand), apid};
   handle_telecommand({.packet = *packet, .sender = Sender::Supervisor, .source = 1, .memory = memory});
 }
 
@@ -230,6 +257,18 @@ void Supervisor::expire_requests(TimePoint now) {
     tell(request.what + ": no answer");
     if (request.done) request.done(false, "no answer");
   }
+}
+
+/// Who has died answers nothing any more: what waits for it goes on at once.
+void Supervisor::fail_requests_to(std::uint16_t apid, const std::string& why) {
+  std::vector<CommandDone> ended;
+  std::erase_if(own_requests_, [&](auto& entry) {
+    if (entry.second.apid != apid) return false;
+    ended.push_back(std::move(entry.second.done));
+    return true;
+  });
+  for (const CommandDone& done : ended)
+    if (done) done(false, why);
 }
 
 }  // namespace hirosco::supervisor

@@ -27,6 +27,7 @@ void Supervisor::handle_event(std::uint16_t from, const pus::TelemetryView& repo
 void Supervisor::react(Member& origin, std::string_view event, Severity severity) {
   const Reaction reaction = choose_reaction(mission_, {origin.descriptor().name, event, severity, mode_->name});
   if (reaction.action == descriptor::Action::Log) return;
+  if (shutting_down_) return;  // everything is on its way down already
   // One plan at a time for a subsystem; only something worse overrides it.
   if (origin.recovering && *origin.recovering >= severity) return;
   if (reaction.action == descriptor::Action::ShutDownNetwork) {
@@ -41,18 +42,20 @@ void Supervisor::react(Member& origin, std::string_view event, Severity severity
            std::string{to_text(reaction.state)} + " because of " + std::string{event},
        origin.apid());
   const std::uint16_t apid = origin.apid();
-  command(apid, "SET_STATE", static_cast<double>(reaction.state), [this, apid](bool success, const std::string& why) {
-    recovered(apid);
+  const auto done = [this, apid, severity](bool success, const std::string& why) {
+    recovered(apid, severity);
     Member* subject = member(apid);
     if (success || subject == nullptr || !subject->alive()) return;
     // A plan that fails escalates once, to the whole network; shutting down has no further step.
     tell("plan failed (" + why + "): escalating", apid);
     react(*subject, "RECOVERY_FAILED", Severity::High);
-  });
+  };
+  command(apid, "SET_STATE", static_cast<double>(reaction.state), done);
 }
 
-void Supervisor::recovered(std::uint16_t apid) {
-  if (Member* subject = member(apid)) subject->recovering.reset();
+/// The end of a recovery. One of lower severity that something worse has overridden does not end that.
+void Supervisor::recovered(std::uint16_t apid, Severity severity) {
+  if (Member* subject = member(apid); subject != nullptr && subject->recovering == severity) subject->recovering.reset();
 }
 
 void Supervisor::shut_down_network(Member& origin, std::string_view plan) {
@@ -75,9 +78,10 @@ void Supervisor::bring_down(Member& subject, std::string_view plan) {
   const std::uint16_t apid = subject.apid();
   const auto to_offline = [this, apid](bool, const std::string&) {
     Member* again = member(apid);
-    if (again == nullptr || !again->alive() || again->state() == State::Offline) return recovered(apid);
+    if (again == nullptr || !again->alive() || again->state() == State::Offline)
+      return recovered(apid, Severity::High);
     command(apid, "SET_STATE", static_cast<double>(State::Offline), [this, apid](bool success, const std::string& why) {
-      recovered(apid);
+      recovered(apid, Severity::High);
       tell(name_of(apid) + (success ? " is Offline" : " did not reach Offline: " + why), apid);
     });
   };
@@ -89,13 +93,20 @@ void Supervisor::bring_down(Member& subject, std::string_view plan) {
 }
 
 void Supervisor::safe_all() {
+  // The ground link has no actuators and is needed now more than ever.
+  const auto concerned = [&](const Member& subject) {
+    return subject.alive() && subject.descriptor().name != mission_.ground.subsystem;
+  };
   for (Member& subject : members_)
-    if (subject.alive()) subject.fence();
+    if (concerned(subject)) subject.fence();
   tell("SAFE_ALL: every actuator inhibited", 1);
+  // Commissioning would lift the fences again with its next step.
+  if (!shutting_down_ && sequence_.running()) {
+    sequence_.cancel();
+    tell("commissioning stopped by SAFE_ALL", 1);
+  }
   for (Member& subject : members_) {
-    // The ground link has no actuators and is needed now more than ever.
-    if (!subject.alive() || subject.state() != State::Operational) continue;
-    if (subject.descriptor().name == mission_.ground.subsystem) continue;
+    if (!concerned(subject) || subject.state() != State::Operational) continue;
     command(subject.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
   }
 }
@@ -106,7 +117,8 @@ void Supervisor::watch_processes() {
   for (Member& subject : members_) {
     if (!subject.alive()) continue;
     if (const auto end = parts_.launcher.ended(subject.process())) {
-      member_died(subject, *end);
+      receive_from(subject);  // its last words
+      if (subject.alive()) member_died(subject, *end);
       continue;
     }
     if (!subject.hang_detected()) continue;
@@ -118,17 +130,21 @@ void Supervisor::watch_processes() {
 }
 
 void Supervisor::member_died(Member& subject, const ProcessEnd& end) {
-  if (shutting_down_) return subject.died();
   const std::uint16_t apid = subject.apid();
+  if (shutting_down_) {
+    subject.died();
+    return fail_requests_to(apid, "process ended");
+  }
   const std::string how = (end.by_signal ? "signal " : "exit code ") + std::to_string(end.value);
   tell(subject.descriptor().name + " died: " + how, apid);
   const double number = apid;
   engine_.raise_in_service(101, {&number, 1});
   // The network is what it was before the death: the others are told while the graph still has the links.
-  react(subject, "PROCESS_DIED", Severity::High);
+  // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();
+  react(subject, "PROCESS_DIED", Severity::High);
   links_.forget(apid);
-  std::erase_if(waiting_, [&](const Waiting& waiting) { return waiting.apid == apid; });
+  fail_requests_to(apid, "process died");
 }
 
 void Supervisor::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {

@@ -12,7 +12,7 @@ namespace hirosco::supervisor {
 namespace {
 
 /// How often processes, hangs and time limits are looked at: the supervisor's own cycle (decision 32).
-constexpr Duration watch_period = 10ms;
+constexpr Duration watch_period = Member::observation_period;
 constexpr Duration shutdown_limit = 5s;
 constexpr int messages_per_step = 256;
 
@@ -54,7 +54,10 @@ Result<Step> Supervisor::software_init() {
     return begun ? running : refused(pus::FailureCode::WrongStatus);
   });
   on_function("UNLINK", [this](double link, Call call) -> Outcome {
-    const bool begun = links_.release(static_cast<std::uint8_t>(link), [this, call](bool) { finish(call); });
+    const bool begun = links_.release(static_cast<std::uint8_t>(link), [this, call](bool success) {
+      if (success) finish(call);
+      else abort(call, pus::FailureCode::Timeout);
+    });
     return begun ? running : refused(pus::FailureCode::WrongStatus);
   });
   on_function("SET_DATABASE", [this](double strategy) -> Outcome {
@@ -200,6 +203,7 @@ TimePoint Supervisor::step(TimePoint now) {
     next_watch_ = now + watch_period;
     watch_processes();
     links_.step(now);
+    watch_log(now);
     expire_requests(now);
   }
   if (shutting_down_ && !finished_ && now > shutdown_deadline_) {
@@ -219,7 +223,8 @@ void Supervisor::receive_from(Member& member) {
   MessageBuffer buffer;
   for (int left = messages_per_step; left > 0 && member.alive(); --left) {
     auto found = member.channel()->receive(buffer);
-    if (!found || found->flow == Flow::None) return;  // a closed channel: the process handle tells the rest
+    if (!found) next_watch_ = now_;  // a closed channel: the process handle tells the rest, in this step
+    if (!found || found->flow == Flow::None) return;
     const Message& message = found->message;
     const auto header = pus::read_primary_header(message.packet);
     if (!header) continue;

@@ -99,8 +99,18 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   };
   void handle_telecommand(const Incoming& incoming);
   void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
-  void forward(std::uint16_t apid, Octets packet, const MemoryHandle& memory, bool essential, const pus::Request& request);
+  /// A permitted telecommand on its way to the addressee.
+  struct Outgoing {
+    std::uint16_t apid{};
+    Octets packet;
+    MemoryHandle memory;
+    pus::Request request;
+    std::uint32_t mode_epoch{0};     ///< at permission; 0 = not bound to the mode
+    bool essential{false};
+  };
+  void forward(const Outgoing& outgoing);
   void forward_durable();
+  void watch_log(TimePoint now);
   void handle_telemetry(std::uint16_t from, Octets packet);
   void interpret(std::uint16_t from, const pus::TelemetryView& report);
   void handle_verification(const pus::TelemetryView& report);
@@ -116,7 +126,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void react(Member& origin, std::string_view event, descriptor::Severity severity);
   void shut_down_network(Member& origin, std::string_view plan);
   void bring_down(Member& member, std::string_view plan);
-  void recovered(std::uint16_t apid);
+  void recovered(std::uint16_t apid, descriptor::Severity severity);
 
   // subsystem handling
   void watch_processes();
@@ -128,6 +138,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void set_mode(const descriptor::Mode& mode);
   void safe_all();
   void expire_requests(TimePoint now);
+  void fail_requests_to(std::uint16_t apid, const std::string& why);
   void tell(std::string_view line, std::uint16_t subject = 0);
   void send_own(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
                 const MemoryHandle& memory, CommandDone done);
@@ -152,6 +163,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     CommandDone done;
     TimePoint deadline{};
     std::string what;
+    std::uint16_t apid{};
   };
   std::map<std::uint32_t, OwnRequest> own_requests_;
   std::uint16_t next_sequence_count_;
@@ -161,8 +173,11 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     std::vector<std::byte> packet;
     MemoryHandle memory;
     pus::Request request;
+    std::uint32_t mode_epoch{0};
+    TimePoint since{};
   };
   std::deque<Waiting> waiting_;
+  bool log_failing_{false};
 
   TimePoint now_{};
   TimePoint next_watch_{};

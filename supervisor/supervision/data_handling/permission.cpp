@@ -106,13 +106,18 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   const bool built_in = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
   Permitted permitted;
   if (call) {
-    permitted.essential = towards_safety(*call, situation.state) || (function != nullptr && function->essential);
-    const bool to_safe = call->name == "SET_STATE" && call->first_argument == static_cast<std::uint8_t>(State::SafeOperational);
-    if (to_safe && situation.state == State::PreOperational && lacks_link(*subsystem, situation))
+    const auto asks_for = [&](State target) {
+      return call->name == "SET_STATE" && call->first_argument == static_cast<std::uint8_t>(target);
+    };
+    // The supervisor commands Offline at the end of a recovery or of the flight: no disk may hold that up (decision 24).
+    const bool goes_down = sender == Sender::Supervisor && asks_for(State::Offline);
+    permitted.essential =
+        goes_down || towards_safety(*call, situation.state) || (function != nullptr && function->essential);
+    const bool up_to_safe = asks_for(State::SafeOperational) && situation.state == State::PreOperational;
+    const bool up_to_operational = asks_for(State::Operational) && situation.state == State::SafeOperational;
+    if ((up_to_safe || up_to_operational) && lacks_link(*subsystem, situation))
       return std::unexpected{FailureNotice{FailureCode::LinkAbsent}};
-    permitted.releases_stop = call->name == "SET_STATE" &&
-                              call->first_argument == static_cast<std::uint8_t>(State::Operational) &&
-                              situation.state == State::SafeOperational;
+    permitted.releases_stop = up_to_operational;
     // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].
     if (function == nullptr && !built_in) return permitted;
   }

@@ -44,9 +44,9 @@ bool LinkHandling::establish(std::uint8_t id, TimePoint now, Done done) {
 }
 
 bool LinkHandling::release(std::uint8_t link, Done done) {
-  if (!graph_.is_up(link)) return false;
+  if (!graph_.is_up(link) || releases_.contains(link)) return false;
   const auto* described = mission_.find_link(link);
-  releases_[link] = std::move(done);
+  releases_[link].done = std::move(done);
   const std::array data{std::byte{link}};
   // The consumer first, so that it never sees a producer that left.
   operator_.send_link_command(mission_.find_subsystem(described->to)->subsystem.id, st128::detach, data, {});
@@ -58,28 +58,46 @@ void LinkHandling::handle(std::uint16_t from, const pus::TelemetryView& report) 
   const Octets data = report.source_data();
   if (data.empty()) return;
   const auto link = std::to_integer<std::uint8_t>(data[0]);
-  if (report.subtype() == st128::detached) return down(link, "detached by " + std::to_string(from));
+  if (report.subtype() == st128::detached) {
+    if (is_end_of(link, from)) detached(link, from);
+    return;
+  }
   const auto found = handshakes_.find(link);
   if (found == handshakes_.end()) return;
   Handshake& handshake = found->second;
-  if (from != handshake.producer && from != handshake.consumer) return;
+  const bool of_producer = from == handshake.producer;
+  const bool of_consumer = from == handshake.consumer;
+  if (!of_producer && !of_consumer) return;
   switch (report.subtype()) {
     case st128::offer:
-      if (const auto offer = st128::read_offer(data); offer && handshake.stage == Stage::AwaitOffer)
+      if (const auto offer = st128::read_offer(data); offer && of_consumer && handshake.stage == Stage::AwaitOffer)
         offered(handshake, offer->offer);
       break;
     case st128::agreement:
-      if (const auto terms = st128::read_agreement(data); terms && handshake.stage == Stage::AwaitAgreement)
+      if (const auto terms = st128::read_agreement(data);
+          terms && of_producer && handshake.stage == Stage::AwaitAgreement)
         agreed(handshake, terms->agreement);
       break;
     case st128::refusal:
-      if (const auto refusal = st128::read_refusal(data)) give_up(link, refusal->refusal.text);
+      if (const auto refusal = st128::read_refusal(data)) give_up(link, refusal->refusal.text, from);
       break;
-    case st128::attached:
-      if (data.size() == 2) attached(handshake, static_cast<st128::Role>(data[1]));
+    case st128::attached: {
+      const auto role = data.size() == 2 ? static_cast<st128::Role>(data[1]) : st128::Role{};
+      if ((role == st128::Role::Producer && of_producer) || (role == st128::Role::Consumer && of_consumer))
+        attached(handshake, role);
       break;
+    }
     default: break;
   }
+}
+
+void LinkHandling::detached(std::uint8_t link, std::uint16_t from) {
+  const auto found = handshakes_.find(link);
+  if (found == handshakes_.end()) return down(link, "detached by " + std::to_string(from));
+  // Reports of one subsystem come in order: a producer that attached in this handshake and detached since has left it.
+  // Before that the report is a late one of the link's earlier life.
+  const Handshake& handshake = found->second;
+  if (handshake.stage == Stage::AwaitConsumer && from == handshake.producer) give_up(link, "the producer left", from);
 }
 
 void LinkHandling::offered(Handshake& handshake, const st128::Offer& offer) {
@@ -136,16 +154,17 @@ void LinkHandling::attached(Handshake& handshake, st128::Role role) {
   if (finished.done) finished.done(true);
 }
 
-void LinkHandling::give_up(std::uint8_t link, const std::string& why) {
+void LinkHandling::give_up(std::uint8_t link, const std::string& why, std::uint16_t without) {
   const auto found = handshakes_.find(link);
   if (found == handshakes_.end()) return;
   Handshake failed = std::move(found->second);
   handshakes_.erase(found);
-  const bool producer_attached = failed.stage == Stage::AwaitConsumer;
-  if (producer_attached) {
-    const std::array data{std::byte{link}};
+  // Whoever was told to attach may have done so or may still do it: an end that stays attached would refuse the next try.
+  const std::array data{std::byte{link}};
+  if (failed.stage == Stage::AwaitConsumer && failed.consumer != without)
+    operator_.send_link_command(failed.consumer, st128::detach, data, {});
+  if (failed.stage >= Stage::AwaitProducer && failed.producer != without)
     operator_.send_link_command(failed.producer, st128::detach, data, {});
-  }
   operator_.link_changed(*failed.link, false, why);
   if (failed.done) failed.done(false);
 }
@@ -156,14 +175,23 @@ void LinkHandling::down(std::uint8_t link, const std::string& why) {
     established_.erase(link);
     operator_.link_changed(*mission_.find_link(link), false, why);
   }
-  if (auto release = releases_.extract(link); !release.empty() && release.mapped()) release.mapped()(true);
+  if (auto release = releases_.extract(link); !release.empty() && release.mapped().done)
+    release.mapped().done(true);
+}
+
+bool LinkHandling::is_end_of(std::uint8_t link, std::uint16_t apid) const {
+  const auto* described = mission_.find_link(link);
+  if (described == nullptr) return false;
+  const auto* subsystem = mission_.find_subsystem(apid);
+  return subsystem != nullptr &&
+         (described->from == subsystem->subsystem.name || described->to == subsystem->subsystem.name);
 }
 
 void LinkHandling::forget(std::uint16_t apid) {
   std::vector<std::uint8_t> broken;
   for (const auto& [link, handshake] : handshakes_)
     if (handshake.producer == apid || handshake.consumer == apid) broken.push_back(link);
-  for (const std::uint8_t link : broken) give_up(link, "a partner is gone");
+  for (const std::uint8_t link : broken) give_up(link, "a partner is gone", apid);
   for (const std::uint8_t link : graph_.links_of(apid)) down(link, "subsystem " + std::to_string(apid) + " is gone");
 }
 
@@ -172,6 +200,16 @@ void LinkHandling::step(TimePoint now) {
   for (const auto& [link, handshake] : handshakes_)
     if (now > handshake.deadline) late.push_back(link);
   for (const std::uint8_t link : late) give_up(link, "time limit of the handshake");
+  std::vector<Done> unanswered;
+  for (auto entry = releases_.begin(); entry != releases_.end();) {
+    Release& release = entry->second;
+    if (release.deadline == TimePoint{}) release.deadline = now + stage_limit;
+    const bool late_now = now > release.deadline;
+    if (late_now) unanswered.push_back(std::move(release.done));
+    entry = late_now ? releases_.erase(entry) : std::next(entry);
+  }
+  for (const Done& done : unanswered)
+    if (done) done(false);
 }
 
 }  // namespace hirosco::supervisor

@@ -38,7 +38,7 @@ class LinkHandling {
   [[nodiscard]] const LinkGraph& graph() const noexcept { return graph_; }
   /// Begins the handshake. False: unknown link, already up, or a handshake of it is under way.
   [[nodiscard]] bool establish(std::uint8_t link, TimePoint now, Done done);
-  /// Takes a link down at both ends. False: it is not up.
+  /// Takes a link down at both ends. False: it is not up, or being taken down already.
   [[nodiscard]] bool release(std::uint8_t link, Done done);
   /// Reports of service 128.
   void handle(std::uint16_t from, const pus::TelemetryView& report);
@@ -64,8 +64,11 @@ class LinkHandling {
   void agreed(Handshake& handshake, const pus::st128::Agreement& agreement);
   void attach(const Handshake& handshake, pus::st128::Role role);
   void attached(Handshake& handshake, pus::st128::Role role);
-  void give_up(std::uint8_t link, const std::string& why);
+  void detached(std::uint8_t link, std::uint16_t from);
+  /// Ends a handshake; `without`: the partner that needs no word of it because it refused, left or died.
+  void give_up(std::uint8_t link, const std::string& why, std::uint16_t without = 0);
   void down(std::uint8_t link, const std::string& why);
+  [[nodiscard]] bool is_end_of(std::uint8_t link, std::uint16_t apid) const;
 
   const descriptor::Mission& mission_;
   MemoryProvider& memory_;
@@ -73,7 +76,11 @@ class LinkHandling {
   LinkGraph graph_;
   std::map<std::uint8_t, Handshake> handshakes_;
   std::map<std::uint8_t, MemoryHandle> established_;
-  std::map<std::uint8_t, Done> releases_;
+  struct Release {
+    Done done;
+    TimePoint deadline{};            ///< set by the first step() after it was asked for
+  };
+  std::map<std::uint8_t, Release> releases_;
   std::uint32_t epoch_{0};
 };
 
