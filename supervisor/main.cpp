@@ -59,6 +59,29 @@ struct Options {
   return open_database(strategy, path);
 }
 
+/// Opens its store in the thread that writes it: opening touches the disk, which may stand still.
+class LateDatabase final : public Database {
+ public:
+  LateDatabase(DatabaseStrategy strategy, std::filesystem::path path) : strategy_{strategy}, path_{std::move(path)} {}
+
+ private:
+  Result<> do_append(std::span<const LogRecord> batch) override {
+    if (!store_) {
+      HIROSCO_TRY_LET(store_, open_log(strategy_, path_));
+    }
+    return store_->append(batch);
+  }
+  Result<LogPage> do_read(const LogQuery& query) override {
+    if (!store_) return fail(ErrorCode::Unavailable, "nothing was written yet");
+    return store_->read(query);
+  }
+  [[nodiscard]] std::string_view do_strategy() const noexcept override { return to_text(strategy_); }
+
+  DatabaseStrategy strategy_;
+  std::filesystem::path path_;
+  std::unique_ptr<Database> store_;
+};
+
 /// Descriptors that may wake the supervisor; follows the set of living members.
 class Waker {
  public:
@@ -80,6 +103,7 @@ class Waker {
       if (!members_.contains(fresh)) static_cast<void>(set_.add(fresh));
     members_ = std::move(now);
   }
+  void forget(int descriptor) { set_.remove(descriptor); }
   [[nodiscard]] std::span<const Ready> wait(Duration limit) {
     const auto ready = set_.wait(std::max(limit, Duration{0}));
     return ready ? *ready : std::span<const Ready>{};
@@ -124,8 +148,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
        .launcher = launcher,
        .log = log,
        .open_database = [&](DatabaseStrategy wanted) -> std::unique_ptr<Database> {
-         auto opened = open_log(wanted, mission.database.path);
-         return opened ? std::move(*opened) : nullptr;
+         return std::make_unique<LateDatabase>(wanted, mission.database.path);
        },
        .observer = console,
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384)}};
@@ -141,6 +164,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     waker.follow(supervisor, launcher);
     for (const Ready& ready : waker.wait(std::min(wake, next_status) - clock.now())) {
       const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;
+      if (keeper_gone) waker.forget(keeper_descriptor);  // it would end every wait from now on
       if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
       if (ready.descriptor == signal_descriptor.get()) {
         signalfd_siginfo info;
@@ -153,7 +177,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     console.show(supervisor, clock.now() - started);
   }
   for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;)
-    static_cast<void>(waker.wait(10ms));
+    sleep_until(clock.now() + 10ms);
+  launcher.kill_all();
   static_cast<void>(log.flush(last_wait));
   return supervisor.succeeded() ? 0 : exit_finding;
 }

@@ -18,6 +18,10 @@ namespace {
 constexpr int exit_environment = 3;
 constexpr int exit_internal = 4;
 constexpr Duration device_grace = 1s;
+/// A terminal or tool sends one wish by several ways: to the process and to its group.
+constexpr Duration one_wish = 1s;
+/// More than the supervisor allows itself for an orderly end.
+constexpr Duration supervisor_grace = 15s;
 
 [[nodiscard]] sigset_t handled_signals() {
   sigset_t set;
@@ -63,7 +67,9 @@ int keep(KeeperPlan plan) {
 
   std::vector<Process> devices;
   devices.reserve(plan.devices.size());
-  for (const ProcessStart& start : plan.devices) {
+  for (ProcessStart& start : plan.devices) {
+    // Its end tells a device that the keeper is gone, however that came about: nobody else would end it.
+    start.inherited.push_back({watched.get(), STDIN_FILENO});
     auto device = Process::spawn(start);
     if (!device) {
       std::fprintf(stderr, "hirosco: cannot start %s: %s\n", start.executable.c_str(), device.error().text);
@@ -82,6 +88,7 @@ int keep(KeeperPlan plan) {
 
   const TimePoint started = clock.now();
   bool asked = false;
+  TimePoint asked_at{};
   for (;;) {
     const auto end = supervisor->poll();
     if (end && *end) {
@@ -91,9 +98,12 @@ int keep(KeeperPlan plan) {
     const int number = next_signal(set, 100ms);
     const bool interrupted = number == SIGINT || number == SIGTERM || number == SIGHUP;
     const bool over = plan.run_for && !asked && clock.now() - started >= *plan.run_for;
-    if (!interrupted && !over) continue;
-    // The first wish is for an orderly end, the second for an end.
-    static_cast<void>(supervisor->send_signal(asked && interrupted ? SIGKILL : SIGTERM));
+    const bool overdue = asked && clock.now() - asked_at > supervisor_grace;
+    const bool same_wish = asked && interrupted && clock.now() - asked_at < one_wish;
+    if (same_wish || (!interrupted && !over && !overdue)) continue;
+    // The first wish is for an orderly end, the second for an end; so is one that is not fulfilled in time.
+    static_cast<void>(supervisor->send_signal(asked ? SIGKILL : SIGTERM));
+    if (!asked) asked_at = clock.now();
     asked = true;
   }
 }

@@ -84,6 +84,10 @@ void SystemLauncher::kill(std::uint32_t process) {
     static_cast<void>(found->second.send_signal(SIGKILL));
 }
 
+void SystemLauncher::kill_all() {
+  for (auto& [number, process] : processes_) static_cast<void>(process.send_signal(SIGKILL));
+}
+
 bool SystemLauncher::any_running() {
   for (auto entry = processes_.begin(); entry != processes_.end();) {
     const auto status = entry->second.poll();

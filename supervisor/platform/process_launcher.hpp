@@ -22,6 +22,8 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
+  /// Ends what still runs: nobody would be left to do it.
+  void kill_all();
   /// True while a process that was started still runs.
   [[nodiscard]] bool any_running();
   /// Readable when the process has ended; -1 when unknown.
