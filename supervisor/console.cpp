@@ -83,10 +83,10 @@ std::string Console::status_text(const Supervisor& supervisor, Duration since_st
                         member.alive() && state ? to_text(*state) : std::string_view{"not running"});
     const VitalPage* vital = member.vital();
     if (vital == nullptr || vital->cycling.load() == 0) continue;
-    text += fmt::format(" {:.0f} Hz exec {:.1f} us late max {:.0f} us overruns {}",
+    text += fmt::format(" {:.0f} Hz exec {:.1f} us late max {:.0f} us overruns {} missed {}",
                         1e9 / static_cast<double>(std::max<std::uint64_t>(vital->period_ns.load(), 1)),
                         vital->execution_mean_ns.load() * 1e-3, vital->latency_max_ns.load() * 1e-3,
-                        vital->overruns.load());
+                        vital->overruns.load(), vital->missed.load());
     if (vital->inhibited.load() != 0) text += " INHIBITED";
     if (vital->realtime.load() == 0) text += " (reduced promise: no real-time scheduling)";
   }
@@ -114,8 +114,8 @@ std::string Console::status_json(const Supervisor& supervisor, Duration since_st
     text += fmt::format("{}{{\"name\":{},\"state\":{}", first ? "" : ",", json_string(member.descriptor().name),
                         json_string(member.alive() && state ? to_text(*state) : std::string_view{"not running"}));
     if (vital != nullptr)
-      text += fmt::format(",\"cycles\":{},\"overruns\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{},\"realtime\":{}",
-                          vital->cycles.load(), vital->overruns.load(), vital->latency_max_ns.load(),
+      text += fmt::format(",\"cycles\":{},\"overruns\":{},\"missed\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{},\"realtime\":{}",
+                          vital->cycles.load(), vital->overruns.load(), vital->missed.load(), vital->latency_max_ns.load(),
                           vital->execution_mean_ns.load(), vital->inhibited.load(), vital->realtime.load());
     text += "}";
     first = false;

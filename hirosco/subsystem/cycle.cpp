@@ -51,12 +51,14 @@ TimePoint CycleLoop::step(TimePoint planned) noexcept {
   if (plan_.sampler != nullptr) plan_.sampler->tick(*this, *this);
   ++count_;
   account(planned, started);
-  const TimePoint next = planned + plan_.configuration->sampling;
+  const Duration period = plan_.configuration->sampling;
+  const TimePoint next = planned + period;
   const TimePoint finished = parts_.clock.now();
   if (finished <= next) return next;
-  // Missed cycles are skipped, not made up for: the next one is due on the grid and in the future, so that one pause
-  // counts as one overrun and not as the first of a burst.
-  return next + ((finished - next) / plan_.configuration->sampling + 1) * plan_.configuration->sampling;
+  // Missed cycles are skipped, not made up for: the next one is due on the grid and in the future.
+  const auto skipped = (finished - next) / period + 1;
+  parts_.vital.missed.fetch_add(static_cast<std::uint64_t>(skipped), std::memory_order_relaxed);
+  return next + skipped * period;
 }
 
 bool CycleLoop::controlling() const noexcept {
@@ -183,7 +185,8 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   execution_mean_ns_ += weight * (static_cast<double>(execution.count()) - execution_mean_ns_);
 
   const descriptor::CycleLimit& limit = plan_.configuration->overruns;
-  const bool overrun = finished > planned + plan_.configuration->sampling;
+  // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007).
+  const bool overrun = execution > plan_.configuration->sampling;
   overruns_in_a_row_ = overrun ? overruns_in_a_row_ + 1 : 0;
   if (overrun) ++overruns_;
   if (overruns_in_a_row_ == (parts_.realtime ? limit.realtime : limit.reduced)) {

@@ -38,7 +38,8 @@ struct VitalPage {
   std::atomic<std::uint64_t> period_ns{0};
   std::atomic<std::uint64_t> cycles{0};          ///< advances while the cycle runs: hang detection
   std::atomic<std::uint64_t> service_steps{0};   ///< advances while the service loop runs
-  std::atomic<std::uint64_t> overruns{0};
+  std::atomic<std::uint64_t> overruns{0};        ///< cycles whose own work took longer than the period
+  std::atomic<std::uint64_t> missed{0};          ///< cycles skipped because they were due before the last had ended
   std::atomic<std::uint32_t> latency_max_ns{0};  ///< wake-up after its planned time, largest since configuration
   std::atomic<std::uint32_t> execution_max_ns{0};
   std::atomic<std::uint32_t> execution_mean_ns{0};  ///< over about the last 1,000 cycles

@@ -9,7 +9,6 @@
 namespace hirosco::simulation {
 namespace {
 
-constexpr int longest_step_cycles = 4;  // of the device's own clock, jitter included
 constexpr std::int64_t most_cycles_at_once = 40;          // of catching up after the process itself was held up
 constexpr std::size_t most_delayed_frames = 2048;         // 1 s at 2 kHz
 constexpr std::size_t most_injections = 10'000;           // then the record ends; the faults still work
@@ -120,9 +119,10 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
 }
 
 /// A pause of this very program (a stopped virtual machine, a debugger) is no time that the device had: real hardware
-/// would have run on, so neither its world nor its watchdog may jump. While it runs it wakes every two cycles at most.
+/// would have run on, so neither its world nor its watchdog may jump. While it runs it wakes after a cycle by its own
+/// clock, after two while it is driven by exchanges; what is longer was a pause.
 void SimulatedDevice::forgive_pause(TimePoint now) noexcept {
-  const Duration pause = now - now_ - settings_.cycle * longest_step_cycles;
+  const Duration pause = now - now_ - settings_.cycle * (by_own_clock_ ? 1 : 2);
   if (pause <= Duration{0}) return;
   world_time_ += pause;
   if (mode_ != DeviceMode::Off) watchdog_at_ += pause;
