@@ -155,7 +155,8 @@ void Spacecraft::kill(std::string_view name) {
 }
 
 void Spacecraft::stop(std::string_view name, bool stopped) {
-  if (Member* member = find(name)) member->stopped = stopped;
+  if (name == parts_.mission.supervisor.name) supervisor_wake_ = stopped ? never : clock_.now();
+  else if (Member* member = find(name)) member->stopped = stopped;
 }
 
 // --- virtual time ------------------------------------------------------------------------------------------------------

@@ -69,7 +69,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   [[nodiscard]] const VitalPage* vital(std::string_view name) const noexcept;
   /// The process ends without a word, as by kill -9.
   void kill(std::string_view name);
-  /// The process stands still, as by SIGSTOP, and goes on.
+  /// The process stands still, as by SIGSTOP, and goes on; the supervisor by its own name.
   void stop(std::string_view name, bool stopped);
   /// Called after every cycle of the fastest subsystem, for traces and checks at cycle rate.
   void on_cycle(std::function<void(std::string_view subsystem, TimePoint)> watch) { watch_ = std::move(watch); }

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/integration/flight.hpp"
+
+namespace hirosco::testing {
+namespace {
+
+using supervisor::LogRecord;
+
+struct Minute {
+  std::vector<LogRecord> records;
+  double wall_s{0};
+};
+
+Minute one_minute(std::uint64_t seed) {
+  const auto start = std::chrono::steady_clock::now();
+  Flight flight{{.seed = seed}};
+  flight.craft().run(60s);
+  Minute minute{flight.records(), 0};
+  minute.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_TRUE(flight.craft().supervisor().commissioned());
+  return minute;
+}
+
+/// Housekeeping of the manipulator without headers: what the world did, not how packets are counted.
+std::vector<std::vector<std::byte>> robot_housekeeping(const std::vector<LogRecord>& records) {
+  std::vector<std::vector<std::byte>> all;
+  for (const LogRecord& record : records) {
+    const auto report = pus::TelemetryView::parse(record.packet);
+    if (report && report->apid() == 10 && report->service() == 3)
+      all.emplace_back(report->source_data().begin(), report->source_data().end());
+  }
+  return all;
+}
+
+TEST(Determinism, OneMinuteGivesTheSameLogTwiceAndAnotherWithAnotherSeed) {
+  const Minute first = one_minute(1);
+  const Minute second = one_minute(1);
+  const Minute other = one_minute(2);
+  const auto packets =
+      std::ranges::count_if(first.records, [](const LogRecord& record) { return !record.packet.empty(); });
+  std::cout << fmt::format("  60 s of rokviss: {} records, {} packets, simulated in {:.2f} s\n", first.records.size(),
+                           packets, first.wall_s);
+  EXPECT_GE(packets, 1000);
+  ASSERT_EQ(first.records.size(), second.records.size());
+  EXPECT_TRUE(first.records == second.records);
+  const auto robot = robot_housekeeping(first.records);
+  ASSERT_FALSE(robot.empty());
+  EXPECT_NE(robot, robot_housekeeping(other.records)) << "another seed moves the hand in another way";
+}
+
+}  // namespace
+}  // namespace hirosco::testing

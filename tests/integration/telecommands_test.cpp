@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "simulation/devices/robot_device.hpp"
+#include "tests/integration/flight.hpp"
+
+namespace hirosco::testing {
+namespace {
+
+using pus::FailureCode;
+
+constexpr std::uint16_t supervisor_apid = 1;
+constexpr std::uint16_t manipulator_apid = 10;
+constexpr std::uint16_t first_count = 9000;  // far from those of Spacecraft::command
+
+class Telecommands : public ::testing::Test {
+ protected:
+  void SetUp() override { ASSERT_TRUE(flight.commission()) << flight.story().text(); }
+
+  void expect_done(const simulation::CommandOutcome& outcome) {
+    EXPECT_TRUE(outcome.accepted && outcome.started && outcome.completed)
+        << "failed with " << (outcome.failure ? std::string{to_text(*outcome.failure)} : "no answer");
+  }
+  void expect_refused(const simulation::CommandOutcome& outcome, FailureCode code, int subtype) {
+    ASSERT_TRUE(outcome.failure);
+    EXPECT_EQ(*outcome.failure, code) << to_text(*outcome.failure);
+    EXPECT_EQ(outcome.failure_subtype, subtype);
+    EXPECT_FALSE(outcome.completed);
+  }
+  void expect_verdict(const Flight::Verdict& verdict, int subtype, int code, int apid) {
+    EXPECT_EQ(verdict.subtype, subtype);
+    EXPECT_EQ(verdict.code, code);
+    EXPECT_EQ(verdict.apid, apid);
+  }
+  /// The manipulator on its own: out of the network by way of Post-Operational.
+  void go_standalone(State manipulator) {
+    expect_done(flight.set_mode("commissioning"));
+    for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})
+      expect_done(flight.set_state("MANIPULATOR", state));
+    expect_done(flight.configure("MANIPULATOR", "STANDALONE"));
+    expect_done(flight.set_state("MANIPULATOR", State::SafeOperational));
+    if (manipulator == State::Operational) expect_done(flight.set_state("MANIPULATOR", State::Operational));
+    expect_done(flight.set_mode("standalone"));
+  }
+
+  Flight flight{{.edit = hand_rests}};
+};
+
+TEST_F(Telecommands, MoveToIsAcceptedStartedHalfWayAndCompletedWhereItWasSent) {
+  go_standalone(State::Operational);
+  const auto outcome = flight.craft().command("MANIPULATOR", "MOVE_TO", {-1.0, 1.9, 2.0});
+  expect_done(outcome);
+  EXPECT_EQ(outcome.progress_reports, 1);
+  flight.craft().run(500ms);
+  // With friction of 1 N m and kp of 4 x 300 N m/rad the joints stop within 1 mrad.
+  const auto& q = flight.device<simulation::RobotDevice>("robot").arm().state().link_rad;
+  EXPECT_NEAR(q[0], -1.0, 1e-3);
+  EXPECT_NEAR(q[1], 1.9, 1e-3);
+  EXPECT_TRUE(flight.story().has("MANIPULATOR info MOTION_DONE"));
+}
+
+TEST_F(Telecommands, AMotionIntoTheRailEndsAbortedAndTheRobotSafe) {
+  go_standalone(State::Operational);
+  const auto outcome = flight.craft().command("MANIPULATOR", "MOVE_TO", {-0.5, 1.2, 2.0});
+  EXPECT_TRUE(outcome.started);
+  expect_refused(outcome, FailureCode::Aborted, 8);
+  EXPECT_TRUE(flight.story().has("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED"));
+  EXPECT_EQ(flight.state("MANIPULATOR"), State::SafeOperational);
+}
+
+TEST_F(Telecommands, ASecondMotionIsRefusedAsBusyAndTheFirstGoesOn) {
+  go_standalone(State::Operational);
+  const auto first = function_packet(manipulator_apid, first_count, call_data("MOVE_TO", {-0.9, 1.7, 3.0}));
+  flight.craft().ground().send(first);
+  flight.craft().run(100ms);
+  expect_refused(flight.craft().command("MANIPULATOR", "MOVE_TO", {-1.0, 1.9, 2.0}), FailureCode::Busy, 4);
+  flight.craft().run(3s);
+  EXPECT_TRUE(flight.story().has("MANIPULATOR info MOTION_DONE"));
+}
+
+TEST_F(Telecommands, AMotionThatIsCutShortEndsWithItsOwnFailureReport) {
+  go_standalone(State::Operational);
+  std::vector<int> subtypes;
+  flight.story().on_telemetry = [&](const pus::TelemetryView& packet) {
+    if (packet.service() == 1 && packet.apid() == manipulator_apid && packet.destination() == 0)
+      subtypes.push_back(packet.subtype());
+  };
+  flight.craft().ground().send(function_packet(manipulator_apid, first_count, call_data("MOVE_TO", {-0.9, 1.7, 3.0})));
+  flight.craft().run(100ms);
+  flight.craft().ground().send(function_packet(manipulator_apid, first_count + 1, call_data("HOLD", {})));
+  flight.craft().run(100ms);
+  EXPECT_EQ(subtypes, (std::vector{1, 3, 1, 8, 3, 7}));
+}
+
+TEST_F(Telecommands, InTelepresenceMoveToIsRefusedForTheMode) {
+  expect_refused(flight.craft().command("MANIPULATOR", "MOVE_TO", {-1.0, 1.9, 2.0}), FailureCode::WrongMode, 2);
+}
+
+TEST_F(Telecommands, OutsideOperationalMoveToIsRefusedForTheState) {
+  go_standalone(State::SafeOperational);
+  expect_refused(flight.craft().command("MANIPULATOR", "MOVE_TO", {-1.0, 1.9, 2.0}), FailureCode::WrongState, 2);
+}
+
+TEST_F(Telecommands, ATargetOutOfRangeFailsToStart) {
+  go_standalone(State::Operational);
+  expect_verdict(flight.send(function_packet(manipulator_apid, first_count, call_data("MOVE_TO", {5.0, 1.9, 2.0}))), 4,
+                 0x0105, manipulator_apid);
+}
+
+TEST_F(Telecommands, AnUnknownFunctionFailsToStart) {
+  expect_verdict(flight.send(function_packet(manipulator_apid, first_count, call_data("JUMP", {}))), 4, 0x0101,
+                 manipulator_apid);
+}
+
+TEST_F(Telecommands, ApplicationDataOfAWrongLengthAreNotAccepted) {
+  go_standalone(State::Operational);
+  auto data = call_data("MOVE_TO", {-1.0, 1.9, 2.0});
+  data.resize(data.size() - 3);
+  expect_verdict(flight.send(function_packet(manipulator_apid, first_count, data)), 2, 8, manipulator_apid);
+}
+
+TEST_F(Telecommands, ADamagedPacketIsNotAccepted) {
+  auto packet = function_packet(manipulator_apid, first_count, call_data("HOLD", {}));
+  packet.back() ^= std::byte{1};
+  expect_verdict(flight.send(packet), 2, 5, supervisor_apid);
+}
+
+TEST_F(Telecommands, AnUnknownAddresseeFailsToRoute) {
+  expect_verdict(flight.send(function_packet(99, first_count, call_data("HOLD", {}))), 10, 1, supervisor_apid);
+}
+
+TEST_F(Telecommands, SafeOperationalIsRefusedWhileARequiredLinkIsAbsent) {
+  expect_done(flight.set_mode("commissioning"));
+  for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})
+    expect_done(flight.set_state("JOYSTICK", state));
+  expect_done(flight.configure("JOYSTICK", "COUPLED"));
+  expect_refused(flight.set_state("JOYSTICK", State::SafeOperational), FailureCode::LinkAbsent, 2);
+  EXPECT_EQ(flight.state("JOYSTICK"), State::PreOperational);
+}
+
+TEST_F(Telecommands, HoldFailsToStartWhileALinkOwnsTheSetpoint) {
+  expect_refused(flight.craft().command("MANIPULATOR", "HOLD", {}), FailureCode::SetpointOwnedByLink, 4);
+}
+
+TEST_F(Telecommands, NothingRefusedReachesTheRobot) {
+  const auto before = flight.device<simulation::RobotDevice>("robot").arm().state().link_rad;
+  static_cast<void>(flight.craft().command("MANIPULATOR", "MOVE_TO", {-1.0, 1.9, 2.0}));
+  static_cast<void>(flight.send(function_packet(manipulator_apid, first_count, call_data("JUMP", {}))));
+  flight.craft().run(500ms);
+  EXPECT_EQ(flight.device<simulation::RobotDevice>("robot").arm().state().link_rad, before);
+}
+
+}  // namespace
+}  // namespace hirosco::testing
