@@ -15,7 +15,8 @@ namespace {
 
 /// Source id of the supervisor's own telecommands (decision 27).
 constexpr std::uint16_t own_source = 1;
-constexpr Duration own_request_limit = 5s;
+/// Generous: a slow disk alone may hold a telecommand back for seconds (decision 24).
+constexpr Duration own_request_limit = 15s;
 /// A telecommand that is not durable after this time is refused: late execution surprises whoever gave it up. As long as
 /// the supervisor waits for its own, so that none of those is executed after it was reported as failed.
 constexpr Duration durable_limit = own_request_limit;
