@@ -12,11 +12,11 @@
 namespace hirosco {
 namespace {
 
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using testing::Probe;
 using testing::probe_descriptor;
 using testing::Rig;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 struct GenericSubsystemTest : ::testing::Test {
   Probe probe;
@@ -342,9 +342,7 @@ TEST_F(GenericSubsystemTest, UnknownServicesAreRefusedAndHousekeepingWaitsForIts
 std::vector<std::byte> gains(double kp, double kd) {
   std::vector<std::byte> data(64);
   OctetWriter writer{data};
-  const auto id = [](std::uint8_t number) {
-    return ParameterId{10, Type::Double, number}.wire();
-  };
+  const auto id = [](std::uint8_t number) { return ParameterId{10, Type::Double, number}.wire(); };
   writer.put(std::uint8_t{2}).put(id(2)).put(kp).put(id(3)).put(kd);
   data.resize(writer.size());
   return data;
@@ -392,11 +390,14 @@ TEST_F(GenericSubsystemTest, HousekeepingOfThePapersListingsComesByteForByte) {
     rig.cycle(100);
   }
   rig.service();
-  EXPECT_THAT(rig.reports(3, 25), ElementsAre("1267"               // structure 4711
-                                              "00000003"           // STATE: Pre-Operational
-                                              "405f300000000000"   // POSITION: 0.25 x cycle 499
-                                              "3ff0000000000000" "4000000000000000" "4008000000000000"
-                                              "4010000000000000" "4014000000000000"));
+  EXPECT_THAT(rig.reports(3, 25), ElementsAre("1267"  // structure 4711
+                                              "00000003"  // STATE: Pre-Operational
+                                              "405f300000000000"  // POSITION: 0.25 x cycle 499
+                                              "3ff0000000000000"
+                                              "4000000000000000"
+                                              "4008000000000000"
+                                              "4010000000000000"
+                                              "4014000000000000"));
   rig.cycle(499);
   rig.service();
   EXPECT_EQ(rig.reports(3, 25).size(), 1u);
@@ -465,8 +466,9 @@ TEST(AuthorsMistakes, AHandlerWithAnotherNumberOfArgumentsIsNamed) {
       return done;
     }
   } wrong;
-  EXPECT_EQ(explanation_of(wrong),
-            "PROBE: SoftwareInit failed: on_function SET_GOAL: the handler takes 2 arguments, the descriptor declares 1");
+  EXPECT_EQ(
+      explanation_of(wrong),
+      "PROBE: SoftwareInit failed: on_function SET_GOAL: the handler takes 2 arguments, the descriptor declares 1");
 }
 
 std::string configuration_mistake(Subsystem& author, std::uint8_t id) {

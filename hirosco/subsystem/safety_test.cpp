@@ -14,10 +14,10 @@ namespace hirosco {
 namespace {
 
 using pus::st128::Role;
+using ::testing::ElementsAre;
 using testing::Probe;
 using testing::probe_descriptor;
 using testing::Rig;
-using ::testing::ElementsAre;
 
 // --- devices -----------------------------------------------------------------------------------------------------------
 
@@ -32,7 +32,8 @@ struct Devices : ::testing::Test {
 
   std::unique_ptr<DataFlow> open(const char* address) {
     return std::move(rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), address},
-                                    FlowSide::Device)).value();
+                                    FlowSide::Device))
+        .value();
   }
   struct Command {
     DeviceMode mode{};
@@ -51,7 +52,8 @@ struct Devices : ::testing::Test {
   }
   void answer(DataFlow& flow, std::uint32_t sequence, Octets payload) {
     std::array<std::byte, max_device_frame_octets> buffer{};
-    const auto status = write_status(buffer, {.epoch = 1, .sequence = sequence, .flags = device_flag::over_temperature, .payload = payload});
+    const auto status = write_status(
+        buffer, {.epoch = 1, .sequence = sequence, .flags = device_flag::over_temperature, .payload = payload});
     static_cast<void>(flow.send(status.value()));
   }
   /// One cycle, answered by both devices; gives what the arm was told.
@@ -410,10 +412,12 @@ TEST_F(Links, AnUnknownSetASecondAttachAndMissingMemoryAreRefused) {
 }
 
 TEST_F(Links, MemoryWithAFutureWriterIsNotTrusted) {
-  const pus::st128::AttachRequest request{
-      .link = 1, .role = Role::Consumer, .epoch = 5, .set = "HAND",
-      .agreement = {descriptor::Method::SharedMemory, descriptor::ByteOrder::Little, descriptor::LinkKind::Latest, 1ms,
-                    1ms, hand_fields}};
+  const pus::st128::AttachRequest request{.link = 1,
+                                          .role = Role::Consumer,
+                                          .epoch = 5,
+                                          .set = "HAND",
+                                          .agreement = {descriptor::Method::SharedMemory, descriptor::ByteOrder::Little,
+                                                        descriptor::LinkKind::Latest, 1ms, 1ms, hand_fields}};
   const auto open = rig.memory.create("open", link_memory_octets(request.agreement.payload_octets())).value();
   std::vector<std::byte> buffer(max_packet_octets);
   const std::size_t octets = pus::st128::write_attach_request(buffer, request).value();

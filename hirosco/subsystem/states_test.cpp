@@ -9,9 +9,9 @@
 namespace hirosco {
 namespace {
 
-constexpr std::array all_states{State::Offline, State::SoftwareInit, State::HardwareInit, State::PreOperational,
-                                State::SafeOperational, State::Operational, State::ErrorOperational,
-                                State::PostOperational, State::HardwareDeinit, State::SoftwareDeinit};
+constexpr std::array all_states{
+    State::Offline,     State::SoftwareInit,     State::HardwareInit,    State::PreOperational, State::SafeOperational,
+    State::Operational, State::ErrorOperational, State::PostOperational, State::HardwareDeinit, State::SoftwareDeinit};
 
 /// Figure 4 written by hand: row = from, column = to, in the order of all_states.
 constexpr std::array<std::string_view, 10> figure_4{
@@ -41,11 +41,10 @@ TEST(States, EveryCommandIsRoutedOrRefusedAsWritten) {
     std::string_view legal;
   };
   constexpr std::array cases{
-      Case{State::Offline, "P"},         Case{State::PreOperational, "OSET"},
-      Case{State::SafeOperational, "OPXET"}, Case{State::Operational, "SE"},
-      Case{State::ErrorOperational, "OPT"},  Case{State::PostOperational, "OP"},
-      Case{State::SoftwareInit, ""},     Case{State::HardwareInit, ""},
-      Case{State::HardwareDeinit, ""},   Case{State::SoftwareDeinit, ""},
+      Case{State::Offline, "P"},       Case{State::PreOperational, "OSET"},  Case{State::SafeOperational, "OPXET"},
+      Case{State::Operational, "SE"},  Case{State::ErrorOperational, "OPT"}, Case{State::PostOperational, "OP"},
+      Case{State::SoftwareInit, ""},   Case{State::HardwareInit, ""},        Case{State::HardwareDeinit, ""},
+      Case{State::SoftwareDeinit, ""},
   };
   constexpr std::array targets{std::pair{'O', State::Offline},          std::pair{'P', State::PreOperational},
                                std::pair{'S', State::SafeOperational},  std::pair{'X', State::Operational},

@@ -84,7 +84,8 @@ Sent Rig::send(std::uint8_t service, std::uint8_t subtype, Octets data, const Me
                                               .subtype = subtype,
                                               .source = source},
                                              data);
-  const auto sent = channels.supervisor_end().send({.mode_epoch = mode_epoch, .packet = packet.value(), .memory = beside});
+  const auto sent =
+      channels.supervisor_end().send({.mode_epoch = mode_epoch, .packet = packet.value(), .memory = beside});
   if (!sent) throw std::runtime_error{sent.error().text};
   return {pus::TelecommandView::parse(packet.value()).value().request_id()};
 }
@@ -153,8 +154,8 @@ int Rig::events(std::uint16_t id) const {
   }));
 }
 
-Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set,
-                         std::vector<st128::OfferedField> fields, std::string* outcome_text, Duration producer_period) {
+Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set, std::vector<st128::OfferedField> fields,
+                         std::string* outcome_text, Duration producer_period) {
   const st128::AttachRequest request{.link = link,
                                      .role = role,
                                      .epoch = 5,

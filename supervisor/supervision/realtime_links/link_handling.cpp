@@ -102,8 +102,7 @@ void LinkHandling::detached(std::uint8_t link, std::uint16_t from) {
 
 void LinkHandling::offered(Handshake& handshake, const st128::Offer& offer) {
   std::array<std::byte, max_packet_octets> buffer;
-  const auto octets =
-      st128::write_terms_request(buffer, {handshake.link->id, handshake.link->provides, offer});
+  const auto octets = st128::write_terms_request(buffer, {handshake.link->id, handshake.link->provides, offer});
   if (!octets) return give_up(handshake.link->id, "the offer does not fit a packet");
   handshake.stage = Stage::AwaitAgreement;
   handshake.deadline += stage_limit;
@@ -127,12 +126,12 @@ void LinkHandling::agreed(Handshake& handshake, const st128::Agreement& agreemen
 void LinkHandling::attach(const Handshake& handshake, st128::Role role) {
   const bool producer = role == st128::Role::Producer;
   std::array<std::byte, max_packet_octets> buffer;
-  const auto octets = st128::write_attach_request(
-      buffer, {.link = handshake.link->id,
-               .role = role,
-               .epoch = handshake.epoch,
-               .set = producer ? handshake.link->provides : handshake.link->requires_,
-               .agreement = handshake.agreement});
+  const auto octets =
+      st128::write_attach_request(buffer, {.link = handshake.link->id,
+                                           .role = role,
+                                           .epoch = handshake.epoch,
+                                           .set = producer ? handshake.link->provides : handshake.link->requires_,
+                                           .agreement = handshake.agreement});
   if (!octets) return;  // the same agreement came in a packet: it fits; else the stage's time limit ends it
   operator_.send_link_command(producer ? handshake.producer : handshake.consumer, st128::attach,
                               Octets{buffer}.first(*octets), handshake.memory);
@@ -175,8 +174,7 @@ void LinkHandling::down(std::uint8_t link, const std::string& why) {
     established_.erase(link);
     operator_.link_changed(*mission_.find_link(link), false, why);
   }
-  if (auto release = releases_.extract(link); !release.empty() && release.mapped().done)
-    release.mapped().done(true);
+  if (auto release = releases_.extract(link); !release.empty() && release.mapped().done) release.mapped().done(true);
 }
 
 bool LinkHandling::is_end_of(std::uint8_t link, std::uint16_t apid) const {

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/subsystem/testing/probe.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/utilities/allocation_guard.hpp"
+
+/// The cycle never uses the heap: counted over 100,000 cycles with links both ways, an actuator, housekeeping, events,
+/// functions and parameter writes; and a planted allocation is caught.
+namespace hirosco {
+namespace {
+
+using pus::st128::Role;
+using testing::Probe;
+using testing::Rig;
+
+/// The probe with everything in one configuration.
+std::string descriptor_with_everything() {
+  std::string text = testing::probe_descriptor;
+  const std::string everything = R"(<Configuration name="EVERYTHING" id="4" priority="80" sampling_us="500">
+    <HKService id="4712" interval="10">
+      <SampledOnce><ParamRef name="CUR_VALUES"/></SampledOnce>
+      <SampledNREPTimes nrep="5"><ParamRef name="DES_POSITION"/></SampledNREPTimes>
+    </HKService>
+    <RealTimeLinkService>
+      <Provides name="ARM_STATE"><ParamRef name="CUR_VALUES.POSITION"/><ParamRef name="SEEN"/></Provides>
+      <Requires name="HAND"><Field name="ANGLE" type="DOUBLE"/><Field name="ENABLE" type="UINT8"/></Requires>
+    </RealTimeLinkService>
+    <Device name="ARM"><Endnode transfer="shared_memory" address="arm"/></Device>
+    <Device name="LAMP"><Endnode transfer="shared_memory" address="lamp"/></Device>
+  </Configuration>
+</Subsystem>)";
+  return text.replace(text.find("</Subsystem>"), std::string::npos, everything);
+}
+
+/// The cycle under count, the world around it not.
+class CountedFlight {
+ public:
+  explicit CountedFlight(Subsystem& author) : rig_{author, descriptor_with_everything()} {
+    arm_ = open("arm");
+    lamp_ = open("lamp");
+    rig_.bring_to(State::PreOperational, 4);
+    hand_ = rig_.attach(1, Role::Consumer, "HAND", {{"ANGLE", Type::Double, 1}, {"ENABLE", Type::Uint8, 1}});
+    static_cast<void>(
+        rig_.attach(2, Role::Producer, "ARM_STATE", {{"POSITION", Type::Double, 1}, {"SEEN", Type::Double, 1}}));
+    for (const State state : {State::SafeOperational, State::Operational}) {
+      rig_.set_state(state);
+      for (int i = 0; i < 4; ++i) cycle();
+    }
+    uses_ = {};
+  }
+
+  void cycle() {
+    sample();
+    if (++sequence_ % 50 == 0) command();
+    rig_.service();
+    rig_.telemetry.clear();
+    rig_.advance(500us);
+    const RealtimeScope no_heap;
+    static_cast<void>(rig_.subsystem.cycle_step(rig_.clock.now()));
+    const AllocationCount count = no_heap.count();
+    uses_.allocations += count.allocations;
+    uses_.frees += count.frees;
+  }
+  [[nodiscard]] const AllocationCount& uses() const { return uses_; }
+  [[nodiscard]] Rig& rig() { return rig_; }
+
+ private:
+  std::unique_ptr<DataFlow> open(const char* address) {
+    return std::move(rig_.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), address},
+                                     FlowSide::Device))
+        .value();
+  }
+  /// Hand and devices say something new; now and then the hand misses some cycles and becomes stale, which is reported.
+  void sample() {
+    std::array<std::byte, 9> payload{};
+    if (sequence_ % 1'000 < 990) hand_.writer.write(payload, rig_.clock.now(), LinkStatus::Valid);
+    std::array<std::byte, max_device_frame_octets> frame{};
+    for (const auto& [flow, octets] : {std::pair{arm_.get(), 8U}, std::pair{lamp_.get(), 1U}}) {
+      const auto status =
+          write_status(frame, {.epoch = 1, .sequence = sequence_, .payload = Octets{payload}.first(octets)});
+      static_cast<void>(flow->send(status.value()));
+    }
+  }
+  void command() {
+    rig_.call("SET_GOAL", {0.5 + 0.001 * (sequence_ % 1'000)});
+    std::array<std::byte, 13> write{};
+    OctetWriter{write}.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 2}.wire()).put(7.0);
+    rig_.send(20, 3, write);
+  }
+
+  Rig rig_;
+  std::unique_ptr<DataFlow> arm_, lamp_;
+  Rig::Partner hand_;
+  std::uint32_t sequence_{0};
+  AllocationCount uses_{};
+};
+
+TEST(CycleAllocations, ThereAreNoneInAHundredThousandCycles) {
+  ASSERT_TRUE(RealtimeScope::hook_present());
+  Probe probe;
+  CountedFlight flight{probe};
+  ASSERT_EQ(flight.rig().state(), State::Operational);
+  const std::uint64_t before = flight.rig().vital.cycles.load();
+  for (int i = 0; i < 100'000; ++i) flight.cycle();
+  EXPECT_EQ(flight.uses().allocations, 0u);
+  EXPECT_EQ(flight.uses().frees, 0u);
+  EXPECT_EQ(flight.rig().vital.cycles.load() - before, 100'000u);
+  EXPECT_EQ(flight.rig().vital.lost_reports.load(), 0u);
+  EXPECT_EQ(probe.kp.load(), 7.0);  // writes arrived
+  EXPECT_GE(probe.goal.load(), 0.5);  // functions ran
+  EXPECT_GT(probe.hand.count(), 90'000u);
+  EXPECT_TRUE(probe.arm.alive());
+}
+
+/// Its node grows a vector in one cycle of a thousand.
+struct Careless final : Probe {
+  std::vector<double> history;
+  Result<> work(const Cycle& cycle) noexcept override {
+    if (cycle.count % 1'000 == 999) {
+      history = std::vector<double>(10);
+    }
+    return Probe::work(cycle);
+  }
+};
+
+TEST(CycleAllocations, OneInAThousandCyclesIsCaught) {
+  Careless careless;
+  CountedFlight flight{careless};
+  for (int i = 0; i < 10'000; ++i) flight.cycle();
+  EXPECT_EQ(flight.uses().allocations, 10u);
+}
+
+}  // namespace
+}  // namespace hirosco

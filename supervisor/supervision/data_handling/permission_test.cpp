@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/permission.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "supervisor/supervision/testing/small_mission.hpp"
+
+/// The rules of acceptance that are the supervisor's (pus-c tailoring 5.3, decisions 24 and 26), as one table.
+namespace hirosco::supervisor {
+namespace {
+
+using descriptor::State;
+using testing::arm;
+using testing::hand;
+
+enum : std::size_t { open_mode, narrow_mode };
+
+struct Case {
+  const char* says;
+  std::uint16_t apid;
+  std::uint8_t service;
+  std::uint8_t subtype;
+  std::vector<std::byte> data;
+  const char* outcome;               ///< "ok", "essential", "ok, lifts stop", or code and data of the refusal
+  Sender sender{Sender::Ground};
+  std::size_t mode{open_mode};
+  std::optional<State> state{State::Operational};
+  std::uint8_t configuration{0};
+  bool link_up{false};               ///< of link 2, which the configuration 2 of the arm requires
+};
+
+std::string text_of(const std::expected<Permitted, pus::FailureNotice>& decision) {
+  if (!decision) {
+    std::string text = std::to_string(static_cast<int>(decision.error().code()));
+    for (const std::byte octet : decision.error().data())
+      text.append(1, ' ').append(std::to_string(std::to_integer<int>(octet)));
+    return text;
+  }
+  std::string text{decision->essential ? "essential" : "ok"};
+  if (decision->releases_stop) text.append(", lifts stop");
+  return text;
+}
+
+std::vector<std::byte> set_state(State state) { return testing::call_data("SET_STATE", static_cast<int>(state)); }
+std::vector<std::byte> call(const char* name) { return testing::call_data(name); }
+
+const std::vector<Case> cases{
+    // --- addressee, service, subtype ------------------------------------------------------------------------------
+    {"an APID that nobody has", 99, 17, 1, {}, "1"},
+    {"a subsystem that does not run", arm, 17, 1, {}, "1", Sender::Ground, open_mode, std::nullopt},
+    {"the supervisor itself", 1, 17, 1, {}, "essential"},
+    {"an unknown service", arm, 99, 1, {}, "6 99"},
+    {"verification is no request", arm, 1, 1, {}, "6 1"},
+    {"an unknown subtype", arm, 17, 9, {}, "7 17 9"},
+    {"a report sent as a request", arm, 3, 25, {}, "7 3 25"},
+    {"another unknown subtype", arm, 8, 2, {}, "7 8 2"},
+    {"an unknown subtype of links", arm, 128, 5, {}, "7 128 5", Sender::Supervisor},
+    // --- modes ----------------------------------------------------------------------------------------------------
+    {"a service that the mode permits", arm, 3, 5, {}, "ok"},
+    {"a service that the mode does not permit", arm, 3, 5, {}, "13 2", Sender::Ground, narrow_mode},
+    {"a ping is permitted in every mode", arm, 17, 1, {}, "essential", Sender::Ground, narrow_mode},
+    {"a function that the mode permits", arm, 8, 1, call("MOVE_TO"), "ok", Sender::Ground, narrow_mode},
+    {"the same function of another subsystem", hand, 8, 1, call("MOVE_TO"), "13 2", Sender::Ground, narrow_mode},
+    {"a subsystem is bound to the mode like ground", hand, 8, 1, call("MOVE_TO"), "13 2", Sender::Subsystem,
+     narrow_mode},
+    {"the supervisor is not bound to the mode", hand, 8, 1, call("MOVE_TO"), "ok", Sender::Supervisor, narrow_mode},
+    {"a mode permits functions, not their service", arm, 8, 1, call("MOVE_TO"), "ok", Sender::Ground, open_mode},
+    {"SET_STATE upwards needs the mode", arm, 8, 1, set_state(State::PreOperational), "13 2", Sender::Ground,
+     narrow_mode, State::Offline},
+    {"CONFIGURE needs the mode", arm, 8, 1, testing::call_data("CONFIGURE", 2), "13 2", Sender::Ground, narrow_mode,
+     State::PreOperational},
+    // --- states ---------------------------------------------------------------------------------------------------
+    {"a function outside its states", arm, 8, 1, call("MOVE_TO"), "10 4", Sender::Ground, open_mode,
+     State::SafeOperational},
+    {"an unknown function is its addressee's to refuse", arm, 8, 1, call("DANCE"), "ok"},
+    {"so it is in a narrow mode", arm, 8, 1, call("DANCE"), "ok", Sender::Ground, narrow_mode},
+    {"too short for a function's name: the addressee says so", arm, 8, 1, std::vector<std::byte>(5), "13 2",
+     Sender::Ground, narrow_mode},
+    // --- essential ------------------------------------------------------------------------------------------------
+    {"an essential function in a narrow mode", arm, 8, 1, call("BRAKE"), "essential", Sender::Ground, narrow_mode},
+    {"an essential function outside its states", arm, 8, 1, call("BRAKE"), "essential", Sender::Ground, narrow_mode,
+     State::SafeOperational},
+    {"SAFE_ALL", 1, 8, 1, call("SAFE_ALL"), "essential", Sender::Ground, narrow_mode},
+    {"to Error-Operational", arm, 8, 1, set_state(State::ErrorOperational), "essential", Sender::Ground, narrow_mode},
+    {"to Post-Operational", arm, 8, 1, set_state(State::PostOperational), "essential", Sender::Ground, narrow_mode},
+    {"from Operational to Safe-Operational", arm, 8, 1, set_state(State::SafeOperational), "essential", Sender::Ground,
+     narrow_mode},
+    {"up to Safe-Operational is not essential", arm, 8, 1, set_state(State::SafeOperational), "13 2", Sender::Ground,
+     narrow_mode, State::PreOperational},
+    {"to Offline by the supervisor", arm, 8, 1, set_state(State::Offline), "essential", Sender::Supervisor},
+    {"to Offline by ground", arm, 8, 1, set_state(State::Offline), "ok"},
+    // --- links ----------------------------------------------------------------------------------------------------
+    {"up to Safe-Operational without the required link", arm, 8, 1, set_state(State::SafeOperational), "14",
+     Sender::Ground, open_mode, State::PreOperational, 2, false},
+    {"the supervisor waits for it, too", arm, 8, 1, set_state(State::SafeOperational), "14", Sender::Supervisor,
+     open_mode, State::PreOperational, 2, false},
+    {"up to Safe-Operational with it", arm, 8, 1, set_state(State::SafeOperational), "ok", Sender::Ground, open_mode,
+     State::PreOperational, 2, true},
+    {"down to Safe-Operational needs no link", arm, 8, 1, set_state(State::SafeOperational), "essential",
+     Sender::Ground, open_mode, State::Operational, 2, false},
+    {"to Operational after the link went", arm, 8, 1, set_state(State::Operational), "14", Sender::Ground, open_mode,
+     State::SafeOperational, 2, false},
+    {"to Operational", arm, 8, 1, set_state(State::Operational), "ok, lifts stop", Sender::Ground, open_mode,
+     State::SafeOperational, 2, true},
+    {"to Operational from elsewhere lifts nothing", arm, 8, 1, set_state(State::Operational), "ok", Sender::Ground,
+     open_mode, State::PreOperational},
+    {"the handshake is the supervisor's", arm, 128, 1, {}, "ok", Sender::Supervisor},
+    {"the handshake is not ground's", arm, 128, 1, {}, "13 1", Sender::Ground},
+    {"the handshake is no subsystem's", arm, 128, 3, {}, "13 1", Sender::Subsystem},
+};
+
+TEST(Permission, IsDecidedAsTheTableSays) {
+  const auto mission = testing::small_mission();
+  for (const Case& c : cases) {
+    LinkGraph links{mission};
+    links.set_up(2, c.link_up);
+    const auto packet = testing::telecommand(c.apid, c.service, c.subtype, c.data);
+    const auto view = pus::TelecommandView::parse(packet);
+    const Situation situation{mission, mission.modes[c.mode], links, c.state, c.configuration};
+    EXPECT_EQ(text_of(decide(view.value(), c.sender, situation)), c.outcome) << c.says;
+  }
+}
+
+TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
+  const auto mission = testing::small_mission();
+  const LinkGraph links{mission};
+  const std::map<int, std::vector<int>> requests{
+      {3, {1, 3, 5, 6, 9, 27, 29, 31, 33}}, {5, {5, 6, 7}}, {8, {1}}, {17, {1}}, {20, {1, 3}}, {128, {1, 2, 3, 4}}};
+  for (int service = 0; service < 256; ++service)
+    for (int subtype = 0; subtype < 256; ++subtype) {
+      const auto packet =
+          testing::telecommand(arm, static_cast<std::uint8_t>(service), static_cast<std::uint8_t>(subtype), {});
+      const auto decision = decide(pus::TelecommandView::parse(packet).value(), Sender::Supervisor,
+                                   {mission, mission.modes[0], links, State::Operational, 0});
+      const auto known = requests.find(service);
+      const bool good = known != requests.end() && std::ranges::find(known->second, subtype) != known->second.end();
+      EXPECT_EQ(decision.has_value(), good) << service << ',' << subtype;
+    }
+}
+
+TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
+  const auto packet = testing::telecommand(arm, 8, 1, testing::call_data("SET_STATE", 5));
+  const auto view = pus::TelecommandView::parse(packet).value();
+  const auto called = called_function(view);
+  ASSERT_TRUE(called);
+  EXPECT_EQ(called->name, "SET_STATE");
+  EXPECT_EQ(called->first_argument, 5);
+  const auto other = testing::telecommand(arm, 20, 1, testing::call_data("SET_STATE", 5));
+  EXPECT_FALSE(called_function(pus::TelecommandView::parse(other).value()));
+  const auto without = testing::telecommand(arm, 8, 1, testing::call_data("HOLD"));
+  EXPECT_FALSE(called_function(pus::TelecommandView::parse(without).value())->first_argument);
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
