@@ -114,9 +114,10 @@ std::string Console::status_json(const Supervisor& supervisor, Duration since_st
     text += fmt::format("{}{{\"name\":{},\"state\":{}", first ? "" : ",", json_string(member.descriptor().name),
                         json_string(member.alive() && state ? to_text(*state) : std::string_view{"not running"}));
     if (vital != nullptr)
-      text += fmt::format(",\"cycles\":{},\"overruns\":{},\"missed\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{},\"realtime\":{}",
+      text += fmt::format(",\"cycles\":{},\"overruns\":{},\"missed\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{},\"inhibited_at_cycle\":{},\"stopped_at_cycle\":{},\"realtime\":{}",
                           vital->cycles.load(), vital->overruns.load(), vital->missed.load(), vital->latency_max_ns.load(),
-                          vital->execution_mean_ns.load(), vital->inhibited.load(), vital->realtime.load());
+                          vital->execution_mean_ns.load(), vital->inhibited.load(), vital->inhibited_at_cycle.load(),
+                          member.permit()->stopped_at_cycle.load(), vital->realtime.load());
     text += "}";
     first = false;
   }

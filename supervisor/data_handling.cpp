@@ -122,13 +122,11 @@ void Supervisor::forward(const Outgoing& outgoing) {
 }
 
 void Supervisor::reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice) {
-  const auto code = static_cast<std::size_t>(notice.code());
-  ++rejections_[code < rejection_reasons ? code : 0];
   const bool damaged = notice.code() == pus::FailureCode::ErrorControl || notice.code() == pus::FailureCode::IllegalLength ||
                        notice.code() == pus::FailureCode::IllegalPrimaryHeader ||
                        notice.code() == pus::FailureCode::IllegalSequenceFlags;
   // Beyond the cap they are counted only: a flood of them must not fill the log's queue before honest telecommands.
-  if (damaged && reports_in_window_ > damaged_reports_per_second) return;
+  if (damaged && reports_in_window_ > damaged_reports_per_second) return count_rejection(notice.code());
   const auto header = pus::read_primary_header(incoming.packet);
   static_cast<void>(parts_.log.append({.kind = LogKind::TelecommandRefused,
                                        .source = incoming.source,
@@ -179,7 +177,24 @@ void Supervisor::handle_telemetry(std::uint16_t from, Octets packet) {
   interpret(from, *report);
 }
 
+/// Every telecommand that is not carried out, whoever says so: each failure report passes here.
+void Supervisor::count_failure(const pus::TelemetryView& report) {
+  const bool failure = report.service() == 1 && report.subtype() % 2 == 0;
+  if (!failure) return;
+  OctetReader reader{report.source_data()};
+  static_cast<void>(reader.get<std::uint32_t>());
+  if (report.subtype() == 6) static_cast<void>(reader.get<std::uint16_t>());
+  const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
+  if (reader.good()) count_rejection(code);
+}
+
+void Supervisor::count_rejection(pus::FailureCode code) {
+  const auto place = static_cast<std::size_t>(code);
+  ++rejections_[place < rejection_reasons ? place : 0];
+}
+
 void Supervisor::interpret(std::uint16_t from, const pus::TelemetryView& report) {
+  count_failure(report);
   if (report.service() == 1 && report.destination() == own_source) handle_verification(report);
   if (report.service() == 5 && report.subtype() >= 1 && report.subtype() <= 4) handle_event(from, report);
   if (report.service() == pus::st128::service_type) links_.handle(from, report);

@@ -113,6 +113,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void watch_log(TimePoint now);
   void handle_telemetry(std::uint16_t from, Octets packet);
   void interpret(std::uint16_t from, const pus::TelemetryView& report);
+  void count_failure(const pus::TelemetryView& report);
+  void count_rejection(pus::FailureCode code);
   void handle_verification(const pus::TelemetryView& report);
   void handle_event(std::uint16_t from, const pus::TelemetryView& report);
   void receive_from(Member& member);

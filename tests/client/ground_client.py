@@ -98,7 +98,7 @@ class Checks:
         self.table.row([r.subtype for r in reports][-1:] == [7], what, text(reports))
 
     def move_to(self):
-        goal = (-0.70, 1.50)
+        goal = (-0.85, 1.70)         # clear of the rail
         self.link.forget()
         begin = time.monotonic()
         reports = self.link.call(MANIPULATOR, self.manipulator.call("MOVE_TO", *goal, 2.0), timeout=15.0)
@@ -163,7 +163,7 @@ class Checks:
         self.manipulator_housekeeping()
         self.refused_in_any_mode()
 
-        move = self.manipulator.call("MOVE_TO", -0.70, 1.50, 2.0)
+        move = self.manipulator.call("MOVE_TO", -0.85, 1.70, 2.0)
         if self.mission.start != "standalone":
             self.refused_call(f"MOVE_TO in mode {self.mission.start}", move, 2, 13)
         self.standalone()

@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Runs a script of this folder with an interpreter that has the library `spacepackets`: this one, or a virtual
+environment in the build folder, which is made with pip when it is needed for the first time.
+
+    with_library.py FOLDER SCRIPT [ARGUMENTS...]
+
+Exit code 77: the library is neither here nor to be had."""
+import os
+import pathlib
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+REQUIREMENTS = HERE / "requirements.txt"
+NEEDED = "import spacepackets, fastcrc"
+SKIPPED = 77
+
+
+def works(python):
+    return subprocess.run([python, "-c", NEEDED], capture_output=True, check=False).returncode == 0
+
+
+def interpreter(folder):
+    """(path of an interpreter that has the library, "") or (None, why there is none)."""
+    if works(sys.executable):
+        return sys.executable, ""
+    folder = pathlib.Path(folder)
+    python = folder / "bin" / "python"
+    if python.exists() and works(str(python)):
+        return str(python), ""
+    steps = ([sys.executable, "-m", "venv", "--clear", str(folder)],
+             [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", str(REQUIREMENTS)])
+    for step in steps:
+        try:
+            done = subprocess.run(step, capture_output=True, text=True, timeout=120, check=False)
+        except (OSError, subprocess.TimeoutExpired) as error:
+            return None, str(error)
+        if done.returncode != 0:
+            lines = (done.stderr or done.stdout).strip().splitlines() or ["no reason given"]
+            return None, f"{' '.join(step[:4])}: {lines[-1]}"
+    return str(python), ""
+
+
+def main():
+    if len(sys.argv) < 3:
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
+    python, reason = interpreter(sys.argv[1])
+    if python is None:
+        print(f"skipped: no library spacepackets ({reason})")
+        sys.exit(SKIPPED)
+    script = HERE / sys.argv[2]
+    os.execv(python, [python, "-B", str(script), *sys.argv[3:]])
+
+
+if __name__ == "__main__":
+    main()
