@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/pus/crc16.hpp"
+#include "hirosco/utilities/crc16.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/packet.hpp"
 
-#include "hirosco/pus/crc16.hpp"
+#include "hirosco/utilities/crc16.hpp"
 #include "hirosco/pus/cuc.hpp"
 
 namespace hirosco::pus {

@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "hirosco/pus/crc16.hpp"
+#include "hirosco/utilities/crc16.hpp"
 #include "hirosco/pus/testing/vectors.hpp"
 
 namespace hirosco::pus {

@@ -38,15 +38,6 @@ void show_mission(const descriptor::Mission& mission) {
   for (const auto& mode : mission.modes) fmt::print("mode {} ({})\n", mode.name, mode.id);
 }
 
-[[nodiscard]] std::string json_text(std::string_view text) {
-  std::string quoted;
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    quoted += letter >= ' ' ? letter : ' ';
-  }
-  return quoted;
-}
-
 }  // namespace
 
 int check(const CheckOptions& options) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hirosco/descriptor/mission.hpp"
@@ -88,5 +89,7 @@ int fault(const FaultOptions& options);
 [[nodiscard]] std::optional<descriptor::Mission> load_mission(const std::string& name_or_path);
 /// Where the running mission keeps its lock and the control sockets of its simulated devices.
 [[nodiscard]] std::filesystem::path runtime_folder(const descriptor::Mission& mission);
+/// The inside of a JSON string: quotes and backslashes escaped, control characters as spaces.
+[[nodiscard]] std::string json_text(std::string_view text);
 
 }  // namespace hirosco::tools

@@ -7,19 +7,6 @@
 #include "tools/hirosco/commands.hpp"
 
 namespace hirosco::tools {
-namespace {
-
-[[nodiscard]] std::string json_text(std::string_view text) {
-  std::string quoted;
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    quoted += letter >= ' ' ? letter : ' ';
-  }
-  return quoted;
-}
-
-}  // namespace
-
 int log(const LogOptions& options) {
   std::filesystem::path path = options.path;
   std::string strategy = path.extension() == ".log" ? "ascii" : "sqlite";

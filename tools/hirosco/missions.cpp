@@ -50,4 +50,13 @@ fs::path runtime_folder(const descriptor::Mission& mission) {
   return root / fmt::format("hirosco-{}-{}", ::getuid(), mission.name);
 }
 
+std::string json_text(std::string_view text) {
+  std::string quoted;
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') quoted += '\\';
+    quoted += letter >= ' ' ? letter : ' ';
+  }
+  return quoted;
+}
+
 }  // namespace hirosco::tools
