@@ -69,6 +69,7 @@ void CycleLoop::check_permit() noexcept {
   const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
   const bool stop = parts_.permit.stop.load(std::memory_order_acquire) != 0;
   if (stop || (state_ == State::Operational && epoch != entered_epoch_)) inhibit(inhibited_by_stop);
+  permitted_epoch_ = epoch;
   parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);
 }
 
@@ -171,8 +172,8 @@ void CycleLoop::write_outputs(TimePoint planned) noexcept {
   const bool active = state_ == State::Operational && inhibited_ == 0;
   // Inhibited means the declared safe output; only Error-Operational brings the device to a controlled stop (decision 22).
   const bool stopping = state_ == State::ErrorOperational;
-  const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
-  for (DeviceSlot& device : plan_.devices) device.write(epoch, active, stopping);
+  // The epoch that was checked in this cycle: an output under an older permission must not carry a newer one.
+  for (DeviceSlot& device : plan_.devices) device.write(permitted_epoch_, active, stopping);
   for (LinkOutputSlot& output : plan_.outputs) output.write(planned, link_status());
 }
 
@@ -230,7 +231,10 @@ std::size_t CycleLoop::sample(std::uint16_t parameter, int member, MutableOctets
 }
 
 MutableOctets CycleLoop::reserve(std::size_t octets) noexcept {
-  reserved_ = parts_.handover.reports.try_reserve(sizeof(CycleReport) + octets);
+  // The other half is for events and for reports that somebody waits for: housekeeping is what can be lost.
+  RecordRing& reports = parts_.handover.reports;
+  if (reports.used() > reports.capacity() / 2) return {};
+  reserved_ = reports.try_reserve(sizeof(CycleReport) + octets);
   return reserved_.empty() ? MutableOctets{} : reserved_.subspan(sizeof(CycleReport));
 }
 

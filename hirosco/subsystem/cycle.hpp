@@ -114,6 +114,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   std::uint32_t inhibited_{0};
   std::uint64_t count_{0};
   std::uint32_t entered_epoch_{0};
+  std::uint32_t permitted_epoch_{0};   ///< of the permit page, as checked in this cycle
   std::uint32_t overruns_in_a_row_{0};
   std::uint64_t overruns_{0};
   std::uint32_t latency_max_ns_{0};
