@@ -17,7 +17,10 @@ constexpr Duration transient_limit = 10s;
 }  // namespace
 
 std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State target, const pus::Request& request) {
-  if (way_) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
+  // Down to Error-Operational overrides a change between cyclic states that the cycle has not confirmed yet.
+  const bool overrides = way_ && target == State::ErrorOperational && is_cyclic(state_) &&
+                         is_cyclic(way_->states[way_at_]) && way_->states[way_at_] != State::ErrorOperational;
+  if (way_ && !overrides) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
   if (!route(state_, target)) return std::unexpected{wrong_state(state_)};
   if (target == State::SafeOperational && state_ == State::PreOperational) {
     if (configuration_ == nullptr) return std::unexpected{wrong_state(state_)};
@@ -26,6 +29,8 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State ta
   if (target == State::ErrorOperational && configuration_ == nullptr) return std::unexpected{wrong_state(state_)};
   if (target == State::Operational && permit_.stop.load(std::memory_order_acquire) != 0)
     return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
+  if (overrides && way_request_)
+    verification_.completion_failed(*way_request_, pus::FailureNotice{pus::FailureCode::Aborted});
   verification_.started(request);
   go(target, request);
   return {};
@@ -40,6 +45,8 @@ void GenericSubsystem::go(State target, std::optional<pus::Request> request) {
 }
 
 void GenericSubsystem::advance(TimePoint now) {
+  // A cycle that hangs confirms nothing: the request ends all the same, and the next command is heard.
+  if (way_ && awaiting_cycle_ && now > phase_deadline_) fail_transition(way_->states[way_at_], "time limit of the cycle");
   // Several transient states may be done in one step; each round either arrives somewhere or waits.
   for (int rounds = 0; way_ && !awaiting_cycle_ && rounds < 8; ++rounds)
     if (!run_phase(way_->states[way_at_], now)) return;

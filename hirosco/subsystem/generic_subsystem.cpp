@@ -103,7 +103,8 @@ void GenericSubsystem::receive_messages() {
   for (int left = messages_per_step; left > 0; --left) {
     auto found = channel_.receive(buffer);
     if (!found) {
-      supervisor_lost_ = true;
+      // One damaged message is no loss of the supervisor: the next look goes on behind it.
+      if (found.error().code == ErrorCode::Unavailable) supervisor_lost_ = true;
       return;
     }
     if (found->flow == Flow::None) return;
@@ -353,8 +354,9 @@ bool GenericSubsystem::submit_write(std::span<const pus::ParameterAccess::Write>
   for (const auto& write : writes)
     if (const auto index = dictionary_.index_of(write.id)) batch.push_back({*index, -1, write.value});
   if (!writes_.enqueue(dictionary_, batch)) return false;
-  // While the cycle rests the service loop is the writer.
-  if (!wanted_.load(std::memory_order_relaxed)) writes_.apply(dictionary_);
+  // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
+  const bool parked = parked_ticket_.load(std::memory_order_acquire) == rest_ticket_.load(std::memory_order_relaxed);
+  if (!wanted_.load(std::memory_order_relaxed) && parked) writes_.apply(dictionary_);
   return true;
 }
 
@@ -384,7 +386,10 @@ Duration GenericSubsystem::period() { return configuration_ != nullptr ? configu
 Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) {
   if (!memory) return fail(ErrorCode::Malformed, "no memory beside the attach request");
   if (configuration_ == nullptr) return fail(ErrorCode::NotPermitted, "no configuration in force");
-  if (link_ends_.contains(request.link)) return fail(ErrorCode::AlreadyExists, "the link is attached already");
+  // A later epoch: the partner left without this end and came back, and what this end still holds is the link as it was.
+  const auto earlier = link_ends_.find(request.link);
+  const bool renewed = earlier != link_ends_.end() && request.epoch > earlier->second.epoch;
+  if (earlier != link_ends_.end() && !renewed) return fail(ErrorCode::AlreadyExists, "the link is attached already");
   const bool producer = request.role == pus::st128::Role::Producer;
   const pus::st128::Agreement& agreement = request.agreement;
   const LinkLayout layout{.epoch = request.epoch,
@@ -398,11 +403,13 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
   link->agreement = agreement;
   link->order = agreement.byte_order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
   link->payload.resize(layout.payload_octets);
-  LinkEnd end{.link = nullptr, .role = request.role, .slot = 0};
+  LinkEnd end{.link = nullptr, .role = request.role, .epoch = request.epoch, .slot = 0};
   CyclePlan& plan = cycle_.plan();
   if (producer) {
     const auto slot = std::ranges::find_if(plan.outputs, [&](const auto& s) { return s.terms().name == request.set; });
     if (slot == plan.outputs.end()) return fail(ErrorCode::NotFound, "no such provided set");
+    // Another configuration may be in force than the one that negotiated; the cycle writes these fields unchecked.
+    if (agreement.fields != slot->fields()) return fail(ErrorCode::Mismatch, "the agreement is not of this set");
     HIROSCO_TRY_LET(link->writer, LinkWriter::make(link->mapping.octets, layout));
     HIROSCO_TRY(world_.memory.seal_writers(memory));
     end.slot = static_cast<std::uint16_t>(slot - plan.outputs.begin());
@@ -415,6 +422,8 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
     link->producer_cycles_per_sample = static_cast<std::uint32_t>(std::max<std::int64_t>(ratio, 1));
     end.slot = static_cast<std::uint16_t>(slot - plan.inputs.begin());
   }
+  if (renewed && !withdraw(request.link))
+    return fail(ErrorCode::ResourceExhausted, "the cycle's command queue is full");
   const auto kind = producer ? CommandKind::AttachOutput : CommandKind::AttachInput;
   if (!push({.kind = kind, .index = end.slot, .link = link.get()}))
     return fail(ErrorCode::ResourceExhausted, "the cycle's command queue is full");
@@ -426,11 +435,19 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
 bool GenericSubsystem::detach(std::uint8_t link) {
   const auto found = link_ends_.find(link);
   if (found == link_ends_.end()) return false;
+  const pus::st128::Role role = found->second.role;
+  if (!withdraw(link)) return false;
+  link_service_.report_detached(link, role);
+  return true;
+}
+
+/// Takes an end back from the cycle, which names it when it has let go of it.
+bool GenericSubsystem::withdraw(std::uint8_t link) {
+  const auto found = link_ends_.find(link);
   LinkEnd& end = found->second;
   const bool producer = end.role == pus::st128::Role::Producer;
   const auto kind = producer ? CommandKind::DetachOutput : CommandKind::DetachInput;
   if (!push({.kind = kind, .index = end.slot, .link = end.link.get()})) return false;
-  link_service_.report_detached(link, end.role);
   leaving_links_.push_back(std::move(end.link));
   link_ends_.erase(found);
   return true;

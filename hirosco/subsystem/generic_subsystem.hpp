@@ -128,6 +128,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void announce(std::string_view event_name, std::initializer_list<double> arguments);
   bool push(const CycleCommand& command);
   bool close_call(const pus::Request& request);
+  bool withdraw(std::uint8_t link);
   [[nodiscard]] bool required_links_attached() const noexcept;
   [[nodiscard]] std::uint16_t event_id(std::string_view name) const noexcept;
   void send(const Message& message);
@@ -159,6 +160,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   struct LinkEnd {
     std::unique_ptr<AttachedLink> link;
     pus::st128::Role role{};
+    std::uint32_t epoch{0};
     std::uint16_t slot{0};
   };
   std::map<std::uint8_t, LinkEnd> link_ends_;

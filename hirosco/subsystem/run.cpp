@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -122,13 +123,19 @@ void serve(GenericSubsystem& subsystem, const Clock& clock, const Channel& chann
     if ((demand.wanted && !cycling) || demand.ticket != ticket) cycle.wake();
     cycling = demand.wanted;
     ticket = demand.ticket;
-    static_cast<void>(waits.wait(std::max(wake - clock.now(), Duration{0})));
+    const auto ready = waits.wait(std::max(wake - clock.now(), Duration{0}));
+    if (!ready) continue;
+    // A supervisor that is gone would end every wait from now on: at real-time priority that takes the processor.
+    for (const Ready& entry : *ready)
+      if (entry.hung_up) waits.remove(entry.descriptor);
   }
 }
 
 }  // namespace
 
 int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Subsystem>()>& make) {
+  // A terminal or pipe that is gone takes no words any more; that must not end a subsystem.
+  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
   const Options options = read_options(argc, argv);
   if (!options.complete()) {
     fmt::print(stderr,
@@ -148,7 +155,9 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   SocketChannel channel{FileDescriptor{options.channel}};
   const Mapping vital = map_page(memory, options.vital, Access::ReadWrite);
   const Mapping permit = map_page(memory, options.permit, Access::ReadOnly);
-  if (vital.octets.size() < sizeof(VitalPage) || permit.octets.size() < sizeof(PermitPage)) {
+  if (vital.octets.size() < sizeof(VitalPage) || permit.octets.size() < sizeof(PermitPage) ||
+      reinterpret_cast<const PermitPage*>(permit.octets.data())->magic != page_magic ||
+      reinterpret_cast<const PermitPage*>(permit.octets.data())->version != page_version) {
     fmt::print(stderr, "{}: the vital or permit page cannot be mapped\n", argv[0]);
     return exit_environment;
   }
@@ -161,7 +170,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
                     .memory = memory,
                     .flows = flows,
                     .realtime = realtime,
-                    .explain = [](std::string_view text) { fmt::print(stderr, "{}\n", text); }};
+                    .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); }};
   const auto author = make();
   GenericSubsystem subsystem{*author,
                              std::move(*reading.value),

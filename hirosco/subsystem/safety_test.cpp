@@ -411,6 +411,50 @@ TEST_F(Links, AnUnknownSetASecondAttachAndMissingMemoryAreRefused) {
   EXPECT_EQ(rig.reports(128, 131).size(), 2u);
 }
 
+TEST_F(Links, APartnerThatLeftAndCameBackIsAttachedUnderItsLaterEpoch) {
+  operate();
+  hand.writer.set_status(LinkStatus::Stopping);
+  rig.cycle();
+  ++rig.link_epoch;
+  std::string outcome;
+  hand = rig.attach(1, Role::Consumer, "HAND", hand_fields, &outcome);
+  EXPECT_EQ(outcome, "1 3 7");
+  sample(0.25);
+  rig.cycle();
+  EXPECT_TRUE(probe.hand.valid());
+  rig.settle();
+  EXPECT_TRUE(rig.reports(128, 133).empty()) << "the supervisor has this link as up again";
+}
+
+TEST_F(Links, AFieldOfAnotherTypeUnderTheSameNameIsRefused) {
+  auto fields = hand_fields;
+  fields.front().count = static_cast<std::uint16_t>(fields.front().count + 1);
+  std::string outcome;
+  rig.attach(1, Role::Consumer, "HAND", fields, &outcome);
+  EXPECT_EQ(outcome, "1 4:010700");
+}
+
+TEST_F(Links, ErrorOperationalOverridesAChangeThatTheCycleHasNotConfirmed) {
+  operate();
+  const auto to_safe = rig.set_state(State::SafeOperational);
+  const auto to_error = rig.set_state(State::ErrorOperational);
+  rig.settle();
+  EXPECT_EQ(rig.state(), State::ErrorOperational);
+  EXPECT_EQ(rig.outcome(to_safe), "1 3 8:0204");
+  EXPECT_EQ(rig.outcome(to_error), "1 3 7");
+}
+
+TEST_F(Links, ACycleThatHangsDoesNotKeepARequestOpen) {
+  operate();
+  const auto to_safe = rig.set_state(State::SafeOperational);
+  for (int i = 0; i < 3; ++i) {
+    rig.service();
+    rig.advance(11s);
+  }
+  rig.service();
+  EXPECT_EQ(rig.outcome(to_safe), "1 3 8:0202");
+}
+
 TEST_F(Links, MemoryWithAFutureWriterIsNotTrusted) {
   const pus::st128::AttachRequest request{.link = 1,
                                           .role = Role::Consumer,

@@ -73,6 +73,8 @@ Result<> LinkInputSlot::plan(AttachedLink& link) const {
     });
     if (found == link.agreement.fields.end()) return fail(ErrorCode::Mismatch, "the agreement lacks a required field");
     const NativeField& place = port_->layout_[wanted];
+    if (found->type != place.type || found->count != place.count)
+      return fail(ErrorCode::Mismatch, "the agreement has a required field with another type");
     link.scatter.push_back({place.type, place.count, place.offset});
     link.wire_offset.push_back(offset);
   }

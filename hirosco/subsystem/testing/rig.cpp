@@ -158,7 +158,7 @@ Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set, s
                          std::string* outcome_text, Duration producer_period) {
   const st128::AttachRequest request{.link = link,
                                      .role = role,
-                                     .epoch = 5,
+                                     .epoch = link_epoch,
                                      .set = std::move(set),
                                      .agreement = {.method = descriptor::Method::SharedMemory,
                                                    .byte_order = descriptor::ByteOrder::Little,
