@@ -124,9 +124,14 @@ class Manipulator final : public Subsystem {
   Result<> operational(const Cycle& cycle) noexcept override {
     measure(cycle);
     if (cycle.first) engage();
-    if (!cycle.active) rest();
-    else if (coupled_) follow();
-    else advance_motion(cycle);
+    if (!cycle.active) {
+      stop_motion();  // inhibited it could never end
+      rest();
+    } else if (coupled_) {
+      follow();
+    } else {
+      advance_motion(cycle);
+    }
     control();
     check_torque(cycle);
     active_.store(cycle.active && !limited_ ? 1 : 0);
