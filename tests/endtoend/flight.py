@@ -53,6 +53,14 @@ def measure(text):
     measured.append(f"measured: {text}")
 
 
+def listens(port):
+    try:
+        with socket.create_connection(("127.0.0.1", port), 1.0):
+            return True
+    except OSError:
+        return False
+
+
 def segments():
     """Named shared memory of the project on this computer."""
     with contextlib.suppress(FileNotFoundError):
@@ -107,8 +115,11 @@ class Flight:
     # Life.
 
     def __enter__(self):
-        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", PORT), 1.0):
-            raise RuntimeError(f"something listens on port {PORT} already: another flight?")
+        free_by = time.monotonic() + 3.0        # a killed process closes its sockets a moment after it is gone
+        while listens(PORT):
+            if time.monotonic() > free_by:
+                raise RuntimeError(f"something listens on port {PORT} already: another flight?")
+            time.sleep(0.05)
         runtime = self.folder / "runtime"
         runtime.mkdir(exist_ok=True)
         if self.owner is not None:

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""How a flight begins and ends: one at a time, in order when asked, and without orphans when it is not."""
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+import flight
+
+ORPHANS_GONE_S = 10.0
+
+
+class Keeper(unittest.TestCase):
+    def test_a_second_flight_of_the_mission_is_refused_and_the_first_ends_by_ctrl_c(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            second = subprocess.run([str(flight.BINARIES / "hirosco"), "run", rokviss.mission], cwd=rokviss.folder,
+                                    env=rokviss.environment, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                                    timeout=20, check=False)
+            self.assertEqual(second.returncode, 3, second.stderr)
+            self.assertIn("flies already", second.stderr)
+            self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0, "the first flight does not mind")
+            # A terminal sends it to every process in front of it, so the supervisor must not be ended by the keeper's copy.
+            rokviss.process.send_signal(signal.SIGINT)
+            code = rokviss.end(signal.SIGINT)
+            self.assertEqual(code, 0, rokviss.errors)
+            self.assertIn("shutdown", [line.told for line in rokviss.told()])
+            self.assertEqual(rokviss.wait_until_gone(2.0), {})
+
+    def test_a_killed_keeper_leaves_no_orphans(self):
+        self.no_orphans("hirosco")
+
+    def test_a_killed_supervisor_leaves_no_orphans(self):
+        rokviss = self.no_orphans("hirosco-supervisor")
+        self.assertNotEqual(rokviss.process.returncode, 0, "the end was not an orderly one")
+
+    def no_orphans(self, name):
+        before = flight.segments()
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            self.assertEqual(len(rokviss.processes()), 7)
+            killed = rokviss.kill(name)
+            left = rokviss.wait_until_gone(ORPHANS_GONE_S)
+            flight.measure(f"{name} killed: the other six gone {time.monotonic() - killed:.2f} s later")
+            self.assertEqual(left, {})
+            rokviss.process.wait(5.0)
+        self.assertEqual(flight.segments(), before)
+        return rokviss
+
+    def test_a_flight_can_begin_where_another_was_killed(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            for pid in rokviss.processes():
+                os.kill(pid, signal.SIGKILL)
+            self.assertEqual(rokviss.wait_until_gone(5.0), {})
+            with flight.Flight(folder=rokviss.folder) as again:
+                again.wait_commissioned()
+                self.assertEqual(again.tc("manipulator", "ping")[0], 0)
+                self.assertEqual(again.end(), 0, again.errors)
+
+
+if __name__ == "__main__":
+    flight.main()
