@@ -192,6 +192,9 @@ TEST_F(Faults, SafeAllStopsEveryActuatorWithinFiveCyclesInAMotion) {
   ASSERT_TRUE(robot_became_safe());
   EXPECT_LE(cycles_to_safe, most_cycles_to_safe);
   EXPECT_FALSE(joystick->active());
+  // By shared memory, before and beside any telecommand.
+  EXPECT_NE(flight.inhibited("MANIPULATOR") & inhibited_by_stop, 0U);
+  EXPECT_NE(flight.inhibited("JOYSTICK") & inhibited_by_stop, 0U);
   EXPECT_EQ(flight.state("MANIPULATOR"), State::SafeOperational);
   EXPECT_EQ(flight.state("JOYSTICK"), State::SafeOperational);
   EXPECT_EQ(flight.state("COMMUNICATION"), State::Operational) << "the ground link is needed now more than ever";

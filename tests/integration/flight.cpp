@@ -76,7 +76,9 @@ std::vector<supervisor::LogRecord> Flight::records() {
 }
 
 bool Flight::commission() {
-  return craft_->run_until([&] { return craft_->supervisor().commissioned(); }, 10s);
+  const auto& supervisor = craft_->supervisor();
+  static_cast<void>(craft_->run_until([&] { return supervisor.commissioned() || !supervisor.succeeded(); }, 60s));
+  return supervisor.commissioned();
 }
 
 State Flight::state(std::string_view subsystem) {

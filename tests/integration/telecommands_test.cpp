@@ -65,8 +65,8 @@ TEST_F(Telecommands, AMotionIntoTheRailEndsAbortedAndTheRobotSafe) {
   const auto outcome = flight.craft().command("MANIPULATOR", "MOVE_TO", {-0.5, 1.2, 2.0});
   EXPECT_TRUE(outcome.started);
   expect_refused(outcome, FailureCode::Aborted, 8);
+  EXPECT_TRUE(flight.run_until_state("MANIPULATOR", State::SafeOperational, 100ms));
   EXPECT_TRUE(flight.story().has("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED"));
-  EXPECT_EQ(flight.state("MANIPULATOR"), State::SafeOperational);
 }
 
 TEST_F(Telecommands, ASecondMotionIsRefusedAsBusyAndTheFirstGoesOn) {
@@ -137,6 +137,28 @@ TEST_F(Telecommands, SafeOperationalIsRefusedWhileARequiredLinkIsAbsent) {
   expect_done(flight.configure("JOYSTICK", "COUPLED"));
   expect_refused(flight.set_state("JOYSTICK", State::SafeOperational), FailureCode::LinkAbsent, 2);
   EXPECT_EQ(flight.state("JOYSTICK"), State::PreOperational);
+}
+
+TEST_F(Telecommands, ANetworkIsTakenApartAndMadeAgainFromGround) {
+  auto& robot = flight.device<simulation::RobotDevice>("robot");
+  expect_done(flight.set_mode("commissioning"));
+  expect_done(flight.craft().command("SUPERVISOR", "UNLINK", {2}));
+  flight.craft().run(50ms);
+  EXPECT_EQ(flight.craft().supervisor().links().up_count(), 1U);
+  EXPECT_FALSE(robot.active()) << "its required link is gone";
+  constexpr std::array network{"MANIPULATOR", "JOYSTICK"};
+  for (const char* name : network) {
+    for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})
+      expect_done(flight.set_state(name, state));
+    expect_done(flight.configure(name, "COUPLED"));
+  }
+  EXPECT_EQ(flight.craft().supervisor().links().up_count(), 0U);
+  for (const double link : {1.0, 2.0}) expect_done(flight.craft().command("SUPERVISOR", "LINK", {link}));
+  EXPECT_EQ(flight.craft().supervisor().links().up_count(), 2U);
+  for (const State state : {State::SafeOperational, State::Operational})
+    for (const char* name : network) expect_done(flight.set_state(name, state));
+  flight.craft().run(50ms);
+  EXPECT_TRUE(robot.active());
 }
 
 TEST_F(Telecommands, HoldFailsToStartWhileALinkOwnsTheSetpoint) {
