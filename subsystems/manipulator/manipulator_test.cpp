@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/manipulator/manipulator.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/descriptor/read.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+
+namespace hirosco {
+namespace {
+
+using pus::st128::Role;
+using ::testing::ElementsAre;
+
+/// The test plays the robot: it stays where it is put and has the torque and temperature it is given.
+struct ManipulatorTest : ::testing::Test {
+  const std::filesystem::path file{HIROSCO_SOURCE_DIR "/subsystems/manipulator/manipulator.xml"};
+  std::unique_ptr<Subsystem> manipulator = make_manipulator();
+  testing::Rig rig{*manipulator, descriptor::file_system()(file).value()};
+  std::unique_ptr<DataFlow> robot =
+      std::move(rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "rokviss-robot"},
+                               FlowSide::Device))
+          .value();
+  testing::Rig::Partner joystick;
+  std::array<double, 2> position_rad{-0.8, 1.6};
+  std::array<double, 2> torque_n_m{};
+  float temperature_deg_c{20.0F};
+  DeviceMode mode{};
+
+  void cycle(int count = 1) {
+    for (int i = 0; i < count; ++i) {
+      if (joystick.writer) sample_joystick();
+      rig.service();
+      rig.cycle();
+      exchange();
+    }
+    rig.service();
+  }
+  void exchange() {
+    std::array<std::byte, max_device_frame_octets> frame{};
+    const auto found = robot->receive(frame);
+    if (!found || found->flow != Flow::New) return;
+    const auto command = read_command(Octets{frame}.first(found->octets)).value();
+    mode = command.mode;
+    std::array<std::byte, 88> payload{};
+    OctetWriter writer{payload, std::endian::little};
+    const std::array<double, 2> still{};
+    for (const auto& pair : {position_rad, still, position_rad, still, torque_n_m}) writer.put(pair[0]).put(pair[1]);
+    writer.put(temperature_deg_c).put(temperature_deg_c);
+    std::array<std::byte, max_device_frame_octets> answer{};
+    const auto status = write_status(answer, {.epoch = 1, .sequence = command.sequence, .payload = payload});
+    static_cast<void>(robot->send(status.value()));
+  }
+  void sample_joystick() {
+    std::array<std::byte, 33> payload{};
+    joystick.writer.write(payload, rig.clock.now(), LinkStatus::Valid);
+  }
+  void command(State state) {
+    const auto request = rig.set_state(state);
+    cycle(5);
+    EXPECT_EQ(rig.outcome(request), "1 3 7") << to_text(state);
+  }
+  void operate(std::uint8_t configuration) {
+    rig.bring_to(State::PreOperational, configuration);
+    if (configuration == 2)
+      joystick = rig.attach(1, Role::Consumer, "JOYSTICK_STATE",
+                            {{"POSITION", Type::Double, 2}, {"VELOCITY", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}},
+                            nullptr, 500us);
+    cycle(5);
+    command(State::SafeOperational);
+    command(State::Operational);
+    EXPECT_EQ(rig.inhibited(), 0u);
+    EXPECT_EQ(mode, DeviceMode::Active);
+  }
+  std::string now(std::string_view function, std::initializer_list<double> arguments = {}) {
+    const auto request = rig.call(function, arguments);
+    cycle(3);
+    return rig.outcome(request);
+  }
+};
+
+TEST_F(ManipulatorTest, MoveToReportsHalfWayAndCompletesAtTheEndOfTheMotion) {
+  operate(1);
+  const auto request = rig.call("MOVE_TO", {-0.7, 1.5, 0.1});
+  cycle(90);
+  EXPECT_EQ(rig.outcome(request), "1 3");
+  cycle(20);
+  EXPECT_EQ(rig.outcome(request), "1 3 5:0001");
+  cycle(100);
+  EXPECT_EQ(rig.outcome(request), "1 3 5:0001 7");
+  EXPECT_EQ(rig.events(1001), 1);
+}
+
+TEST_F(ManipulatorTest, OneMotionAtATime) {
+  operate(1);
+  rig.call("MOVE_TO", {-0.7, 1.5, 1.0});
+  EXPECT_EQ(now("HOME"), "1 4:0108");
+}
+
+TEST_F(ManipulatorTest, HoldAndLeavingOperationalAbortTheMotion) {
+  operate(1);
+  const auto first = rig.call("MOVE_TO", {-0.7, 1.5, 1.0});
+  cycle(10);
+  EXPECT_EQ(now("HOLD"), "1 3 7");
+  EXPECT_EQ(rig.outcome(first), "1 3 8:0204");
+  const auto second = rig.call("MOVE_TO", {-0.7, 1.5, 1.0});
+  cycle(10);
+  command(State::SafeOperational);
+  EXPECT_EQ(rig.outcome(second), "1 3 8:0204");
+  EXPECT_EQ(mode, DeviceMode::Off);
+}
+
+TEST_F(ManipulatorTest, CoupledTheLinkOwnsTheSetpoint) {
+  operate(2);
+  EXPECT_EQ(now("MOVE_TO", {-0.7, 1.5, 1.0}), "1 4:000f");
+  EXPECT_EQ(now("HOME"), "1 4:000f");
+  EXPECT_EQ(now("HOLD"), "1 4:000f");
+  EXPECT_EQ(now("SET_GAINS", {200, 20}), "1 3 7");
+}
+
+TEST_F(ManipulatorTest, TorqueAboveTheSoftLimitInhibitsAndIsReportedOnceWithJointValueAndLimit) {
+  operate(1);
+  torque_n_m = {1.0, -13.0};
+  cycle(6);
+  EXPECT_EQ(rig.inhibited(), inhibited_by_author);
+  EXPECT_EQ(mode, DeviceMode::Off);
+  cycle(20);
+  EXPECT_EQ(rig.events(1020), 1);
+  EXPECT_EQ(rig.events(1021), 0);
+}
+
+TEST_F(ManipulatorTest, TorqueAboveTheHardLimitIsTheWorseEvent) {
+  operate(1);
+  torque_n_m = {16.0, 0.0};
+  cycle(10);
+  EXPECT_EQ(rig.events(1021), 1);
+  EXPECT_EQ(rig.events(1020), 0);
+}
+
+TEST_F(ManipulatorTest, OneDisturbedSampleStopsNothing) {
+  operate(1);
+  torque_n_m = {50.0, 0.0};
+  cycle();
+  torque_n_m = {};
+  cycle(10);
+  EXPECT_EQ(rig.inhibited(), 0u);
+  EXPECT_EQ(mode, DeviceMode::Active);
+}
+
+TEST_F(ManipulatorTest, EachLevelOfTemperatureIsReportedOnceOnTheWayUp) {
+  operate(1);
+  for (const float value : {60.0F, 61.0F, 75.0F, 85.0F, 86.0F}) {
+    temperature_deg_c = value;
+    cycle(5);
+  }
+  EXPECT_EQ(rig.events(1010), 1);
+  EXPECT_EQ(rig.events(1011), 1);
+  EXPECT_EQ(rig.events(1012), 1);
+}
+
+}  // namespace
+}  // namespace hirosco
