@@ -178,6 +178,41 @@ TEST_F(Faults, AHungJoystickThatGoesOnFindsItselfFenced) {
   EXPECT_EQ(flight.state("JOYSTICK"), State::Offline) << flight.story().text();
 }
 
+// --- a device fails ----------------------------------------------------------------------------------------------------
+
+TEST(DeviceFaults, ADeviceThatIsGoneSilentFrozenGarbledOrLateTakesTheNetworkDown) {
+  for (const char* line : {"unplug", "silent", "freeze 60000", "corrupt 1000000", "delay 100"}) {
+    for (const auto& [device, event] :
+         {std::pair{"joystick", "JOYSTICK high JOYSTICK_LOST"}, {"robot", "MANIPULATOR high ROBOT_LOST"}}) {
+      Flight flight{{}};
+      ASSERT_TRUE(flight.commission());
+      flight.craft().run(500ms);
+      const TimePoint injected = flight.craft().now();
+      ASSERT_TRUE(flight.craft().device(device)->fault(line)) << line;
+      ASSERT_TRUE(flight.run_until_state("MANIPULATOR", State::Offline, 3s)) << device << " " << line;
+      ASSERT_TRUE(flight.run_until_state("JOYSTICK", State::Offline, 3s)) << device << " " << line;
+      EXPECT_LE(flight.craft().now() - injected, 2s) << device << " " << line;
+      EXPECT_TRUE(flight.story().has(event)) << device << " " << line << "\n" << flight.story().text();
+      EXPECT_EQ(flight.state("COMMUNICATION"), State::Operational);
+    }
+  }
+}
+
+TEST(DeviceFaults, TwoBadFramesAreNoReason) {
+  for (const char* line : {"corrupt 2", "stall 1", "freeze 1"}) {
+    for (const char* device : {"joystick", "robot"}) {
+      Flight flight{{}};
+      ASSERT_TRUE(flight.commission());
+      flight.craft().run(500ms);
+      ASSERT_TRUE(flight.craft().device(device)->fault(line)) << line;
+      flight.craft().run(1s);
+      EXPECT_EQ(flight.state("MANIPULATOR"), State::Operational) << device << " " << line;
+      EXPECT_EQ(flight.state("JOYSTICK"), State::Operational) << device << " " << line;
+      EXPECT_FALSE(flight.story().has("plan ")) << device << " " << line;
+    }
+  }
+}
+
 // --- SAFE_ALL ----------------------------------------------------------------------------------------------------------
 
 TEST_F(Faults, SafeAllStopsEveryActuatorWithinFiveCyclesInAMotion) {
