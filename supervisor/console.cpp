@@ -99,7 +99,8 @@ std::string Console::status_text(const Supervisor& supervisor, Duration since_st
   show_value("MANIPULATOR.CUR_VALUES.POSITION", "| robot", "{:+.3f}", "rad");
   show_value("MANIPULATOR.TIP_FORCE", "| tip force", "{:+.2f}", "N");
   show_value("JOYSTICK.CUR_VALUES.TORQUE", "| felt", "{:+.4f}", "N m");
-  if (const std::string waiting = supervisor.waiting_for(); !waiting.empty()) text += " | waits for " + printable(waiting);
+  if (const std::string waiting = supervisor.waiting_for(); !waiting.empty())
+    text += " | waits for " + printable(waiting);
   return text + "\n";
 }
 
@@ -114,10 +115,12 @@ std::string Console::status_json(const Supervisor& supervisor, Duration since_st
     text += fmt::format("{}{{\"name\":{},\"state\":{}", first ? "" : ",", json_string(member.descriptor().name),
                         json_string(member.alive() && state ? to_text(*state) : std::string_view{"not running"}));
     if (vital != nullptr)
-      text += fmt::format(",\"cycles\":{},\"overruns\":{},\"missed\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{},\"inhibited_at_cycle\":{},\"stopped_at_cycle\":{},\"realtime\":{}",
-                          vital->cycles.load(), vital->overruns.load(), vital->missed.load(), vital->latency_max_ns.load(),
-                          vital->execution_mean_ns.load(), vital->inhibited.load(), vital->inhibited_at_cycle.load(),
-                          member.permit()->stopped_at_cycle.load(), vital->realtime.load());
+      text += fmt::format(
+          ",\"cycles\":{},\"overruns\":{},\"missed\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{}"
+          ",\"inhibited_at_cycle\":{},\"stopped_at_cycle\":{},\"realtime\":{}",
+          vital->cycles.load(), vital->overruns.load(), vital->missed.load(), vital->latency_max_ns.load(),
+          vital->execution_mean_ns.load(), vital->inhibited.load(), vital->inhibited_at_cycle.load(),
+          member.permit()->stopped_at_cycle.load(), vital->realtime.load());
     text += "}";
     first = false;
   }
@@ -125,7 +128,8 @@ std::string Console::status_json(const Supervisor& supervisor, Duration since_st
   first = true;
   for (const auto& [name, values] : values_) {
     text += fmt::format("{}{}:[", first ? "" : ",", json_string(name));
-    for (std::size_t i = 0; i < values.size(); ++i) text += fmt::format("{}{}", i != 0 ? "," : "", values[i] == values[i] ? fmt::format("{}", values[i]) : "null");
+    for (std::size_t i = 0; i < values.size(); ++i)
+      text += fmt::format("{}{}", i != 0 ? "," : "", values[i] == values[i] ? fmt::format("{}", values[i]) : "null");
     text += "]";
     first = false;
   }

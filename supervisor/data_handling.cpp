@@ -93,8 +93,8 @@ void Supervisor::forward_durable() {
 
 /// A store that fails or stands still: said once, and nothing waits for it for ever.
 void Supervisor::watch_log(TimePoint now) {
-  const bool failing = parts_.log.failure().has_value() ||
-                       (!waiting_.empty() && now - waiting_.front().since > log_patience);
+  const bool failing =
+      parts_.log.failure().has_value() || (!waiting_.empty() && now - waiting_.front().since > log_patience);
   if (failing != log_failing_) {
     log_failing_ = failing;
     tell(failing ? "log storage fails: telecommands that must be durable are held back" : "log storage works", 1);
@@ -110,19 +110,22 @@ void Supervisor::watch_log(TimePoint now) {
 void Supervisor::forward(const Outgoing& outgoing) {
   const auto& [apid, packet, memory, request, mode_epoch, essential] = outgoing;
   Channel* channel = channel_of(apid);
-  const Message message{
-      .kind = MessageKind::Packet, .mode_epoch = mode_epoch, .packet = packet, .memory = memory};
+  const Message message{.kind = MessageKind::Packet, .mode_epoch = mode_epoch, .packet = packet, .memory = memory};
   const bool sent = channel != nullptr && channel->send(message).has_value();
   if (!sent) {
     const auto code = channel == nullptr ? pus::FailureCode::UnknownApid : pus::FailureCode::QueueFull;
     return reject({.packet = packet, .memory = {}}, request, pus::FailureNotice{code});
   }
-  static_cast<void>(parts_.log.append({.kind = LogKind::TelecommandForwarded, .source = 1, .peer = apid, .packet = packet,
+  static_cast<void>(parts_.log.append({.kind = LogKind::TelecommandForwarded,
+                                       .source = 1,
+                                       .peer = apid,
+                                       .packet = packet,
                                        .note = essential ? "essential" : ""}));
 }
 
 void Supervisor::reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice) {
-  const bool damaged = notice.code() == pus::FailureCode::ErrorControl || notice.code() == pus::FailureCode::IllegalLength ||
+  const bool damaged = notice.code() == pus::FailureCode::ErrorControl ||
+                       notice.code() == pus::FailureCode::IllegalLength ||
                        notice.code() == pus::FailureCode::IllegalPrimaryHeader ||
                        notice.code() == pus::FailureCode::IllegalSequenceFlags;
   // Beyond the cap they are counted only: a flood of them must not fill the log's queue before honest telecommands.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <fcntl.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -93,7 +93,7 @@ class Waker {
     std::set<int> now;
     for (const Member& member : supervisor.members()) {
       if (!member.alive()) continue;
-      now.insert(member.channel()->wait_descriptor());
+      if (!member.closed_at) now.insert(member.channel()->wait_descriptor());  // a closed one ends every wait
       now.insert(launcher.wait_descriptor(member.process()));
     }
     now.erase(-1);

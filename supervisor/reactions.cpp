@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <utility>
 
 #include "supervisor/supervision/event_handling/recovery.hpp"
 #include "supervisor/supervisor.hpp"
@@ -10,13 +11,19 @@ namespace hirosco::supervisor {
 
 using descriptor::Severity;
 
+namespace {
+
+/// How long a process may live on with its channel closed; what it does then cannot be known.
+constexpr Duration closed_channel_limit = std::chrono::seconds{1};
+
+}  // namespace
+
 void Supervisor::handle_event(std::uint16_t from, const pus::TelemetryView& report) {
   OctetReader reader{report.source_data()};
   const auto id = reader.get<std::uint16_t>();
   if (!reader.good()) return;
   const auto severity = static_cast<Severity>(report.subtype());
-  const descriptor::Subsystem& subsystem =
-      from == 1 ? mission_.supervisor : mission_.find_subsystem(from)->subsystem;
+  const descriptor::Subsystem& subsystem = from == 1 ? mission_.supervisor : mission_.find_subsystem(from)->subsystem;
   const auto event = std::ranges::find(subsystem.events, id, &descriptor::Event::id);
   const std::string name = event != subsystem.events.end() ? event->name : std::to_string(id);
   parts_.observer.told(report.time(), subsystem.name + " " + std::string{to_text(severity)} + " " +
@@ -55,7 +62,10 @@ void Supervisor::react(Member& origin, std::string_view event, Severity severity
 
 /// The end of a recovery. One of lower severity that something worse has overridden does not end that.
 void Supervisor::recovered(std::uint16_t apid, Severity severity) {
-  if (Member* subject = member(apid); subject != nullptr && subject->recovering == severity) subject->recovering.reset();
+  Member* subject = member(apid);
+  if (subject == nullptr || subject->recovering != severity) return;
+  subject->recovering.reset();
+  subject->going_down = false;
 }
 
 void Supervisor::shut_down_network(Member& origin, std::string_view plan) {
@@ -70,24 +80,23 @@ void Supervisor::shut_down_network(Member& origin, std::string_view plan) {
     Member* subject = member(apid);
     if (subject == nullptr || !subject->alive()) continue;
     subject->recovering = Severity::High;
-    bring_down(*subject, plan);
+    if (!std::exchange(subject->going_down, true)) bring_down(*subject);
   }
 }
 
-void Supervisor::bring_down(Member& subject, std::string_view plan) {
+void Supervisor::bring_down(Member& subject) {
   const std::uint16_t apid = subject.apid();
   const auto to_offline = [this, apid](bool, const std::string&) {
     Member* again = member(apid);
-    if (again == nullptr || !again->alive() || again->state() == State::Offline)
-      return recovered(apid, Severity::High);
+    if (again == nullptr || !again->alive() || again->state() == State::Offline) return recovered(apid, Severity::High);
     command(apid, "SET_STATE", static_cast<double>(State::Offline), [this, apid](bool success, const std::string& why) {
       recovered(apid, Severity::High);
       tell(name_of(apid) + (success ? " is Offline" : " did not reach Offline: " + why), apid);
     });
   };
-  static_cast<void>(plan);
   const auto state = subject.state();
-  const bool can_stop = state == State::PreOperational || state == State::SafeOperational || state == State::Operational;
+  const bool can_stop =
+      state == State::PreOperational || state == State::SafeOperational || state == State::Operational;
   if (!can_stop) return to_offline(true, {});
   command(apid, "SET_STATE", static_cast<double>(State::ErrorOperational), to_offline);
 }
@@ -113,15 +122,21 @@ void Supervisor::safe_all() {
 
 // --- subsystem handling ------------------------------------------------------------------------------------------------
 
-void Supervisor::watch_processes() {
+void Supervisor::watch_ends(bool all) {
   for (Member& subject : members_) {
-    if (!subject.alive()) continue;
+    if (!subject.alive() || (!all && !subject.closed_at)) continue;
     if (const auto end = parts_.launcher.ended(subject.process())) {
       receive_from(subject);  // its last words
       if (subject.alive()) member_died(subject, *end);
-      continue;
+    } else if (subject.closed_at && now_ > *subject.closed_at + closed_channel_limit) {
+      parts_.launcher.kill(subject.process());
     }
-    if (!subject.hang_detected()) continue;
+  }
+}
+
+void Supervisor::watch_hangs() {
+  for (Member& subject : members_) {
+    if (!subject.alive() || !subject.hang_detected()) continue;
     const double apid = subject.apid();
     engine_.raise_in_service(102, {&apid, 1});
     tell(subject.descriptor().name + " hangs: its cycle stands still", subject.apid());

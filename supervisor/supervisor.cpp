@@ -138,7 +138,8 @@ void Supervisor::begin_commissioning() {
     add(safe, "SET_STATE", state(State::SafeOperational), "SafeOperational");
     if (step.state == State::Operational) add(operational, "SET_STATE", state(State::Operational), "Operational");
   }
-  for (const std::uint8_t id : start_mode->establish) link.push_back({1, "SUPERVISOR", "LINK", id, "link " + std::to_string(id)});
+  for (const std::uint8_t id : start_mode->establish)
+    link.push_back({1, "SUPERVISOR", "LINK", id, "link " + std::to_string(id)});
   Sequence::Stage mode{{1, "SUPERVISOR", "SET_MODE", start_mode->id, "mode " + start_mode->name}};
   sequence_.start({pre, configure, link, safe, operational, mode}, Sequence::OnFailure::Stop,
                   [this](bool success, const std::string& why) {
@@ -173,7 +174,8 @@ void Supervisor::begin_shutdown() {
   Sequence::Stage ground;
   for (Member& member : members_)
     if (member.alive() && member.descriptor().name == mission_.ground.subsystem)
-      ground.push_back({member.apid(), member.descriptor().name, "SET_STATE", static_cast<double>(State::Offline), "Offline"});
+      ground.push_back(
+          {member.apid(), member.descriptor().name, "SET_STATE", static_cast<double>(State::Offline), "Offline"});
   sequence_.start({safe, offline, ground}, Sequence::OnFailure::GoOn, [this](bool success, const std::string& why) {
     if (!success) tell("shutdown: " + why);
     for (Member& member : members_) member.died();  // closing the channel ends the process
@@ -189,6 +191,7 @@ TimePoint Supervisor::step(TimePoint now) {
     if (PermitPage* page = member.permit()) page->heartbeat.store(beat, std::memory_order_release);
 
   for (Member& member : members_) receive_from(member);
+  watch_ends(false);
   forward_durable();
   // Its own engine: the same two steps as everybody's, here in one thread.
   TimePoint wake = engine_.service_step(now);
@@ -201,7 +204,8 @@ TimePoint Supervisor::step(TimePoint now) {
 
   if (now >= next_watch_) {
     next_watch_ = now + watch_period;
-    watch_processes();
+    watch_ends(true);
+    watch_hangs();
     links_.step(now);
     watch_log(now);
     expire_requests(now);
@@ -223,17 +227,19 @@ void Supervisor::receive_from(Member& member) {
   MessageBuffer buffer;
   for (int left = messages_per_step; left > 0 && member.alive(); --left) {
     auto found = member.channel()->receive(buffer);
-    if (!found) next_watch_ = now_;  // a closed channel: the process handle tells the rest, in this step
+    if (!found && !member.closed_at) member.closed_at = now_;
     if (!found || found->flow == Flow::None) return;
     const Message& message = found->message;
     const auto header = pus::read_primary_header(message.packet);
     if (!header) continue;
     if (!header->telecommand) {
       handle_telemetry(member.apid(), message.packet);
-    } else if (message.kind == MessageKind::GroundTelecommand && member.descriptor().name == mission_.ground.subsystem) {
+    } else if (message.kind == MessageKind::GroundTelecommand &&
+               member.descriptor().name == mission_.ground.subsystem) {
       handle_telecommand({.packet = message.packet, .sender = Sender::Ground, .source = 0, .memory = {}});
     } else {
-      handle_telecommand({.packet = message.packet, .sender = Sender::Subsystem, .source = member.apid(), .memory = {}});
+      handle_telecommand(
+          {.packet = message.packet, .sender = Sender::Subsystem, .source = member.apid(), .memory = {}});
     }
   }
 }
@@ -265,7 +271,8 @@ std::string Supervisor::name_of(std::uint16_t apid) const {
 }
 
 void Supervisor::tell(std::string_view line, std::uint16_t subject) {
-  static_cast<void>(parts_.log.append({.kind = LogKind::Action, .source = 1, .peer = subject, .packet = {}, .note = line}));
+  static_cast<void>(
+      parts_.log.append({.kind = LogKind::Action, .source = 1, .peer = subject, .packet = {}, .note = line}));
   parts_.observer.told(parts_.world.clock.onboard(), line);
 }
 

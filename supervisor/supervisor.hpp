@@ -127,11 +127,12 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   // event handling
   void react(Member& origin, std::string_view event, descriptor::Severity severity);
   void shut_down_network(Member& origin, std::string_view plan);
-  void bring_down(Member& member, std::string_view plan);
+  void bring_down(Member& member);
   void recovered(std::uint16_t apid, descriptor::Severity severity);
 
   // subsystem handling
-  void watch_processes();
+  void watch_ends(bool all);  ///< or only those whose channel is closed
+  void watch_hangs();
   void member_died(Member& member, const ProcessEnd& end);
 
   // modes and life
@@ -142,8 +143,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void expire_requests(TimePoint now);
   void fail_requests_to(std::uint16_t apid, const std::string& why);
   void tell(std::string_view line, std::uint16_t subject = 0);
-  void send_own(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
-                const MemoryHandle& memory, CommandDone done);
+  void send_own(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory,
+                CommandDone done);
 
   Parts parts_;
   descriptor::Mission mission_;

@@ -173,8 +173,18 @@ TEST(Watchdog, IsNotArmedWhileOff) {
 TEST(Watchdog, TripsEvenWhenThePendingCommandComesBeforeTheClockWasLookedAt) {
   RobotBench bench;
   bench.active(5);
-  bench.command(DeviceMode::Active, 1, 5);
-  bench.device.step(bench.now += std::chrono::milliseconds{11});
+  for (int k = 0; k < 19; ++k) bench.step();
+  EXPECT_FALSE(bench.device.watchdog_tripped());
+  bench.active(5);
+  EXPECT_TRUE(bench.device.watchdog_tripped());
+}
+
+TEST(Watchdog, CountsOnlyTheTimeInWhichTheDeviceItselfRan) {
+  RobotBench bench;
+  bench.active(5);
+  bench.device.step(bench.now += std::chrono::seconds{3});
+  EXPECT_FALSE(bench.device.watchdog_tripped());
+  for (int k = 0; k < 20; ++k) bench.step();
   EXPECT_TRUE(bench.device.watchdog_tripped());
 }
 
@@ -328,10 +338,11 @@ TEST(JoystickDevice, ObeysTheHandAndItsMotors) {
 
 TEST(JoystickDevice, UnderstandsEveryHandLineAndRefusesOthers) {
   JoystickBench bench;
-  for (const char* line : {"hold 0 0", "sine 1 0.15 0.5", "sine 2 0.15 0.5 1.57", "ramp 0.065 0 0.04",
-                           "cartesian 0.0176 0 1", "wander"})
+  for (const char* line :
+       {"hold 0 0", "sine 1 0.15 0.5", "sine 2 0.15 0.5 1.57", "ramp 0.065 0 0.04", "cartesian 0.0176 0 1", "wander"})
     EXPECT_TRUE(bench.device.hand(line)) << line;
-  for (const char* line : {"", "hold 0", "hold 2 0", "sine 3 0.1 1", "sine 1 0.1", "ramp 1 0 0.04", "ramp 0 0 0", "sit"})
+  for (const char* line :
+       {"", "hold 0", "hold 2 0", "sine 3 0.1 1", "sine 1 0.1", "ramp 1 0 0.04", "ramp 0 0 0", "sit"})
     EXPECT_FALSE(bench.device.hand(line)) << line;
 }
 

@@ -18,7 +18,7 @@ inline constexpr int keeper_descriptor = 6;
 struct KeeperPlan {
   ProcessStart supervisor;
   std::vector<ProcessStart> devices;
-  std::optional<Duration> run_for;   ///< end in order after this time
+  std::optional<Duration> run_for;  ///< end in order after this time
 };
 
 /// Returns the exit code of the supervisor, 4 when it was ended by a signal. Blocks until everything has ended.

@@ -11,6 +11,8 @@ void Member::started(LaunchedSubsystem launched) {
   last_cycles_ = 0;
   still_steps_ = 0;
   recovering.reset();
+  going_down = false;
+  closed_at.reset();
 }
 
 void Member::died() { launched_ = {}; }

@@ -46,6 +46,11 @@ class Member {
 
   /// A recovery that runs for it: a second event of the same or lower severity does not start another.
   std::optional<descriptor::Severity> recovering;
+  /// On its way to Offline with its network; a second reason does not command it again.
+  bool going_down{false};
+  /// Since when its channel is closed. A process that ends closes it a moment before its handle says so; one that
+  /// lives on without it can be neither commanded nor heard.
+  std::optional<TimePoint> closed_at;
 
  private:
   const descriptor::MissionSubsystem* described_;
