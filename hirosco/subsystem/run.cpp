@@ -76,6 +76,11 @@ class CycleThread {
     wanted_.post();
     thread_.join();
   }
+  /// After end(), in executables that count: what the cycle thread took from the heap while it cycled.
+  void tell_heap_uses(const char* program) const {
+    if (RealtimeScope::hook_present())
+      fmt::print(stderr, "{}: {} uses of the heap in {} cycles\n", program, heap_uses_, cycles_);
+  }
 
  private:
   void run() {
@@ -93,14 +98,16 @@ class CycleThread {
   }
 
   void cycle(std::uint32_t generation) {
+    const RealtimeScope no_heap;
     TimePoint planned = clock_.now() + subsystem_.cycle_demand().period;
     for (;;) {
       sleep_until(planned);
       const auto demand = subsystem_.cycle_demand();
-      if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) return;
-      const RealtimeScope no_heap;
+      if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) break;
       planned = subsystem_.cycle_step(planned);
+      ++cycles_;
     }
+    heap_uses_ += no_heap.count().allocations + no_heap.count().frees;
   }
 
   GenericSubsystem& subsystem_;
@@ -108,6 +115,8 @@ class CycleThread {
   bool realtime_;
   Semaphore wanted_{0};
   std::atomic<bool> ending_{false};
+  std::uint64_t cycles_{0};          ///< the cycle thread's until it is joined, like the next
+  std::uint64_t heap_uses_{0};
   Thread thread_;
 };
 
@@ -166,11 +175,10 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     static_cast<void>(lock_memory());
     static_cast<void>(set_fifo_priority(service_priority));
   }
-  const World world{.clock = clock,
-                    .memory = memory,
-                    .flows = flows,
-                    .realtime = realtime,
-                    .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); }};
+  const World world{
+      .clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = [](std::string_view text) {
+        std::fputs(fmt::format("{}\n", text).c_str(), stderr);
+      }};
   const auto author = make();
   GenericSubsystem subsystem{*author,
                              std::move(*reading.value),
@@ -185,6 +193,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   }
   serve(subsystem, clock, channel, cycle);
   cycle.end();
+  cycle.tell_heap_uses(argv[0]);
   return 0;
 }
 

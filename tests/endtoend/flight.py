@@ -25,6 +25,7 @@ import uuid
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 BINARIES = pathlib.Path(os.environ.get("HIROSCO_BIN", REPOSITORY / "build/release/bin"))
 ROKVISS = REPOSITORY / "missions/rokviss/mission.xml"
+HELLO = REPOSITORY / "missions/hello/mission.xml"
 PORT = 10015
 MANIPULATOR, JOYSTICK = 10, 11
 SKIPPED = 77
@@ -291,6 +292,31 @@ class Flight:
             if not left or time.monotonic() >= end:
                 return left
             time.sleep(0.05)
+
+
+class MissionCopy:
+    """`with MissionCopy({"old": "new"}) as path:` — a mission whose text differs in these words."""
+
+    def __init__(self, changes, mission=ROKVISS):
+        self.changes, self.mission = changes, pathlib.Path(mission)
+
+    def __enter__(self):
+        # Beside the original in depth, so that what it names by `../../` is found through links.
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="hirosco-mission-"))
+        for name in ("supervisor", "subsystems"):
+            (self.folder / name).symlink_to(REPOSITORY / name)
+        path = self.folder / "missions" / self.mission.parent.name / "mission.xml"
+        path.parent.mkdir(parents=True)
+        text = self.mission.read_text()
+        for old, new in self.changes.items():
+            if f'"{old}"' not in text:
+                raise ValueError(f"{self.mission} has no \"{old}\"")
+            text = text.replace(f'"{old}"', f'"{new}"')
+        path.write_text(text)
+        return path
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder, ignore_errors=True)
 
 
 # Telemetry. No more of the standard than the tests of one flight need; a foreign implementation is tests/client.

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""The cycle threads of a coupled flight never use the heap; one that does is found out."""
+import re
+import time
+import unittest
+
+import flight
+
+CYCLES = 100_000
+ROKVISS_HZ = 2000
+
+
+def heap_uses(errors, program):
+    """(uses, cycles) as the executable told at its end."""
+    for line in errors:
+        if found := re.search(rf"{program}: (\d+) uses of the heap in (\d+) cycles", line):
+            return int(found[1]), int(found[2])
+    raise AssertionError(f"{program} told nothing: {errors}")
+
+
+class Allocations(unittest.TestCase):
+    def test_a_coupled_flight_takes_nothing_from_the_heap_in_its_cycles(self):
+        with flight.MissionCopy({"hirosco-manipulator": "hirosco-hooked-manipulator",
+                                 "hirosco-joystick": "hirosco-hooked-joystick"}) as mission, \
+             flight.Flight(mission) as rokviss:
+            rokviss.wait_commissioned()
+            begin = rokviss.count()
+            # Some of what makes a cycle leave its trodden path: contact, telecommands, refusals, reports.
+            for _ in range(5):
+                self.assertEqual(rokviss.tc("joystick", "SET_FORCE_SCALE", 0.02)[0], 0)
+                self.assertEqual(rokviss.tc("manipulator", "HOME")[0], 1)
+            rokviss.fault("joystick", "hand", "cartesian", 0.0226, 0, 2)
+            time.sleep(5.0)
+            rokviss.fault("joystick", "hand", "wander")
+            enough = rokviss.wait_status(lambda s: min(m["cycles"] for m in s["subsystems"] if m["name"] in
+                                                       ("MANIPULATOR", "JOYSTICK")) > CYCLES + 100,
+                                         CYCLES / ROKVISS_HZ + 30)
+            self.assertIsNotNone(enough)
+            self.assertEqual({m["state"] for m in enough["subsystems"]}, {"Operational"}, rokviss.told(begin))
+            self.assertEqual(rokviss.end(), 0, rokviss.errors)
+            for program in ("hirosco-hooked-manipulator", "hirosco-hooked-joystick"):
+                uses, cycles = heap_uses(rokviss.errors, program)
+                flight.measure(f"{program}: {uses} uses of the heap in {cycles} cycles")
+                self.assertGreaterEqual(cycles, CYCLES)
+                self.assertEqual(uses, 0)
+
+    def test_a_planted_use_of_the_heap_is_found(self):
+        with flight.MissionCopy({"hirosco-hello": "hirosco-planted"}, flight.HELLO) as mission, \
+             flight.Flight(mission) as hello:
+            hello.wait_told("commissioned: mode operation")
+            time.sleep(3.0)
+            self.assertEqual(hello.end(), 0, hello.errors)
+            uses, cycles = heap_uses(hello.errors, "hirosco-planted")
+            flight.measure(f"planted: {uses} uses of the heap in {cycles} cycles")
+            self.assertEqual(uses, 2)
+
+
+if __name__ == "__main__":
+    flight.main()
