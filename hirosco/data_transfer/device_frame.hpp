@@ -21,9 +21,9 @@ inline constexpr std::size_t max_device_payload_octets = 1024;
 inline constexpr std::size_t max_device_frame_octets = device_frame_overhead_octets + max_device_payload_octets;
 
 enum class DeviceMode : std::uint8_t {
-  Off = 0,     ///< the device applies its own safe output and ignores the payload
+  Off = 0,  ///< the device applies its own safe output and ignores the payload
   Active = 1,  ///< the device applies the payload
-  Stop = 2,    ///< controlled stop by the device itself, then safe output
+  Stop = 2,  ///< controlled stop by the device itself, then safe output
 };
 
 /// Bits of DeviceStatus::flags.
@@ -36,17 +36,17 @@ inline constexpr std::uint16_t torque_saturated = 1U << 3;
 
 struct DeviceCommand {
   DeviceMode mode{DeviceMode::Off};
-  std::uint32_t epoch{0};            ///< of the permit page; the device refuses a lower one than it has seen
-  std::uint32_t sequence{0};         ///< counts frames, wraps
-  std::uint32_t watchdog_us{0};      ///< output off after this time without a valid command; 0 = device default
-  Octets payload;                    ///< of a read frame: views the frame
+  std::uint32_t epoch{0};  ///< of the permit page; the device refuses a lower one than it has seen
+  std::uint32_t sequence{0};  ///< counts frames, wraps
+  std::uint32_t watchdog_us{0};  ///< output off after this time without a valid command; 0 = device default
+  Octets payload;  ///< of a read frame: views the frame
 };
 
 struct DeviceStatus {
-  std::uint32_t epoch{0};            ///< highest that was accepted
-  std::uint32_t sequence{0};         ///< of the last accepted command
+  std::uint32_t epoch{0};  ///< highest that was accepted
+  std::uint32_t sequence{0};  ///< of the last accepted command
   std::uint16_t flags{0};
-  Octets payload;                    ///< of a read frame: views the frame
+  Octets payload;  ///< of a read frame: views the frame
 };
 
 /// Writes one frame into `buffer` and returns the part that was filled. OutOfRange: payload longer than allowed.

@@ -32,8 +32,8 @@ TEST(DeviceFrame, HasItsDeclaredLayout) {
   const auto frame = write_command(buffer, a_command());
   ASSERT_TRUE(frame);
   ASSERT_EQ(frame->size(), device_frame_overhead_octets + payload.size());
-  constexpr std::array<unsigned, 20> header{0x44, 0x48, 1, 1, 4, 3, 2, 1, 0xFF, 0xFF, 0xFF, 0xFF,
-                                            0,    0,    3, 0, 0x10, 0x27, 0, 0};
+  constexpr std::array<unsigned, 20> header{0x44, 0x48, 1, 1, 4, 3, 2,    1,    0xFF, 0xFF,
+                                            0xFF, 0xFF, 0, 0, 3, 0, 0x10, 0x27, 0,    0};
   for (std::size_t i = 0; i < header.size(); ++i) EXPECT_EQ(std::to_integer<unsigned>((*frame)[i]), header[i]) << i;
 }
 
@@ -100,8 +100,7 @@ TEST(DeviceFrame, RefusesAPayloadAboveItsLimitAndASmallBuffer) {
   command.payload = Octets{big}.first(max_device_payload_octets);
   EXPECT_TRUE(write_command(room, command));
   for (std::size_t length = 0; length < device_frame_overhead_octets + payload.size(); ++length)
-    EXPECT_EQ(write_command(MutableOctets{room}.first(length), a_command()).error().code,
-              ErrorCode::ResourceExhausted);
+    EXPECT_EQ(write_command(MutableOctets{room}.first(length), a_command()).error().code, ErrorCode::ResourceExhausted);
 }
 
 }  // namespace

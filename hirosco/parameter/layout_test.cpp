@@ -109,7 +109,8 @@ struct Counted;
     std::uint16_t __VA_ARGS__; \
   };
 MEMBERS(1, a)
-MEMBERS(2, a, b) MEMBERS(3, a, b, c) MEMBERS(4, a, b, c, d) MEMBERS(5, a, b, c, d, e) MEMBERS(6, a, b, c, d, e, f)
+MEMBERS(2, a, b)
+MEMBERS(3, a, b, c) MEMBERS(4, a, b, c, d) MEMBERS(5, a, b, c, d, e) MEMBERS(6, a, b, c, d, e, f)
     MEMBERS(7, a, b, c, d, e, f, g) MEMBERS(8, a, b, c, d, e, f, g, h) MEMBERS(9, a, b, c, d, e, f, g, h, i)
         MEMBERS(10, a, b, c, d, e, f, g, h, i, j) MEMBERS(11, a, b, c, d, e, f, g, h, i, j, k)
             MEMBERS(12, a, b, c, d, e, f, g, h, i, j, k, l) MEMBERS(13, a, b, c, d, e, f, g, h, i, j, k, l, m)

@@ -22,7 +22,8 @@ constexpr std::int64_t max_seconds = std::numeric_limits<std::int64_t>::max() / 
 
 /// Rounds up: the first nanosecond of the interval that the fraction stands for.
 [[nodiscard]] constexpr std::int64_t ns_of(std::uint64_t fine, unsigned bits) noexcept {
-  return static_cast<std::int64_t>((fine * static_cast<std::uint64_t>(second_ns) + (std::uint64_t{1} << bits) - 1) >> bits);
+  return static_cast<std::int64_t>((fine * static_cast<std::uint64_t>(second_ns) + (std::uint64_t{1} << bits) - 1) >>
+                                   bits);
 }
 
 void put_big_endian(MutableOctets to, std::uint64_t value) noexcept {
@@ -36,7 +37,8 @@ void put_big_endian(MutableOctets to, std::uint64_t value) noexcept {
 }
 
 [[nodiscard]] bool supported(const CucFormat& format) noexcept {
-  return format.coarse_octets >= 1 && format.coarse_octets <= max_coarse_octets && format.fine_octets <= max_fine_octets;
+  return format.coarse_octets >= 1 && format.coarse_octets <= max_coarse_octets &&
+         format.fine_octets <= max_fine_octets;
 }
 
 /// One octet, or two when a count exceeds what the first can say.

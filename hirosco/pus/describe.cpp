@@ -25,11 +25,11 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
   for (std::uint16_t i = 0; i < field.count; ++i) {
     const double value = get_number(reader, field.type);
     if (i != 0) text.append(",");
-    const auto enumeration = std::ranges::find(subsystem.enumerations, field.enumeration, &descriptor::Enumeration::name);
+    const auto enumeration =
+        std::ranges::find(subsystem.enumerations, field.enumeration, &descriptor::Enumeration::name);
     if (!field.enumeration.empty() && enumeration != subsystem.enumerations.end()) {
-      const auto named = std::ranges::find_if(enumeration->texts, [&](const auto& entry) {
-        return static_cast<double>(entry.value) == value;
-      });
+      const auto named = std::ranges::find_if(
+          enumeration->texts, [&](const auto& entry) { return static_cast<double>(entry.value) == value; });
       if (named != enumeration->texts.end()) {
         text.append(named->text);
         continue;
@@ -47,8 +47,10 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
 }
 
 /// Stages of ST[01] by subtype.
-constexpr std::array<std::string_view, 11> stages{"", "accepted", "not accepted", "started", "start failed", "progress",
-                                                  "progress failed", "completed", "completion failed", "", "not routed"};
+constexpr std::array<std::string_view, 11> stages{
+    "",          "accepted",        "not accepted", "started",           "start failed",
+    "progress",  "progress failed", "completed",    "completion failed", "",
+    "not routed"};
 
 }  // namespace
 
@@ -88,7 +90,8 @@ std::string PacketDescriber::describe_telecommand(const TelecommandView& telecom
   const auto call = decode_call(subsystem->functions, telecommand.application_data(), common);
   if (!call) return text.append(" (").append(to_text(call.error().notice.code())).append(")");
   const bool built_in = call->function >= first_built_in_function;
-  const auto& function = built_in ? common[call->function - first_built_in_function] : subsystem->functions[call->function];
+  const auto& function =
+      built_in ? common[call->function - first_built_in_function] : subsystem->functions[call->function];
   text.append(" ").append(function.name);
   std::size_t next = 0;
   for (const auto& argument : function.arguments) {

@@ -19,7 +19,8 @@ class Downlink final : public pus::TelemetrySink {
     counters_.stamp(header);
     std::array<std::byte, pus::max_telemetry_octets> buffer;
     const auto packet = pus::write_telemetry(buffer, header, data);
-    if (packet) std::printf("TM[%d,%d] packet %d, %zu octets\n", service, subtype, header.sequence_count, packet->size());
+    if (packet)
+      std::printf("TM[%d,%d] packet %d, %zu octets\n", service, subtype, header.sequence_count, packet->size());
   }
 
  private:
@@ -31,7 +32,8 @@ class Downlink final : public pus::TelemetrySink {
 int main() {
   // [ping]
   std::array<std::byte, 64> buffer;
-  const auto packet = pus::write_telecommand(buffer, {.apid = 10, .ack = pus::ack_all, .service = 17, .subtype = 1}, {});
+  const auto packet =
+      pus::write_telecommand(buffer, {.apid = 10, .ack = pus::ack_all, .service = 17, .subtype = 1}, {});
   const auto telecommand = pus::TelecommandView::parse(packet.value());
 
   Downlink downlink;

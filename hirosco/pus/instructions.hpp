@@ -32,7 +32,8 @@ inline constexpr std::size_t max_instructions = 255;   ///< a count N is one oct
 
 /// Reads the count of a list N x (fixed size) whose N must be 1 or more and must fill `data` exactly; the notice is that
 /// of acceptance.
-[[nodiscard]] inline std::expected<std::size_t, FailureNotice> list_count(Octets data, std::size_t octets_each) noexcept {
+[[nodiscard]] inline std::expected<std::size_t, FailureNotice> list_count(Octets data,
+                                                                          std::size_t octets_each) noexcept {
   if (data.empty()) return std::unexpected{FailureNotice{FailureCode::DataLength}};
   const auto count = std::to_integer<std::size_t>(data[0]);
   if (data.size() != 1 + count * octets_each) return std::unexpected{FailureNotice{FailureCode::DataLength}};

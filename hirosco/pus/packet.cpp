@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/packet.hpp"
 
-#include "hirosco/utilities/crc16.hpp"
 #include "hirosco/pus/cuc.hpp"
+#include "hirosco/utilities/crc16.hpp"
 
 namespace hirosco::pus {
 namespace {

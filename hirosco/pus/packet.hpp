@@ -16,8 +16,8 @@
 namespace hirosco::pus {
 
 inline constexpr std::size_t primary_header_octets = 6;
-inline constexpr std::size_t telecommand_overhead_octets = 13;   ///< headers and error control
-inline constexpr std::size_t telemetry_overhead_octets = 22;     ///< headers, time and error control
+inline constexpr std::size_t telecommand_overhead_octets = 13;  ///< headers and error control
+inline constexpr std::size_t telemetry_overhead_octets = 22;  ///< headers, time and error control
 inline constexpr std::size_t max_telecommand_octets = 4096;
 inline constexpr std::size_t max_telemetry_octets = 4096;
 inline constexpr std::uint16_t idle_apid = 2047;
@@ -36,7 +36,7 @@ struct PrimaryHeader {
   std::uint16_t apid{};
   std::uint8_t sequence_flags{};
   std::uint16_t sequence_count{};
-  std::uint16_t data_length{};       ///< octets in the data field minus 1
+  std::uint16_t data_length{};  ///< octets in the data field minus 1
   /// First four octets: the request id of ST[01].
   std::uint32_t request_id{};
 };

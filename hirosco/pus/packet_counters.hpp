@@ -18,11 +18,11 @@ struct CounterBlock {
     std::uint16_t destination;
     std::uint8_t service;
     std::uint8_t subtype;
-    std::uint16_t count;             ///< of the next message
+    std::uint16_t count;  ///< of the next message
     std::uint16_t spare;
   };
-  std::uint32_t used;                ///< entries of `types`
-  std::uint16_t sequence;            ///< of the next packet, modulo 16384
+  std::uint32_t used;  ///< entries of `types`
+  std::uint16_t sequence;  ///< of the next packet, modulo 16384
   std::uint16_t spare;
   std::array<MessageType, max_message_types> types;
 };

@@ -6,8 +6,8 @@
 
 #include <random>
 
-#include "hirosco/utilities/crc16.hpp"
 #include "hirosco/pus/testing/vectors.hpp"
+#include "hirosco/utilities/crc16.hpp"
 
 namespace hirosco::pus {
 namespace {
@@ -98,12 +98,12 @@ struct Expected {
 
 TEST(Telecommand, RefusesTheNegativeVectorsWithTheirCode) {
   constexpr Expected table[] = {
-      {"NEG-01", false, 5, ""},     {"NEG-02", false, 5, ""},     {"NEG-03", true, 3, ""},  {"NEG-04", false, 4, ""},
-      {"NEG-05", true, 3, ""},      {"NEG-06", false, 3, ""},     {"NEG-07", false, 12, ""},
-      {"NEG-08", false, 2, "0007"}, {"NEG-09", false, 2, "0005"}, {"NEG-10", false, 2, "0006"},
-      {"NEG-11", true, 3, ""},      {"NEG-12", false, 2, "0000"}, {"NEG-13", false, -1, ""},
-      {"NEG-14", false, -1, ""},    {"NEG-15", false, -1, ""},    {"NEG-16", false, -1, ""},
-      {"NEG-17", false, -1, ""},    {"NEG-18", true, 3, ""}};
+      {"NEG-01", false, 5, ""},     {"NEG-02", false, 5, ""},     {"NEG-03", true, 3, ""},
+      {"NEG-04", false, 4, ""},     {"NEG-05", true, 3, ""},      {"NEG-06", false, 3, ""},
+      {"NEG-07", false, 12, ""},    {"NEG-08", false, 2, "0007"}, {"NEG-09", false, 2, "0005"},
+      {"NEG-10", false, 2, "0006"}, {"NEG-11", true, 3, ""},      {"NEG-12", false, 2, "0000"},
+      {"NEG-13", false, -1, ""},    {"NEG-14", false, -1, ""},    {"NEG-15", false, -1, ""},
+      {"NEG-16", false, -1, ""},    {"NEG-17", false, -1, ""},    {"NEG-18", true, 3, ""}};
   const auto all = vectors("negative");
   ASSERT_EQ(all.size(), std::size(table));
   for (const auto& expected : table) {

@@ -13,9 +13,7 @@ constexpr std::size_t max_report_octets = 4 + 2 + 2 + FailureNotice::max_data_oc
 void Verification::accepted(const Request& request) {
   if ((request.ack & ack_acceptance) != 0) send(1, request, nullptr, nullptr);
 }
-void Verification::rejected(const Request& request, const FailureNotice& notice) {
-  send(2, request, nullptr, &notice);
-}
+void Verification::rejected(const Request& request, const FailureNotice& notice) { send(2, request, nullptr, &notice); }
 void Verification::started(const Request& request) {
   if ((request.ack & ack_start) != 0) send(3, request, nullptr, nullptr);
 }

@@ -40,14 +40,16 @@ TEST(Verification, ReproducesTheVectorsOfAllNineReports) {
     ASSERT_TRUE(view.has_value()) << vector.id;
     RecordingSink sink;
     Verification verification{sink};
-    const auto id = static_cast<std::uint32_t>(std::stoul(vector.fields.at("request_id").get<std::string>(), nullptr, 16));
+    const auto id =
+        static_cast<std::uint32_t>(std::stoul(vector.fields.at("request_id").get<std::string>(), nullptr, 16));
     report(verification, view->subtype(), {id, view->destination(), ack_all}, vector.fields);
     ASSERT_EQ(sink.reports.size(), 1U) << vector.id;
     TelemetryHeader header = telemetry_header(vector.fields);
     header.service = sink.reports[0].service;
     header.subtype = sink.reports[0].subtype;
     Bytes buffer(64);
-    EXPECT_EQ(to_hex(write_telemetry(buffer, header, sink.reports[0].data).value()), to_hex(vector.octets)) << vector.id;
+    EXPECT_EQ(to_hex(write_telemetry(buffer, header, sink.reports[0].data).value()), to_hex(vector.octets))
+        << vector.id;
   }
 }
 
@@ -108,8 +110,8 @@ TEST_F(Instructions, StartAndCompleteWhenAllAreValid) {
 TEST_F(Instructions, ExecuteTheValidOnesAndEndInPartWhenSomeAreNot) {
   run(3, 1);
   EXPECT_THAT(executed, ElementsAre(0));
-  EXPECT_THAT(sink.take(), ElementsAre("1.4 180ac0010101010000004d", "1.4 180ac0010101020000004d",
-                                       "1.8 180ac00102010102"));
+  EXPECT_THAT(sink.take(),
+              ElementsAre("1.4 180ac0010101010000004d", "1.4 180ac0010101020000004d", "1.8 180ac00102010102"));
 }
 
 TEST_F(Instructions, EndWithTheStartFailuresWhenNoneIsValid) {

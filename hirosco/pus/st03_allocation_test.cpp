@@ -33,10 +33,30 @@ TEST(HousekeepingCycle, NeverUsesTheHeapWhateverTheServiceAsksOfIt) {
     for (int i = 0; i < 10; ++i) sampler.tick(*memory, *memory);
     return scope.count();
   };
-  const std::pair<std::uint8_t, const char*> requests[] = {
-      {1, "0001" "00000002" "00" "01" "0002" "01" "00020100"},   // create
-      {1, "0002" "00000001" "01" "00020100" "00"}, {5, "020001" "0002"}, {27, "010001"}, {31, "01" "0001" "00000004"},
-      {6, "010002"}, {3, "010002"}};
+  const std::pair<std::uint8_t, const char*> requests[] = {{1,
+                                                            "0001"
+                                                            "00000002"
+                                                            "00"
+                                                            "01"
+                                                            "0002"
+                                                            "01"
+                                                            "00020100"},   // create
+                                                           {1,
+                                                            "0002"
+                                                            "00000001"
+                                                            "01"
+                                                            "00020100"
+                                                            "00"},
+                                                           {5,
+                                                            "020001"
+                                                            "0002"},
+                                                           {27, "010001"},
+                                                           {31,
+                                                            "01"
+                                                            "0001"
+                                                            "00000004"},
+                                                           {6, "010002"},
+                                                           {3, "010002"}};
   for (const auto& [subtype, hex] : requests) {
     send(service, subtype, hex, 0);
     EXPECT_EQ(run(), AllocationCount{}) << int{subtype};

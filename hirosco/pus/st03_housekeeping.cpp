@@ -56,7 +56,8 @@ HousekeepingService::HousekeepingService(const descriptor::Subsystem& subsystem,
     : subsystem_{subsystem}, sampler_{sampler}, verification_{verification}, sink_{sink} {
   const auto add = [this](Type layout, std::uint8_t id, std::size_t parameter, int member, std::size_t octets) {
     values_.push_back({ParameterId{subsystem_.id, layout, id}.wire(), static_cast<std::uint16_t>(parameter),
-                       static_cast<std::int16_t>(member), static_cast<std::uint16_t>(std::min<std::size_t>(octets, UINT16_MAX))});
+                       static_cast<std::int16_t>(member),
+                       static_cast<std::uint16_t>(std::min<std::size_t>(octets, UINT16_MAX))});
   };
   for (std::size_t i = 0; i < subsystem.parameters.size(); ++i) {
     const auto& parameter = subsystem.parameters[i];
@@ -116,8 +117,7 @@ Result<> HousekeepingService::load_one(const HousekeepingStructure& declared) {
 
 Result<> HousekeepingService::clear() {
   if (sampler_.free_commands() < structures_.size()) return fail(ErrorCode::Unavailable, "housekeeping commands");
-  for (const auto& structure : structures_)
-    sampler_.send(HousekeepingSampler::Command::Kind::Remove, structure.slot);
+  for (const auto& structure : structures_) sampler_.send(HousekeepingSampler::Command::Kind::Remove, structure.slot);
   structures_.clear();
   return ok();
 }
@@ -167,7 +167,8 @@ std::expected<HousekeepingService::Definition, FailureNotice> HousekeepingServic
 }
 
 /// Adds what the definition says; a notice names the position of the bad parameter among all of the request.
-HousekeepingService::Notice HousekeepingService::extend(HousekeepingLayout& layout, const Definition& definition) const {
+HousekeepingService::Notice HousekeepingService::extend(HousekeepingLayout& layout,
+                                                        const Definition& definition) const {
   std::size_t index = 0;
   const auto add = [&](std::vector<SampledValue>& to, std::uint32_t wire) -> Notice {
     const SampledValue* value = find_value(wire);
@@ -203,8 +204,7 @@ void HousekeepingService::create(Octets data, const Request& request) {
   if (!definition) return verification_.rejected(request, definition.error());
   verification_.accepted(request);
   if (find(definition->id) != nullptr)
-    return verification_.start_failed(request,
-                                      instruction_failure(FailureCode::IdentifierExists, 0, definition->id));
+    return verification_.start_failed(request, instruction_failure(FailureCode::IdentifierExists, 0, definition->id));
   HousekeepingLayout layout{definition->id, definition->interval, {}, {}};
   if (const auto notice = extend(layout, *definition)) return verification_.start_failed(request, *notice);
   verification_.started(request);
@@ -352,10 +352,12 @@ void HousekeepingService::report_periodic_properties(Octets data, const Request&
     ++known;
     return std::nullopt;
   };
-  run_instructions(verification_, request, *count, check, [](std::size_t) {}, [&] {
-    buffer[0] = static_cast<std::byte>(known);
-    sink_.report(service_type, properties_report, request.source, Octets{buffer}.first(1 + writer.size()));
-  });
+  run_instructions(
+      verification_, request, *count, check, [](std::size_t) {},
+      [&] {
+        buffer[0] = static_cast<std::byte>(known);
+        sink_.report(service_type, properties_report, request.source, Octets{buffer}.first(1 + writer.size()));
+      });
 }
 
 }  // namespace hirosco::pus

@@ -82,11 +82,13 @@ class HousekeepingSampler {
   /// Reports that found no room in the sink. Thread: any.
   [[nodiscard]] std::uint64_t lost_reports() const noexcept { return lost_reports_.load(std::memory_order_relaxed); }
   /// Values whose source gave another size than declared; they are reported as zeros. Thread: any.
-  [[nodiscard]] std::uint64_t failed_samples() const noexcept { return failed_samples_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t failed_samples() const noexcept {
+    return failed_samples_.load(std::memory_order_relaxed);
+  }
 
  private:
   friend class HousekeepingService;
-  static constexpr std::size_t max_commands = 1024;   ///< several whole requests
+  static constexpr std::size_t max_commands = 1024;  ///< several whole requests
 
   struct Command {
     enum class Kind : std::uint8_t { Install, Remove, Enable, Disable, OneShot, SetInterval };
@@ -98,7 +100,7 @@ class HousekeepingSampler {
   /// A report being filled.
   struct Collection {
     bool active{false};
-    std::uint32_t phase{0};          ///< cycles of the interval that have passed
+    std::uint32_t phase{0};  ///< cycles of the interval that have passed
     std::uint32_t interval{1};
     std::unique_ptr<std::byte[]> buffer;
     void start(std::uint32_t cycles) noexcept;
@@ -111,7 +113,7 @@ class HousekeepingSampler {
     // The cycle's own.
     bool installed{false};
     std::uint32_t interval{0};
-    std::uint16_t one_shots{0};      ///< asked for and not begun
+    std::uint16_t one_shots{0};  ///< asked for and not begun
     Collection periodic;
     Collection one_shot;
   };
@@ -140,9 +142,18 @@ class HousekeepingService final : public Service {
  public:
   static constexpr std::uint8_t service_type = 3;
   enum Subtype : std::uint8_t {
-    create_structure = 1, delete_structures = 3, enable_periodic = 5, disable_periodic = 6, report_structures = 9,
-    structure_report = 10, parameter_report = 25, one_shot = 27, append_parameters = 29, modify_interval = 31,
-    report_properties = 33, properties_report = 35,
+    create_structure = 1,
+    delete_structures = 3,
+    enable_periodic = 5,
+    disable_periodic = 6,
+    report_structures = 9,
+    structure_report = 10,
+    parameter_report = 25,
+    one_shot = 27,
+    append_parameters = 29,
+    modify_interval = 31,
+    report_properties = 33,
+    properties_report = 35,
   };
 
   /// `subsystem` gives the parameters; it and `sampler` outlive the service.
@@ -195,7 +206,7 @@ class HousekeepingService final : public Service {
   HousekeepingSampler& sampler_;
   Verification& verification_;
   TelemetrySink& sink_;
-  std::vector<SampledValue> values_;   ///< every parameter and member
+  std::vector<SampledValue> values_;  ///< every parameter and member
   std::vector<Structure> structures_;
 };
 

@@ -134,10 +134,16 @@ TEST_F(Housekeeping, InterleavesTheValuesOfASetByGroup) {
   load(structure);
   cycle.run(4);
   ASSERT_EQ(cycle.reports.size(), 1U);
-  EXPECT_EQ(to_hex(cycle.reports[0].data), "0001"
-                                           "4010000000000000" "00000002"   // cycle 2: 4.0, 2
-                                           "4020000000000000" "00000004"   // cycle 4: 8.0, 4
-                                           "00000001" "00000002" "00000003" "00000004");
+  EXPECT_EQ(to_hex(cycle.reports[0].data),
+            "0001"
+            "4010000000000000"
+            "00000002"   // cycle 2: 4.0, 2
+            "4020000000000000"
+            "00000004"   // cycle 4: 8.0, 4
+            "00000001"
+            "00000002"
+            "00000003"
+            "00000004");
 }
 
 TEST_F(Housekeeping, ReportsAsInTheVectors) {
@@ -164,7 +170,8 @@ TEST_F(Housekeeping, ReportsAsInTheVectors) {
   } source;
   HousekeepingService vectors{subsystem, sampler, verification, sink};
   handle(vectors, vector_of("st03", "ST03-A").octets);
-  EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac068", "1.4 180ac0680105000000012c")) << "10 cycles have no 3 equal parts";
+  EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac068", "1.4 180ac0680105000000012c"))
+      << "10 cycles have no 3 equal parts";
   // The same with 12 cycles.
   send(vectors, 1, "012c0000000c0200010001000100020100030100010010", 0);
   handle(vectors, vector_of("st03", "ST03-B").octets);
@@ -196,7 +203,11 @@ TEST_F(Housekeeping, AnnouncingMoreStructuresThanItCarriesIsRejected) {
 }
 
 TEST_F(Housekeeping, CreatedBeginsDisabledAndRunsFromItsEnabling) {
-  send(service, 1, std::string{"0064" "00000004" "01"} + state_member + "00");
+  send(service, 1,
+       std::string{"0064"
+                   "00000004"
+                   "01"} +
+           state_member + "00");
   EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.3 180ac001", "1.7 180ac001"));
   cycle.run(10);
   EXPECT_THAT(cycle.reports, IsEmpty());
@@ -229,10 +240,19 @@ TEST_F(Housekeeping, DiscardsAnUnfinishedReportWhenDisabled) {
 TEST_F(Housekeeping, ChangesItsIntervalAtTheNextBoundary) {
   load(listing_2(1, 4, 2));
   cycle.run(5);
-  EXPECT_THAT(ask(31, "01" "0001" "00000006"), IsEmpty());
+  EXPECT_THAT(ask(31,
+                  "01"
+                  "0001"
+                  "00000006"),
+              IsEmpty());
   cycle.run(15);
   EXPECT_THAT(cycle.take_cycles(), ElementsAre(4, 8, 14, 20));
-  EXPECT_THAT(ask(31, "02" "0001" "00000005" "0001" "00000000"),
+  EXPECT_THAT(ask(31,
+                  "02"
+                  "0001"
+                  "00000005"
+                  "0001"
+                  "00000000"),
               ElementsAre("1.4 180ac00101050000000001", "1.4 180ac00101050100000001"));
 }
 
@@ -244,7 +264,10 @@ TEST_F(Housekeeping, GivesOneShotsBesideThePeriodicReports) {
   repeated.enabled = false;
   load(repeated);
   cycle.run(3);
-  EXPECT_THAT(ask(27, "020001" "0002"), IsEmpty());
+  EXPECT_THAT(ask(27,
+                  "020001"
+                  "0002"),
+              IsEmpty());
   cycle.run(17);
   std::vector<std::pair<int, int>> seen;
   for (const auto& report : cycle.reports) seen.emplace_back(report.cycle, report.structure);
@@ -259,7 +282,10 @@ TEST_F(Housekeeping, GivesAsManyOneShotsAsWereAskedFor) {
   HousekeepingStructure structure = listing_2(1, 3, 3);
   structure.enabled = false;
   load(structure);
-  EXPECT_THAT(ask(27, "020001" "0001"), IsEmpty());
+  EXPECT_THAT(ask(27,
+                  "020001"
+                  "0001"),
+              IsEmpty());
   cycle.run(20);
   EXPECT_THAT(cycle.take_cycles(), ElementsAre(3, 6));
 }
@@ -268,24 +294,103 @@ TEST_F(Housekeeping, CreationIsRejectedWhole) {
   load(listing_2(1, 10, 1));
   const std::string state{state_member};
   const std::string whole{cur_values};
-  EXPECT_THAT(ask(1, "0001" "00000004" "01" + state + "00"), ElementsAre("1.4 180ac00101020000000001")) << "exists";
-  EXPECT_THAT(ask(1, "0002" "00000004" "02" + state + "000206ff" "00"), ElementsAre("1.4 180ac001010101000206ff"));
-  EXPECT_THAT(ask(1, "0002" "00000004" "02" + state + state + "00"), ElementsAre("1.4 180ac001010201" + state));
-  EXPECT_THAT(ask(1, "0002" "00000004" "01" + state + "01" "0002" "01" + state), ElementsAre("1.4 180ac001010201" + state));
-  EXPECT_THAT(ask(1, "0002" "00000000" "01" + state + "00"), ElementsAre("1.4 180ac00101050000000002")) << "interval 0";
-  EXPECT_THAT(ask(1, "0002" "00000004" "00" "01" "0000" "01" + state), ElementsAre("1.4 180ac00101050000000002"));
-  EXPECT_THAT(ask(1, "0002" "00000004" "00" "01" "0003" "01" + state), ElementsAre("1.4 180ac00101050000000002"));
-  EXPECT_THAT(ask(1, "0002" "00000400" "00" "01" "0400" "01" + state), ElementsAre("1.4 180ac001010400")) << "too long";
+  EXPECT_THAT(ask(1,
+                  "0001"
+                  "00000004"
+                  "01" +
+                      state + "00"),
+              ElementsAre("1.4 180ac00101020000000001"))
+      << "exists";
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000004"
+                  "02" +
+                      state +
+                      "000206ff"
+                      "00"),
+              ElementsAre("1.4 180ac001010101000206ff"));
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000004"
+                  "02" +
+                      state + state + "00"),
+              ElementsAre("1.4 180ac001010201" + state));
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000004"
+                  "01" +
+                      state +
+                      "01"
+                      "0002"
+                      "01" +
+                      state),
+              ElementsAre("1.4 180ac001010201" + state));
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000000"
+                  "01" +
+                      state + "00"),
+              ElementsAre("1.4 180ac00101050000000002"))
+      << "interval 0";
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000004"
+                  "00"
+                  "01"
+                  "0000"
+                  "01" +
+                      state),
+              ElementsAre("1.4 180ac00101050000000002"));
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000004"
+                  "00"
+                  "01"
+                  "0003"
+                  "01" +
+                      state),
+              ElementsAre("1.4 180ac00101050000000002"));
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000400"
+                  "00"
+                  "01"
+                  "0400"
+                  "01" +
+                      state),
+              ElementsAre("1.4 180ac001010400"))
+      << "too long";
   EXPECT_THAT(ask(33, "010002"), ElementsAre("1.4 180ac00101010000000002")) << "none of them was made";
 }
 
 TEST_F(Housekeeping, CreationIsRejectedAtEveryWrongLengthAndWithoutParameters) {
-  const std::string whole = std::string{"0002" "00000004" "01"} + state_member + "01" "0002" "01" + des_position;
+  const std::string whole =
+      std::string{
+          "0002"
+          "00000004"
+          "01"} +
+      state_member +
+      "01"
+      "0002"
+      "01" +
+      des_position;
   for (std::size_t octets = 0; octets < whole.size() / 2; ++octets)
     EXPECT_THAT(ask(1, whole.substr(0, 2 * octets)), ElementsAre("1.2 180ac0010008")) << octets;
   EXPECT_THAT(ask(1, whole + "00"), ElementsAre("1.2 180ac0010008"));
-  EXPECT_THAT(ask(1, "0002" "00000004" "00" "00"), ElementsAre("1.2 180ac00100090006"));
-  EXPECT_THAT(ask(1, "0002" "00000004" "00" "01" "0001" "00"), ElementsAre("1.2 180ac0010009000a"));
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000004"
+                  "00"
+                  "00"),
+              ElementsAre("1.2 180ac00100090006"));
+  EXPECT_THAT(ask(1,
+                  "0002"
+                  "00000004"
+                  "00"
+                  "01"
+                  "0001"
+                  "00"),
+              ElementsAre("1.2 180ac0010009000a"));
   EXPECT_THAT(ask(1, whole), IsEmpty());
 }
 
@@ -293,7 +398,10 @@ TEST_F(Housekeeping, TakesNoMoreStructuresThanItHasSlotsAndReusesTheDeletedOnes)
   const auto create = [this](int id) {
     Bytes number(2);
     OctetWriter{number}.put(static_cast<std::uint16_t>(id));
-    return ask(1, to_hex(number) + "00000004" "01" + state_member + "00");
+    return ask(1, to_hex(number) +
+                      "00000004"
+                      "01" +
+                      state_member + "00");
   };
   for (int id = 1; id <= 32; ++id) EXPECT_THAT(create(id), IsEmpty()) << id;
   EXPECT_THAT(create(33), ElementsAre("1.4 180ac001010400"));
@@ -311,27 +419,65 @@ TEST_F(Housekeeping, DeletesOnlyWhatIsDisabledAndNotPredefined) {
   HousekeepingStructure disabled = listing_2(2, 10, 1);
   disabled.enabled = false;
   load(disabled);
-  EXPECT_THAT(ask(1, std::string{"0003" "00000004" "01"} + state_member + "00"), IsEmpty());
-  EXPECT_THAT(ask(3, "05" "0001" "0002" "0003" "0003" "0009"),
+  EXPECT_THAT(ask(1, std::string{"0003"
+                                 "00000004"
+                                 "01"} +
+                         state_member + "00"),
+              IsEmpty());
+  EXPECT_THAT(ask(3,
+                  "05"
+                  "0001"
+                  "0002"
+                  "0003"
+                  "0003"
+                  "0009"),
               ElementsAre("1.4 180ac00101030000000001", "1.4 180ac001010701", "1.4 180ac00101010300000003",
                           "1.4 180ac00101010400000009", "1.8 180ac00102010104"));
   EXPECT_THAT(ask(33, "010003"), ElementsAre("1.4 180ac00101010000000003"));
 }
 
 TEST_F(Housekeeping, AppendsToADisabledStructureOnly) {
-  EXPECT_THAT(ask(1, std::string{"0003" "00000004" "01"} + state_member + "00"), IsEmpty());
+  EXPECT_THAT(ask(1, std::string{"0003"
+                                 "00000004"
+                                 "01"} +
+                         state_member + "00"),
+              IsEmpty());
   cycle.run(1);
-  const std::string more = std::string{"0003" "00" "01" "0002" "01"} + des_position;
+  const std::string more =
+      std::string{
+          "0003"
+          "00"
+          "01"
+          "0002"
+          "01"} +
+      des_position;
   EXPECT_THAT(ask(29, more), IsEmpty());
   EXPECT_THAT(ask(29, more), ElementsAre(std::string{"1.4 180ac001010200"} + des_position)) << "already there";
-  EXPECT_THAT(ask(9, "010003"), ElementsAre(std::string{"3.10 0003" "00" "00000004" "01"} + state_member + "01" "0002" "01" +
+  EXPECT_THAT(ask(9, "010003"), ElementsAre(std::string{"3.10 0003"
+                                                        "00"
+                                                        "00000004"
+                                                        "01"} +
+                                            state_member +
+                                            "01"
+                                            "0002"
+                                            "01" +
                                             des_position));
   EXPECT_THAT(ask(5, "010003"), IsEmpty());
-  EXPECT_THAT(ask(29, std::string{"0003" "01"} + cur_values + "00"), ElementsAre("1.4 180ac00101030000000003"));
-  EXPECT_THAT(ask(29, std::string{"0004" "01"} + cur_values + "00"), ElementsAre("1.4 180ac00101010000000004"));
+  EXPECT_THAT(ask(29, std::string{"0003"
+                                  "01"} +
+                          cur_values + "00"),
+              ElementsAre("1.4 180ac00101030000000003"));
+  EXPECT_THAT(ask(29, std::string{"0004"
+                                  "01"} +
+                          cur_values + "00"),
+              ElementsAre("1.4 180ac00101010000000004"));
   cycle.run(4);
   ASSERT_EQ(cycle.reports.size(), 1U);
-  EXPECT_EQ(to_hex(cycle.reports[0].data), "0003" "00000005" "4018000000000000" "4024000000000000");
+  EXPECT_EQ(to_hex(cycle.reports[0].data),
+            "0003"
+            "00000005"
+            "4018000000000000"
+            "4024000000000000");
 }
 
 TEST_F(Housekeeping, IsReplacedByTheStructureOfAConfigurationWithTheSameId) {
@@ -366,7 +512,11 @@ TEST_F(Housekeeping, ReportsZerosForValuesThatCannotBeSampledAndCountsThem) {
   cycle.broken = true;
   cycle.run(1);
   EXPECT_EQ(sampler.failed_samples(), 2U);
-  EXPECT_EQ(to_hex(cycle.reports.at(0).data), "0001" "00000000" "0000000000000000" "0000000000000000");
+  EXPECT_EQ(to_hex(cycle.reports.at(0).data),
+            "0001"
+            "00000000"
+            "0000000000000000"
+            "0000000000000000");
 }
 
 TEST_F(Housekeeping, IsBusyWhileTheCycleTakesNoCommands) {
@@ -374,8 +524,12 @@ TEST_F(Housekeeping, IsBusyWhileTheCycleTakesNoCommands) {
   std::string all = "ff";
   for (int i = 0; i < 255; ++i) all += "0001";
   for (int i = 0; i < 4; ++i) EXPECT_THAT(ask(5, all), IsEmpty()) << i;
-  EXPECT_THAT(ask(5, "010001" ), IsEmpty());
-  EXPECT_THAT(ask(6, "030001" "0001" "0001"), ElementsAre("1.4 180ac0010108", "1.4 180ac0010108", "1.8 180ac00102010102"));
+  EXPECT_THAT(ask(5, "010001"), IsEmpty());
+  EXPECT_THAT(ask(6,
+                  "030001"
+                  "0001"
+                  "0001"),
+              ElementsAre("1.4 180ac0010108", "1.4 180ac0010108", "1.8 180ac00102010102"));
   cycle.run(1);
   EXPECT_THAT(ask(6, "010001"), IsEmpty());
 }

@@ -17,7 +17,8 @@ constexpr std::size_t max_auxiliary_octets = max_telemetry_octets - telemetry_ov
 }
 }  // namespace
 
-EventService::EventService(const std::vector<descriptor::Event>& events, Verification& verification, TelemetrySink& sink)
+EventService::EventService(const std::vector<descriptor::Event>& events, Verification& verification,
+                           TelemetrySink& sink)
     : verification_{verification}, sink_{sink} {
   for (const auto& event : events) {
     std::size_t octets = 0;
@@ -104,7 +105,8 @@ Result<Octets> encode_arguments(const descriptor::Event& event, std::span<const 
       put_number(writer, argument.type, values.front());
       values = values.subspan(1);
     }
-  if (!writer.good()) return fail(ErrorCode::ResourceExhausted, "event buffer", static_cast<std::int64_t>(buffer.size()));
+  if (!writer.good())
+    return fail(ErrorCode::ResourceExhausted, "event buffer", static_cast<std::int64_t>(buffer.size()));
   return writer.written();
 }
 

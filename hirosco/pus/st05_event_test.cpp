@@ -66,7 +66,8 @@ TEST_F(Events, ListTheDisabledOnesAsInTheVector) {
   EXPECT_THAT(sink.take(), ElementsAre("5.8 00"));
   send(service, 6, "0200110012", 0);
   send(service, 7, "", 0);
-  EXPECT_THAT(sink.take(), ElementsAre("5.8 " + vector_of("st05", "ST05-B").fields.at("source_data").get<std::string>()));
+  EXPECT_THAT(sink.take(),
+              ElementsAre("5.8 " + vector_of("st05", "ST05-B").fields.at("source_data").get<std::string>()));
 }
 
 TEST_F(Events, ThatAreUnknownAreRejectedAloneInAList) {

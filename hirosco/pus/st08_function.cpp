@@ -42,7 +42,8 @@ constexpr std::size_t max_arguments = 255;   ///< ids are one octet
 }
 
 [[nodiscard]] bool in_range(const Field& field, double value) noexcept {
-  return std::isfinite(value) && (!field.minimum || value >= *field.minimum) && (!field.maximum || value <= *field.maximum);
+  return std::isfinite(value) && (!field.minimum || value >= *field.minimum) &&
+         (!field.maximum || value <= *field.maximum);
 }
 
 [[nodiscard]] CallFailure at_start(const FailureNotice& notice) noexcept { return {notice, Stage::Start}; }
@@ -170,8 +171,7 @@ std::expected<FunctionCall, CallFailure> decode_call(std::span<const Function> f
   const Octets name = application_data.first(function_name_octets);
   const Found found = find(functions, built_in, name_in(name));
   if (found.function == nullptr)
-    return std::unexpected{
-        at_start(FailureNotice{FailureCode::UnknownIdentifier}.with(std::uint8_t{0}).with(name))};
+    return std::unexpected{at_start(FailureNotice{FailureCode::UnknownIdentifier}.with(std::uint8_t{0}).with(name))};
   const Function& function = *found.function;
   if (value_count(function) > max_function_arguments || function.arguments.size() > max_arguments)
     return std::unexpected{at_start(FailureNotice{FailureCode::CapacityExceeded}.with(std::uint8_t{0}))};

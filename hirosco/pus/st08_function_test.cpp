@@ -42,8 +42,9 @@ constexpr const char* width = "013e800000";                           // argumen
 constexpr const char* speed = "0203";                                 // argument 2 = 3
 
 struct Functions : ::testing::Test {
-  std::vector<Function> functions{gripper(), function("HOLD", {}),
-                                  function("SET", {argument("GAIN", Type::Double, {}, 2), argument("N", Type::Uint64, 1)})};
+  std::vector<Function> functions{
+      gripper(), function("HOLD", {}),
+      function("SET", {argument("GAIN", Type::Double, {}, 2), argument("N", Type::Uint64, 1)})};
   std::string failure(const std::string& hex) {
     const Bytes data = from_hex(hex);
     const auto call = decode_call(functions, data);
@@ -86,9 +87,15 @@ TEST_F(Functions, FailAtAcceptanceForAWrongLengthOnly) {
 }
 
 TEST_F(Functions, FailAtStartForAnUnknownName) {
-  EXPECT_EQ(failure("4e4f4e45000000000000000000000000" "00"), "start 0101004e4f4e45000000000000000000000000");
-  EXPECT_EQ(failure("00000000000000000000000000000000" "00"), "start 01010000000000000000000000000000000000");
-  EXPECT_EQ(failure("484f4c44004100000000000000000000" "00"), "start 010100484f4c44004100000000000000000000")
+  EXPECT_EQ(failure("4e4f4e45000000000000000000000000"
+                    "00"),
+            "start 0101004e4f4e45000000000000000000000000");
+  EXPECT_EQ(failure("00000000000000000000000000000000"
+                    "00"),
+            "start 01010000000000000000000000000000000000");
+  EXPECT_EQ(failure("484f4c44004100000000000000000000"
+                    "00"),
+            "start 010100484f4c44004100000000000000000000")
       << "HOLD and something behind the end";
 }
 
@@ -110,7 +117,12 @@ TEST_F(Functions, RefuseInfinityEvenWithoutARange) {
 }
 
 TEST_F(Functions, RefuseIntegersThatADoubleCannotHold) {
-  const std::string set = "53455400000000000000000000000000" "02" "01" "3ff0000000000000" "4000000000000000";
+  const std::string set =
+      "53455400000000000000000000000000"
+      "02"
+      "01"
+      "3ff0000000000000"
+      "4000000000000000";
   EXPECT_EQ(failure(set + "02" + "0020000000000000"), "good");
   EXPECT_EQ(failure(set + "02" + "0020000000000001"), "start 01050100000002");
   EXPECT_EQ(failure(set + "02" + "ffffffffffffffff"), "start 01050100000002");
@@ -118,17 +130,32 @@ TEST_F(Functions, RefuseIntegersThatADoubleCannotHold) {
 
 TEST_F(Functions, WithMoreValuesThanACallHoldsAreRefused) {
   functions = {function("WIDE", {argument("A", Type::Uint8, {}, 9)})};
-  EXPECT_EQ(failure("57494445000000000000000000000000" "00"), "start 010400");
+  EXPECT_EQ(failure("57494445000000000000000000000000"
+                    "00"),
+            "start 010400");
 }
 
 TEST_F(Functions, OfEverySubsystemHaveIndexesOfTheirOwn) {
   const auto built_in = common_functions();
-  const auto call = decode_call(functions, from_hex("5345545f535441544500000000000000" "01" "0105"), built_in);
+  const auto call = decode_call(functions,
+                                from_hex("5345545f535441544500000000000000"
+                                         "01"
+                                         "0105"),
+                                built_in);
   EXPECT_EQ(call.value().function, set_state_function);
   EXPECT_EQ(call.value().arguments[0], 5);
-  const auto configure = decode_call(functions, from_hex("434f4e46494755524500000000000000" "01" "0107"), built_in);
+  const auto configure = decode_call(functions,
+                                     from_hex("434f4e46494755524500000000000000"
+                                              "01"
+                                              "0107"),
+                                     built_in);
   EXPECT_EQ(configure.value().function, configure_function);
-  EXPECT_FALSE(decode_call(functions, from_hex("5345545f535441544500000000000000" "01" "010a"), built_in).has_value())
+  EXPECT_FALSE(decode_call(functions,
+                           from_hex("5345545f535441544500000000000000"
+                                    "01"
+                                    "010a"),
+                           built_in)
+                   .has_value())
       << "there is no tenth state";
 }
 
@@ -191,17 +218,20 @@ TEST_F(FunctionRequests, AreAcceptedAndSubmittedAndTheRestIsLeftToTheOwner) {
 
 TEST_F(FunctionRequests, ThatTheExecutorRefusesFailToStart) {
   executor.full = true;
-  send(service, 1, "484f4c44000000000000000000000000" "00");
+  send(service, 1,
+       "484f4c44000000000000000000000000"
+       "00");
   EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac0010108"));
 }
 
 TEST_F(FunctionRequests, ThatAreBadNeverReachTheExecutor) {
   send(service, 1, "484f4c44000000000000000000000000");
-  send(service, 1, "484f4c45000000000000000000000000" "00");
+  send(service, 1,
+       "484f4c45000000000000000000000000"
+       "00");
   send(service, 2, "");
-  EXPECT_THAT(sink.take(),
-              ElementsAre("1.2 180ac0010008", "1.1 180ac001", "1.4 180ac001010100484f4c45000000000000000000000000",
-                          "1.2 180ac00100070802"));
+  EXPECT_THAT(sink.take(), ElementsAre("1.2 180ac0010008", "1.1 180ac001",
+                                       "1.4 180ac001010100484f4c45000000000000000000000000", "1.2 180ac00100070802"));
   EXPECT_THAT(executor.calls, IsEmpty());
 }
 

@@ -56,9 +56,9 @@ template <class E>
 [[nodiscard]] std::optional<Refusal> check_rates(Duration producer, Duration consumer) {
   const bool positive = producer.count() > 0 && consumer.count() > 0;
   if (positive && (producer % consumer == Duration{} || consumer % producer == Duration{})) return std::nullopt;
-  return Refusal{static_cast<std::uint8_t>(Item::Rate),
-                 "rate: consumer " + std::to_string(consumer.count()) + " ns, producer " +
-                     std::to_string(producer.count()) + " ns"};
+  return Refusal{static_cast<std::uint8_t>(Item::Rate), "rate: consumer " + std::to_string(consumer.count()) +
+                                                            " ns, producer " + std::to_string(producer.count()) +
+                                                            " ns"};
 }
 
 [[nodiscard]] std::optional<Refusal> check_fields(const std::vector<OfferedField>& producer,
@@ -268,7 +268,8 @@ std::uint64_t Agreement::layout_hash() const noexcept {
 std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer) {
   const auto method = first_common(Item::Method, "method", producer.terms.methods, consumer.terms.methods);
   if (!method) return std::unexpected{method.error()};
-  const auto order = first_common(Item::ByteOrder, "byte order", producer.terms.byte_orders, consumer.terms.byte_orders);
+  const auto order =
+      first_common(Item::ByteOrder, "byte order", producer.terms.byte_orders, consumer.terms.byte_orders);
   if (!order) return std::unexpected{order.error()};
   const auto kind = first_common(Item::Kind, "kind", producer.terms.kinds, consumer.terms.kinds);
   if (!kind) return std::unexpected{kind.error()};

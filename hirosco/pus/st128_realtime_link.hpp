@@ -28,8 +28,15 @@ namespace hirosco::pus::st128 {
 
 inline constexpr std::uint8_t service_type = 128;
 enum Subtype : std::uint8_t {
-  request_offer = 1, negotiate_terms = 2, attach = 3, detach = 4,
-  offer = 129, agreement = 130, refusal = 131, attached = 132, detached = 133,
+  request_offer = 1,
+  negotiate_terms = 2,
+  attach = 3,
+  detach = 4,
+  offer = 129,
+  agreement = 130,
+  refusal = 131,
+  attached = 132,
+  detached = 133,
 };
 enum class Role : std::uint8_t { Producer = 1, Consumer = 2 };
 
@@ -43,7 +50,7 @@ struct OfferedField {
 /// What one side brings to the handshake: its fields and what it can do, in order of preference.
 struct Offer {
   std::string set;
-  Duration period{};                 ///< sampling time of the configuration
+  Duration period{};  ///< sampling time of the configuration
   descriptor::LinkTerms terms;
   std::vector<OfferedField> fields;
 };
@@ -57,13 +64,13 @@ struct Agreement {
   Duration consumer_period{};
   std::vector<OfferedField> fields;  ///< the producer's, packed in this order on the link
   [[nodiscard]] std::uint32_t payload_octets() const noexcept;
-  [[nodiscard]] std::uint64_t layout_hash() const noexcept;   ///< FNV-1a 64 over fields, order, kind
+  [[nodiscard]] std::uint64_t layout_hash() const noexcept;  ///< FNV-1a 64 over fields, order, kind
 };
 
 /// Why there is nothing common. `item`: 0 method, 1 byte order, 2 kind, 3 rate, 4 field.
 struct Refusal {
   std::uint8_t item{};
-  std::string text;                  ///< "field POSITION: consumer FLOAT[2], producer DOUBLE[2]"
+  std::string text;  ///< "field POSITION: consumer FLOAT[2], producer DOUBLE[2]"
 };
 
 /// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
@@ -76,17 +83,39 @@ struct Refusal {
 [[nodiscard]] Result<std::size_t> write_offer(MutableOctets to, std::uint8_t link, const Offer& offer);
 [[nodiscard]] Result<std::size_t> write_agreement(MutableOctets to, std::uint8_t link, const Agreement& agreement);
 [[nodiscard]] Result<std::size_t> write_refusal(MutableOctets to, std::uint8_t link, const Refusal& refusal);
-struct LinkOffer { std::uint8_t link{}; Offer offer; };
-struct LinkAgreement { std::uint8_t link{}; Agreement agreement; };
-struct LinkRefusal { std::uint8_t link{}; Refusal refusal; };
+struct LinkOffer {
+  std::uint8_t link{};
+  Offer offer;
+};
+struct LinkAgreement {
+  std::uint8_t link{};
+  Agreement agreement;
+};
+struct LinkRefusal {
+  std::uint8_t link{};
+  Refusal refusal;
+};
 [[nodiscard]] Result<LinkOffer> read_offer(Octets data);
 [[nodiscard]] Result<LinkAgreement> read_agreement(Octets data);
 [[nodiscard]] Result<LinkRefusal> read_refusal(Octets data);
 
 /// TC[128,1]: link id u8, set name.  TC[128,2]: link id u8, producer's set name, then the consumer's offer data whole.
-struct OfferRequest { std::uint8_t link{}; std::string set; };
-struct TermsRequest { std::uint8_t link{}; std::string set; Offer consumer; };
-struct AttachRequest { std::uint8_t link{}; Role role{}; std::uint32_t epoch{}; std::string set; Agreement agreement; };
+struct OfferRequest {
+  std::uint8_t link{};
+  std::string set;
+};
+struct TermsRequest {
+  std::uint8_t link{};
+  std::string set;
+  Offer consumer;
+};
+struct AttachRequest {
+  std::uint8_t link{};
+  Role role{};
+  std::uint32_t epoch{};
+  std::string set;
+  Agreement agreement;
+};
 [[nodiscard]] Result<std::size_t> write_offer_request(MutableOctets to, const OfferRequest& request);
 [[nodiscard]] Result<std::size_t> write_terms_request(MutableOctets to, const TermsRequest& request);
 [[nodiscard]] Result<std::size_t> write_attach_request(MutableOctets to, const AttachRequest& request);

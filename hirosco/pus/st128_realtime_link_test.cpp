@@ -151,10 +151,25 @@ TEST(LinkMessages, HaveTheOctetsWrittenHere) {
   Bytes buffer(256);
   const Offer offer{"AB", 1ms, {{Shm, Method::Udp}, {Little}, {Latest}}, {{"P", Type::Double, 2}}};
   const auto used = write_terms_request(buffer, {7, "CD", offer});
-  EXPECT_EQ(to_hex(Octets{buffer}.first(used.value())), "07" "024344" "07" "024142" "00000000000f4240" "020102" "0101"
-                                                        "0101" "01" "0150" "0a" "0002");
+  EXPECT_EQ(to_hex(Octets{buffer}.first(used.value())),
+            "07"
+            "024344"
+            "07"
+            "024142"
+            "00000000000f4240"
+            "020102"
+            "0101"
+            "0101"
+            "01"
+            "0150"
+            "0a"
+            "0002");
   const auto refused = write_refusal(buffer, 7, {4, "field P"});
-  EXPECT_EQ(to_hex(Octets{buffer}.first(refused.value())), "07" "04" "07" "6669656c642050");
+  EXPECT_EQ(to_hex(Octets{buffer}.first(refused.value())),
+            "07"
+            "04"
+            "07"
+            "6669656c642050");
 }
 
 /// Every message: written once, read again by `read`, refused at every truncation and with an octet too many, and
@@ -248,7 +263,10 @@ TEST(LinkMessages, CarryTheConsumersOfferWhole) {
   // The supervisor copies TM[128,129] behind link id and set name without looking at it.
   Bytes buffer(256);
   const auto used = write_offer(buffer, 9, full_offer());
-  Bytes relayed = from_hex("09" "0343" "4d44");
+  Bytes relayed = from_hex(
+      "09"
+      "0343"
+      "4d44");
   relayed.insert(relayed.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(used.value()));
   const auto terms = read_terms_request(relayed);
   ASSERT_TRUE(terms.has_value());

@@ -42,10 +42,12 @@ void ParameterService::report(Octets data, const Request& request) {
     ++known;
     return std::nullopt;
   };
-  run_instructions(verification_, request, *count, check, [](std::size_t) {}, [&] {
-    buffer[0] = static_cast<std::byte>(known);
-    sink_.report(service_type, value_report, request.source, Octets{buffer}.first(used));
-  });
+  run_instructions(
+      verification_, request, *count, check, [](std::size_t) {},
+      [&] {
+        buffer[0] = static_cast<std::byte>(known);
+        sink_.report(service_type, value_report, request.source, Octets{buffer}.first(used));
+      });
 }
 
 void ParameterService::set(Octets data, const Request& request) {
@@ -86,8 +88,8 @@ void ParameterService::execute_writes(std::span<const ParameterAccess::Write> as
     return verification_.completed(request);
   }
   verification_.completion_failed(request, FailureNotice{FailureCode::ExecutedInPart}
-                                              .with(static_cast<std::uint8_t>(executed))
-                                              .with(static_cast<std::uint8_t>(asked.size() - executed)));
+                                               .with(static_cast<std::uint8_t>(executed))
+                                               .with(static_cast<std::uint8_t>(asked.size() - executed)));
 }
 
 }  // namespace hirosco::pus

@@ -17,8 +17,10 @@ using ::testing::IsEmpty;
 
 /// Parameters in memory; a value that begins with ff is not acceptable, id 5 is read-only, id 6 cannot be read.
 struct Values final : ParameterAccess {
-  std::map<std::uint32_t, Bytes> values{{0x00010001, from_hex("03e8")}, {0x00010002, from_hex("3fc00000")},
-                                        {5, from_hex("05")},            {6, from_hex("06")},
+  std::map<std::uint32_t, Bytes> values{{0x00010001, from_hex("03e8")},
+                                        {0x00010002, from_hex("3fc00000")},
+                                        {5, from_hex("05")},
+                                        {6, from_hex("06")},
                                         {7, Bytes(4000)}};
   bool full{false};
   int snapshots{0};
@@ -50,9 +52,10 @@ struct ParameterRequests : ::testing::Test {
 
 TEST_F(ParameterRequests, ReportValuesAsInTheVectors) {
   handle(service, vector_of("st20", "ST20-A").octets);
-  EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac08a",
-                                       "20.2 " + vector_of("st20", "ST20-B").fields.at("source_data").get<std::string>(),
-                                       "1.7 180ac08a"));
+  EXPECT_THAT(
+      sink.take(),
+      ElementsAre("1.1 180ac08a", "20.2 " + vector_of("st20", "ST20-B").fields.at("source_data").get<std::string>(),
+                  "1.7 180ac08a"));
   EXPECT_EQ(values.snapshots, 1);
 }
 
@@ -63,19 +66,28 @@ TEST_F(ParameterRequests, SetAValueAsInTheVector) {
 }
 
 TEST_F(ParameterRequests, ReportTheKnownOnesAndRejectTheOthers) {
-  send(service, 1, "03" "000100ff" "00010001" "00000006");
-  EXPECT_THAT(sink.take(),
-              ElementsAre("1.1 180ac001", "1.4 180ac001010100000100ff", "1.4 180ac001010702", "20.2 010001000103e8",
-                          "1.8 180ac00102010102"));
+  send(service, 1,
+       "03"
+       "000100ff"
+       "00010001"
+       "00000006");
+  EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac001010100000100ff", "1.4 180ac001010702",
+                                       "20.2 010001000103e8", "1.8 180ac00102010102"));
 }
 
 TEST_F(ParameterRequests, SendNoReportWhenNoneIsKnown) {
-  send(service, 1, "01" "00000063");
+  send(service, 1,
+       "01"
+       "00000063");
   EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac00101010000000063"));
 }
 
 TEST_F(ParameterRequests, RejectWhatDoesNotFitOnePacket) {
-  send(service, 1, "02" "00000007" "00000007", 0);
+  send(service, 1,
+       "02"
+       "00000007"
+       "00000007",
+       0);
   ASSERT_EQ(sink.reports.size(), 3U);
   EXPECT_EQ(sink.reports[0].text(), "1.4 180ac001010401");
   EXPECT_EQ(sink.reports[1].data.size(), 4005U);
@@ -83,33 +95,55 @@ TEST_F(ParameterRequests, RejectWhatDoesNotFitOnePacket) {
 }
 
 TEST_F(ParameterRequests, SetNothingWhenAnyIdIsUnknown) {
-  send(service, 3, "02" "00010001" "1234" "00000063" "01");
+  send(service, 3,
+       "02"
+       "00010001"
+       "1234"
+       "00000063"
+       "01");
   EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac00101010100000063"));
   EXPECT_EQ(to_hex(values.values[0x00010001]), "03e8");
 }
 
 TEST_F(ParameterRequests, SetTheAcceptableValuesAndRejectTheOthers) {
-  send(service, 3, "03" "00010001" "1234" "00000005" "01" "00010002" "ff000000");
-  EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac001010701", "1.4 180ac00101050200010002",
-                                       "1.8 180ac00102010102"));
+  send(service, 3,
+       "03"
+       "00010001"
+       "1234"
+       "00000005"
+       "01"
+       "00010002"
+       "ff000000");
+  EXPECT_THAT(sink.take(),
+              ElementsAre("1.1 180ac001", "1.4 180ac001010701", "1.4 180ac00101050200010002", "1.8 180ac00102010102"));
   EXPECT_EQ(to_hex(values.values[0x00010001]), "1234");
   EXPECT_EQ(to_hex(values.values[0x00010002]), "3fc00000");
 }
 
 TEST_F(ParameterRequests, FailToStartWhenTheCycleCannotTakeThem) {
   values.full = true;
-  send(service, 3, "01" "00010001" "1234");
+  send(service, 3,
+       "01"
+       "00010001"
+       "1234");
   EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac0010108"));
 }
 
 TEST_F(ParameterRequests, AreRejectedAtEveryWrongLength) {
-  const std::string set = "02" "00010001" "1234" "00010002" "40000000";
+  const std::string set =
+      "02"
+      "00010001"
+      "1234"
+      "00010002"
+      "40000000";
   for (std::size_t octets = 0; octets < set.size() / 2; ++octets) {
     send(service, 3, set.substr(0, 2 * octets));
     EXPECT_THAT(sink.take(), ElementsAre("1.2 180ac0010008")) << octets;
   }
   send(service, 3, set + "00");
-  send(service, 1, "02" "00010001");
+  send(service, 1,
+       "02"
+       "00010001");
   send(service, 3, "00");
   send(service, 1, "00");
   send(service, 4, "");

@@ -16,7 +16,8 @@ Result<PoolPlan> plan_pools(std::span<const PoolSpec> specs, unsigned warning_pe
   PoolPlan plan;
   for (const PoolSpec& spec : specs) {
     if (spec.block_octets == 0 || spec.block_octets > limit)
-      return fail(ErrorCode::InvalidArgument, "octets of a pool's blocks", static_cast<std::int64_t>(spec.block_octets));
+      return fail(ErrorCode::InvalidArgument, "octets of a pool's blocks",
+                  static_cast<std::int64_t>(spec.block_octets));
     const std::size_t octets = rounded_up(spec.block_octets, block_alignment);
     if (spec.count == 0 || spec.count > std::min(max_blocks_of_pool, limit / octets))
       return fail(ErrorCode::InvalidArgument, "count of a pool's blocks", static_cast<std::int64_t>(spec.count));
@@ -26,7 +27,8 @@ Result<PoolPlan> plan_pools(std::span<const PoolSpec> specs, unsigned warning_pe
   std::ranges::sort(plan.pools, {}, &PoolSpec::block_octets);
   const auto twice = std::ranges::adjacent_find(plan.pools, {}, &PoolSpec::block_octets);
   if (twice != plan.pools.end())
-    return fail(ErrorCode::AlreadyExists, "two pools of one block size", static_cast<std::int64_t>(twice->block_octets));
+    return fail(ErrorCode::AlreadyExists, "two pools of one block size",
+                static_cast<std::int64_t>(twice->block_octets));
   return plan;
 }
 
@@ -35,7 +37,8 @@ void ArenaFree::operator()(std::byte* arena) const noexcept {
 }
 
 Arena make_arena(std::size_t octets) noexcept {
-  auto* const arena = static_cast<std::byte*>(::operator new[](octets, std::align_val_t{max_block_alignment}, std::nothrow));
+  auto* const arena =
+      static_cast<std::byte*>(::operator new[](octets, std::align_val_t{max_block_alignment}, std::nothrow));
   if (arena != nullptr) std::memset(arena, 0, octets);
   return Arena{arena};
 }

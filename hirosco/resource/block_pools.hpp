@@ -53,7 +53,7 @@ namespace detail {
 
 struct PoolPlan {
   std::vector<PoolSpec> pools;  ///< ascending block sizes, rounded
-  std::size_t octets{0};        ///< of all blocks, each pool rounded up to max_block_alignment
+  std::size_t octets{0};  ///< of all blocks, each pool rounded up to max_block_alignment
 };
 /// Refuses no pools, empty ones, two of one size and sizes beyond counting.
 [[nodiscard]] Result<PoolPlan> plan_pools(std::span<const PoolSpec> specs, unsigned warning_percent);
@@ -132,8 +132,7 @@ class BasicBlockPools {
   void note_use(std::size_t index, std::uint32_t used) noexcept {
     Pool& pool = pools_[index];
     std::uint32_t high = pool.high_water.load(std::memory_order_relaxed);
-    while (used > high && !pool.high_water.compare_exchange_weak(high, used, std::memory_order_relaxed)) {
-    }
+    while (used > high && !pool.high_water.compare_exchange_weak(high, used, std::memory_order_relaxed)) {}
     if (used < pool.warning_at || pool.warned.load(std::memory_order_relaxed)) return;
     if (pool.warned.exchange(true, std::memory_order_relaxed)) return;
     if (notices_.on_warning) notices_.on_warning(index, usage(index));
@@ -160,7 +159,8 @@ Result<std::unique_ptr<BasicBlockPools<FreeList>>> BasicBlockPools<FreeList>::cr
   const std::size_t percent = notices.warning_percent;
   std::unique_ptr<BasicBlockPools> made{new BasicBlockPools(std::move(notices))};
   made->arena_ = detail::make_arena(plan.octets);
-  if (!made->arena_) return fail(ErrorCode::ResourceExhausted, "memory for pools", static_cast<std::int64_t>(plan.octets));
+  if (!made->arena_)
+    return fail(ErrorCode::ResourceExhausted, "memory for pools", static_cast<std::int64_t>(plan.octets));
   made->pools_ = std::make_unique<Pool[]>(plan.pools.size());
   made->count_ = plan.pools.size();
   made->total_octets_ = plan.octets;
@@ -170,7 +170,8 @@ Result<std::unique_ptr<BasicBlockPools<FreeList>>> BasicBlockPools<FreeList>::cr
     const MutableOctets memory{start, spec.block_octets * spec.count};
     made->pools_[i].block_octets = spec.block_octets;
     made->pools_[i].warning_at =
-        percent == 0 ? ~std::uint32_t{0} : static_cast<std::uint32_t>(std::max<std::size_t>(1, (spec.count * percent + 99) / 100));
+        percent == 0 ? ~std::uint32_t{0}
+                     : static_cast<std::uint32_t>(std::max<std::size_t>(1, (spec.count * percent + 99) / 100));
     made->pools_[i].free.build(BlockRow{memory, spec.block_octets, static_cast<std::uint32_t>(spec.count)});
     start += detail::rounded_up(memory.size(), max_block_alignment);
   }

@@ -106,7 +106,8 @@ TYPED_TEST(Pool, WarnsOncePerCrossingWithThePoolNamed) {
 TYPED_TEST(Pool, WarningLevelIsConfigurableAndCanBeOff) {
   unsigned at_half = 0;
   unsigned off = 0;
-  const auto half = this->make({{16, 10}}, {.warning_percent = 50, .on_warning = [&](auto, const auto& u) { at_half = u.used; }});
+  const auto half =
+      this->make({{16, 10}}, {.warning_percent = 50, .on_warning = [&](auto, const auto& u) { at_half = u.used; }});
   const auto none = this->make({{16, 10}}, {.warning_percent = 0, .on_warning = [&](auto, const auto&) { ++off; }});
   for (int i = 0; i < 10; ++i) {
     (void)half->allocate(1);

@@ -46,7 +46,8 @@ class Counted {
   Counted() = default;
   Counted(std::nullptr_t) noexcept {}
   Counted(const Counted& other) noexcept : Counted{other.object_, other.block_} { add_owner(); }
-  Counted(Counted&& other) noexcept : Counted{std::exchange(other.object_, nullptr), std::exchange(other.block_, nullptr)} {}
+  Counted(Counted&& other) noexcept
+      : Counted{std::exchange(other.object_, nullptr), std::exchange(other.block_, nullptr)} {}
   /// To a base class or to const.
   template <class U>
     requires std::convertible_to<U*, T*>

@@ -30,6 +30,7 @@ int main() {
   numbers.assign(10, 42);  // throws OutOfMemory when refused
 
   std::vector<Counted<Image>> images;
-  while (auto image = make_counted<Image>(**pools)) images.push_back(*image);  // warns at the third, ends after the fourth
+  while (auto image = make_counted<Image>(**pools))
+    images.push_back(*image);  // warns at the third, ends after the fourth
   return images.size() == 4 ? 0 : 1;
 }

@@ -94,7 +94,9 @@ class SharedFreeList {
 
   [[nodiscard]] static std::uint32_t index_in(std::uint64_t head) noexcept { return static_cast<std::uint32_t>(head); }
   /// The tag counts takes, modulo 2^32; given_back_ counts the other direction.
-  [[nodiscard]] static std::uint32_t tag_in(std::uint64_t head) noexcept { return static_cast<std::uint32_t>(head >> 32); }
+  [[nodiscard]] static std::uint32_t tag_in(std::uint64_t head) noexcept {
+    return static_cast<std::uint32_t>(head >> 32);
+  }
   [[nodiscard]] static std::uint64_t head_of(std::uint32_t tag, std::uint32_t index) noexcept {
     return std::uint64_t{tag} << 32 | index;
   }

@@ -38,7 +38,8 @@ TEST_F(PoolAllocatorTest, StandardContainersLiveInPools) {
     std::map<int, int, std::less<>, PoolAllocator<Entry>> map{PoolAllocator<Entry>{*pools_}};
     for (int i = 0; i < 50; ++i) map[i % 25] = i;
     EXPECT_EQ(map.size(), 25U);
-    std::unordered_map<int, int, std::hash<int>, std::equal_to<>, PoolAllocator<Entry>> hashed{PoolAllocator<Entry>{*pools_}};
+    std::unordered_map<int, int, std::hash<int>, std::equal_to<>, PoolAllocator<Entry>> hashed{
+        PoolAllocator<Entry>{*pools_}};
     for (int i = 0; i < 50; ++i) hashed[i] = i;
     EXPECT_EQ(hashed.at(49), 49);
     using Text = std::basic_string<char, std::char_traits<char>, PoolAllocator<char>>;

@@ -17,7 +17,8 @@ Result<> ResourceLedger::change_limit(std::string_view kind, std::uint64_t limit
   Kind* const of = find(kind);
   if (of == nullptr) return fail(ErrorCode::NotFound, "kind of resource");
   if (of->usage.used > limit)
-    return fail(ErrorCode::NotPermitted, "more is granted than the new limit", static_cast<std::int64_t>(of->usage.used));
+    return fail(ErrorCode::NotPermitted, "more is granted than the new limit",
+                static_cast<std::int64_t>(of->usage.used));
   of->usage.limit = limit;
   return ok();
 }

@@ -46,7 +46,8 @@ void GenericSubsystem::go(State target, std::optional<pus::Request> request) {
 
 void GenericSubsystem::advance(TimePoint now) {
   // A cycle that hangs confirms nothing: the request ends all the same, and the next command is heard.
-  if (way_ && awaiting_cycle_ && now > phase_deadline_) fail_transition(way_->states[way_at_], "time limit of the cycle");
+  if (way_ && awaiting_cycle_ && now > phase_deadline_)
+    fail_transition(way_->states[way_at_], "time limit of the cycle");
   // Several transient states may be done in one step; each round either arrives somewhere or waits.
   for (int rounds = 0; way_ && !awaiting_cycle_ && rounds < 8; ++rounds)
     if (!run_phase(way_->states[way_at_], now)) return;
@@ -168,7 +169,8 @@ void GenericSubsystem::arrive(State state) {
 void GenericSubsystem::fail_transition(State at, const char* why) {
   if (world_.explain) world_.explain(descriptor_.name + ": " + std::string{to_text(at)} + " failed: " + why);
   announce("STATE_FAILED", {static_cast<double>(at)});
-  if (way_request_) verification_.completion_failed(*way_request_, pus::FailureNotice{pus::FailureCode::ExecutionError});
+  if (way_request_)
+    verification_.completion_failed(*way_request_, pus::FailureNotice{pus::FailureCode::ExecutionError});
   way_request_.reset();
   way_.reset();
   const auto target = failure_target(at);
@@ -251,8 +253,8 @@ std::string GenericSubsystem::apply_configuration(const descriptor::Configuratio
     if (port == device_ports_.end()) return "no port for the device " + device.name;
     if (const auto difference = DeviceSlot::difference(device, *port->second); !difference.empty())
       return "device " + device.name + ": " + difference;
-    auto flow = world_.flows.open({static_cast<std::uint8_t>(use.endnode.transfer), use.endnode.address},
-                                  FlowSide::Subsystem);
+    auto flow =
+        world_.flows.open({static_cast<std::uint8_t>(use.endnode.transfer), use.endnode.address}, FlowSide::Subsystem);
     if (!flow) return "device " + device.name + ": " + flow.error().text;
     plan.devices.emplace_back(device, use, *port->second, std::move(*flow), world_.realtime);
     plan.device_lost_events.push_back(event_id(device.name + "_LOST"));

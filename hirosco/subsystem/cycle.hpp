@@ -25,8 +25,8 @@ namespace hirosco {
 /// Cycle statistics as a parameter: published by the framework where a descriptor declares CYCLE_STATS.
 struct CycleStatistics {
   std::uint32_t overruns{0};
-  float max_us{0.0F};        ///< longest execution since the configuration was applied
-  float avg_us{0.0F};        ///< mean over about the last 1,000 cycles
+  float max_us{0.0F};  ///< longest execution since the configuration was applied
+  float avg_us{0.0F};  ///< mean over about the last 1,000 cycles
 };
 
 /// A function's handler and what the cycle needs to know of it.
@@ -41,8 +41,8 @@ struct CyclePlan {
   std::vector<LinkOutputSlot> outputs;
   std::vector<DeviceSlot> devices;
   pus::HousekeepingSampler* sampler{nullptr};
-  std::vector<std::uint16_t> device_lost_events;   ///< per device; 0 = the descriptor declares none
-  std::vector<std::uint16_t> input_stale_events;   ///< per input
+  std::vector<std::uint16_t> device_lost_events;  ///< per device; 0 = the descriptor declares none
+  std::vector<std::uint16_t> input_stale_events;  ///< per input
   std::uint16_t overrun_event{0};
 };
 
@@ -83,8 +83,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   // --- the author, from inside the cycle --------------------------------------------------------------------------
   void raise(std::uint16_t event, std::span<const double> arguments) noexcept;
   void inhibit(Inhibition reason) noexcept { inhibited_ |= reason; }
-  void report(ReportKind kind, std::uint16_t index, const pus::Request& request,
-              AttachedLink* link = nullptr) noexcept;
+  void report(ReportKind kind, std::uint16_t index, const pus::Request& request, AttachedLink* link = nullptr) noexcept;
 
  private:
   void take_commands() noexcept;
@@ -107,14 +106,14 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   std::vector<BoundFunction> functions_;
   Parameter<CycleStatistics> statistics_;
   std::array<std::byte, 1024> event_buffer_{};
-  MutableOctets reserved_;           ///< housekeeping report under assembly
+  MutableOctets reserved_;  ///< housekeeping report under assembly
 
   State state_{State::PreOperational};
   bool first_{true};
   std::uint32_t inhibited_{0};
   std::uint64_t count_{0};
   std::uint32_t entered_epoch_{0};
-  std::uint32_t permitted_epoch_{0};   ///< of the permit page, as checked in this cycle
+  std::uint32_t permitted_epoch_{0};  ///< of the permit page, as checked in this cycle
   std::uint32_t overruns_in_a_row_{0};
   std::uint64_t overruns_{0};
   std::uint32_t latency_max_ns_{0};

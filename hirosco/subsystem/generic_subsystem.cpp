@@ -30,8 +30,7 @@ constexpr std::size_t most_unsent_packets = 1024;
     if (spec.is_struct)
       for (const auto& member : parameter.members)
         spec.fields.push_back({member.field.name, member.field.type, member.field.count});
-    else
-      spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.count});
+    else spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.count});
     specs.push_back(std::move(spec));
   }
   auto dictionary = Dictionary::make(specs);
@@ -135,8 +134,8 @@ void GenericSubsystem::dispatch(const Message& message) {
       service = &link_service_;
       break;
     default:
-      return verification_.rejected(
-          request, pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
+      return verification_.rejected(request,
+                                    pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
   }
   // Housekeeping exists from Pre-Operational on: its structures belong to a configuration.
   if (service == nullptr) return verification_.rejected(request, wrong_state(state_));
@@ -280,9 +279,8 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
 
 /// False when the call had its final report already.
 bool GenericSubsystem::close_call(const pus::Request& request) {
-  const auto found = std::ranges::find_if(open_calls_, [&](const pus::Request& open) {
-    return open.id == request.id && open.source == request.source;
-  });
+  const auto found = std::ranges::find_if(
+      open_calls_, [&](const pus::Request& open) { return open.id == request.id && open.source == request.source; });
   if (found == open_calls_.end()) return false;
   open_calls_.erase(found);
   return true;
@@ -362,7 +360,9 @@ bool GenericSubsystem::submit_write(std::span<const pus::ParameterAccess::Write>
 
 // --- links -------------------------------------------------------------------------------------------------------------
 
-void GenericSubsystem::require_link(std::string_view set, LinkInputPort& port) { link_ports_[std::string{set}] = &port; }
+void GenericSubsystem::require_link(std::string_view set, LinkInputPort& port) {
+  link_ports_[std::string{set}] = &port;
+}
 
 void GenericSubsystem::use_device(std::string_view name, DevicePortBase& port) {
   device_ports_[std::string{name}] = &port;

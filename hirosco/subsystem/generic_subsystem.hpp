@@ -61,7 +61,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
     bool wanted{false};
     Duration period{};
     int priority{0};
-    std::uint32_t generation{0};     ///< rises with every new configuration
+    std::uint32_t generation{0};  ///< rises with every new configuration
     /// Of the newest order to rest: goes back with cycle_parked(), also when the cycle was wanted and called off again
     /// before its thread could see it.
     std::uint32_t ticket{0};
@@ -165,7 +165,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   };
   std::map<std::uint8_t, LinkEnd> link_ends_;
   std::vector<std::unique_ptr<AttachedLink>> leaving_links_;
-  std::vector<pus::Request> open_calls_;   ///< functions that run: each gets exactly one final report
+  std::vector<pus::Request> open_calls_;  ///< functions that run: each gets exactly one final report
 
   State state_{State::Offline};
   const descriptor::Configuration* configuration_{nullptr};
@@ -175,7 +175,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   bool phase_entered_{false};
   bool awaiting_cycle_{false};
   TimePoint phase_deadline_{};
-  std::string latched_problem_;      ///< of publish() and its kin: fails Software-Init
+  std::string latched_problem_;  ///< of publish() and its kin: fails Software-Init
 
   std::atomic<bool> wanted_{false};
   // A late answer to an earlier order must not pass for one to the newest: orders to rest are numbered.

@@ -36,10 +36,15 @@ struct CycleCommand {
 enum class ReportKind : std::uint8_t {
   Housekeeping,   ///< payload: source data of TM[3,25], `index` the structure id
   Event,          ///< payload: auxiliary data, `index` the event id
-  Started, Refused, Progressed, Finished, Aborted,  ///< of a function; `index` code or step
+  Started,
+  Refused,
+  Progressed,
+  Finished,
+  Aborted,  ///< of a function; `index` code or step
   StateEntered,   ///< `index` the State
   NodeFailed,     ///< `index` the State
-  InputDetached, OutputDetached,  ///< `link` may be freed
+  InputDetached,
+  OutputDetached,  ///< `link` may be freed
 };
 
 /// Cycle -> service loop; a payload may follow in the same record.

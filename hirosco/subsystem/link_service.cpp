@@ -18,9 +18,9 @@ void LinkService::handle(const pus::TelecommandView& telecommand, const pus::Req
     case st128::attach: attach(data, request); break;
     case st128::detach: detach(data, request); break;
     default:
-      verification_.rejected(request, pus::FailureNotice{pus::FailureCode::UnknownSubtype}
-                                          .with(telecommand.service())
-                                          .with(telecommand.subtype()));
+      verification_.rejected(
+          request,
+          pus::FailureNotice{pus::FailureCode::UnknownSubtype}.with(telecommand.service()).with(telecommand.subtype()));
   }
   memory_ = {};
 }
@@ -49,10 +49,8 @@ void LinkService::negotiate(Octets data, const pus::Request& request) {
   const LinkOutputSlot* provided = owner_.find_provided(asked->set);
   if (provided == nullptr)
     return refuse(asked->link, {4, "no configuration in force provides a set '" + asked->set + "'"}, request);
-  const st128::Offer own{.set = asked->set,
-                         .period = owner_.period(),
-                         .terms = provided->terms().terms,
-                         .fields = provided->fields()};
+  const st128::Offer own{
+      .set = asked->set, .period = owner_.period(), .terms = provided->terms().terms, .fields = provided->fields()};
   const auto outcome = st128::negotiate(own, asked->consumer);
   if (!outcome) return refuse(asked->link, outcome.error(), request);
   std::array<std::byte, max_packet_octets> buffer;
@@ -81,7 +79,8 @@ void LinkService::detach(Octets data, const pus::Request& request) {
   const auto link = std::to_integer<std::uint8_t>(data[0]);
   if (!owner_.detach(link))
     return verification_.start_failed(
-        request, pus::FailureNotice{pus::FailureCode::UnknownIdentifier}.with(std::uint8_t{0}).with(std::uint32_t{link}));
+        request,
+        pus::FailureNotice{pus::FailureCode::UnknownIdentifier}.with(std::uint8_t{0}).with(std::uint32_t{link}));
   verification_.started(request);
   verification_.completed(request);
 }

@@ -115,7 +115,8 @@ void LinkInputSlot::read() noexcept {
   }
   port_->status_ = sample.status;
   const bool fresh = port_->age_cycles_ <= age_limit_ * link_->producer_cycles_per_sample;
-  port_->valid_ = port_->count_ != 0 && fresh && sample.status != LinkStatus::Fault && sample.status != LinkStatus::Stopping;
+  port_->valid_ =
+      port_->count_ != 0 && fresh && sample.status != LinkStatus::Fault && sample.status != LinkStatus::Stopping;
 }
 
 // --- LinkOutputSlot --------------------------------------------------------------------------------------------------
@@ -205,7 +206,8 @@ void DeviceSlot::read(bool count_silence) noexcept {
       echoed_ = status->sequence;
       port_->flags_ = status->flags;
       // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say.
-      if ((status->flags & device_flag::watchdog_tripped) != 0 && active_cycles_ > silence_limit_) port_->fresh_ = false;
+      if ((status->flags & device_flag::watchdog_tripped) != 0 && active_cycles_ > silence_limit_)
+        port_->fresh_ = false;
     } else {
       ++port_->damaged_frames_;
     }
@@ -235,11 +237,10 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
     payload = room;
   }
   const DeviceMode mode = pass ? DeviceMode::Active : stopping ? DeviceMode::Stop : DeviceMode::Off;
-  const auto frame = write_command(frame_, DeviceCommand{.mode = mode,
-                                                         .epoch = epoch,
-                                                         .sequence = ++sequence_,
-                                                         .watchdog_us = watchdog_us_,
-                                                         .payload = payload});
+  const auto frame = write_command(
+      frame_,
+      DeviceCommand{
+          .mode = mode, .epoch = epoch, .sequence = ++sequence_, .watchdog_us = watchdog_us_, .payload = payload});
   // A device that does not listen is found by its silence, one cycle later: nothing to do here.
   if (frame) static_cast<void>(flow_->send(*frame));
 }

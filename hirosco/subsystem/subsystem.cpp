@@ -24,7 +24,8 @@ namespace {
 }  // namespace
 
 Outcome::Outcome(const Result<>& result) noexcept
-    : kind{result ? Kind::Done : Kind::Refused}, code{result ? pus::FailureCode{} : failure_code(result.error().code)} {}
+    : kind{result ? Kind::Done : Kind::Refused},
+      code{result ? pus::FailureCode{} : failure_code(result.error().code)} {}
 
 void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
 void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
@@ -42,9 +43,7 @@ void Subsystem::inhibit_actuators() noexcept { framework_->cycle().inhibit(inhib
 void Subsystem::progress(const Call& call, std::uint16_t step) noexcept {
   framework_->cycle().report(ReportKind::Progressed, step, call.request);
 }
-void Subsystem::finish(const Call& call) noexcept {
-  framework_->cycle().report(ReportKind::Finished, 0, call.request);
-}
+void Subsystem::finish(const Call& call) noexcept { framework_->cycle().report(ReportKind::Finished, 0, call.request); }
 void Subsystem::abort(const Call& call, pus::FailureCode code) noexcept {
   framework_->cycle().report(ReportKind::Aborted, static_cast<std::uint16_t>(code), call.request);
 }

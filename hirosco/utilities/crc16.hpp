@@ -47,9 +47,9 @@ inline constexpr std::uint16_t crc16_preset = 0xFFFF;
 }
 
 namespace crc16_detail {
-inline constexpr std::array<std::byte, 9> crc16_check_input{
-    std::byte{'1'}, std::byte{'2'}, std::byte{'3'}, std::byte{'4'}, std::byte{'5'},
-    std::byte{'6'}, std::byte{'7'}, std::byte{'8'}, std::byte{'9'}};
+inline constexpr std::array<std::byte, 9> crc16_check_input{std::byte{'1'}, std::byte{'2'}, std::byte{'3'},
+                                                            std::byte{'4'}, std::byte{'5'}, std::byte{'6'},
+                                                            std::byte{'7'}, std::byte{'8'}, std::byte{'9'}};
 static_assert(crc16(crc16_check_input) == 0x29B1, "CRC-16/CCITT-FALSE check value");
 }  // namespace crc16_detail
 

@@ -25,8 +25,7 @@ TEST(OctetWriter, WritesMostSignificantOctetFirst) {
   OctetWriter writer{buffer};
   writer.put(std::uint8_t{0x01}).put(std::uint16_t{0x0203}).put(std::uint32_t{0x0405'0607}).put(std::int64_t{-2});
   EXPECT_TRUE(writer.good());
-  EXPECT_EQ(copy_of(writer.written()),
-            octets({1, 2, 3, 4, 5, 6, 7, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFE}));
+  EXPECT_EQ(copy_of(writer.written()), octets({1, 2, 3, 4, 5, 6, 7, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFE}));
 }
 
 TEST(OctetWriter, WritesNumbersOfIeee754) {
@@ -69,7 +68,12 @@ TEST(OctetReader, ReadsBackWhatTheWriterWroteInBothOrders) {
   for (const std::endian order : {std::endian::big, std::endian::little}) {
     std::array<std::byte, 64> buffer{};
     OctetWriter writer{buffer, order};
-    writer.put(std::int8_t{-5}).put(std::uint16_t{65535}).put(std::int32_t{-70000}).put(~std::uint64_t{0}).put(0.1F).put(-0.0);
+    writer.put(std::int8_t{-5})
+        .put(std::uint16_t{65535})
+        .put(std::int32_t{-70000})
+        .put(~std::uint64_t{0})
+        .put(0.1F)
+        .put(-0.0);
     OctetReader reader{writer.written(), order};
     EXPECT_EQ(reader.get<std::int8_t>(), -5);
     EXPECT_EQ(reader.get<std::uint16_t>(), 65535);

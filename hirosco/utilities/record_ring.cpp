@@ -9,13 +9,14 @@
 namespace hirosco {
 namespace {
 
-[[nodiscard]] constexpr std::uint64_t filled_up(std::uint64_t octets) noexcept { return (octets + 7) & ~std::uint64_t{7}; }
+[[nodiscard]] constexpr std::uint64_t filled_up(std::uint64_t octets) noexcept {
+  return (octets + 7) & ~std::uint64_t{7};
+}
 
 }  // namespace
 
 RecordRing::RecordRing(std::size_t octets)
-    : mask_{std::bit_ceil(std::max<std::size_t>(octets, 64)) - 1},
-      buffer_{std::make_unique<std::byte[]>(mask_ + 1)} {}
+    : mask_{std::bit_ceil(std::max<std::size_t>(octets, 64)) - 1}, buffer_{std::make_unique<std::byte[]>(mask_ + 1)} {}
 
 bool RecordRing::has_room(std::uint64_t end) noexcept {
   if (end - producer_.other <= capacity()) return true;

@@ -16,7 +16,9 @@ namespace hirosco {
 namespace {
 
 [[nodiscard]] Octets octets_of(std::string_view text) { return std::as_bytes(std::span{text}); }
-[[nodiscard]] std::string text_of(Octets octets) { return {reinterpret_cast<const char*>(octets.data()), octets.size()}; }
+[[nodiscard]] std::string text_of(Octets octets) {
+  return {reinterpret_cast<const char*>(octets.data()), octets.size()};
+}
 
 TEST(RecordRing, GivesRecordsBackInTheirOrder) {
   RecordRing ring{256};
@@ -120,7 +122,8 @@ TEST(RecordRing, BehavesAsAQueueOverRandomOperations) {
     if (random() % 100 < 55) {
       std::string record(random() % 200, static_cast<char>('a' + i % 26));
       const std::size_t cut = record.empty() ? 0 : random() % record.size();
-      if (ring.try_write(octets_of(record).first(cut), octets_of(record).subspan(cut))) model.push_back(std::move(record));
+      if (ring.try_write(octets_of(record).first(cut), octets_of(record).subspan(cut)))
+        model.push_back(std::move(record));
       else ++refused;
     } else if (const auto record = ring.front()) {
       ASSERT_FALSE(model.empty());

@@ -60,7 +60,9 @@ using Result = std::expected<T, Error>;
 [[nodiscard]] constexpr std::unexpected<Error> fail(ErrorCode code, const char* text, std::int64_t value = 0) noexcept {
   return std::unexpected<Error>(Error{code, text, value});
 }
-[[nodiscard]] constexpr std::unexpected<Error> fail(const Error& error) noexcept { return std::unexpected<Error>(error); }
+[[nodiscard]] constexpr std::unexpected<Error> fail(const Error& error) noexcept {
+  return std::unexpected<Error>(error);
+}
 
 /// Success of a `Result<>`.  Realtime: wait-free.
 [[nodiscard]] constexpr Result<> ok() noexcept { return {}; }
@@ -73,11 +75,11 @@ enum class Flow : std::uint8_t { None, Old, New };
 #define HIROSCO_JOIN_(a, b) a##b
 #define HIROSCO_JOIN(a, b) HIROSCO_JOIN_(a, b)
 /// Passes an error of `expression` (a `Result<>`) up.
-#define HIROSCO_TRY(expression)                                                                  \
+#define HIROSCO_TRY(expression)                                                                    \
   if (auto HIROSCO_JOIN(try_, __LINE__) = (expression); !HIROSCO_JOIN(try_, __LINE__).has_value()) \
   return ::hirosco::fail(HIROSCO_JOIN(try_, __LINE__).error())
 /// Declares `declaration` from the value of `expression`, or passes the error up.
-#define HIROSCO_TRY_LET(declaration, expression)                                                   \
-  auto HIROSCO_JOIN(let_, __LINE__) = (expression);                                                \
+#define HIROSCO_TRY_LET(declaration, expression)                                                               \
+  auto HIROSCO_JOIN(let_, __LINE__) = (expression);                                                            \
   if (!HIROSCO_JOIN(let_, __LINE__).has_value()) return ::hirosco::fail(HIROSCO_JOIN(let_, __LINE__).error()); \
   declaration = std::move(*HIROSCO_JOIN(let_, __LINE__))

@@ -26,10 +26,11 @@ const sockaddr* as_any(const sockaddr_un& address) noexcept { return reinterpret
 
 /// A socket file whose server is gone refuses connections; any other file is left alone.
 void remove_abandoned(const std::string& path, const sockaddr_un& address) {
-  struct stat about {};
+  struct stat about{};
   if (::lstat(path.c_str(), &about) != 0 || !S_ISSOCK(about.st_mode)) return;
   const FileDescriptor probe{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  if (::connect(probe.get(), as_any(address), sizeof address) != 0 && errno == ECONNREFUSED) (void)::unlink(path.c_str());
+  if (::connect(probe.get(), as_any(address), sizeof address) != 0 && errno == ECONNREFUSED)
+    (void)::unlink(path.c_str());
 }
 
 }  // namespace
@@ -44,7 +45,8 @@ Result<> ControlSocket::listen(const std::string& path) {
   FileDescriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
   if (!socket) return fail(ErrorCode::SystemFailure, "control socket", errno);
   if (::bind(socket.get(), as_any(address), sizeof address) != 0) return fail(ErrorCode::SystemFailure, "bind", errno);
-  if (::listen(socket.get(), static_cast<int>(most_clients)) != 0) return fail(ErrorCode::SystemFailure, "listen", errno);
+  if (::listen(socket.get(), static_cast<int>(most_clients)) != 0)
+    return fail(ErrorCode::SystemFailure, "listen", errno);
   listener_ = std::move(socket);
   path_ = path;
   return ok();

@@ -15,8 +15,8 @@
 #include <optional>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "hirosco/data_transfer/flows/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
@@ -58,7 +58,9 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
   return std::nullopt;
 }
 
-std::string text_of(const Error& error) { return fmt::format("{}: {} ({})", to_text(error.code), error.text, error.value); }
+std::string text_of(const Error& error) {
+  return fmt::format("{}: {} ({})", to_text(error.code), error.text, error.value);
+}
 
 std::string answer(SimulatedDevice& device, std::string_view line) {
   if (Words{line}[0] == "truth") return "ok " + device.truth();
@@ -83,7 +85,7 @@ bool signalled_to_end() noexcept {
 
 /// True when standard input is a pipe or socket of a starter: its end is the starter's.
 bool input_tells_of_starter() noexcept {
-  struct stat about {};
+  struct stat about{};
   return ::fstat(STDIN_FILENO, &about) == 0 && (S_ISFIFO(about.st_mode) || S_ISSOCK(about.st_mode));
 }
 

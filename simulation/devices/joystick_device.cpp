@@ -88,10 +88,10 @@ Result<> JoystickDevice::do_fault(const Words& words) {
 
 std::string JoystickDevice::do_truth() const {
   const Vec2 hand = handle_.hand_torque_n_m();
-  return fmt::format("angle_1={:.6f} angle_2={:.6f} hand_torque_1={:.5f} hand_torque_2={:.5f} motor_1={:.5f} "
-                     "motor_2={:.5f} flags={}",
-                     handle_.angle_rad()[0], handle_.angle_rad()[1], hand[0], hand[1], applied_[0], applied_[1],
-                     flags());
+  return fmt::format(
+      "angle_1={:.6f} angle_2={:.6f} hand_torque_1={:.5f} hand_torque_2={:.5f} motor_1={:.5f} "
+      "motor_2={:.5f} flags={}",
+      handle_.angle_rad()[0], handle_.angle_rad()[1], hand[0], hand[1], applied_[0], applied_[1], flags());
 }
 
 }  // namespace hirosco::simulation

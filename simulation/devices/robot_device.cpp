@@ -103,10 +103,11 @@ std::string RobotDevice::do_truth() const {
   const Contact contact = arm_.contact();
   const Vec2 tip = arm_.tip_m();
   const Vec2 torque = arm_.joint_torque_n_m();
-  return fmt::format("tip_x={:.6f} tip_y={:.6f} force={:.4f} penetration_mm={:.5f} torque_1={:.5f} torque_2={:.5f} "
-                     "temperature_1={:.2f} temperature_2={:.2f} motor_1={:.4f} motor_2={:.4f} flags={}",
-                     tip[0], tip[1], contact.normal_force_n, 1e3 * contact.penetration_m, torque[0], torque[1],
-                     arm_.temperature_c()[0], arm_.temperature_c()[1], applied_[0], applied_[1], flags());
+  return fmt::format(
+      "tip_x={:.6f} tip_y={:.6f} force={:.4f} penetration_mm={:.5f} torque_1={:.5f} torque_2={:.5f} "
+      "temperature_1={:.2f} temperature_2={:.2f} motor_1={:.4f} motor_2={:.4f} flags={}",
+      tip[0], tip[1], contact.normal_force_n, 1e3 * contact.penetration_m, torque[0], torque[1],
+      arm_.temperature_c()[0], arm_.temperature_c()[1], applied_[0], applied_[1], flags());
 }
 
 }  // namespace hirosco::simulation

@@ -24,8 +24,8 @@ class RobotDevice final : public SimulatedDevice {
   static constexpr std::size_t sensor_octets = 5 * 16 + 2 * 4;
   static constexpr std::size_t command_octets = 16;
 
-  RobotDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {},
-              const ArmParameters& arm = {}, const RobotSensors& sensors = {});
+  RobotDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {}, const ArmParameters& arm = {},
+              const RobotSensors& sensors = {});
 
   /// World truth: tip, contact, joint torque, temperature.
   [[nodiscard]] const TwoJointArm& arm() const noexcept { return arm_; }

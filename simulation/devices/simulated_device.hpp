@@ -47,7 +47,7 @@ class SimulatedDevice {
   struct Settings {
     Duration cycle{std::chrono::microseconds{500}};
     Duration watchdog{std::chrono::milliseconds{10}};  ///< while commands ask for none
-    std::endian byte_order{std::endian::little};       ///< of the payload
+    std::endian byte_order{std::endian::little};  ///< of the payload
     std::uint64_t seed{1};
   };
   struct Injection {
@@ -133,7 +133,7 @@ class SimulatedDevice {
   bool started_{false};
   bool by_own_clock_{true};
   TimePoint now_{};
-  TimePoint world_time_{};           // up to where the world has moved
+  TimePoint world_time_{};  // up to where the world has moved
   std::uint64_t cycles_{0};
   std::uint64_t own_cycles_{0};
   std::uint64_t damaged_commands_{0};
@@ -149,7 +149,7 @@ class SimulatedDevice {
   Duration delay_{0};
   std::uint32_t corrupt_frames_{0};
   Frame last_{};
-  std::vector<Frame> delayed_;       // ring, sized once
+  std::vector<Frame> delayed_;  // ring, sized once
   std::size_t delayed_first_{0};
   std::size_t delayed_count_{0};
   std::vector<Injection> injections_;

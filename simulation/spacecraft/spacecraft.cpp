@@ -36,7 +36,9 @@ class BorrowedDatabase final : public supervisor::Database {
 /// One subsystem as an object: what a process would hold.
 struct Spacecraft::Member {
   Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, const World& world)
-      : described{&what}, author{std::move(make)}, vital{std::make_shared<VitalPage>()},
+      : described{&what},
+        author{std::move(make)},
+        vital{std::make_shared<VitalPage>()},
         permit{std::make_shared<PermitPage>()} {
     engine.emplace(*author, what.subsystem, world, channels.subsystem_end(), *vital, *permit);
   }
@@ -91,7 +93,8 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       SimulatedDevice::Settings settings;
       settings.cycle = configuration.sampling;
       settings.seed = described.seed * 1000 + parts.seed;
-      auto device = make->second(flows_, {static_cast<std::uint8_t>(use->endnode.transfer), use->endnode.address}, settings);
+      auto device =
+          make->second(flows_, {static_cast<std::uint8_t>(use->endnode.transfer), use->endnode.address}, settings);
       if (!device->plug()) break;
       // Settings of a simulated device are lines of its fault script: <Setting name="hand" value="wander"/>.
       for (const auto& [name, value] : described.settings) static_cast<void>(device->fault(name + " " + value));
@@ -118,7 +121,8 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   const auto make = parts_.subsystems.find(described.executable);
   std::unique_ptr<Subsystem> author;
   if (make != parts_.subsystems.end()) author = make->second();
-  else if (described.subsystem.name == parts_.mission.ground.subsystem) author = make_communication(ground_.transport());
+  else if (described.subsystem.name == parts_.mission.ground.subsystem)
+    author = make_communication(ground_.transport());
   if (!author) return fail(ErrorCode::NotFound, "no such subsystem in this program");
   const World world{.clock = clock_,
                     .memory = memory_,
@@ -136,9 +140,7 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   return launched;
 }
 
-std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) {
-  return members_[process - 1]->end;
-}
+std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) { return members_[process - 1]->end; }
 
 void Spacecraft::kill(std::uint32_t process) {
   Member& member = *members_[process - 1];
@@ -163,8 +165,7 @@ void Spacecraft::stop(std::string_view name, bool stopped) {
 
 void Spacecraft::run(Duration span) {
   const TimePoint end = clock_.now() + span;
-  while (advance(end)) {
-  }
+  while (advance(end)) {}
 }
 
 bool Spacecraft::run_until(const std::function<bool()>& condition, Duration limit) {
@@ -235,9 +236,8 @@ void Spacecraft::step_service(Member& member) {
 // --- looking in --------------------------------------------------------------------------------------------------------
 
 Spacecraft::Member* Spacecraft::find(std::string_view name) noexcept {
-  const auto found = std::ranges::find_if(members_, [&](const auto& member) {
-    return member->described->subsystem.name == name && !member->end;
-  });
+  const auto found = std::ranges::find_if(
+      members_, [&](const auto& member) { return member->described->subsystem.name == name && !member->end; });
   return found != members_.end() ? found->get() : nullptr;
 }
 const Spacecraft::Member* Spacecraft::find(std::string_view name) const noexcept {
@@ -245,7 +245,8 @@ const Spacecraft::Member* Spacecraft::find(std::string_view name) const noexcept
 }
 
 SimulatedDevice* Spacecraft::device(std::string_view name) noexcept {
-  const auto found = std::ranges::find_if(devices_, [&](const Device& device) { return device.described->name == name; });
+  const auto found =
+      std::ranges::find_if(devices_, [&](const Device& device) { return device.described->name == name; });
   return found != devices_.end() ? found->device.get() : nullptr;
 }
 
@@ -274,8 +275,12 @@ CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view 
   std::array<std::byte, max_packet_octets> buffer;
   sequence_ = static_cast<std::uint16_t>((sequence_ + 1) % modulo);
   const auto packet = pus::write_telecommand(buffer,
-                                             {.apid = target.id, .sequence_count = sequence_, .ack = pus::ack_all,
-                                              .service = 8, .subtype = 1, .source = ground_source},
+                                             {.apid = target.id,
+                                              .sequence_count = sequence_,
+                                              .ack = pus::ack_all,
+                                              .service = 8,
+                                              .subtype = 1,
+                                              .source = ground_source},
                                              *data);
   if (!packet) return outcome;
   const std::uint32_t id = pus::read_primary_header(*packet)->request_id;

@@ -28,8 +28,8 @@ namespace hirosco::simulation {
 /// Makes the author's object of an executable of the mission.
 using SubsystemCatalogue = std::map<std::string, std::function<std::unique_ptr<Subsystem>()>, std::less<>>;
 /// Makes the simulated device of an executable, at the device's side of an endnode.
-using MakeDevice = std::function<std::unique_ptr<SimulatedDevice>(FlowFactory&, const FlowAddress&,
-                                                                  const SimulatedDevice::Settings&)>;
+using MakeDevice =
+    std::function<std::unique_ptr<SimulatedDevice>(FlowFactory&, const FlowAddress&, const SimulatedDevice::Settings&)>;
 using DeviceCatalogue = std::map<std::string, MakeDevice, std::less<>>;
 
 /// How a telecommand of the simulated ground ended.
@@ -48,10 +48,10 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     const descriptor::Mission& mission;
     const SubsystemCatalogue& subsystems;
     const DeviceCatalogue& devices;
-    supervisor::Database& log;       ///< receives everything that the supervisor logs
+    supervisor::Database& log;  ///< receives everything that the supervisor logs
     supervisor::Observer& observer;
     std::uint64_t seed{1};
-    bool realtime{true};             ///< which set of limits holds
+    bool realtime{true};  ///< which set of limits holds
   };
   explicit Spacecraft(const Parts& parts);
   ~Spacecraft() override;
@@ -107,7 +107,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   std::unique_ptr<supervisor::Supervisor> supervisor_;
   TimePoint supervisor_wake_{};
   std::function<void(std::string_view, TimePoint)> watch_;
-  std::uint16_t sequence_{0};        ///< of the ground's telecommands
+  std::uint16_t sequence_{0};  ///< of the ground's telecommands
 };
 
 }  // namespace hirosco::simulation

@@ -69,7 +69,7 @@ struct HandleParameters {
   double friction_n_m_s{0.01};
   double torque_max_n_m{1.5};
   double range_rad{0.40};
-  double stop_n_m_per_rad{60};       ///< of the rubber at the end of the range
+  double stop_n_m_per_rad{60};  ///< of the rubber at the end of the range
   double stop_n_m_s_per_rad{0.3};
   double hand_inertia_kg_m2{0.0072};
   double hand_stiffness_n_m_per_rad{4.3};

@@ -38,7 +38,8 @@ Mat2 mass_matrix(const ArmParameters& arm, const Vec2& q) noexcept {
   const auto& [one, two] = arm.links;
   const double coupling = two.mass_kg * one.length_m * two.com_m * std::cos(q[1]);
   const double outer = two.inertia_kg_m2 + two.mass_kg * two.com_m * two.com_m;
-  const double inner = one.inertia_kg_m2 + one.mass_kg * one.com_m * one.com_m + two.mass_kg * one.length_m * one.length_m;
+  const double inner =
+      one.inertia_kg_m2 + one.mass_kg * one.com_m * one.com_m + two.mass_kg * one.length_m * one.length_m;
   return {{{inner + outer + 2 * coupling, outer + coupling}, {outer + coupling, outer}}};
 }
 
@@ -140,7 +141,8 @@ void TwoJointArm::step(const Vec2& motor_torque_n_m, Duration span) noexcept {
 void TwoJointArm::heat(const Vec2& motor_torque_n_m, double span_s) noexcept {
   const ThermalParameters& thermal = parameters_.thermal;
   // Exact for a constant torque, so that neither the cycle nor the acceleration shows in the answer.
-  const double share = -std::expm1(-span_s * thermal.acceleration / (thermal.capacity_j_per_k * thermal.resistance_k_per_w));
+  const double share =
+      -std::expm1(-span_s * thermal.acceleration / (thermal.capacity_j_per_k * thermal.resistance_k_per_w));
   for (std::size_t i = 0; i < 2; ++i) {
     const double rise = thermal.resistance_k_per_w * thermal.heat_w_per_n2_m2 * square(motor_torque_n_m[i]);
     temperature_c_[i] += share * (thermal.ambient_c + rise - temperature_c_[i]);

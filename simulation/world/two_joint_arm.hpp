@@ -16,8 +16,8 @@ namespace hirosco::simulation {
 struct LinkParameters {
   double length_m;
   double mass_kg;
-  double com_m;                      ///< from the joint, along the link
-  double inertia_kg_m2;              ///< about the centre of mass
+  double com_m;  ///< from the joint, along the link
+  double inertia_kg_m2;  ///< about the centre of mass
 };
 
 struct JointParameters {
@@ -40,7 +40,7 @@ struct ContourParameters {
   double stiffness_n_per_m{5e4};
   double damping_s_per_m{2};
   double friction{0.15};
-  double friction_speed_m_s{1e-3};   ///< of the tanh
+  double friction_speed_m_s{1e-3};  ///< of the tanh
 };
 
 /// Pulls the tip towards its anchor when longer than its free length, never pushes.
@@ -56,7 +56,7 @@ struct ThermalParameters {
   double resistance_k_per_w{4};
   double heat_w_per_n2_m2{0.12};
   double ambient_c{20};
-  double acceleration{1};            ///< runs the thermal clock faster, for demonstrations
+  double acceleration{1};  ///< runs the thermal clock faster, for demonstrations
 };
 
 struct ArmParameters {
@@ -85,9 +85,9 @@ struct ArmState {
 };
 
 struct Contact {
-  double penetration_m{0};           ///< negative: the gap
+  double penetration_m{0};  ///< negative: the gap
   double normal_force_n{0};
-  Vec2 force_n{};                    ///< on the tip, friction included
+  Vec2 force_n{};  ///< on the tip, friction included
 };
 
 /// Steps by Runge-Kutta with sub-steps of at most `largest_sub_step`; the same bits from the same inputs.

@@ -90,9 +90,9 @@ class Communication final : public Subsystem, private communication::GroundTraff
     const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(now - last_rx_).count();
     next_link_ = {static_cast<std::uint8_t>(connected), u32(counters.packets), u32(counters.telemetry_packets),
                   dropped_, last_rx_ == TimePoint{} ? 0U : static_cast<std::uint32_t>(age)};
-    next_clients_ = {u32(counters.admitted), closed(CloseReason::Slow), closed(CloseReason::Evicted),
-                     closed(CloseReason::Version) + closed(CloseReason::NotTelecommand), closed(CloseReason::Length),
-                     closed(CloseReason::Incomplete)};
+    next_clients_ = {u32(counters.admitted),       closed(CloseReason::Slow),
+                     closed(CloseReason::Evicted), closed(CloseReason::Version) + closed(CloseReason::NotTelecommand),
+                     closed(CloseReason::Length),  closed(CloseReason::Incomplete)};
     shared_link_.store(next_link_);
     shared_clients_.store(next_clients_);
   }

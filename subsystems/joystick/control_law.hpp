@@ -18,7 +18,8 @@ using Axes = std::array<double, 2>;
 class ForceDisplay {
  public:
   static constexpr double torque_max_n_m = 1.5;
-  static constexpr int ramp_cycles = 4;  ///< from the full torque to none when the peer falls silent: no kick in the hand
+  static constexpr int ramp_cycles =
+      4;  ///< from the full torque to none when the peer falls silent: no kick in the hand
 
   struct Settings {
     double force_scale{0.02};
@@ -39,15 +40,15 @@ class ForceDisplay {
 
   [[nodiscard]] const Axes& observed_energy_j() const noexcept { return energy_j_; }
   [[nodiscard]] double dissipated_j() const noexcept { return dissipated_j_; }
-  [[nodiscard]] bool clipped() const noexcept { return clipped_; }            ///< in the last cycle
-  [[nodiscard]] bool controller_acted() const noexcept { return acted_; }     ///< passivity, in the last cycle
+  [[nodiscard]] bool clipped() const noexcept { return clipped_; }  ///< in the last cycle
+  [[nodiscard]] bool controller_acted() const noexcept { return acted_; }  ///< passivity, in the last cycle
 
  private:
   [[nodiscard]] double made_passive(std::size_t axis, double torque_n_m, double velocity_rad_s) noexcept;
 
   double period_s_;
   Axes held_n_m_{};
-  int share_{0};                     // of ramp_cycles
+  int share_{0};  // of ramp_cycles
   Axes energy_j_{};
   double dissipated_j_{0};
   bool clipped_{false};

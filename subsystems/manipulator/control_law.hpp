@@ -111,7 +111,8 @@ class TorqueLimit {
 };
 
 /// What remains of a motor torque while the joint torque is at its limit: it may relieve the joint, not load it further.
-[[nodiscard]] Joints relieving(const Joints& motor_torque_n_m, const Joints& joint_torque_n_m, double limit_n_m) noexcept;
+[[nodiscard]] Joints relieving(const Joints& motor_torque_n_m, const Joints& joint_torque_n_m,
+                               double limit_n_m) noexcept;
 
 enum class TemperatureVerdict : std::uint8_t { Fine, Warning, Critical, Maximum };
 
@@ -121,7 +122,8 @@ struct TemperatureLimits {
   float maximum_c{80};
 };
 /// Verdict of the hotter joint; NaN counts as maximum.
-[[nodiscard]] TemperatureVerdict judge(const std::array<float, 2>& temperature_c, const TemperatureLimits& limits) noexcept;
+[[nodiscard]] TemperatureVerdict judge(const std::array<float, 2>& temperature_c,
+                                       const TemperatureLimits& limits) noexcept;
 
 /// Kinematics as the controller believes them.
 struct Geometry {

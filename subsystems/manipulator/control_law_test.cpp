@@ -28,8 +28,12 @@ TEST(JointController, HoldsALoadWithTheTwistOfItsStiffness) {
 TEST(JointController, FiltersTheSetpointsRateAndStartsWithoutAKick) {
   JointController controller{period_s};
   controller.reset({1, 1});
-  const Measured measured{.motor_position_rad = {1, 1}, .motor_velocity_rad_s = {}, .position_rad = {},
-                          .velocity_rad_s = {}, .torque_n_m = {}, .temperature_c = {}};
+  const Measured measured{.motor_position_rad = {1, 1},
+                          .motor_velocity_rad_s = {},
+                          .position_rad = {},
+                          .velocity_rad_s = {},
+                          .torque_n_m = {},
+                          .temperature_c = {}};
   EXPECT_EQ(controller.motor_torque({1, 1}, measured, {}), (Joints{0, 0}));
   (void)controller.motor_torque({1 + 0.001 * period_s, 1}, measured, {});
   EXPECT_NEAR(controller.desired_velocity_rad_s()[0], 0.2 * 0.001, 1e-12);
@@ -134,9 +138,7 @@ TEST(TipForce, IsTheForceWhoseMomentsAreTheJointTorques) {
   EXPECT_NEAR(found[1], -7, 1e-9);
 }
 
-TEST(TipForce, IsNotToldWhereTheArmIsStretched) {
-  EXPECT_EQ(tip_force({}, {0.3, 0.0}, {1, 1}), (Joints{0, 0}));
-}
+TEST(TipForce, IsNotToldWhereTheArmIsStretched) { EXPECT_EQ(tip_force({}, {0.3, 0.0}, {1, 1}), (Joints{0, 0})); }
 
 }  // namespace
 }  // namespace hirosco::manipulator

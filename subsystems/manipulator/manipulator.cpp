@@ -199,8 +199,9 @@ class Manipulator final : public Subsystem {
 
   void control() noexcept {
     const RobotInput& in = robot_.input();
-    const manipulator::Measured measured{in.motor_position_rad, in.motor_velocity_rad_per_s, in.position_rad,
-                                         in.velocity_rad_per_s, in.torque_n_m, in.temperature_deg_c};
+    const manipulator::Measured measured{in.motor_position_rad, in.motor_velocity_rad_per_s,
+                                         in.position_rad,       in.velocity_rad_per_s,
+                                         in.torque_n_m,         in.temperature_deg_c};
     robot_.output().torque_n_m =
         controller_->motor_torque(desired_position_.load(), measured, {kp_.load(), kd_.load()});
     desired_velocity_.store(controller_->desired_velocity_rad_s());

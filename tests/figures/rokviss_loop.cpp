@@ -53,8 +53,8 @@ void RokvissLoop::read_robot() noexcept {
   if (!status) return;
   OctetReader reader{status->payload, std::endian::little};
   manipulator::Measured& robot = trace_.robot;
-  for (auto* field : {&robot.motor_position_rad, &robot.motor_velocity_rad_s, &robot.position_rad, &robot.velocity_rad_s,
-                      &robot.torque_n_m})
+  for (auto* field : {&robot.motor_position_rad, &robot.motor_velocity_rad_s, &robot.position_rad,
+                      &robot.velocity_rad_s, &robot.torque_n_m})
     *field = get(reader);
 }
 
@@ -98,8 +98,8 @@ void RokvissLoop::step() {
   const bool off = torque_off();
   if (trip_) ++cycles_since_trip_;
   const Sample felt = to_display_.pass({trace_.robot.torque_n_m, !trip_});
-  trace_.display_n_m = display_.torque({trace_.joystick_rad_s, felt.value, felt.active},
-                                       {settings_.force_scale, settings_.passivity});
+  trace_.display_n_m =
+      display_.torque({trace_.joystick_rad_s, felt.value, felt.active}, {settings_.force_scale, settings_.passivity});
   ++cycle_;
   command(*to_robot_, off ? DeviceMode::Off : DeviceMode::Active, cycle_, motor);
   command(*to_joystick_, DeviceMode::Active, cycle_, trace_.display_n_m);

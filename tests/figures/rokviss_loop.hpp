@@ -33,7 +33,7 @@ class RokvissLoop {
     double soft_limit_n_m{12};
     double hard_limit_n_m{15};
     int link_cycles{1};
-    int torque_off_cycles{20};       ///< from the trip of the limit to torque off: the most that FC1 allows
+    int torque_off_cycles{20};  ///< from the trip of the limit to torque off: the most that FC1 allows
     ArmParameters arm{};
     HandleParameters handle{};
   };
@@ -44,7 +44,7 @@ class RokvissLoop {
     Vec2 joystick_rad{};
     Vec2 joystick_rad_s{};
     Vec2 display_n_m{};
-    Contact contact{};               ///< world truth
+    Contact contact{};  ///< world truth
     Vec2 tip_m{};
   };
 

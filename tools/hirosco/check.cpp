@@ -71,7 +71,9 @@ int check(const CheckOptions& options) {
     problems += found.size();
   }
   if (problems == 0) return exit_ok;
-  if (!options.json) fmt::print(stderr, "{} error{}; codes are explained in docs/descriptor-errors.md\n", problems, problems == 1 ? "" : "s");
+  if (!options.json)
+    fmt::print(stderr, "{} error{}; codes are explained in docs/descriptor-errors.md\n", problems,
+               problems == 1 ? "" : "s");
   return exit_finding;
 }
 

@@ -25,7 +25,8 @@ constexpr int answer_limit_ms = 2000;
   if (path.size() >= sizeof address.sun_path) return std::nullopt;
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   const FileDescriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
-  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return std::nullopt;
+  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    return std::nullopt;
   const std::string request = line + "\n";
   if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) < 0) return std::nullopt;
   std::string answer;
@@ -50,7 +51,8 @@ int fault(const FaultOptions& options) {
   for (const std::string& word : options.words) line += (line.empty() ? "" : " ") + word;
   const auto answer = ask(runtime_folder(*mission) / options.device, line);
   if (!answer) {
-    fmt::print(stderr, "hirosco fault: no simulated device '{}' answers; does {} run? Devices:", options.device, mission->name);
+    fmt::print(stderr, "hirosco fault: no simulated device '{}' answers; does {} run? Devices:", options.device,
+               mission->name);
     for (const auto& device : mission->devices) fmt::print(stderr, " {}", device.name);
     fmt::print(stderr, "\n");
     return exit_environment;

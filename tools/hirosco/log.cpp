@@ -23,8 +23,8 @@ int log(const LogOptions& options) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), database.error().text);
     return exit_environment;
   }
-  const auto page = (*database)->read(
-      {.apid = options.apid, .service = options.service, .text = options.text, .last = options.last});
+  const auto page =
+      (*database)->read({.apid = options.apid, .service = options.service, .text = options.text, .last = options.last});
   if (!page) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
     return exit_environment;
@@ -33,15 +33,15 @@ int log(const LogOptions& options) {
   const auto text_of = [&](const supervisor::LogRecord& record) {
     if (!mission || record.packet.empty()) return supervisor::describe(record);
     const pus::PacketDescriber describer{*mission};
-    std::string text = fmt::format("{} {} {} {}", record.number, supervisor::time_text(record.stored), to_text(record.kind),
-                                   describer.describe(record.packet));
+    std::string text = fmt::format("{} {} {} {}", record.number, supervisor::time_text(record.stored),
+                                   to_text(record.kind), describer.describe(record.packet));
     if (!record.note.view().empty()) text += fmt::format(" \"{}\"", record.note.view());
     return text;
   };
   for (const auto& record : page->records) {
     if (options.json)
-      fmt::print("{{\"number\":{},\"stored\":\"{}\",\"kind\":\"{}\",\"source\":{},\"peer\":{},\"text\":\"{}\"}}\n", record.number,
-                 supervisor::time_text(record.stored), to_text(record.kind), record.source, record.peer,
+      fmt::print("{{\"number\":{},\"stored\":\"{}\",\"kind\":\"{}\",\"source\":{},\"peer\":{},\"text\":\"{}\"}}\n",
+                 record.number, supervisor::time_text(record.stored), to_text(record.kind), record.source, record.peer,
                  json_text(text_of(record)));
     else fmt::print("{}\n", text_of(record));
   }

@@ -20,7 +20,11 @@ using namespace hirosco::tools;
     throw CLI::ValidationError("not a duration: '" + text + "' (for example 60s, 500ms, 10min)");
   }
   const std::string unit = text.substr(used);
-  const double scale = unit == "ms" ? 1e-3 : unit == "min" ? 60.0 : unit == "h" ? 3600.0 : unit.empty() || unit == "s" ? 1.0 : -1.0;
+  const double scale = unit == "ms"                  ? 1e-3
+                       : unit == "min"               ? 60.0
+                       : unit == "h"                 ? 3600.0
+                       : unit.empty() || unit == "s" ? 1.0
+                                                     : -1.0;
   constexpr double longest_s = 1e7;
   if (scale < 0 || !(number >= 0) || number * scale > longest_s)
     throw CLI::ValidationError("not a duration: '" + text + "' (for example 60s, 500ms, 10min)");
@@ -28,7 +32,8 @@ using namespace hirosco::tools;
 }
 
 void add_connection(CLI::App& command, Connection& connection) {
-  command.add_option("--mission", connection.mission, "Mission whose descriptors decode the packets")->capture_default_str();
+  command.add_option("--mission", connection.mission, "Mission whose descriptors decode the packets")
+      ->capture_default_str();
   command.add_option("--host", connection.address, "Address of the ground link")->capture_default_str();
   command.add_option("--port", connection.port, "Port of the ground link")->capture_default_str();
   command.add_flag("--json", connection.json, "One JSON object instead of text");
@@ -57,12 +62,14 @@ int main(int argc, char** argv) {
 
   SimulateOptions simulate_options;
   std::string simulate_for = "10s";
-  auto* simulate_command = app.add_subcommand("simulate", "Fly a mission in one process on virtual time and print its log");
+  auto* simulate_command =
+      app.add_subcommand("simulate", "Fly a mission in one process on virtual time and print its log");
   simulate_command->add_option("mission", simulate_options.mission, "Name or path of a mission")->required();
   simulate_command->add_option("--for", simulate_for, "Virtual time")->capture_default_str();
   simulate_command->add_option("--seed", simulate_options.seed, "Seed of everything random")->capture_default_str();
   simulate_command->add_option("--trace", simulate_options.trace, "Write link and world truth at cycle rate as CSV");
-  simulate_command->add_option("--at", simulate_options.at, "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
+  simulate_command->add_option("--at", simulate_options.at,
+                               "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
   simulate_command->add_flag("--summary", simulate_options.summary, "Print counts instead of the log");
 
   TelecommandOptions tc_options;
@@ -89,10 +96,12 @@ int main(int argc, char** argv) {
   log_command->add_flag("--json", log_options.json, "One JSON object a line");
 
   FaultOptions fault_options;
-  auto* fault_command = app.add_subcommand("fault", "Inject a fault into a simulated device, or move the operator's hand");
+  auto* fault_command =
+      app.add_subcommand("fault", "Inject a fault into a simulated device, or move the operator's hand");
   fault_command->add_option("device", fault_options.device, "Name of the device (robot, joystick)")->required();
   fault_command->add_option("line", fault_options.words, "unplug, plug, freeze MS, corrupt N, hand wander, ...")
-      ->required()->allow_extra_args();
+      ->required()
+      ->allow_extra_args();
   fault_command->add_option("--mission", fault_options.mission, "Mission that runs")->capture_default_str();
   // Values such as -0.8 are arguments, not options.
   tc_command->prefix_command(false);

@@ -33,7 +33,8 @@ fs::path find_mission(const std::string& name_or_path) {
 std::optional<descriptor::Mission> load_mission(const std::string& name_or_path) {
   const fs::path file = find_mission(name_or_path);
   if (file.empty()) {
-    fmt::print(stderr, "hirosco: no mission '{}': neither a file nor missions/{}/mission.xml here or above this program\n",
+    fmt::print(stderr,
+               "hirosco: no mission '{}': neither a file nor missions/{}/mission.xml here or above this program\n",
                name_or_path, name_or_path);
     return std::nullopt;
   }

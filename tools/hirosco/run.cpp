@@ -42,9 +42,12 @@ namespace {
   }
   ProcessStart start;
   start.executable = program.string();
-  start.arguments = {"--transfer", std::string{to_text(endnode->transfer)}, "--address", endnode->address,
-                     "--seed",     std::to_string(device.seed),             "--control", (folder / device.name).string()};
-  for (const auto& [name, value] : device.settings) start.arguments.insert(start.arguments.end(), {"--set", name + "=" + value});
+  start.arguments = {"--transfer", std::string{to_text(endnode->transfer)},
+                     "--address",  endnode->address,
+                     "--seed",     std::to_string(device.seed),
+                     "--control",  (folder / device.name).string()};
+  for (const auto& [name, value] : device.settings)
+    start.arguments.insert(start.arguments.end(), {"--set", name + "=" + value});
   return start;
 }
 

@@ -76,7 +76,9 @@ int simulate(const SimulateOptions& options) {
   for (const std::string& text : options.at) {
     const auto injection = read_injection(text);
     if (!injection) {
-      fmt::print(stderr, "hirosco simulate: --at '{}' is not \"SECONDS DEVICE LINE\", for example \"5 joystick unplug\"\n", text);
+      fmt::print(stderr,
+                 "hirosco simulate: --at '{}' is not \"SECONDS DEVICE LINE\", for example \"5 joystick unplug\"\n",
+                 text);
       return exit_usage;
     }
     injections.push_back(*injection);
@@ -88,8 +90,9 @@ int simulate(const SimulateOptions& options) {
       fmt::print(stderr, "hirosco simulate: cannot write {}\n", options.trace);
       return exit_environment;
     }
-    fmt::print(trace.get(), "t_s,hand1_rad,hand2_rad,q1_rad,q2_rad,tip_x_m,tip_y_m,torque1_n_m,torque2_n_m,"
-                            "penetration_m,contact_n,felt1_n_m,felt2_n_m\n");
+    fmt::print(trace.get(),
+               "t_s,hand1_rad,hand2_rad,q1_rad,q2_rad,tip_x_m,tip_y_m,torque1_n_m,torque2_n_m,"
+               "penetration_m,contact_n,felt1_n_m,felt2_n_m\n");
   }
   supervisor::MemoryDatabase log;
   Nobody nobody;

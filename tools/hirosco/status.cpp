@@ -58,7 +58,8 @@ int status(const Connection& connection) {
   }
   std::map<std::uint16_t, pus::HousekeepingDecoder> decoders;
   decoders.emplace(mission->supervisor.id, pus::HousekeepingDecoder{mission->supervisor});
-  for (const auto& member : mission->subsystems) decoders.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
+  for (const auto& member : mission->subsystems)
+    decoders.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
   Listened listened;
   const auto end = std::chrono::steady_clock::now() + listening;
   while (std::chrono::steady_clock::now() < end) {

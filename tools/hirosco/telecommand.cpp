@@ -17,13 +17,15 @@ namespace hirosco::tools {
 namespace {
 
 [[nodiscard]] std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   return text;
 }
 
 /// A number, a state, mode or configuration by name, or an enumeration text.
 [[nodiscard]] std::optional<double> value_of(const std::string& text, const std::string& function,
-                                             const descriptor::Mission& mission, const descriptor::Subsystem& subsystem) {
+                                             const descriptor::Mission& mission,
+                                             const descriptor::Subsystem& subsystem) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc{} && end == text.data() + text.size()) return number;
@@ -37,7 +39,8 @@ namespace {
   if (function == "SET_MODE")
     for (const auto& mode : mission.modes)
       if (lower(mode.name) == wanted) return mode.id;
-  if (function == "SET_DATABASE") return wanted == "sqlite" ? std::optional{0.0} : wanted == "ascii" ? std::optional{1.0} : std::nullopt;
+  if (function == "SET_DATABASE")
+    return wanted == "sqlite" ? std::optional{0.0} : wanted == "ascii" ? std::optional{1.0} : std::nullopt;
   if (wanted == "on") return 1.0;
   if (wanted == "off") return 0.0;
   return std::nullopt;
@@ -59,7 +62,8 @@ void print_usage(const descriptor::Function& function) {
   for (const auto& argument : function.arguments) {
     const auto& field = argument.field;
     fmt::print(stderr, " {}", field.name);
-    if (field.minimum && field.maximum) fmt::print(stderr, "[{}..{}{}{}]", *field.minimum, *field.maximum, field.unit.empty() ? "" : " ", field.unit);
+    if (field.minimum && field.maximum)
+      fmt::print(stderr, "[{}..{}{}{}]", *field.minimum, *field.maximum, field.unit.empty() ? "" : " ", field.unit);
   }
   fmt::print(stderr, "\n");
 }
@@ -69,7 +73,8 @@ void print_usage(const descriptor::Function& function) {
                                                            const descriptor::Subsystem& subsystem) {
   std::vector<descriptor::Function> functions = pus::common_functions();
   functions.insert(functions.end(), subsystem.functions.begin(), subsystem.functions.end());
-  const auto function = std::ranges::find_if(functions, [&](const auto& f) { return lower(f.name) == lower(options.function); });
+  const auto function =
+      std::ranges::find_if(functions, [&](const auto& f) { return lower(f.name) == lower(options.function); });
   if (function == functions.end()) {
     fmt::print(stderr, "hirosco tc: {} has no function '{}'; it has\n", subsystem.name, options.function);
     for (const auto& known : functions) print_usage(known);
@@ -81,7 +86,8 @@ void print_usage(const descriptor::Function& function) {
     const auto equals = word.find('=');
     std::size_t index = next;
     if (equals != std::string::npos) {
-      const auto named = std::ranges::find_if(function->arguments, [&](const auto& a) { return lower(a.field.name) == lower(word.substr(0, equals)); });
+      const auto named = std::ranges::find_if(
+          function->arguments, [&](const auto& a) { return lower(a.field.name) == lower(word.substr(0, equals)); });
       index = static_cast<std::size_t>(named - function->arguments.begin());
     } else {
       ++next;
@@ -106,8 +112,8 @@ void print_usage(const descriptor::Function& function) {
 [[nodiscard]] bool print_report(const pus::TelemetryView& report, double after_ms, bool json, bool& success) {
   OctetReader reader{report.source_data()};
   static_cast<void>(reader.get<std::uint32_t>());
-  constexpr std::array names{"", "accepted", "refused", "started", "start failed", "step", "step failed",
-                             "completed", "failed", "", "not routed"};
+  constexpr std::array names{"",          "accepted", "refused", "started",   "start failed", "step", "step failed",
+                             "completed", "failed",   "",        "not routed"};
   const std::uint8_t subtype = report.subtype();
   if (subtype >= names.size()) return false;
   const bool failure = subtype % 2 == 0;
@@ -117,7 +123,9 @@ void print_usage(const descriptor::Function& function) {
     const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
     detail += fmt::format(": {} (code {})", to_text(code), static_cast<unsigned>(code));
   }
-  if (json) fmt::print("{{\"report\":\"1,{}\",\"text\":\"{}{}\",\"from\":{},\"after_ms\":{:.2f}}}\n", subtype, names[subtype], detail, report.apid(), after_ms);
+  if (json)
+    fmt::print("{{\"report\":\"1,{}\",\"text\":\"{}{}\",\"from\":{},\"after_ms\":{:.2f}}}\n", subtype, names[subtype],
+               detail, report.apid(), after_ms);
   else fmt::print("{:9.2f} ms  TM[1,{}] {}{}\n", after_ms, subtype, names[subtype], detail);
   success = subtype == 7;
   return subtype == 7 || (failure && subtype != 6);
@@ -139,7 +147,8 @@ int telecommand(const TelecommandOptions& options) {
   }
   auto connection = GroundConnection::open(options.connection.address, options.connection.port);
   if (!connection) {
-    fmt::print(stderr, "hirosco tc: {}:{}: {}\n", options.connection.address, options.connection.port, connection.error().text);
+    fmt::print(stderr, "hirosco tc: {}:{}: {}\n", options.connection.address, options.connection.port,
+               connection.error().text);
     return exit_environment;
   }
   // A source id and a first count of its own: reports find back to this call and to no other (decision 27).
@@ -147,8 +156,12 @@ int telecommand(const TelecommandOptions& options) {
   const auto count = static_cast<std::uint16_t>(std::chrono::steady_clock::now().time_since_epoch().count() & 0x3FFF);
   std::array<std::byte, pus::max_telecommand_octets> buffer;
   const auto packet = pus::write_telecommand(buffer,
-                                             {.apid = subsystem->id, .sequence_count = count, .ack = pus::ack_all,
-                                              .service = static_cast<std::uint8_t>(ping ? 17 : 8), .subtype = 1, .source = source},
+                                             {.apid = subsystem->id,
+                                              .sequence_count = count,
+                                              .ack = pus::ack_all,
+                                              .service = static_cast<std::uint8_t>(ping ? 17 : 8),
+                                              .subtype = 1,
+                                              .source = source},
                                              data);
   if (!packet || !connection->send(*packet)) {
     fmt::print(stderr, "hirosco tc: the telecommand could not be sent\n");

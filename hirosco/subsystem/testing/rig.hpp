@@ -90,7 +90,7 @@ class Rig {
   std::vector<std::string> explanations;
   std::vector<Telemetry> telemetry;
   bool supervisor_silent{false};
-  std::uint32_t link_epoch{5};       ///< of the next attach()
+  std::uint32_t link_epoch{5};  ///< of the next attach()
   GenericSubsystem subsystem;
 
  private:

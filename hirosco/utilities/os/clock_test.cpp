@@ -33,7 +33,8 @@ TEST(SystemClock, OnboardTimeIsTheCalendarPlus37SecondsCountedFrom1958) {
   const auto before = std::chrono::system_clock::now().time_since_epoch();
   const Duration ours = clock.onboard().time_since_epoch();
   const auto after = std::chrono::system_clock::now().time_since_epoch();
-  const auto days = std::chrono::sys_days{std::chrono::year{1970} / 1 / 1} - std::chrono::sys_days{std::chrono::year{1958} / 1 / 1};
+  const auto days =
+      std::chrono::sys_days{std::chrono::year{1970} / 1 / 1} - std::chrono::sys_days{std::chrono::year{1958} / 1 / 1};
   EXPECT_LE(before + days + std::chrono::seconds{37}, ours);
   EXPECT_LE(ours, after + days + std::chrono::seconds{37});
 }

@@ -68,7 +68,7 @@ TEST(SleepUntil, WakesInTheOrderOfTheDeadlines) {
 }
 
 TEST(SleepUntil, IsNotShortenedBySignals) {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = [](int) {};
   ASSERT_EQ(::sigaction(SIGUSR1, &action, nullptr), 0);
   const SystemClock clock;

@@ -30,7 +30,7 @@ Result<> seal_writers(int descriptor) noexcept {
 }
 
 Result<> verify(int descriptor, std::size_t octets, bool writers_sealed) noexcept {
-  struct stat status {};
+  struct stat status{};
   if (::fstat(descriptor, &status) != 0) return fail(ErrorCode::SystemFailure, "size of memfd", errno);
   if (status.st_size < 0 || static_cast<std::size_t>(status.st_size) != octets)
     return fail(ErrorCode::Mismatch, "size of shared memory", status.st_size);

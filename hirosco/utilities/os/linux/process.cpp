@@ -78,7 +78,7 @@ void place_descriptors(Plan& plan) noexcept {
 
 void reset_signals() noexcept {
   for (int number = 1; number < NSIG; ++number) {
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = SIG_DFL;
     (void)::sigaction(number, &action, nullptr);
   }
@@ -109,8 +109,7 @@ void reset_signals() noexcept {
 }
 
 void reap(pid_t pid) noexcept {
-  while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}
 }
 
 [[nodiscard]] ErrorCode code_of(int error) noexcept {
@@ -198,7 +197,8 @@ Result<std::optional<ExitStatus>> Process::poll() noexcept {
   } while (outcome != 0 && errno == EINTR);
   if (outcome == 0) {
     if (info.si_pid == 0) return std::nullopt;
-    ended_ = ExitStatus{info.si_code == CLD_EXITED ? ExitStatus::Kind::Exited : ExitStatus::Kind::Signalled, info.si_status};
+    ended_ =
+        ExitStatus{info.si_code == CLD_EXITED ? ExitStatus::Kind::Exited : ExitStatus::Kind::Signalled, info.si_status};
     return ended_;
   }
   if (errno != ECHILD) return fail(ErrorCode::SystemFailure, "state of a process", errno);
@@ -209,7 +209,8 @@ Result<std::optional<ExitStatus>> Process::poll() noexcept {
 
 Result<> Process::send_signal(int signal) noexcept {
   if (ended_) return fail(ErrorCode::NotFound, "process has ended", pid_);
-  if (::syscall(SYS_pidfd_send_signal, handle_.get(), signal, nullptr, 0) != 0) return fail(code_of(errno), "signal to a process", errno);
+  if (::syscall(SYS_pidfd_send_signal, handle_.get(), signal, nullptr, 0) != 0)
+    return fail(code_of(errno), "signal to a process", errno);
   return ok();
 }
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/utilities/os/process.hpp"
 
-#include <gtest/gtest.h>
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,7 +17,9 @@
 namespace hirosco {
 namespace {
 
-[[nodiscard]] ProcessStart shell(std::string command) { return {.executable = "/bin/sh", .arguments = {"-c", std::move(command)}}; }
+[[nodiscard]] ProcessStart shell(std::string command) {
+  return {.executable = "/bin/sh", .arguments = {"-c", std::move(command)}};
+}
 
 [[nodiscard]] ExitStatus end_of(Process& process) {
   WaitSet set;
@@ -41,7 +43,8 @@ struct Pipe {
     std::string text;
     std::array<char, 256> part{};
     ssize_t got = 0;
-    while ((got = ::read(read_end.get(), part.data(), part.size())) > 0) text.append(part.data(), static_cast<std::size_t>(got));
+    while ((got = ::read(read_end.get(), part.data(), part.size())) > 0)
+      text.append(part.data(), static_cast<std::size_t>(got));
     return text;
   }
 };
@@ -83,7 +86,8 @@ TEST(Process, HasTheInheritedDescriptorsAndNoOthers) {
                              "; cd /proc/self/fd; echo * >&40");
   start.inherited = {{a, b}, {b, a}, {list.write_end.get(), 40}};
   start.executable = "/bin/bash";
-  if (!std::filesystem::exists(start.executable)) GTEST_SKIP() << "no bash: other shells know one-digit descriptors only";
+  if (!std::filesystem::exists(start.executable))
+    GTEST_SKIP() << "no bash: other shells know one-digit descriptors only";
   // A descriptor that somebody forgot to close on exec.
   const FileDescriptor stray{::fcntl(0, F_DUPFD, 50)};
   ASSERT_TRUE(stray);

@@ -31,7 +31,8 @@ template <class Storage>
 [[nodiscard]] bool take(State& state) noexcept {
   std::uint32_t count = state.count.load(std::memory_order_relaxed);
   while (count != 0)
-    if (state.count.compare_exchange_weak(count, count - 1, std::memory_order_seq_cst, std::memory_order_relaxed)) return true;
+    if (state.count.compare_exchange_weak(count, count - 1, std::memory_order_seq_cst, std::memory_order_relaxed))
+      return true;
   return false;
 }
 
@@ -68,8 +69,8 @@ void Semaphore::post() noexcept {
     if (count == std::numeric_limits<std::uint32_t>::max()) return;
   } while (!state.count.compare_exchange_weak(count, count + 1, std::memory_order_seq_cst, std::memory_order_relaxed));
   if (state.waiters.load(std::memory_order_seq_cst) == 0) return;
-  (void)::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&state.count), FUTEX_WAKE | FUTEX_PRIVATE_FLAG, 1, nullptr,
-                  nullptr, 0);
+  (void)::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&state.count), FUTEX_WAKE | FUTEX_PRIVATE_FLAG, 1,
+                  nullptr, nullptr, 0);
 }
 
 void Semaphore::wait() noexcept { (void)wait_for(state_of(storage_), nullptr); }

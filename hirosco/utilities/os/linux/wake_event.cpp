@@ -19,14 +19,12 @@ Result<WakeEvent> WakeEvent::create() noexcept {
 void WakeEvent::notify() noexcept {
   // A counter at its limit refuses, and is a notification already.
   const std::uint64_t one = 1;
-  while (::write(read_end_.get(), &one, sizeof one) < 0 && errno == EINTR) {
-  }
+  while (::write(read_end_.get(), &one, sizeof one) < 0 && errno == EINTR) {}
 }
 
 void WakeEvent::clear() noexcept {
   std::uint64_t sink = 0;
-  while (::read(read_end_.get(), &sink, sizeof sink) < 0 && errno == EINTR) {
-  }
+  while (::read(read_end_.get(), &sink, sizeof sink) < 0 && errno == EINTR) {}
 }
 
 }  // namespace hirosco

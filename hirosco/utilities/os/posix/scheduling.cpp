@@ -36,7 +36,9 @@ bool realtime_permitted() noexcept {
 }
 
 Result<> pin_to_cycle_cpu() noexcept { return fail(ErrorCode::Unavailable, "POSIX has no processor affinity"); }
-Result<> pin_to_cpu(unsigned cpu) noexcept { return fail(ErrorCode::Unavailable, "POSIX has no processor affinity", cpu); }
+Result<> pin_to_cpu(unsigned cpu) noexcept {
+  return fail(ErrorCode::Unavailable, "POSIX has no processor affinity", cpu);
+}
 
 void set_thread_name(const char* /*name*/) noexcept {}
 

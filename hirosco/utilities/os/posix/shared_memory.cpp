@@ -44,9 +44,10 @@ Result<> os_detail::give_size(int descriptor, std::size_t octets) noexcept {
 
 Result<MappedMemory> MappedMemory::map(int descriptor, std::size_t octets, MapMode mode) noexcept {
   if (!plausible(octets)) return fail(ErrorCode::InvalidArgument, "octets to map");
-  struct stat status {};
+  struct stat status{};
   if (::fstat(descriptor, &status) != 0) return fail(ErrorCode::SystemFailure, "size of memory to map", errno);
-  if (status.st_size < static_cast<off_t>(octets)) return fail(ErrorCode::Mismatch, "memory to map is shorter", status.st_size);
+  if (status.st_size < static_cast<off_t>(octets))
+    return fail(ErrorCode::Mismatch, "memory to map is shorter", status.st_size);
   const int protection = mode == MapMode::ReadOnly ? PROT_READ : PROT_READ | PROT_WRITE;
   void* start = ::mmap(nullptr, octets, protection, MAP_SHARED, descriptor, 0);
   if (start == MAP_FAILED) return fail(code_of(errno), "map memory", errno);
@@ -94,7 +95,8 @@ Result<SharedMemory> SharedMemory::create_anonymous(const char* label, std::size
   return from_descriptor(std::move(descriptor), octets, MapMode::ReadWrite);
 }
 
-Result<SharedMemory> SharedMemory::from_descriptor(FileDescriptor descriptor, std::size_t octets, MapMode mode) noexcept {
+Result<SharedMemory> SharedMemory::from_descriptor(FileDescriptor descriptor, std::size_t octets,
+                                                   MapMode mode) noexcept {
   HIROSCO_TRY_LET(MappedMemory memory, MappedMemory::map(descriptor.get(), octets, mode));
   return SharedMemory{std::move(descriptor), std::move(memory)};
 }

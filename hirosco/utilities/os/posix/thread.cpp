@@ -36,7 +36,8 @@ Result<Thread> Thread::start(std::string name, std::move_only_function<void()> b
   if (stack_octets != 0)
     error = pthread_attr_setstacksize(&attributes, std::max(stack_octets, static_cast<std::size_t>(PTHREAD_STACK_MIN)));
   Thread thread;
-  if (error == 0) error = pthread_create(&thread.handle_, &attributes, [](void* a) -> void* { return run(a); }, start.get());
+  if (error == 0)
+    error = pthread_create(&thread.handle_, &attributes, [](void* a) -> void* { return run(a); }, start.get());
   (void)pthread_attr_destroy(&attributes);
   if (error != 0) return fail(ErrorCode::SystemFailure, "start thread", error);
   (void)start.release();
@@ -62,8 +63,7 @@ void sleep_until(TimePoint wake) noexcept {
   const Duration since_start = std::max(wake.time_since_epoch(), Duration{0});
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(since_start);
   const timespec limit{static_cast<time_t>(whole.count()), static_cast<long>((since_start - whole).count())};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &limit, nullptr) == EINTR) {
-  }
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &limit, nullptr) == EINTR) {}
 }
 
 Result<> lock_memory() noexcept {

@@ -39,7 +39,8 @@ namespace {
 
 Result<> WaitSet::add(int descriptor, Interest interest) {
   if (descriptor < 0) return fail(ErrorCode::InvalidArgument, "descriptor to wait for", descriptor);
-  if (index_of(descriptor) != entries_.size()) return fail(ErrorCode::AlreadyExists, "descriptor to wait for", descriptor);
+  if (index_of(descriptor) != entries_.size())
+    return fail(ErrorCode::AlreadyExists, "descriptor to wait for", descriptor);
   if (entries_.size() == max_descriptors) return fail(ErrorCode::ResourceExhausted, "descriptors to wait for");
   entries_.push_back({descriptor, events_of(interest), 0});
   ready_.reserve(entries_.capacity());

@@ -24,8 +24,7 @@ Result<WakeEvent> WakeEvent::create() noexcept {
 void WakeEvent::notify() noexcept {
   // A full pipe is a notification already.
   const char one = 1;
-  while (::write(write_end_.get(), &one, 1) < 0 && errno == EINTR) {
-  }
+  while (::write(write_end_.get(), &one, 1) < 0 && errno == EINTR) {}
 }
 
 void WakeEvent::clear() noexcept {
