@@ -110,17 +110,24 @@ struct Counted;
   };
 MEMBERS(1, a)
 MEMBERS(2, a, b)
-MEMBERS(3, a, b, c) MEMBERS(4, a, b, c, d) MEMBERS(5, a, b, c, d, e) MEMBERS(6, a, b, c, d, e, f)
-    MEMBERS(7, a, b, c, d, e, f, g) MEMBERS(8, a, b, c, d, e, f, g, h) MEMBERS(9, a, b, c, d, e, f, g, h, i)
-        MEMBERS(10, a, b, c, d, e, f, g, h, i, j) MEMBERS(11, a, b, c, d, e, f, g, h, i, j, k)
-            MEMBERS(12, a, b, c, d, e, f, g, h, i, j, k, l) MEMBERS(13, a, b, c, d, e, f, g, h, i, j, k, l, m)
-                MEMBERS(14, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
-                    MEMBERS(15, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
-                        MEMBERS(16, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
+MEMBERS(3, a, b, c)
+MEMBERS(4, a, b, c, d)
+MEMBERS(5, a, b, c, d, e)
+MEMBERS(6, a, b, c, d, e, f)
+MEMBERS(7, a, b, c, d, e, f, g)
+MEMBERS(8, a, b, c, d, e, f, g, h)
+MEMBERS(9, a, b, c, d, e, f, g, h, i)
+MEMBERS(10, a, b, c, d, e, f, g, h, i, j)
+MEMBERS(11, a, b, c, d, e, f, g, h, i, j, k)
+MEMBERS(12, a, b, c, d, e, f, g, h, i, j, k, l)
+MEMBERS(13, a, b, c, d, e, f, g, h, i, j, k, l, m)
+MEMBERS(14, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+MEMBERS(15, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
+MEMBERS(16, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
 #undef MEMBERS
 
-                            template <std::size_t N>
-                            void expect_layout_of_members() {
+template <std::size_t N>
+void expect_layout_of_members() {
   const auto fields = layout_of<Counted<N>>();
   ASSERT_EQ(fields.size(), N);
   for (std::size_t i = 0; i < N; ++i) EXPECT_EQ(fields[i], (NativeField{Type::Uint16, 1, 2 * i})) << N;

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""without_rights_test.py [SECONDS]: an ordinary user without real-time rights flies coupled on a busy computer, and no
+reaction of the spacecraft is provoked by that."""
+import contextlib
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import flight
+
+SECONDS = 30.0
+NOBODY = 65534
+AS_NOBODY = ("setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups", "--no-new-privs",
+             "--inh-caps=-all", "--bounding-set=-all")
+
+
+@contextlib.contextmanager
+def busy_processors():
+    with contextlib.ExitStack() as stack:
+        load = subprocess.Popen(["stress-ng", "--quiet", "--cpu", str(os.cpu_count() or 2)])
+        stack.callback(load.wait)
+        stack.callback(load.terminate)
+        yield
+
+
+@contextlib.contextmanager
+def ordinary_user():
+    """Arguments of a Flight that an ordinary user starts. For root: as nobody, who may not even read the repository."""
+    if os.geteuid() != 0:
+        yield {"prefix": ("setpriv", "--no-new-privs")}
+        return
+    with tempfile.TemporaryDirectory(prefix="hirosco-nobody-") as folder:
+        home = pathlib.Path(folder)
+        home.chmod(0o755)
+        for name in ("supervisor", "subsystems", "missions"):
+            for descriptor in (flight.REPOSITORY / name).rglob("*.xml"):
+                to = home / descriptor.relative_to(flight.REPOSITORY)
+                to.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(descriptor, to)
+        (home / "bin").mkdir()
+        for program in flight.BINARIES.glob("hirosco*"):
+            shutil.copy(program, home / "bin" / program.name)
+        (home / "flight").mkdir()
+        yield {"mission": home / "missions/rokviss/mission.xml", "binaries": home / "bin", "prefix": AS_NOBODY,
+               "folder": home / "flight", "owner": NOBODY}
+
+
+class WithoutRights(unittest.TestCase):
+    def test_a_busy_computer_provokes_no_reaction(self):
+        with ordinary_user() as arguments, busy_processors(), flight.Flight(**arguments) as rokviss:
+            rokviss.wait_told("no real-time scheduling", 5.0)
+            rokviss.wait_commissioned(40.0)
+            begin = rokviss.count()
+            self.assertIsNone(rokviss.wait_line(lambda line: line.told.startswith("plan "), SECONDS, begin))
+            told = [line.told for line in rokviss.told(begin)]
+            self.assertEqual([text for text in told if " info " not in text], [])
+            status = rokviss.wait_status(lambda s: True, 10.0)
+            self.assertEqual({m["state"] for m in status["subsystems"]}, {"Operational"})
+            for member in status["subsystems"]:
+                flight.measure(", ".join(f"{name} {member[name]}" for name in
+                                         ("name", "cycles", "missed", "overruns", "latency_max_ns", "execution_mean_ns")
+                                         if name in member))
+            self.assertEqual(rokviss.end(seconds=30.0), 0, rokviss.errors)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        SECONDS = float(sys.argv.pop(1))
+    if not shutil.which("stress-ng"):
+        flight.skip("no stress-ng")
+    flight.main()
