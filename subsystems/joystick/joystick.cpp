@@ -58,6 +58,7 @@ class Joystick final : public Subsystem {
       return ok();
     });
     on_function("PASSIVITY", [this](double on) -> Outcome {
+      if (!coupled_) return refused(pus::FailureCode::NotPermittedNow);
       passivity_.store(on != 0.0 ? 1 : 0);
       return ok();
     });
@@ -66,7 +67,9 @@ class Joystick final : public Subsystem {
 
   Result<> configure(const descriptor::Configuration& configuration) override {
     coupled_ = !configuration.requires_.empty();
-    display_.emplace(seconds(configuration.sampling));
+    position_force_.emplace(seconds(configuration.sampling));
+    passive_position_force_.emplace(seconds(configuration.sampling));
+    law_ = &*position_force_;
     commanded_ = {};
     clipped_ = false;
     passive_ = false;
@@ -94,24 +97,35 @@ class Joystick final : public Subsystem {
   }
 
   void restart() noexcept {
-    display_->reset();
+    law_->reset();
     commanded_ = {};
   }
 
   [[nodiscard]] Axes torque() noexcept {
     if (!coupled_) return commanded_;
+    choose_law();
     const RobotState& robot = robot_.value();
-    const Axes shown = display_->torque({.velocity_rad_s = handle_.input().velocity_rad_per_s,
-                                         .peer_torque_n_m = robot.torque_n_m,
-                                         .peer_active = robot_.valid() && robot.active != 0},
-                                        {.force_scale = force_scale_.load(), .passivity = passivity_.load() != 0});
-    observed_energy_.store(display_->observed_energy_j());
-    dissipated_.store(display_->dissipated_j());
-    if (display_->clipped() && !clipped_) raise(force_clipped, {1.0, joystick::ForceDisplay::torque_max_n_m});
-    if (display_->controller_acted() && !passive_) raise(passivity_active, {display_->dissipated_j()});
-    clipped_ = display_->clipped();
-    passive_ = passive_ || display_->controller_acted();
+    const Axes shown = law_->torque({.velocity_rad_s = handle_.input().velocity_rad_per_s,
+                                     .peer_torque_n_m = robot.torque_n_m,
+                                     .peer_active = robot_.valid() && robot.active != 0},
+                                    force_scale_.load());
+    observed_energy_.store(law_->observed_energy_j());
+    dissipated_.store(law_->dissipated_j());
+    if (law_->clipped() && !clipped_) raise(force_clipped, {1.0, joystick::DisplayLaw::torque_max_n_m});
+    if (law_->controller_acted() && !passive_) raise(passivity_active, {law_->dissipated_j()});
+    clipped_ = law_->clipped();
+    passive_ = passive_ || law_->controller_acted();
     return shown;
+  }
+
+  /// The law that PASSIVITY asks for; a new one goes on from the torque that the hand feels.
+  void choose_law() noexcept {
+    joystick::DisplayLaw* wanted = &*position_force_;
+    if (passivity_.load() != 0) wanted = &*passive_position_force_;
+    if (wanted == law_) return;
+    wanted->take_over(*law_);
+    law_ = wanted;
+    passive_ = false;
   }
 
   void measure(const Cycle& cycle, const Axes& torque_n_m) noexcept {
@@ -141,7 +155,9 @@ class Joystick final : public Subsystem {
   LinkInput<RobotState> robot_;
   DevicePort<HandleInput, HandleOutput> handle_;
 
-  std::optional<joystick::ForceDisplay> display_;
+  std::optional<joystick::PositionForce> position_force_;
+  std::optional<joystick::PassivePositionForce> passive_position_force_;
+  joystick::DisplayLaw* law_{nullptr};  ///< one of the two
   Axes commanded_{};
   bool coupled_{false};
   bool clipped_{false};

@@ -30,6 +30,7 @@ RokvissLoop::RokvissLoop(const Settings& settings)
     : settings_{settings},
       robot_{flows_, robot_address, {}, settings.friction ? settings.arm : settings.arm.without_friction()},
       joystick_{flows_, joystick_address, {}, settings.handle},
+      display_{settings.passivity ? static_cast<joystick::DisplayLaw&>(passive_position_force_) : position_force_},
       to_manipulator_{settings.link_cycles},
       to_display_{settings.link_cycles} {
   // A pair of mailboxes in memory opens or the caller gave two of the same address; both sides are ours.
@@ -98,8 +99,7 @@ void RokvissLoop::step() {
   const bool off = torque_off();
   if (trip_) ++cycles_since_trip_;
   const Sample felt = to_display_.pass({trace_.robot.torque_n_m, !trip_});
-  trace_.display_n_m =
-      display_.torque({trace_.joystick_rad_s, felt.value, felt.active}, {settings_.force_scale, settings_.passivity});
+  trace_.display_n_m = display_.torque({trace_.joystick_rad_s, felt.value, felt.active}, settings_.force_scale);
   ++cycle_;
   command(*to_robot_, off ? DeviceMode::Off : DeviceMode::Active, cycle_, motor);
   command(*to_joystick_, DeviceMode::Active, cycle_, trace_.display_n_m);

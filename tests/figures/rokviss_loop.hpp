@@ -110,7 +110,9 @@ class RokvissLoop {
   manipulator::JointController controller_{period_s};
   manipulator::Clutch clutch_;
   manipulator::TorqueLimit limit_;
-  joystick::ForceDisplay display_{period_s};
+  joystick::PositionForce position_force_{period_s};
+  joystick::PassivePositionForce passive_position_force_{period_s};
+  joystick::DisplayLaw& display_;
   Link to_manipulator_;
   Link to_display_;
   std::optional<Trip> trip_;
