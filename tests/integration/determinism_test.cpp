@@ -14,16 +14,23 @@ namespace {
 
 using supervisor::LogRecord;
 
-struct Minute {
+// Sanitized code is twenty times slower; what it looks for happens in the first seconds too.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr Duration flown = 5s;
+#else
+constexpr Duration flown = 60s;
+#endif
+
+struct FirstMinute {
   std::vector<LogRecord> records;
   double wall_s{0};
 };
 
-Minute one_minute(std::uint64_t seed) {
+FirstMinute fly(std::uint64_t seed) {
   const auto start = std::chrono::steady_clock::now();
   Flight flight{{.seed = seed}};
-  flight.craft().run(60s);
-  Minute minute{flight.records(), 0};
+  flight.craft().run(flown);
+  FirstMinute minute{flight.records(), 0};
   minute.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_TRUE(flight.craft().supervisor().commissioned());
   return minute;
@@ -41,14 +48,14 @@ std::vector<std::vector<std::byte>> robot_housekeeping(const std::vector<LogReco
 }
 
 TEST(Determinism, OneMinuteGivesTheSameLogTwiceAndAnotherWithAnotherSeed) {
-  const Minute first = one_minute(1);
-  const Minute second = one_minute(1);
-  const Minute other = one_minute(2);
+  const FirstMinute first = fly(1);
+  const FirstMinute second = fly(1);
+  const FirstMinute other = fly(2);
   const auto packets =
       std::ranges::count_if(first.records, [](const LogRecord& record) { return !record.packet.empty(); });
-  std::cout << fmt::format("  60 s of rokviss: {} records, {} packets, simulated in {:.2f} s\n", first.records.size(),
-                           packets, first.wall_s);
-  EXPECT_GE(packets, 1000);
+  std::cout << fmt::format("  {} s of rokviss: {} records, {} packets, simulated in {:.2f} s\n", flown / 1s,
+                           first.records.size(), packets, first.wall_s);
+  EXPECT_GE(packets, flown / 1s * 1000 / 60);
   ASSERT_EQ(first.records.size(), second.records.size());
   EXPECT_TRUE(first.records == second.records);
   const auto robot = robot_housekeeping(first.records);
