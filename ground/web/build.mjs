@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// node build.mjs [FOLDER [SOURCES]]: bundles the page of SOURCES (default: here) into FOLDER (default: dist), with the packages that
+// stand beside this file. The same sources give the same octets. The 3D part is a chunk of its own, which the browser fetches
+// when a view needs it.
+import {build} from 'esbuild';
+import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {dirname, join, resolve} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {gzipSync} from 'node:zlib';
+
+const here = dirname(fileURLToPath(import.meta.url));
+const out = resolve(process.argv[2] ?? join(here, 'dist'));
+const sources = resolve(process.argv[3] ?? here);
+rmSync(out, {recursive: true, force: true});
+mkdirSync(out, {recursive: true});
+
+await build({
+  absWorkingDir: sources,
+  nodePaths: [join(here, 'node_modules')],
+  entryPoints: {main: 'page/main.js', feed_worker: 'page/feed_worker.js', style: 'page/style.css'},
+  outdir: out,
+  bundle: true,
+  splitting: true,
+  format: 'esm',
+  target: 'es2022',
+  minify: true,
+  legalComments: 'linked',
+  logLevel: 'warning',
+});
+cpSync(join(sources, 'page/index.html'), join(out, 'index.html'));
+cpSync(join(sources, 'page/icon.svg'), join(out, 'icon.svg'));
+cpSync(join(sources, 'page/models'), join(out, 'models'), {recursive: true});
+
+/// Notices of what is bundled: each licence asks to be carried along.
+const notices = [];
+for (const name of Object.keys(JSON.parse(readFileSync(join(here, 'package.json'))).dependencies)) {
+  const folder = join(here, 'node_modules', name);
+  const file = readdirSync(folder).find((entry) => /^licen[cs]e/i.test(entry));
+  notices.push(`${name}\n${'='.repeat(name.length)}\n${file ? readFileSync(join(folder, file), 'utf8') : 'Apache-2.0'}`);
+}
+writeFileSync(join(out, 'notices.txt'), notices.join('\n\n'));
+
+let first = 0, all = 0;
+for (const entry of readdirSync(out).filter((name) => /\.(js|css|html)$/.test(name))) {
+  const octets = gzipSync(readFileSync(join(out, entry))).length;
+  all += octets;
+  if (!entry.startsWith('scene')) first += octets;
+}
+console.log(`ground page: ${(first / 1024).toFixed(0)} KiB without 3D, ${(all / 1024).toFixed(0)} KiB in all (gzip)`);

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// node development/server.mjs RECORDING [PAGE [PORT]]: the page without a spacecraft. Answers as ground/api/README.md says, from a
+// recorded flight that it plays in a loop (development/record.mjs makes one); takes telecommands and completes them. For work on the
+// page's looks, with the token "development"; nothing here is part of what flies.
+import {createReadStream, existsSync, readFileSync, statSync} from 'node:fs';
+import {createServer} from 'node:http';
+import {dirname, extname, join, normalize} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {WebSocketServer} from 'ws';
+
+const [recording, page = join(dirname(fileURLToPath(import.meta.url)), '../dist'), port = '8090'] = process.argv.slice(2);
+if (!recording) {
+  console.error('usage: node development/server.mjs RECORDING [PAGE [PORT]]');
+  process.exit(2);
+}
+const token = 'development';
+const flight = JSON.parse(readFileSync(recording, 'utf8'));
+const list = flight.messages;
+const first_t = list[0].t, length_s = list[list.length - 1].t - first_t + 2;
+const step_ms = 50, past_s = 120, longest_value_s = 0.1;
+
+let now = first_t;
+let lap = 0;
+let at = 0;
+const archive = [];
+const latest = new Map();
+let mode = null;
+const states = new Map();
+let commands = [];
+let injections = [];
+let next_id = 1;
+
+function take(message) {
+  archive.push(message);
+  if (message.type === 'values') for (const [name, [v, t]] of Object.entries(message.set)) latest.set(name, {v, t});
+  if (message.type === 'event' && message.name === 'STATE_CHANGED') states.set(message.subsystem, message.text.replace('STATE=', ''));
+  if (message.type === 'status' && message.mode) mode = message.mode;
+}
+
+function shifted(message, by) {
+  const moved = {...message, t: message.t + by};
+  if (message.set) moved.set = Object.fromEntries(Object.entries(message.set).map(([name, [v, t]]) => [name, [v, t + by]]));
+  return moved;
+}
+
+/// The recorded messages until `t`, lap after lap.
+function* until(t) {
+  for (;;) {
+    const by = lap * length_s;
+    if (at >= list.length) {
+      if (first_t + by + length_s > t) return;
+      at = 0;
+      ++lap;
+      states.clear();
+      continue;
+    }
+    if (list[at].t + by > t) return;
+    yield shifted(list[at++], by);
+  }
+}
+
+const state_of = (subsystem) => states.get(subsystem.name) ?? 'Offline';
+function status(t = now) {
+  const up = [...states.values()].filter((state) => state === 'Operational').length >= flight.mission.subsystems.length;
+  return {t, link: {connected: true, age_s: longest_value_s / 2, rx: archive.length, tx: commands.length, lost: 0},
+    mode: mode ?? (up ? flight.mission.start_mode ?? 'telepresence' : 'commissioning'), commandable: true,
+    subsystems: flight.mission.subsystems.map((one) => ({id: one.id, name: one.name, state: state_of(one),
+      configuration: one.configurations[one.configurations.length - 1]?.name, cycles: Math.round((t - first_t) * 2000), overruns: 0, missed: 0,
+      latency_max_ns: 61000, execution_mean_ns: 8400, inhibited: state_of(one) === 'ErrorOperational' ? ['failure'] : [], waits_for: '', age_s: 0.1})),
+    links: flight.mission.links.map((link) => ({id: link.id, up, age_cycles: up ? 0 : 400, rate_hz: up ? link.rate_hz : 0, lost: 0}))};
+}
+
+for (const message of until(now + past_s)) take(message);
+now += past_s;
+
+const types = {'.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.json': 'application/json',
+  '.urdf': 'application/xml', '.txt': 'text/plain; charset=utf-8'};
+const policy = "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; " +
+  "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+function answer(response, code, body) {
+  response.writeHead(code, {'Content-Type': 'application/json', 'Cache-Control': 'no-store'});
+  response.end(JSON.stringify(body));
+}
+
+function history(query) {
+  const name = query.get('parameter'), from = +query.get('from'), to = +query.get('to');
+  const samples = archive.filter((one) => one.type === 'values' && name in one.set && one.t >= from && one.t <= to).map((one) => one.set[name]);
+  return {parameter: name, unit: '', t: samples.map(([, t]) => t), v: samples.map(([v]) => v), gaps: []};
+}
+
+function timeline(query) {
+  const from = +query.get('from'), to = +query.get('to');
+  const events = archive.filter((one) => one.type === 'event' && one.t <= to);
+  return {modes: [{t: from, mode: status().mode}], links: flight.mission.links.map((link) => ({t: from, id: link.id, up: true})), gaps: [],
+    states: events.filter((one) => one.name === 'STATE_CHANGED').map((one) => ({t: one.t, subsystem: one.subsystem, state: one.text.replace('STATE=', '')})),
+    commands: commands.filter((one) => one.t >= from), events: events.filter((one) => one.t >= from), faults: injections};
+}
+
+function tell(message) {
+  for (const client of sockets.clients) if (!client.replay) client.send(JSON.stringify(message));
+}
+
+function command(body) {
+  const one = {id: next_id++, t: now, sender: 'operator', subsystem: body.subsystem, function: body.function, arguments: body.arguments, reports: []};
+  commands = [one, ...commands];
+  const refused = body.function === 'MOVE_TO';
+  ['sent', refused ? 'failed' : 'accepted', ...(refused ? [] : ['started', 'completed'])].forEach((stage, i) => setTimeout(() => {
+    const report = {t: now, stage, code: stage === 'failed' ? 15 : null, reason: stage === 'failed' ? 'setpoint owned by a link' : null};
+    one.reports.push(report);
+    Object.assign(one, {stage, code: report.code, reason: report.reason});
+    if (stage === 'completed' && body.function === 'SET_STATE') states.set(body.subsystem, flight.mission.subsystems[0].states[body.arguments.STATE]);
+    if (stage === 'completed' && body.function === 'SET_MODE') mode = flight.mission.modes.find((known) => known.id === body.arguments.MODE)?.name ?? mode;
+    tell({...report, type: 'command', ...Object.fromEntries(Object.entries(one).filter(([key]) => !['reports', 't'].includes(key))), t: now, stage});
+  }, i * 60));
+  return {id: one.id, apid: 10, count: one.id, octets: '180ae796001929080100014d4f56455f544f'};
+}
+
+const server = createServer(async (request, response) => {
+  const url = new URL(request.url, `http://${request.headers.host}`);
+  if (!url.pathname.startsWith('/api/')) {
+    const file = join(page, normalize(url.pathname === '/' ? '/index.html' : url.pathname));
+    if (!file.startsWith(page) || !existsSync(file) || !statSync(file).isFile()) return answer(response, 404, {error: 'no such file'});
+    response.writeHead(200, {'Content-Type': types[extname(file)] ?? 'application/octet-stream', 'Content-Security-Policy': policy, 'Cache-Control': 'no-store'});
+    return createReadStream(file).pipe(response);
+  }
+  if (request.headers.authorization !== `Bearer ${token}`) return answer(response, 401, {error: 'the token is missing'});
+  let text = '';
+  for await (const part of request) text += part;
+  const body = text ? JSON.parse(text) : {};
+  const query = url.searchParams;
+  const routes = {
+    '/api/mission': () => flight.mission,
+    '/api/status': () => ({...status(), values: Object.fromEntries([...latest].map(([name, {v, t}]) => [name, {v, t, age_s: now - t}]))}),
+    '/api/history': () => history(query),
+    '/api/events': () => ({events: archive.filter((one) => one.type === 'event' && !(one.t > (+query.get('to') || Infinity))).reverse().slice(0, +(query.get('limit') ?? 200))}),
+    '/api/commands': () => request.method === 'POST' ? command(body) : {commands},
+    '/api/commands/preview': () => ({octets: '180ae796001929080100014d4f56455f544f0000000000000000',
+      permitted: body.function !== 'MOVE_TO', code: body.function === 'MOVE_TO' ? 15 : null, reason: body.function === 'MOVE_TO' ? 'setpoint owned by a link' : null}),
+    '/api/timeline': () => timeline(query),
+    '/api/why': () => ({causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one) => ({t: one.t, text: `${one.subsystem} reports ${one.name}`}))}),
+    '/api/faults': () => {
+      injections = [...injections, {t: now, device: body.device, line: body.line, answer: 'ok'}];
+      return {answer: 'ok'};
+    },
+  };
+  const route = routes[url.pathname];
+  if (!route) return answer(response, 404, {error: 'no such path'});
+  return answer(response, request.method === 'POST' && url.pathname === '/api/commands' ? 202 : 200, route());
+});
+
+const sockets = new WebSocketServer({server, path: '/ws', verifyClient: ({req}) => new URL(req.url, 'http://x').searchParams.get('token') === token});
+sockets.on('connection', (socket) => {
+  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: 'c1', operator: true, archive_from: first_t}));
+  socket.on('message', (data) => {
+    const message = JSON.parse(data);
+    socket.replay = message.type === 'replay' ? {at: message.at, speed: message.speed, next: archive.findIndex((one) => one.t >= message.at)} : null;
+    socket.send(JSON.stringify({type: 'replay', at: message.at, speed: message.speed, state: message.type === 'live' ? 'live' : message.speed ? 'playing' : 'paused'}));
+    if (socket.replay) socket.send(JSON.stringify({type: 'status', ...status(message.at), replay: true}));
+  });
+});
+
+setInterval(() => {
+  now += step_ms / 1000;
+  const news = [...until(now)];
+  const set = {};
+  for (const message of news) {
+    take(message);
+    if (message.type === 'values') Object.assign(set, message.set);
+    else tell(message);
+  }
+  if (Object.keys(set).length) tell({type: 'values', t: now, set});
+  for (const socket of sockets.clients) {
+    if (!socket.replay) continue;
+    socket.replay.at += socket.replay.speed * step_ms / 1000;
+    for (; socket.replay.next >= 0 && socket.replay.next < archive.length && archive[socket.replay.next].t <= socket.replay.at; ++socket.replay.next) {
+      socket.send(JSON.stringify({...archive[socket.replay.next], replay: true}));
+    }
+  }
+}, step_ms);
+setInterval(() => tell({type: 'status', ...status()}), 500);
+
+server.listen(+port, '127.0.0.1', () => console.log(`http://127.0.0.1:${port}/#token=${token}`));

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Requests to the gateway. The token stands in the fragment of the printed URL, which a browser never sends anywhere; it is
+// kept for the tab and taken out of the address line.
+
+const stored = 'hirosco-token';
+
+export function take_token() {
+  const match = /[#&?]token=([^&]+)/.exec(location.hash);
+  if (match) {
+    sessionStorage.setItem(stored, decodeURIComponent(match[1]));
+    history.replaceState(null, '', '#/overview');
+  }
+  return token();
+}
+
+export const token = () => sessionStorage.getItem(stored) ?? '';
+
+export class RequestError extends Error {
+  constructor(status, message) {
+    super(message);
+    this.status = status;
+  }
+}
+
+let client = '';
+/// The name that the gateway gave our WebSocket: it knows by it that a replaying page must not command.
+export const introduce = (name) => { client = String(name ?? ''); };
+
+async function request(path, options = {}) {
+  const own = client ? {'X-Client': client} : {};
+  const response = await fetch(path, {...options, headers: {...options.headers, ...own, Authorization: `Bearer ${token()}`}});
+  const text = await response.text();
+  let answer;
+  try {
+    answer = text ? JSON.parse(text) : {};
+  } catch {
+    answer = {};
+  }
+  if (!response.ok) {
+    throw new RequestError(response.status, answer.error ?? (text.slice(0, 300) || `HTTP ${response.status}`));
+  }
+  return answer;
+}
+
+const query = (parameters) => new URLSearchParams(
+    Object.entries(parameters).filter(([, value]) => value !== undefined && value !== null && value !== '')).toString();
+
+export const get = (path, parameters = {}) => {
+  const words = query(parameters);
+  return request(words ? `${path}?${words}` : path);
+};
+
+export const post = (path, body) =>
+  request(path, {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify(body)});
+
+/// A file of the page itself, not of the API.
+export async function asset(path) {
+  const response = await fetch(path);
+  if (!response.ok) throw new RequestError(response.status, `${path}: HTTP ${response.status}`);
+  return response;
+}

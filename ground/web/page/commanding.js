@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Everything that goes up passes here: telecommands by the supervisor, faults by the simulated devices' own sockets.
+import {signal} from '@preact/signals';
+import {post} from './api.js';
+import {commands, mission, outcome_of, replay, status, status_of, subsystem_of, with_report} from './store.js';
+
+/// Short words at the lower edge for what was sent without a form.
+export const toasts = signal([]);
+let toast_number = 0;
+export function say(text, kind = 'info') {
+  const one = {number: ++toast_number, text, kind};
+  toasts.value = [...toasts.value, one].slice(-4);
+  setTimeout(() => { toasts.value = toasts.value.filter((other) => other !== one); }, kind === 'bad' ? 9000 : 4000);
+}
+
+export async function send(subsystem, function_name, values = {}) {
+  if (replay.value) throw new Error('This is a replay: telecommands are locked.');
+  const answer = await post('/api/commands', {subsystem, function: function_name, arguments: values});
+  commands.value = with_report(commands.value, {id: answer.id, subsystem, function: function_name, arguments: values,
+    octets: answer.octets, mine: true});
+  return answer.id;
+}
+
+export const preview = (subsystem, function_name, values) =>
+  post('/api/commands/preview', {subsystem, function: function_name, arguments: values});
+
+/// Sends and says the outcome in a toast.
+export async function send_and_say(subsystem, function_name, values = {}) {
+  try {
+    const outcome = await finished(await send(subsystem, function_name, values));
+    const words = `${subsystem} ${function_name}`;
+    if (outcome.stage === 'failed') say(`${words}: ${outcome.reason ?? `code ${outcome.code}`}`, 'bad');
+    else say(`${words}: ${outcome.stage}`, 'good');
+    return outcome;
+  } catch (error) {
+    say(`${subsystem} ${function_name}: ${error.message}`, 'bad');
+    return {stage: 'failed', reason: error.message};
+  }
+}
+
+/// Resolves with the outcome of a sent telecommand: completed or failed; what is there after `limit_s` else.
+export function finished(id, limit_s = 20) {
+  return new Promise((resolve) => {
+    let timer = 0;
+    let stop = () => {};
+    const look = () => {
+      const command = commands.value.find((one) => one.id === id);
+      const outcome = command ? outcome_of(command) : {stage: 'sent'};
+      if (outcome.stage === 'completed' || outcome.stage === 'failed') finish(outcome);
+    };
+    const finish = (outcome) => {
+      clearTimeout(timer);
+      stop();
+      resolve(outcome);
+    };
+    timer = setTimeout(() => finish({stage: 'failed', reason: `no verdict within ${limit_s} s`}), limit_s * 1000);
+    stop = commands.subscribe(() => queueMicrotask(look));
+  });
+}
+
+export async function fault(device, line, {quiet = false} = {}) {
+  if (replay.value) throw new Error('This is a replay: faults are locked.');
+  try {
+    const {answer} = await post('/api/faults', {device, line});
+    if (!quiet) say(`${device} ${line}: ${answer ?? 'done'}`, 'good');
+    return answer;
+  } catch (error) {
+    if (!quiet) say(`${device} ${line}: ${error.message}`, 'bad');
+    throw error;
+  }
+}
+
+const transient = new Set(['SoftwareInit', 'HardwareInit', 'HardwareDeinit', 'SoftwareDeinit']);
+const after_failure = new Set(['SoftwareInit>SoftwareDeinit', 'HardwareInit>HardwareDeinit']);
+
+/// The states passed on the way to `to`, `to` last; null where the command is illegal. The same rule as on board:
+/// transient states and the way down from Post-Operational are passed through.
+export function route(from, to) {
+  if (!from || from === to || transient.has(from) || transient.has(to)) return null;
+  const edges = (mission.value?.transitions ?? []).filter((edge) => !after_failure.has(`${edge.from}>${edge.to}`));
+  const passes = (state) => transient.has(state) || state === 'PostOperational';
+  const way = [];
+  for (let at = from; way.length < 5;) {
+    let next = null;
+    for (const edge of edges) {
+      if (edge.from !== at) continue;
+      if (edge.to === to) {
+        next = to;
+        break;
+      }
+      if (passes(edge.to)) next = edge.to;
+    }
+    if (next === null) return null;
+    way.push(next);
+    if (next === to) return way;
+    at = next;
+  }
+  return null;
+}
+
+export const state_names = ['Offline', 'SoftwareInit', 'HardwareInit', 'PreOperational', 'SafeOperational', 'Operational',
+  'ErrorOperational', 'PostOperational', 'HardwareDeinit', 'SoftwareDeinit'];
+export const state_name = (state) => typeof state === 'number' ? state_names[state] : state;
+
+export function state_value(name) {
+  const listed = subsystem_of('SUPERVISOR')?.states ?? state_names;
+  const found = listed.indexOf(name);
+  return found >= 0 ? found : state_names.indexOf(name);
+}
+
+/// The states to command next, steady ones only.
+export const legal_states = (from) => state_names.filter((to) => route(from, to));
+
+const is_on = (name, state) => state_name(status_of(name)?.state) === state;
+
+/// The steps that bring a network up, in the order of the supervisor's own commissioning: all to Pre-Operational, their
+/// configurations, the links, then all up together. Each is {text, subsystem, function, arguments, needed}.
+export function commissioning_steps(mode) {
+  const members = mode.commission ?? [];
+  const steps = [];
+  const add = (text, subsystem, function_name, values, needed = () => true) =>
+    steps.push({text, subsystem, function: function_name, arguments: values, needed});
+  const permissive = mission.value.modes.find((one) => one.name === 'commissioning') ?? mission.value.modes[0];
+  const mode_argument = subsystem_of('SUPERVISOR')?.functions.find((one) => one.name === 'SET_MODE')?.arguments[0]?.name ?? 'MODE';
+  const enter = (to) => add(`mode ${to.name}`, 'SUPERVISOR', 'SET_MODE', {[mode_argument]: to.id});
+  enter(permissive);
+  const others = members.filter((member) => !is_on(member.subsystem, member.state) || !configured(member));
+  for (const member of others) {
+    const from = () => state_name(status_of(member.subsystem)?.state);
+    add(`${member.subsystem} to Safe-Operational`, member.subsystem, 'SET_STATE', {STATE: state_value('SafeOperational')},
+      () => from() === 'Operational');
+    add(`${member.subsystem} to Post-Operational`, member.subsystem, 'SET_STATE', {STATE: state_value('PostOperational')},
+      () => from() === 'SafeOperational' || from() === 'ErrorOperational');
+    add(`${member.subsystem} to Pre-Operational`, member.subsystem, 'SET_STATE', {STATE: state_value('PreOperational')},
+      () => from() !== 'PreOperational');
+  }
+  for (const member of others) {
+    const configuration = subsystem_of(member.subsystem)?.configurations.find((one) => one.name === member.configuration);
+    add(`${member.subsystem} configured as ${member.configuration}`, member.subsystem, 'CONFIGURE',
+      {CONFIGURATION: configuration?.id ?? 1});
+  }
+  for (const id of mode.establish ?? []) {
+    const named = mission.value.links.find((one) => one.id === id);
+    add(`link ${id} ${named ? `${named.from} → ${named.to}` : ''}`, 'SUPERVISOR', 'LINK', {LINK: id}, () => !link_is_up(id));
+  }
+  for (const state of ['SafeOperational', 'Operational']) {
+    for (const member of others) {
+      if (state === 'Operational' && member.state !== 'Operational') continue;
+      add(`${member.subsystem} to ${state.replace(/([a-z])([A-Z])/, '$1-$2')}`, member.subsystem, 'SET_STATE',
+        {STATE: state_value(state)}, () => !is_on(member.subsystem, state));
+    }
+  }
+  enter(mode);
+  return steps;
+}
+
+function configured(member) {
+  const now = status_of(member.subsystem)?.configuration;
+  const known = subsystem_of(member.subsystem)?.configurations ?? [];
+  return now === member.configuration || known.find((one) => one.id === now)?.name === member.configuration;
+}
+
+export const link_is_up = (id) => link_states().find((one) => one.id === id)?.up === true;
+const link_states = () => status.value?.links ?? [];

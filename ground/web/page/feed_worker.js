@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Holds the WebSocket beside the page's thread: a hidden or busy tab never leaves the gateway with a full queue. What comes is
+// handed on in batches, so that a burst of 10,000 events costs the page one redraw.
+
+const batch_ms = 50;
+const longest_wait_ms = 2000;
+
+let socket = null;
+let waiting = [];
+let timer = 0;
+let wait_ms = 250;
+let url = '';
+
+function hand_on() {
+  timer = 0;
+  postMessage({kind: 'messages', list: waiting});
+  waiting = [];
+}
+
+function connect() {
+  socket = new WebSocket(url);
+  socket.onopen = () => {
+    wait_ms = 250;
+    postMessage({kind: 'open'});
+  };
+  socket.onmessage = ({data}) => {
+    try {
+      waiting.push(JSON.parse(data));
+    } catch {
+      return;
+    }
+    timer ||= setTimeout(hand_on, batch_ms);
+  };
+  socket.onclose = ({code}) => {
+    postMessage({kind: 'closed', code});
+    setTimeout(connect, wait_ms);
+    wait_ms = Math.min(longest_wait_ms, wait_ms * 2);
+  };
+}
+
+onmessage = ({data}) => {
+  if (data.kind === 'connect') {
+    url = data.url;
+    connect();
+  } else if (data.kind === 'send' && socket?.readyState === WebSocket.OPEN) {
+    socket.send(JSON.stringify(data.message));
+  }
+};

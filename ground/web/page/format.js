@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Numbers, times and states in words. Everything here ends up in text nodes only.
+
+/// On-board time counts from 1958-01-01 TAI (PUS-C, CUC); missions on virtual time begin small.
+const epoch_ms = Date.UTC(1958, 0, 1);
+const calendar_from_s = 1e9;
+
+export function clock_text(t, digits = 1) {
+  if (!Number.isFinite(t)) return '--:--:--';
+  if (t < calendar_from_s) return `T+${t.toFixed(digits)} s`;
+  const unit = 10 ** digits;
+  const rounded = Math.floor(t * unit) / unit;
+  const date = new Date(epoch_ms + Math.floor(rounded) * 1000);
+  const fraction = digits > 0 ? (rounded - Math.floor(rounded)).toFixed(digits).slice(1) : '';
+  return date.toISOString().slice(11, 19) + fraction;
+}
+
+export function date_text(t) {
+  return t >= calendar_from_s ? new Date(epoch_ms + t * 1000).toISOString().slice(0, 10) : '';
+}
+
+/// To the browser's own Date seconds, for axis labels.
+export const axis_seconds = (t) => t >= calendar_from_s ? t + epoch_ms / 1000 : t;
+
+export function number_text(value) {
+  if (typeof value === 'string') return value;
+  if (typeof value === 'boolean') return value ? 'yes' : 'no';
+  if (value === null || value === undefined) return '–';
+  if (Number.isNaN(value)) return 'NaN';
+  if (!Number.isFinite(value)) return value > 0 ? '+∞' : '−∞';
+  if (Number.isInteger(value) && Math.abs(value) < 1e9) return String(value).replace('-', '−');
+  const size = Math.abs(value);
+  const text = size >= 1e6 || (size < 1e-4 && size > 0) ? value.toExponential(3) :
+    value.toFixed(size >= 1000 ? 1 : size >= 100 ? 2 : size >= 10 ? 3 : 4);
+  return text.replace('-', '−');
+}
+
+export const value_text = (value, column) =>
+  column?.enumeration?.find((entry) => entry.value === value)?.name ?? number_text(value);
+
+export function age_text(age_s) {
+  if (!Number.isFinite(age_s)) return 'never';
+  if (age_s < 0.95) return `${Math.max(0, age_s).toFixed(1)} s`;
+  if (age_s < 100) return `${age_s.toFixed(0)} s`;
+  if (age_s < 6000) return `${(age_s / 60).toFixed(0)} min`;
+  return `${(age_s / 3600).toFixed(0)} h`;
+}
+
+export function duration_text(ns) {
+  if (!Number.isFinite(ns)) return '–';
+  if (ns < 1000) return `${ns.toFixed(0)} ns`;
+  if (ns < 1e6) return `${(ns / 1000).toFixed(ns < 1e4 ? 1 : 0)} µs`;
+  return `${(ns / 1e6).toFixed(1)} ms`;
+}
+
+export function rate_text(hz) {
+  if (!Number.isFinite(hz)) return '–';
+  return hz >= 1000 ? `${+(hz / 1000).toFixed(2)} kHz` : `${+hz.toFixed(hz < 10 ? 1 : 0)} Hz`;
+}
+
+/// "SafeOperational" -> "Safe-Operational", as the paper writes the states.
+export const state_text = (state) => (state ?? 'unknown').replace(/([a-z])([A-Z])/g, '$1-$2');
+
+export const unit_text = (unit) => (unit ?? '').replace('degC', '°C').replaceAll(' ', '·').replace(/^us$/, 'µs');
+
+export const hex_text = (octets) => (octets ?? '').match(/.{1,2}/g)?.join(' ').toUpperCase() ?? '';
+
+export const stage_text = {
+  sent: 'sent', accepted: 'accepted', started: 'started', progress: 'progress', completed: 'completed', failed: 'failed',
+};

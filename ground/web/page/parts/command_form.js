@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// A telecommand from its descriptor: one field for each argument, judged while it is typed, the octets and the supervisor's
+// answer to "permitted now?" before sending, the chain of verdicts after.
+import {useEffect, useRef, useState} from 'preact/hooks';
+import {preview, send} from '../commanding.js';
+import {clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
+import {html} from '../html.js';
+import {commands, mission, mode_of, outcome_of, replay, status_of, subsystem_of} from '../store.js';
+
+const integer_ranges = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 4294967295], UINT64: [0, Number.MAX_SAFE_INTEGER],
+  INT8: [-128, 127], INT16: [-32768, 32767], INT32: [-2147483648, 2147483647],
+  INT64: [Number.MIN_SAFE_INTEGER, Number.MAX_SAFE_INTEGER]};
+
+export function range_of(argument) {
+  const [low, high] = integer_ranges[argument.type] ?? [-Infinity, Infinity];
+  return [Math.max(low, argument.min ?? -Infinity), Math.min(high, argument.max ?? Infinity)];
+}
+
+const range_text = (argument) => {
+  const [low, high] = range_of(argument);
+  if (low === -Infinity && high === Infinity) return '';
+  const brief = (value) => Math.abs(value) === Infinity ? '' : number_text(value).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
+  return `${brief(low)} … ${brief(high)}`;
+};
+
+/// {value} or {error}: what was typed, by the argument's type and range.
+export function judged(argument, text) {
+  const words = String(text ?? '').trim().replace('−', '-').replace(',', '.');
+  if (words === '') return {error: 'needs a value'};
+  if (/CHAR|STRING|TEXT/.test(argument.type)) return {value: String(text)};
+  if (!/^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$/.test(words)) return {error: 'not a number'};
+  const value = Number(words);
+  if (argument.type in integer_ranges && !Number.isInteger(value)) return {error: 'a whole number'};
+  const [low, high] = range_of(argument);
+  if (!(value >= low && value <= high)) return {error: `outside ${range_text(argument)} ${unit_text(argument.unit)}`.trim()};
+  return {value};
+}
+
+/// The mission knows more names for values than a descriptor: modes, links, configurations.
+function choices_of(subsystem, action, argument) {
+  if (argument.enumeration?.length) return argument.enumeration;
+  const known = mission.value;
+  const named = (list, label = (one) => one.name) => list?.map((one) => ({value: one.id, name: label(one)}));
+  if (argument.name === 'MODE' && action.name === 'SET_MODE') return named(known?.modes);
+  if (argument.name === 'LINK') return named(known?.links, (one) => `${one.id}: ${one.from} → ${one.to}`);
+  if (argument.name === 'CONFIGURATION' && action.name === 'CONFIGURE') return named(subsystem_of(subsystem)?.configurations);
+  if (argument.name === 'STATE' && action.name === 'SET_STATE') {
+    return subsystem_of(subsystem)?.states?.map((name, value) => ({value, name: state_text(name)}));
+  }
+  return [];
+}
+
+const first_text = (argument, choices) => {
+  if (argument.default !== undefined && argument.default !== null) return String(argument.default);
+  return choices?.length ? String(choices[0].value) : '';
+};
+
+function Field({subsystem, action, argument, text, on_text, result, focus}) {
+  const choices = choices_of(subsystem, action, argument);
+  const unit = unit_text(argument.unit);
+  const field = `field-${argument.name}`;
+  const error = result.error && text !== '' ? result.error : null;
+  return html`<label class=${`field ${error ? 'wrong' : ''}`}><span>${argument.name}${unit ? html` <small>${unit}</small>` : null}</span>
+    ${choices?.length ? html`<select data-test=${field} value=${text} onChange=${(event) => on_text(event.currentTarget.value)}>
+        ${choices.map((one) => html`<option value=${String(one.value)}>${state_text(one.name)}${
+          Number.isInteger(one.value) ? ` (${one.value})` : ''}</option>`)}</select>` :
+      html`<input data-test=${field} type="text" inputmode="decimal" autocomplete="off" spellcheck="false" value=${text}
+        aria-invalid=${Boolean(error)} placeholder=${range_text(argument) || argument.type.toLowerCase()}
+        autofocus=${focus} onInput=${(event) => on_text(event.currentTarget.value)} />`}
+    <em>${error ?? ''}</em></label>`;
+}
+
+const verdict_words = {sent: 'sent', accepted: 'accepted', started: 'started', progress: 'progress', completed: 'completed',
+  failed: 'failed'};
+
+/// sent – accepted – started – completed, with the times between them.
+export function VerdictChain({command}) {
+  const stages = [...(command.stages ?? [])].sort((a, b) => a.t - b.t);
+  const first = stages[0]?.t;
+  return html`<ol class="chain">${stages.map((one, i) => html`<li class=${one.stage}>
+    <i />${verdict_words[one.stage] ?? one.stage}${i > 0 && one.t - first >= 0 ? html` <small>+${
+      one.t - first < 10 ? `${((one.t - first) * 1000).toFixed(0)} ms` : `${(one.t - first).toFixed(1)} s`}</small>` : null}
+    ${one.stage === 'failed' ? html` <b>${one.reason ?? ''}${one.code ? ` (code ${one.code})` : ''}</b>` : null}</li>`)}</ol>`;
+}
+
+function Permission({answer, problem}) {
+  if (problem) return html`<p class="permission none">${problem}</p>`;
+  if (!answer) return html`<p class="permission none">supervisor: …</p>`;
+  if (answer.permitted === null || answer.permitted === undefined) {
+    return html`<p class="permission none">supervisor: ${answer.reason ?? 'does not answer'}</p>`;
+  }
+  return html`<p class=${`permission ${answer.permitted ? 'yes' : 'no'}`} data-test="permission">
+    ${answer.permitted ? '✓ the supervisor would permit it now' :
+      html`✕ refused now: ${answer.reason ?? `code ${answer.code}`}${answer.code ? ` (code ${answer.code})` : ''}`}</p>`;
+}
+
+const preview_after_ms = 180;
+
+function usePreview(subsystem, action, values) {
+  const [answer, set_answer] = useState(null);
+  const key = JSON.stringify([subsystem, action.name, values, mode_of.value.name, status_of(subsystem)?.state]);
+  useEffect(() => {
+    if (!values || replay.value) return set_answer(null);
+    let over = false;
+    const timer = setTimeout(() => preview(subsystem, action.name, values).then(
+      (found) => over || set_answer(found), (error) => over || set_answer({problem: error.message})), preview_after_ms);
+    return () => {
+      over = true;
+      clearTimeout(timer);
+    };
+  }, [key]);
+  return answer;
+}
+
+export function CommandForm({subsystem, action, given = {}, focus = false}) {
+  const [texts, set_texts] = useState({});
+  const [sent, set_sent] = useState(null);
+  const [problem, set_problem] = useState('');
+  const form = useRef(null);
+  const list = action.arguments ?? [];
+  const text_of = (argument) => texts[argument.name] ?? given[argument.name] ??
+    first_text(argument, choices_of(subsystem, action, argument));
+  const results = list.map((argument) => judged(argument, text_of(argument)));
+  const wrong = results.filter((result) => result.error).length;
+  const values = wrong ? null : Object.fromEntries(list.map((argument, i) => [argument.name, results[i].value]));
+  const answer = usePreview(subsystem, action, values);
+  const mine = commands.value.find((one) => one.id === sent);
+
+  const submit = async (event) => {
+    event.preventDefault();
+    if (wrong || replay.value) return;
+    set_problem('');
+    try {
+      set_sent(await send(subsystem, action.name, values));
+    } catch (error) {
+      set_problem(error.message);
+    }
+  };
+  return html`<form class="command" ref=${form} onSubmit=${submit} data-test="command-form" autocomplete="off">
+    ${action.description ? html`<p class="about">${action.description}</p>` : null}
+    ${list.map((argument, i) => html`<${Field} key=${argument.name} subsystem=${subsystem} action=${action}
+      argument=${argument} text=${text_of(argument)} result=${results[i]} focus=${focus && i === 0}
+      on_text=${(text) => set_texts({...texts, [argument.name]: text})} />`)}
+    <p class="octets" title="the telecommand packet" data-test="octets">${values ? hex_text(answer?.octets) || '…' : ' '}</p>
+    ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` : values ?
+      html`<${Permission} answer=${answer} problem=${answer?.problem} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
+    <button class="primary" type="submit" disabled=${wrong > 0 || Boolean(replay.value)} data-test="send">
+      ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : `Send ${action.name}`}</button>
+    ${problem ? html`<p class="permission no">${problem}</p>` : null}
+    ${mine ? html`<div class=${`verdict ${outcome_of(mine).stage}`} data-test="verdict">
+      <small>${clock_text(mine.t, 3)}</small><${VerdictChain} command=${mine} /></div>` : null}
+  </form>`;
+}

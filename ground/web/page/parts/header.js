@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+import {useRef, useState} from 'preact/hooks';
+import {say, send_and_say} from '../commanding.js';
+import {age_text, clock_text, date_text} from '../format.js';
+import {html} from '../html.js';
+import {counts, link, mission, mode_of, now_s, replay, slow, subsystem_of} from '../store.js';
+import {Severity} from './icons.js';
+
+const hold_ms = 800;
+
+const link_words = {
+  up: 'LINK UP', down: 'NO SPACECRAFT', gateway: 'NO GATEWAY', waiting: 'WAITING',
+};
+
+function LinkState() {
+  const {state, age_s, rx, tx} = link.value;
+  const replaying = replay.value !== null;
+  const late = state === 'up' && age_s > 2;
+  const look = replaying ? 'amber' : state === 'up' && !late ? 'good' : 'bad';
+  const words = replaying ? 'ARCHIVE' : late ? 'LINK SILENT' : link_words[state];
+  return html`<span class=${`pill link ${look}`} title=${rx !== undefined ? `${rx} packets received, ${tx} sent` : words}
+    data-test="link"><i class="lamp" />${words}<small>${replaying ? 'not live' :
+      state === 'gateway' ? `for ${age_text(age_s)}` : `age ${age_text(age_s)}`}</small></span>`;
+}
+
+function Clock() {
+  slow.value;
+  const t = now_s();
+  return html`<span class="obt" title="On-board time"><small>${date_text(t)}</small>
+    <b>${clock_text(t)}</b><small>OBT</small></span>`;
+}
+
+/// Pressed for 0.8 s, so that neither a slip nor a held Enter of another field stops the spacecraft.
+function SafeAll() {
+  const [held, set_held] = useState(false);
+  const timer = useRef(0);
+  const press = (event) => {
+    if (event.type === 'keydown' && (event.repeat || ![' ', 'Enter'].includes(event.key))) return;
+    event.preventDefault();
+    event.currentTarget.focus();
+    if (replay.value) return say('This is a replay: SAFE ALL is locked. Go back to live first.', 'bad');
+    set_held(true);
+    clearTimeout(timer.current);
+    timer.current = setTimeout(() => {
+      set_held(false);
+      timer.current = 0;
+      send_and_say('SUPERVISOR', 'SAFE_ALL');
+    }, hold_ms);
+  };
+  const release = () => {
+    if (timer.current) {
+      clearTimeout(timer.current);
+      timer.current = 0;
+      say('Hold SAFE ALL for a second to stop all actuators.');
+    }
+    set_held(false);
+  };
+  const keyup = () => release();
+  return html`<button class=${`safe_all ${held ? 'held' : ''}`} data-test="safe-all" disabled=${!subsystem_of('SUPERVISOR')}
+    title="Inhibits the actuators of every subsystem: hold for 0.8 s" onPointerDown=${press} onPointerUp=${release}
+    onPointerLeave=${release} onKeyDown=${press} onKeyUp=${keyup} onBlur=${release}>
+    <span>SAFE ALL</span><em>hold</em></button>`;
+}
+
+export function Header({on_faults, faults_open}) {
+  const {high, medium} = counts.value;
+  return html`<header>
+    <a class="brand" href="#/overview"><img src="icon.svg" alt="" width="22" height="22" />HIROSCO</a>
+    <span class="pill"><small>mission</small><b>${mission.value?.name ?? '…'}</b>${
+      mission.value?.simulated ? html`<small class="simulated">simulated</small>` : null}</span>
+    <span class="pill mode" data-test="mode"><small>mode</small><b>${mode_of.value.name}</b></span>
+    <${LinkState} />
+    <${Clock} />
+    <a class=${`pill count ${high ? 'has' : ''}`} href="#/events?severity=high"><${Severity} severity="high" />${high} high</a>
+    <a class=${`pill count ${medium ? 'has' : ''}`} href="#/events?severity=medium">
+      <${Severity} severity="medium" />${medium} medium</a>
+    <span class="space" />
+    ${mission.value?.simulated && mission.value.devices?.length ? html`
+      <button class=${`quiet ${faults_open ? 'on' : ''}`} data-test="faults" onClick=${on_faults}>Faults</button>` : null}
+    <${SafeAll} />
+  </header>`;
+}

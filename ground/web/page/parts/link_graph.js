@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Subsystems and the real-time links between them. Few nodes: a layered layout of our own does.
+import {signal} from '@preact/signals';
+import {state_name} from '../commanding.js';
+import {rate_text, state_text} from '../format.js';
+import {html} from '../html.js';
+import {mission, slow, status, status_of} from '../store.js';
+import {is_known, state_look} from './subsystem_card.js';
+
+const node_height = 46;
+/// The subsystem under the pointer: its network, which would fall with it, is lit.
+export const hovered = signal(null);
+
+/// Everyone who hangs on `name` over required links, in both ways: who shuts down together.
+export function network_of(name) {
+  const found = new Set([name]);
+  const links = (mission.value?.links ?? []).filter((link) => link.required !== false);
+  for (let grown = true; grown;) {
+    grown = false;
+    for (const link of links) {
+      if (found.has(link.from) !== found.has(link.to)) {
+        found.add(link.from).add(link.to);
+        grown = true;
+      }
+    }
+  }
+  return found;
+}
+
+function layout(names, links, width, height, node_width) {
+  const linked = names.filter((name) => links.some((link) => link.from === name || link.to === name));
+  const alone = names.filter((name) => !linked.includes(name));
+  const places = new Map();
+  const spread = (list, y) => list.forEach((name, i) => places.set(name, [width * (i + 0.5) / list.length, y]));
+  if (linked.length > 4) {
+    linked.forEach((name, i) => {
+      const angle = 2 * Math.PI * i / linked.length - Math.PI / 2;
+      places.set(name, [width / 2 + Math.cos(angle) * (width / 2 - node_width / 2 - 8), height * 0.55 + Math.sin(angle) * height * 0.34]);
+    });
+  } else if (linked.length) {
+    linked.forEach((name, i) => places.set(name, [linked.length === 1 ? width / 2 :
+      node_width / 2 + 8 + (width - node_width - 16) * i / (linked.length - 1), height * 0.66]));
+  }
+  spread(alone, linked.length ? height * 0.18 : height / 2);
+  return places;
+}
+
+export const live_link = (id) => status.value?.links?.find((one) => one.id === id) ?? {};
+
+function Edge({link, places, both, node_width}) {
+  const now = live_link(link.id);
+  const [x1, y1] = places.get(link.from), [x2, y2] = places.get(link.to);
+  const length = Math.hypot(x2 - x1, y2 - y1) || 1;
+  const nx = -(y2 - y1) / length, ny = (x2 - x1) / length;
+  const bend = both ? 40 : 0, off = both ? 9 : 0;
+  const cut = Math.abs(x2 - x1) > Math.abs(y2 - y1) ? node_width / 2 + 4 : node_height / 2 + 4;
+  const ux = (x2 - x1) / length, uy = (y2 - y1) / length;
+  const a = [x1 + ux * cut + nx * off, y1 + uy * cut + ny * off], b = [x2 - ux * cut + nx * off, y2 - uy * cut + ny * off];
+  const middle = [(a[0] + b[0]) / 2 + nx * bend, (a[1] + b[1]) / 2 + ny * bend];
+  const up = now.up === true;
+  const look = !is_known() ? 'stale' : up ? 'good' : link.required === false ? 'off' : 'bad';
+  const lit = hovered.value && network_of(hovered.value).has(link.from);
+  const words = up ? `${rate_text(now.rate_hz ?? link.rate_hz)} · age ${now.age_cycles ?? '–'}` : link.required === false ? 'down' : 'required, down';
+  return html`<g class=${`edge ${look} ${lit ? 'lit' : ''}`}>
+    <path d=${`M${a} Q${middle} ${b}`} marker-end=${`url(#to_${look})`} />
+    <text x=${(a[0] + b[0]) / 2 + nx * (bend / 2 + 10)} y=${(a[1] + b[1]) / 2 + ny * (bend / 2 + 10) - 2}>${link.provides ?? link.name ?? `link ${link.id}`}</text>
+    <text class="facts" x=${(a[0] + b[0]) / 2 + nx * (bend / 2 + 10)} y=${(a[1] + b[1]) / 2 + ny * (bend / 2 + 10) + 11}>${words}</text>
+  </g>`;
+}
+
+export function LinkGraph({width = 420, height = 230, box: node_width = 150}) {
+  slow.value;
+  const names = (mission.value?.subsystems ?? []).map((one) => one.name);
+  const links = mission.value?.links ?? [];
+  const places = layout(names, links, width, height, node_width);
+  const falls = hovered.value ? network_of(hovered.value) : new Set();
+  return html`<svg class="links" viewBox=${`0 0 ${width} ${height}`} role="img" aria-label="real-time links">
+    <defs>${['good', 'bad', 'off', 'stale'].map((look) => html`<marker id=${`to_${look}`} class=${look} viewBox="0 0 8 8" refX="7" refY="4"
+      markerWidth="7" markerHeight="7" orient="auto"><path d="M0 0L8 4L0 8z" /></marker>`)}</defs>
+    ${links.map((link) => html`<${Edge} key=${link.id} link=${link} places=${places} node_width=${node_width}
+      both=${links.some((other) => other.from === link.to && other.to === link.from)} />`)}
+    ${names.map((name) => {
+      const [x, y] = places.get(name);
+      const state = state_name(status_of(name)?.state);
+      return html`<a href=${`#/subsystems/${name}`} class=${`node ${state_look(state)} ${falls.has(name) && falls.size > 1 ? 'falls' : ''}`}
+        onPointerEnter=${() => { hovered.value = name; }} onPointerLeave=${() => { hovered.value = null; }}>
+        <rect x=${x - node_width / 2} y=${y - node_height / 2} width=${node_width} height=${node_height} rx="8" />
+        <text x=${x} y=${y - 5}>${name}</text><text class="facts" x=${x} y=${y + 12}>${state_text(state)}</text></a>`;
+    })}
+  </svg>
+  <p class="network">${hovered.value && falls.size > 1 ?
+    `Required links bind ${[...falls].join(' and ')}: a high-severity event of one takes all of them down.` : ''}</p>`;
+}

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+import {clock_text} from '../format.js';
+import {html} from '../html.js';
+import {live, now_s, replay, replay_from, slow} from '../store.js';
+
+export const speeds = [0.1, 0.5, 1, 2, 5, 10, 100];
+
+export function ReplayBar() {
+  if (!replay.value) return null;
+  slow.value;
+  const {speed, state} = replay.value;
+  const paused = speed === 0 || state === 'paused';
+  return html`<div class="replay_bar" role="status" data-test="replay-bar"><b>REPLAY — not live</b>
+    <span class="at">${clock_text(now_s())}</span><span>${state === 'ended' ? 'end of the archive' : ''}</span>
+    <button onClick=${() => replay_from(now_s() - 10)}>−10 s</button>
+    <button onClick=${() => replay_from(now_s(), paused ? 1 : 0)}>${paused ? 'play' : 'pause'}</button>
+    <button onClick=${() => replay_from(now_s() + 10)}>+10 s</button>
+    <span class="speeds">${speeds.map((one) => html`<button class=${one === speed ? 'on' : ''} onClick=${() => replay_from(now_s(), one)}>${one}×</button>`)}</span>
+    <span>telecommands are locked</span>
+    <button class="back" onClick=${live} data-test="live">back to LIVE</button></div>`;
+}

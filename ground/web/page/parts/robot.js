@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+import {signal} from '@preact/signals';
+import {useEffect, useRef, useState} from 'preact/hooks';
+import {asset} from '../api.js';
+import {fault} from '../commanding.js';
+import {number_text} from '../format.js';
+import {html} from '../html.js';
+import {fast, freshness, mission, operator, replay, slow, values} from '../store.js';
+
+/// models/NAME/scene.json of the mission; null when there is none, undefined while it is not known.
+export const scene_of_mission = signal(undefined);
+let looked_for = '';
+mission.subscribe((known) => {
+  if (!known || looked_for === known.name) return;
+  looked_for = known.name;
+  const folder = `models/${encodeURIComponent(known.name.toLowerCase())}`;
+  asset(`${folder}/scene.json`).then((answer) => answer.json())
+      .then((description) => { scene_of_mission.value = {folder, ...description}; })
+      .catch(() => { scene_of_mission.value = null; });
+});
+
+const gamepad_period_ms = 60;
+const dead_zone = 0.08;
+
+/// A gamepad's left stick is the hand while the switch is on.
+function useGamepad(on, hand) {
+  useEffect(() => {
+    if (!on || !hand) return;
+    let last = '';
+    const timer = setInterval(() => {
+      const pad = [...navigator.getGamepads()].find(Boolean);
+      if (!pad) return;
+      const [x, y] = pad.axes.map((axis) => Math.abs(axis) < dead_zone ? 0 : axis * hand.handle_range_rad);
+      const line = `hand hold ${x.toFixed(3)} ${(-y).toFixed(3)}`;
+      if (line !== last) fault(hand.device, last = line, {quiet: true}).catch(() => {});
+    }, gamepad_period_ms);
+    return () => clearInterval(timer);
+  }, [on, hand]);
+}
+
+function Readout({description}) {
+  slow.value;
+  const robot = description.robots.find((one) => one.force);
+  if (!robot) return null;
+  const [fx, fy] = robot.force.map((name) => values.get(name)?.v);
+  const stale = freshness(robot.force[0]).stale || freshness(Object.values(robot.joints)[0]).stale;
+  const joints = Object.values(robot.joints).map((name) => values.get(name)?.v);
+  return html`<div class=${`readout ${stale ? 'stale' : ''}`}>
+    ${joints.map((angle, i) => html`<span>q${i + 1} <b>${number_text(angle)}</b> rad</span>`)}
+    <span class=${Math.hypot(fx, fy) > 0.5 ? 'touching' : ''}>force <b>${Number.isFinite(fx) ? Math.hypot(fx, fy).toFixed(1) : '–'}</b> N</span>
+  </div>`;
+}
+
+export function Robot() {
+  const node = useRef(null);
+  const view = useRef(null);
+  const [problem, set_problem] = useState('');
+  const [show, set_show] = useState({ghost: true, trail: true, force: true});
+  const [gamepad, set_gamepad] = useState(false);
+  const description = scene_of_mission.value;
+  const hand = description?.hand && mission.value?.devices?.some((one) => one.name === description.hand.device) ? description.hand : null;
+  useGamepad(gamepad && !replay.value, hand);
+
+  useEffect(() => {
+    if (!description) return;
+    let over = false;
+    import('./scene.js').then(async ({RobotView}) => {
+      if (over) return;
+      view.current = new RobotView(node.current, description.folder, description);
+      await view.current.load();
+      if (!over) node.current.dataset.loaded = 'yes';
+    }).catch((error) => over || set_problem(`No 3D here: ${error.message}`));
+    return () => {
+      over = true;
+      view.current?.close();
+      view.current = null;
+    };
+  }, [description]);
+  useEffect(() => fast.subscribe(() => view.current?.update()), []);
+  useEffect(() => replay.subscribe(() => view.current?.forget()), []);
+  useEffect(() => {
+    if (!view.current) return;
+    view.current.show = show;
+    view.current.robots.forEach((robot) => { robot.last = {}; });
+    view.current.update();
+  }, [show]);
+  if (view.current) view.current.hand_allowed = Boolean(hand) && operator.value;
+  slow.value;
+
+  const toggle = (name) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]}
+    onClick=${() => set_show({...show, [name]: !show[name]})}>${name}</button>`;
+  const from = description?.camera?.from_m;
+  return html`<div class="robot">
+    <div class="tools">
+      ${toggle('ghost')}${toggle('trail')}${toggle('force')}
+      <span class="space" />
+      ${hand && !replay.value ? html`<button class="chip" title="the simulated hand wanders by itself"
+          onClick=${() => fault(hand.device, 'hand wander').catch(() => {})}>hand wanders</button>
+        <button class=${`chip ${gamepad ? 'on' : ''}`} title="the left stick of a gamepad is the hand"
+          onClick=${() => set_gamepad(!gamepad)}>gamepad</button>` : null}
+      <button class="chip" onClick=${() => view.current?.view_from(from)}>orbit</button>
+      <button class="chip" onClick=${() => view.current?.view_from([0.2, 0.049, 1.05])}>top</button>
+    </div>
+    <div class="stage" ref=${node} data-test="robot">
+      ${description === null ? html`<p class="empty">This mission has no 3D model.<br />
+        <small>models/${mission.value?.name.toLowerCase()}/scene.json would be shown here.</small></p>` : null}
+      ${problem ? html`<p class="empty">${problem}</p>` : null}
+    </div>
+    ${description ? html`<${Readout} description=${description} />
+      <div class="key"><span><i class="solid" />measured</span><span><i class="ghost" />commanded</span>${
+        hand && !replay.value ? html`<span>drag the blue handle or the fingertip</span>` : null}</div>` : null}
+  </div>`;
+}

@@ -1,0 +1,355 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// The robot in 3D: measured solid, commanded as a ghost, with what it touches. Draws only when a joint or the camera has
+// moved. A chunk of its own: three.js is loaded by the views that show it. Realtime: none.
+import {
+  AmbientLight, ArrowHelper, BufferAttribute, BufferGeometry, CatmullRomCurve3, Color, DirectionalLight, EdgesGeometry,
+  ExtrudeGeometry, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial,
+  PerspectiveCamera, Plane, Raycaster, Scene, Shape, SphereGeometry, TubeGeometry, Vector2, Vector3, WebGLRenderer, Box3,
+} from 'three';
+import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import URDFLoader from 'urdf-loader';
+import {asset} from '../api.js';
+import {fault} from '../commanding.js';
+import {replay, values} from '../store.js';
+
+const moved_rad = 1e-5;
+const trail_points = 400;
+const hand_period_ms = 60;
+const near_limit = 0.08;
+
+const colour_ok = new Color(0x5b6880), colour_near = new Color(0xf2a93b), colour_at = new Color(0xf05d5e);
+
+async function load_urdf(folder, name) {
+  const loader = new URDFLoader();
+  loader.parseCollision = false;
+  return loader.parse(await (await asset(`${folder}/${name}`)).text());
+}
+
+function dress(robot, ghost) {
+  robot.traverse((part) => {
+    if (!part.isMesh) return;
+    const colour = ghost ? new Color(0x3f8cff) : part.material.color.clone();
+    part.material = new MeshStandardMaterial(ghost ?
+      {color: colour, transparent: true, opacity: 0.26, depthWrite: false, roughness: 1} :
+      {color: colour, roughness: 0.55, metalness: 0.15});
+    part.renderOrder = ghost ? 1 : 0;
+  });
+}
+
+/// Rings of the joints by name, to be coloured near their limits.
+function rings_of(robot) {
+  const rings = {};
+  robot.traverse((part) => {
+    const match = /^(.*)_ring$/.exec(part.urdfName ?? part.name ?? '');
+    if (match) part.traverse((mesh) => { if (mesh.isMesh) rings[match[1]] = mesh; });
+  });
+  return rings;
+}
+
+function contour_mesh(contour) {
+  const shape = new Shape();
+  const steps = 96;
+  const surface = (y) => {
+    const across = y - contour.bump_y_m;
+    if (Math.abs(across) >= contour.bump_half_width_m) return contour.rail_x_m;
+    return contour.rail_x_m - contour.bump_height_m / 2 * (1 + Math.cos(Math.PI * across / contour.bump_half_width_m));
+  };
+  shape.moveTo(contour.rail_x_m + contour.depth_m, contour.from_y_m);
+  for (let i = 0; i <= steps; ++i) {
+    const y = contour.from_y_m + (contour.to_y_m - contour.from_y_m) * i / steps;
+    shape.lineTo(surface(y), y);
+  }
+  shape.lineTo(contour.rail_x_m + contour.depth_m, contour.to_y_m);
+  const geometry = new ExtrudeGeometry(shape, {depth: contour.height_m, bevelEnabled: false});
+  const mesh = new Mesh(geometry, new MeshStandardMaterial({color: 0x8a6f45, roughness: 0.8}));
+  mesh.add(new LineSegments(new EdgesGeometry(geometry, 40), new LineBasicMaterial({color: 0xd9b06a})));
+  return mesh;
+}
+
+function spring_mesh({from_m, to_m}, z) {
+  const from = new Vector3(from_m[0], from_m[1], z), to = new Vector3(to_m[0], to_m[1], z);
+  const along = to.clone().sub(from), length = along.length();
+  const direction = along.clone().normalize();
+  const side = new Vector3(0, 0, 1), across = direction.clone().cross(side);
+  const points = [];
+  const turns = 9, radius = 0.0045;
+  for (let i = 0; i <= turns * 12; ++i) {
+    const angle = i / 12 * 2 * Math.PI, part = i / (turns * 12);
+    const inner = part < 0.06 || part > 0.94 ? 0 : radius;
+    points.push(from.clone().addScaledVector(direction, part * length).addScaledVector(side, inner * Math.sin(angle))
+        .addScaledVector(across, inner * Math.cos(angle)));
+  }
+  const group = new Group();
+  const steel = new MeshStandardMaterial({color: 0x9fd8c0, roughness: 0.4, metalness: 0.3});
+  group.add(new Mesh(new TubeGeometry(new CatmullRomCurve3(points), turns * 14, 0.0011, 5), steel));
+  const post = new Mesh(new SphereGeometry(0.005, 12, 8), steel);
+  post.position.copy(from);
+  group.add(post);
+  return group;
+}
+
+export class RobotView {
+  constructor(node, folder, description) {
+    this.node = node;
+    this.folder = folder;
+    this.description = description;
+    this.scene = new Scene();
+    this.scene.background = new Color(0x0a0e17);
+    this.renderer = new WebGLRenderer({antialias: devicePixelRatio < 1.5, powerPreference: 'low-power'});
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 1.5));
+    this.renderer.domElement.setAttribute('aria-label', 'the robot in 3D');
+    node.appendChild(this.renderer.domElement);
+    this.camera = new PerspectiveCamera(34, 1, 0.02, 10);
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.fromArray(description.camera.from_m);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.target.fromArray(description.camera.to_m);
+    this.controls.maxDistance = 3;
+    this.controls.minDistance = 0.15;
+    this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
+    this.controls.addEventListener('change', () => this.draw_soon());
+    this.controls.update();
+    this.robots = [];
+    this.show = {ghost: true, trail: true, force: true};
+    this.frames = 0;
+    this.light();
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(node);
+    this.listen();
+  }
+
+  async load() {
+    const {description} = this;
+    for (const one of description.robots) {
+      const entry = {...one, body: await load_urdf(this.folder, one.urdf), rings: {}, last: {}};
+      dress(entry.body, false);
+      entry.rings = rings_of(entry.body);
+      entry.body.position.fromArray(one.at_m ?? [0, 0, 0]);
+      this.scene.add(entry.body);
+      if (one.ghost) {
+        entry.shadow = await load_urdf(this.folder, one.urdf);
+        dress(entry.shadow, true);
+        entry.shadow.position.copy(entry.body.position);
+        this.scene.add(entry.shadow);
+      }
+      this.robots.push(entry);
+    }
+    if (description.contour) this.scene.add(contour_mesh(description.contour));
+    for (const spring of description.springs ?? []) this.scene.add(spring_mesh(spring, description.plane_z_m));
+    this.make_trail();
+    this.force = new ArrowHelper(new Vector3(-1, 0, 0), new Vector3(), 0.1, 0xff5f5f, 0.022, 0.014);
+    this.force.visible = false;
+    this.scene.add(this.force);
+    this.resize();
+    this.update();
+  }
+
+  light() {
+    this.scene.add(new HemisphereLight(0xdfe8ff, 0x1a2030, 1.5), new AmbientLight(0xffffff, 0.25));
+    const sun = new DirectionalLight(0xffffff, 2.2);
+    sun.position.set(0.6, -0.8, 1.4);
+    this.scene.add(sun);
+    const grid = new GridHelper(1.6, 32, 0x2a3a58, 0x182136);
+    grid.rotation.x = Math.PI / 2;
+    grid.position.set(0.2, 0.05, -0.001);
+    this.scene.add(grid);
+  }
+
+  make_trail() {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * trail_points), 3));
+    geometry.setDrawRange(0, 0);
+    this.trail = new Line(geometry, new LineBasicMaterial({color: 0x41d18f, transparent: true, opacity: 0.55}));
+    this.trail.frustumCulled = false;
+    this.trail_list = [];
+    this.scene.add(this.trail);
+  }
+
+  resize() {
+    const width = this.node.clientWidth, height = this.node.clientHeight;
+    if (!width || !height) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    // The robot keeps its size in a narrow panel.
+    this.camera.fov = this.camera.aspect < 1.4 ? 34 * 1.4 / this.camera.aspect : 34;
+    this.camera.updateProjectionMatrix();
+    this.draw_soon();
+  }
+
+  /// Takes the newest joints; draws when something moved.
+  update() {
+    let moved = false;
+    for (const robot of this.robots) {
+      moved = this.pose(robot, robot.body, robot.joints, 'body') || moved;
+      if (robot.shadow) moved = this.pose(robot, robot.shadow, robot.ghost, 'shadow') || moved;
+      if (robot.shadow) robot.shadow.visible = this.show.ghost;
+      if (moved && robot.tip) this.follow_tip(robot);
+    }
+    if (moved) this.draw_soon();
+  }
+
+  pose(robot, body, joints, which) {
+    let moved = false;
+    for (const [joint, parameter] of Object.entries(joints)) {
+      const angle = values.get(parameter)?.v;
+      if (!Number.isFinite(angle)) continue;
+      const key = `${which}/${joint}`;
+      if (Math.abs((robot.last[key] ?? Infinity) - angle) < moved_rad) continue;
+      robot.last[key] = angle;
+      body.joints[joint].ignoreLimits = true;
+      body.setJointValue(joint, angle);
+      if (which === 'body') this.colour(robot, joint, angle);
+      moved = true;
+    }
+    return moved;
+  }
+
+  colour(robot, joint, angle) {
+    const ring = robot.rings[joint];
+    const {lower, upper} = robot.body.joints[joint].limit;
+    if (!ring || !(upper > lower)) return;
+    const left = Math.min(angle - lower, upper - angle);
+    ring.material.color.copy(left < 0.005 ? colour_at : left < near_limit * (upper - lower) ? colour_near : colour_ok);
+  }
+
+  follow_tip(robot) {
+    robot.body.updateMatrixWorld(true);
+    const tip = new Vector3();
+    robot.body.links[robot.tip].getWorldPosition(tip);
+    this.tip = tip;
+    const last = this.trail_list[this.trail_list.length - 1];
+    if (!last || last.distanceToSquared(tip) > 1e-7) {
+      this.trail_list.push(tip.clone());
+      if (this.trail_list.length > trail_points) this.trail_list.shift();
+      const position = this.trail.geometry.attributes.position;
+      this.trail_list.forEach((point, i) => position.setXYZ(i, point.x, point.y, point.z));
+      position.needsUpdate = true;
+      this.trail.geometry.setDrawRange(0, this.trail_list.length);
+    }
+    this.trail.visible = this.show.trail;
+    const [fx, fy] = (robot.force ?? []).map((name) => values.get(name)?.v ?? 0);
+    const size = Math.hypot(fx, fy);
+    this.force.visible = this.show.force && size > 0.5;
+    if (this.force.visible) {
+      const length = Math.min(0.35, Math.max(0.03, size * robot.metres_per_newton));
+      this.force.position.copy(tip);
+      this.force.setDirection(new Vector3(fx / size, fy / size, 0));
+      this.force.setLength(length, 0.022, 0.014);
+    }
+  }
+
+  draw_soon() {
+    this.waiting ||= requestAnimationFrame(() => {
+      this.waiting = 0;
+      ++this.frames;
+      this.node.dataset.frames = this.frames;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+
+  forget() {
+    if (this.trail_list) this.trail_list.length = 0;
+    this.trail?.geometry.setDrawRange(0, 0);
+  }
+
+  // The visitor's mouse as the operator's hand: the handle follows it in angles, the fingertip in metres.
+  listen() {
+    const canvas = this.renderer.domElement;
+    this.ray = new Raycaster();
+    const start = (event) => {
+      const grip = this.grip_at(event);
+      if (!grip) return;
+      event.stopImmediatePropagation();
+      this.dragging = grip;
+      this.controls.enabled = false;
+      canvas.setPointerCapture(event.pointerId);
+    };
+    canvas.addEventListener('pointerdown', start, {capture: true});
+    canvas.addEventListener('pointermove', (event) => {
+      if (this.dragging) this.drag(event);
+      else canvas.style.cursor = event.buttons === 0 && this.grip_at(event) ? 'grab' : '';
+    });
+    const end = () => {
+      if (!this.dragging) return;
+      this.dragging = null;
+      this.controls.enabled = true;
+      this.hand('hold 0 0', true);
+    };
+    canvas.addEventListener('pointerup', end);
+    canvas.addEventListener('pointercancel', end);
+  }
+
+  aim(event) {
+    const box = this.renderer.domElement.getBoundingClientRect();
+    this.ray.setFromCamera(new Vector2((event.clientX - box.left) / box.width * 2 - 1,
+      1 - (event.clientY - box.top) / box.height * 2), this.camera);
+  }
+
+  grip_at(event) {
+    if (!this.description.hand || replay.value || !this.hand_allowed) return null;
+    this.aim(event);
+    for (const robot of this.robots) {
+      const what = robot.handle ? 'handle' : robot.tip ? 'tip' : null;
+      if (!what) continue;
+      const link = robot.body.links[robot[what]];
+      const box = new Box3().setFromObject(link).expandByScalar(what === 'tip' ? 0.012 : 0.004);
+      if (this.ray.ray.intersectsBox(box)) return {what, robot};
+    }
+    return null;
+  }
+
+  drag(event) {
+    this.aim(event);
+    const {what, robot} = this.dragging;
+    const at = new Vector3();
+    const {hand} = this.description;
+    if (what === 'tip') {
+      if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -this.description.plane_z_m), at)) return;
+      const clamp = (x) => Math.max(-hand.tip_range_m, Math.min(hand.tip_range_m, x));
+      return this.hand(`cartesian ${clamp(at.x - hand.tip_home_m[0]).toFixed(4)} ${clamp(at.y - hand.tip_home_m[1]).toFixed(4)} 0.08`);
+    }
+    const height = 0.115;
+    const pivot = robot.body.position;
+    if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -(pivot.z + 0.038 + height * 0.95)), at)) return;
+    const range = hand.handle_range_rad;
+    const angle = (x) => Math.max(-range, Math.min(range, Math.atan2(x, height))).toFixed(4);
+    this.hand(`hold ${angle(at.x - pivot.x)} ${angle(at.y - pivot.y)}`);
+  }
+
+  /// At most one line in 60 ms, the last one always.
+  hand(line, now = false) {
+    this.hand_line = line;
+    const send = () => {
+      this.hand_timer = 0;
+      if (this.hand_line) fault(this.description.hand.device, `hand ${this.hand_line}`, {quiet: true}).catch(() => {});
+      this.hand_line = null;
+    };
+    if (now) {
+      clearTimeout(this.hand_timer);
+      return send();
+    }
+    this.hand_timer ||= setTimeout(send, hand_period_ms);
+  }
+
+  view_from(from_m) {
+    this.camera.position.fromArray(from_m);
+    this.controls.target.fromArray(this.description.camera.to_m);
+    this.controls.update();
+    this.draw_soon();
+  }
+
+  close() {
+    cancelAnimationFrame(this.waiting);
+    this.observer.disconnect();
+    this.controls.dispose();
+    this.scene.traverse((part) => {
+      part.geometry?.dispose();
+      part.material?.dispose?.();
+    });
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.renderer.domElement.remove();
+  }
+}

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+import {state_name, state_names} from '../commanding.js';
+import {duration_text, rate_text, state_text} from '../format.js';
+import {html} from '../html.js';
+import {link, replay, slow, status_of, subsystem_of, values} from '../store.js';
+
+export const state_look = (state) => ({Operational: 'good', SafeOperational: 'amber', PreOperational: 'amber',
+  ErrorOperational: 'bad', PostOperational: 'amber', Offline: 'off'})[state] ?? 'busy';
+
+/// The ten states in a row; the present one is marked, those passed on the way up are lit.
+export function StateStrip({state}) {
+  const at = state_names.indexOf(state);
+  return html`<div class=${`strip ${state_look(state)}`} role="img" aria-label=${`state ${state_text(state)}`}>
+    ${state_names.map((name, i) => html`<i title=${state_text(name)}
+      class=${i === at ? 'here' : i < at && at <= 5 ? 'passed' : ''} />`)}</div>`;
+}
+
+export function configuration_of(name) {
+  const now = status_of(name)?.configuration;
+  const known = subsystem_of(name)?.configurations ?? [];
+  return known.find((one) => one.id === now || one.name === now) ?? (now ? {name: String(now)} : null);
+}
+
+export const waits_text = (waits) => Array.isArray(waits) ? waits.join(', ') : waits ? String(waits) : '';
+
+export const inhibited_text = (now) => Array.isArray(now?.inhibited) ? now.inhibited.join(', ') : now?.inhibited ? 'yes' : '';
+
+export function is_known() {
+  return link.value.state === 'up' || replay.value !== null;
+}
+
+export function SubsystemCard({name, chosen}) {
+  slow.value;
+  const now = status_of(name) ?? {};
+  const state = state_name(now.state);
+  const configuration = configuration_of(name);
+  const memory = values.get(`${name}.MEMORY`)?.v;
+  const waits = waits_text(now.waits_for);
+  const facts = [
+    configuration?.sampling_hz && rate_text(configuration.sampling_hz),
+    now.execution_mean_ns ? `runs ${duration_text(now.execution_mean_ns)}` : null,
+    now.latency_max_ns ? `late ≤ ${duration_text(now.latency_max_ns)}` : null,
+    now.overruns > 0 ? `${now.overruns} overruns` : null,
+    now.missed ? `${now.missed} missed` : null,
+    memory && `mem ${memory} %`,
+  ].filter(Boolean);
+  return html`<a class=${`card ${chosen ? 'chosen' : ''} ${is_known() ? '' : 'stale'}`} href=${`#/subsystems/${name}`}
+    data-test=${`subsystem-${name}`}>
+    <div class="row"><b>${name} <small>${configuration?.name ?? ''}</small></b><span class=${`state ${state_look(state)}`}>${state_text(state)}</span></div>
+    <${StateStrip} state=${state} />
+    <div class="row facts"><span title=${facts.join(', ')}>${facts.join(' · ')}</span></div>
+    ${inhibited_text(now) ? html`<div class="notice bad">actuators inhibited: ${inhibited_text(now)}</div>` : null}
+    ${waits ? html`<div class="notice amber">waits for ${waits}</div>` : null}
+  </a>`;
+}

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Samples of the parameters that are drawn: the past from the archive, then what the feed brings. Shared between plots.
+import {get} from './api.js';
+import {newest_s, now_s, on_values, replay} from './store.js';
+
+const most_samples = 40000;
+const longest_window_s = 3600;
+const backlog_points = 3000;
+
+const known = new Map();
+
+class Series {
+  t = [];
+  v = [];
+  /// Ranges of buckets where the archive has more samples than points; drawn as a band.
+  low = [];
+  high = [];
+  from = Infinity;
+  uses = 0;
+  version = 0;
+  asked = null;
+
+  constructor(name) {
+    this.name = name;
+  }
+
+  push(t, v) {
+    if (this.t.length && t <= this.t[this.t.length - 1]) return;
+    this.t.push(t);
+    this.v.push(Number.isFinite(v) ? v : null);
+    this.low.push(null);
+    this.high.push(null);
+    if (this.t.length > most_samples) for (const list of [this.t, this.v, this.low, this.high]) list.splice(0, most_samples / 8);
+    ++this.version;
+  }
+
+  /// The archive from `from` on, before what is here already.
+  async fetch(from) {
+    const to = Math.min(this.t[0] ?? Infinity, now_s());
+    if (!Number.isFinite(to) || from >= this.from || from >= to) return;
+    const before = this.from;
+    this.from = from;
+    try {
+      const answer = await get('/api/history', {parameter: this.name, from, to, points: backlog_points});
+      const middle = answer.v ?? answer.min.map((low, i) => (low + answer.max[i]) / 2);
+      let end = answer.t.length;
+      const first = this.t[0] ?? Infinity;
+      while (end > 0 && answer.t[end - 1] >= first) --end;
+      const part = (list) => list.slice(0, end).map((value) => Number.isFinite(value) ? value : null);
+      const empty = () => new Array(end).fill(null);
+      this.t = answer.t.slice(0, end).concat(this.t);
+      this.v = part(middle).concat(this.v);
+      this.low = (answer.min ? part(answer.min) : empty()).concat(this.low);
+      this.high = (answer.max ? part(answer.max) : empty()).concat(this.high);
+      ++this.version;
+    } catch {
+      this.from = before;
+    }
+  }
+
+  forget() {
+    this.t = [];
+    this.v = [];
+    this.low = [];
+    this.high = [];
+    this.from = Infinity;
+    ++this.version;
+  }
+}
+
+export function use_series(name, window_s) {
+  let series = known.get(name);
+  if (!series) known.set(name, series = new Series(name));
+  ++series.uses;
+  extend(series, window_s);
+  return series;
+}
+
+export function extend(series, window_s) {
+  const newest = newest_s();
+  if (Number.isFinite(newest)) series.fetch(newest - Math.min(longest_window_s, window_s) - 1);
+}
+
+export function drop_series(series) {
+  if (--series.uses <= 0) known.delete(series.name);
+}
+
+on_values((set) => {
+  for (const series of known.values()) {
+    const sample = set[series.name];
+    if (!sample) continue;
+    const [v, t] = Array.isArray(sample) ? sample : [sample.v, sample.t];
+    // A clock that jumps back by itself is a new flight; in a replay it is a seek.
+    if (series.t.length && t < series.t[series.t.length - 1] - 5) series.forget();
+    series.push(t, v);
+  }
+});
+
+let was = null;
+replay.subscribe((value) => {
+  const is = value ? 'replay' : 'live';
+  if (was !== null && was !== is) for (const series of known.values()) series.forget();
+  was = is;
+});
+
+/// Rows on the union of the times, nulls where a series has no sample: what uPlot wants.
+export function aligned(list, from, to) {
+  const cut = list.map((series) => {
+    const t = series.t;
+    let first = 0, end = t.length;
+    for (let low = 0, high = t.length; low < high;) {
+      const middle = (low + high) >> 1;
+      if (t[middle] < from) first = low = middle + 1; else high = middle;
+    }
+    while (end > first && t[end - 1] > to) --end;
+    return [Math.max(0, first - 1), Math.min(t.length, end + 1)];
+  });
+  const times = new Set();
+  list.forEach((series, i) => { for (let k = cut[i][0]; k < cut[i][1]; ++k) times.add(series.t[k]); });
+  const union = Float64Array.from(times).sort();
+  const rows = [union];
+  list.forEach((series, i) => {
+    const v = new Array(union.length), low = new Array(union.length), high = new Array(union.length);
+    let k = cut[i][0];
+    for (let j = 0; j < union.length; ++j) {
+      const hit = k < cut[i][1] && series.t[k] === union[j];
+      v[j] = hit ? series.v[k] : undefined;
+      low[j] = hit ? series.low[k] : undefined;
+      high[j] = hit ? series.high[k] : undefined;
+      while (k < cut[i][1] && series.t[k] <= union[j]) ++k;
+    }
+    rows.push(v, low, high);
+  });
+  return rows;
+}

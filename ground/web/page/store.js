@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the page knows, as signals: the mission's descriptors, the newest status and values, events, command reports, and
+// whether all this is live or from the archive. One source at a time: going to a replay and back empties what depends on time.
+import {batch, computed, effect, signal} from '@preact/signals';
+import {get, introduce, token} from './api.js';
+
+const most_events = 10000;
+const most_commands = 500;
+const slow_period_ms = 200;
+
+export const mission = signal(null);
+export const status = signal(null);
+export const events = signal([]);
+export const commands = signal([]);
+export const gaps = signal([]);
+export const replay = signal(null);
+export const gateway = signal({connected: false, since_ms: performance.now(), refused: false});
+export const problem = signal('');
+/// False for an observer: reads everything, commands nothing.
+export const operator = signal(true);
+export const injections = signal([]);
+/// Counts batches of values; a view that draws at telemetry rate reads it.
+export const fast = signal(0);
+/// The same at 5 Hz, for numbers that people read, and for ages.
+export const slow = signal(0);
+
+/// NAME -> {v, t}. Not a signal: read it after `fast` or `slow`.
+export const values = new Map();
+const value_listeners = new Set();
+/// Calls `listener(set)` with each batch of values; returns what ends it.
+export function on_values(listener) {
+  value_listeners.add(listener);
+  return () => value_listeners.delete(listener);
+}
+
+const clock = {t: NaN, at_ms: 0};
+/// On-board time now, as well as the ground can know it.
+export function now_s() {
+  const speed = replay.value ? (replay.value.state === 'playing' ? replay.value.speed ?? 1 : 0) : 1;
+  return clock.t + speed * (performance.now() - clock.at_ms) / 1000;
+}
+/// Time of the newest message.
+export const newest_s = () => clock.t;
+
+function heard(t) {
+  if (!Number.isFinite(t)) return;
+  if (!(t < clock.t) || clock.t - t > 5 || replay.value) {
+    clock.t = t;
+    clock.at_ms = performance.now();
+  }
+}
+
+export const subsystem_of = (name) => mission.value?.subsystems.find((subsystem) => subsystem.name === name);
+export const status_of = (name) => status.value?.subsystems?.find((subsystem) => subsystem.name === name);
+export const mode_of = computed(() => {
+  const mode = status.value?.mode;
+  const known = mission.value?.modes ?? [];
+  return (known.find((one) => one.id === mode || one.name === mode) ?? {name: mode === undefined ? 'unknown' : String(mode)});
+});
+
+/// NAME -> {name, type, unit, min, max, enumeration, period_s, subsystem}
+export const columns = computed(() => {
+  const found = new Map();
+  for (const subsystem of mission.value?.subsystems ?? []) {
+    for (const structure of subsystem.housekeeping ?? []) {
+      for (const column of structure.columns) {
+        const name = column.name.startsWith(`${subsystem.name}.`) ? column.name : `${subsystem.name}.${column.name}`;
+        const known = found.get(name);
+        if (known && known.period_s <= structure.period_s) continue;
+        found.set(name, {...column, name, subsystem: subsystem.name, period_s: structure.period_s, sid: structure.sid});
+      }
+    }
+  }
+  return found;
+});
+
+/// Age and whether it is too old to be believed: three periods of its structure, two seconds at least.
+export function freshness(name) {
+  const value = values.get(name);
+  if (!value) return {age_s: Infinity, stale: true};
+  const age_s = now_s() - value.t;
+  const period_s = columns.value.get(name)?.period_s ?? 1;
+  return {age_s, stale: age_s > Math.max(2, 3 * period_s) * Math.max(1, replay.value?.speed ?? 1)};
+}
+
+export const link = computed(() => {
+  slow.value;
+  if (!gateway.value.connected) return {state: 'gateway', age_s: (performance.now() - gateway.value.since_ms) / 1000};
+  const reported = status.value?.link;
+  if (!reported) return {state: 'waiting', age_s: Infinity};
+  return {state: reported.connected ? 'up' : 'down', age_s: reported.age_s ?? Infinity, rx: reported.rx, tx: reported.tx};
+});
+
+export const counts = computed(() => {
+  const found = {high: 0, medium: 0, low: 0, info: 0};
+  for (const event of events.value) if (event.severity in found) ++found[event.severity];
+  return found;
+});
+
+const number_of = (value) => value === 'NaN' ? NaN : value === 'Infinity' ? Infinity : value === '-Infinity' ? -Infinity : value;
+
+function take_values(set, t) {
+  for (const [name, value] of Object.entries(set)) {
+    const [v, at] = Array.isArray(value) ? value : [value.v, value.t];
+    values.set(name, {v: number_of(v), t: at ?? t});
+  }
+  for (const listener of value_listeners) listener(set);
+}
+
+/// One entry for each telecommand with its chain of verdicts, from reports in any order.
+export function with_report(list, report) {
+  const {type, stage, code, reason, t, reports, ...head} = report;
+  const same = (one) => one.id === head.id;
+  const before = list.find(same);
+  const chain = [...(before?.stages ?? [])];
+  for (const one of reports ?? [{stage, code, reason, t}]) {
+    if (one.stage && !chain.some((known) => known.stage === one.stage && known.t === one.t)) chain.push(one);
+  }
+  const known = Object.fromEntries(Object.entries(head).filter(([, value]) => value !== undefined && value !== null));
+  const entry = {...before, ...known, t: Math.min(before?.t ?? Infinity, t ?? Infinity), stages: chain};
+  return before ? list.map((one) => same(one) ? entry : one) : [entry, ...list].slice(0, most_commands);
+}
+
+export const outcome_of = (command) => {
+  const stages = command.stages ?? [];
+  const failed = stages.find((one) => one.stage === 'failed' || one.stage?.endsWith('failed'));
+  if (failed) return {stage: 'failed', code: failed.code, reason: failed.reason};
+  for (const stage of ['completed', 'progress', 'started', 'accepted', 'sent']) {
+    if (stages.some((one) => one.stage === stage)) return {stage};
+  }
+  return {stage: 'sent'};
+};
+
+let fetched_mission = false;
+let counted = 0;
+
+/// A key for what a browser lists; archive rows and messages of the same event must agree.
+const event_key = (event) => `${event.t}/${event.apid ?? event.subsystem}/${event.id}/${event.text}`;
+
+function take(list) {
+  const fresh_events = [];
+  let reports = commands.value;
+  let newest_status = null;
+  let values_came = false;
+  for (const message of list) {
+    if (message.type !== 'hello' && message.type !== 'replay' && Boolean(message.replay) !== (replay.value !== null)) continue;
+    if (message.type === 'hello') {
+      introduce(message.client);
+      operator.value = message.operator !== false;
+    }
+    if (message.type === 'values') {
+      heard(message.t);
+      take_values(message.set, message.t);
+      values_came = true;
+    } else if (message.type === 'status') {
+      heard(message.t);
+      newest_status = message;
+    } else if (message.type === 'event') {
+      fresh_events.push({...message, key: event_key(message)});
+    } else if (message.type === 'command') {
+      reports = with_report(reports, message);
+    } else if (message.type === 'gap') {
+      gaps.value = [...gaps.value, {from: message.from, to: message.to}];
+    } else if (message.type === 'fault') {
+      injections.value = [message, ...injections.value].slice(0, 50);
+    } else if (message.type === 'replay' && message.state !== 'live') {
+      if (replay.value) {
+        replay.value = {...replay.value, ...message};
+        heard(message.at);
+      }
+    }
+  }
+  batch(() => {
+    if (newest_status) status.value = newest_status;
+    if (values_came) fast.value = ++counted;
+    if (fresh_events.length) events.value = [...fresh_events.reverse(), ...events.value].slice(0, most_events);
+    if (reports !== commands.value) commands.value = reports;
+  });
+}
+
+const rows = (answer, name) => Array.isArray(answer) ? answer : answer?.[name] ?? [];
+
+/// What happened before the page came, so that it opens with a past.
+async function fetch_past(until) {
+  const [event_rows, command_rows] = await Promise.all([
+    get('/api/events', {limit: 500, to: until}).catch(() => []), get('/api/commands', {limit: 100, to: until}).catch(() => [])]);
+  const past = rows(event_rows, 'events').map((event) => ({...event, key: event_key(event)}));
+  past.sort((a, b) => b.t - a.t);
+  let reports = commands.value;
+  for (const row of rows(command_rows, 'commands').toSorted((a, b) => a.t - b.t)) reports = with_report(reports, row);
+  batch(() => {
+    const known = new Set(past.map((event) => event.key));
+    events.value = [...events.value.filter((event) => !known.has(event.key)), ...past]
+        .sort((a, b) => b.t - a.t).slice(0, most_events);
+    commands.value = reports.toSorted((a, b) => b.t - a.t);
+  });
+}
+
+async function fetch_present() {
+  try {
+    if (!fetched_mission) {
+      mission.value = await get('/api/mission');
+      fetched_mission = true;
+    }
+    const {values: set, ...rest} = await get('/api/status');
+    if (!replay.value) {
+      heard(rest.t);
+      batch(() => {
+        status.value = rest;
+        take_values(set ?? {}, rest.t);
+        fast.value = ++counted;
+      });
+    }
+    problem.value = '';
+    await fetch_past(replay.value?.at);
+  } catch (error) {
+    problem.value = error.status === 401 || error.status === 403 ?
+      'The gateway refuses this page: open the URL that `hirosco run` printed, with its token.' : String(error.message);
+    if (error.status !== 401) setTimeout(() => gateway.value.connected && fetch_present(), 1000);
+  }
+}
+
+const worker = new Worker(new URL('feed_worker.js', document.baseURI), {type: 'module'});
+export const send_to_gateway = (message) => worker.postMessage({kind: 'send', message});
+
+worker.onmessage = ({data}) => {
+  if (data.kind === 'messages') take(data.list);
+  if (data.kind === 'open') {
+    gateway.value = {connected: true, since_ms: performance.now()};
+    if (replay.value) send_to_gateway({type: 'replay', at: now_s(), speed: replay.value.speed});
+    fetch_present();
+  }
+  if (data.kind === 'closed' && gateway.value.connected) gateway.value = {connected: false, since_ms: performance.now()};
+};
+
+export function start() {
+  const url = new URL('ws', document.baseURI);
+  url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+  url.searchParams.set('token', token());
+  worker.postMessage({kind: 'connect', url: url.href});
+  setInterval(() => { if (!document.hidden) slow.value = slow.peek() + 1; }, slow_period_ms);
+  // Without an answer there is no socket either: say why.
+  fetch_present();
+}
+
+function forget_time() {
+  batch(() => {
+    values.clear();
+    events.value = [];
+    commands.value = [];
+    status.value = null;
+    clock.t = NaN;
+  });
+}
+
+/// The archive from `at` on takes the place of the telemetry, in every view.
+export function replay_from(at, speed = replay.value?.speed ?? 1) {
+  if (!replay.value || at < now_s()) forget_time();
+  replay.value = {at, speed, state: 'playing'};
+  clock.t = at;
+  clock.at_ms = performance.now();
+  send_to_gateway({type: 'replay', at, speed});
+  fetch_past(at);
+}
+
+export function live() {
+  if (!replay.value) return;
+  replay.value = null;
+  forget_time();
+  send_to_gateway({type: 'live'});
+  fetch_present();
+}
+
+effect(() => document.body.classList.toggle('replaying', replay.value !== null));

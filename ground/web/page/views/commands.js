@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+import {useState} from 'preact/hooks';
+import {clock_text, number_text, state_text} from '../format.js';
+import {html} from '../html.js';
+import {CommandForm, VerdictChain} from '../parts/command_form.js';
+import {Panel} from '../parts/panel.js';
+import {commands, mission, mode_of, outcome_of} from '../store.js';
+
+const argument_text = (value) => typeof value === 'number' ? number_text(value) : state_text(String(value));
+export const arguments_text = (command) => Object.entries(command.arguments ?? {}).map(([name, value]) => `${name} ${argument_text(value)}`).join(', ');
+
+/// Whether the mode's list permits it at all; the supervisor's own answer stands in the form.
+function listed(subsystem, action) {
+  const permits = mode_of.value.permits;
+  if (action.essential || !Array.isArray(permits)) return true;
+  return permits.some((permit) => [subsystem, '*'].includes(permit.subsystem) &&
+    ((permit.functions ?? []).includes(action.name) || (permit.services ?? []).includes(action.service)));
+}
+
+export function Commands({rest}) {
+  const [search, set_search] = useState('');
+  const list = mission.value?.subsystems ?? [];
+  const words = search.toLowerCase();
+  const found = list.flatMap((subsystem) => (subsystem.functions ?? [])
+      .filter((action) => `${subsystem.name} ${action.name} ${action.description}`.toLowerCase().includes(words))
+      .map((action) => ({subsystem, action})));
+  const chosen = found.find(({subsystem, action}) => subsystem.name === rest[0] && action.name === rest[1]) ??
+    list.flatMap((subsystem) => (subsystem.functions ?? []).map((action) => ({subsystem, action})))
+        .find(({subsystem, action}) => subsystem.name === rest[0] && action.name === rest[1]) ?? found[0];
+  return html`<main class="commands">
+    <${Panel} title="Telecommands">
+      <input class="search" type="search" placeholder="search  /" aria-label="search telecommands" value=${search} data-search
+        onInput=${(event) => set_search(event.currentTarget.value)}
+        onKeyDown=${(event) => { if (event.key === 'Enter' && found[0]) location.hash = `#/commands/${found[0].subsystem.name}/${found[0].action.name}`; }} />
+      ${list.map((subsystem) => {
+        const own = found.filter((one) => one.subsystem === subsystem);
+        return own.length ? html`<div class="group" key=${subsystem.name}><h3>${subsystem.name}</h3>${own.map(({action}) => html`
+          <a class=${`action ${chosen?.action === action ? 'chosen' : ''} ${listed(subsystem.name, action) ? '' : 'locked'}`}
+            href=${`#/commands/${subsystem.name}/${action.name}`} title=${listed(subsystem.name, action) ? action.description : `not permitted in mode ${mode_of.value.name}`}>
+            ${action.name}${action.essential ? html`<small>essential</small>` : listed(subsystem.name, action) ? null : html`<small>not in this mode</small>`}</a>`)}</div>` : null;
+      })}
+    </${Panel}>
+    <${Panel} title=${chosen ? `${chosen.subsystem.name} ${chosen.action.name}` : 'Telecommand'}
+      hint=${chosen ? `TC[${chosen.action.service ?? 8},${chosen.action.subtype ?? 1}] to APID ${chosen.subsystem.id}` : ''}>
+      ${chosen ? html`<${CommandForm} key=${`${chosen.subsystem.name}.${chosen.action.name}`} subsystem=${chosen.subsystem.name} action=${chosen.action} focus />
+        ${chosen.action.states?.length ? html`<p class="about">Taken in ${chosen.action.states.map(state_text).join(', ')}.</p>` : null}` : html`<p class="empty">Nothing found.</p>`}
+    </${Panel}>
+    <${Panel} title="History" hint="of all operators"><${History} /></${Panel}>
+  </main>`;
+}
+
+function History() {
+  const list = commands.value.slice(0, 150);
+  return html`<ol class="history" data-test="history">${list.map((command) => {
+    const outcome = outcome_of(command);
+    return html`<li key=${command.id} class=${outcome.stage}>
+      <div class="row"><span class="time">${clock_text(command.t, 1)}</span><b>${command.subsystem} ${command.function}</b>
+        <small class="sender">${command.sender ?? ''}${command.mine ? ' (this page)' : ''}</small></div>
+      ${arguments_text(command) ? html`<div class="words">${arguments_text(command)}</div>` : null}
+      <${VerdictChain} command=${command} /></li>`;
+  })}</ol>${list.length ? null : html`<p class="empty">No telecommand has been sent.</p>`}`;
+}

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+import {useEffect, useState} from 'preact/hooks';
+import {get} from '../api.js';
+import {clock_text} from '../format.js';
+import {html} from '../html.js';
+import {EventTable, event_text} from '../parts/event_list.js';
+import {Severity} from '../parts/icons.js';
+import {Panel} from '../parts/panel.js';
+import {counts, events, gateway, mission, replay} from '../store.js';
+
+const severities = ['high', 'medium', 'low', 'info'];
+
+export function Why() {
+  const [answer, set_answer] = useState(null);
+  // Something of weight came: the chain may be another one.
+  const reason = counts.value.high + counts.value.medium;
+  useEffect(() => {
+    let over = false;
+    get('/api/why').then((found) => over || set_answer(found.causes ?? []), () => over || set_answer([]));
+    return () => { over = true; };
+  }, [reason, gateway.value.connected]);
+  return html`<${Panel} title="Why did it stop?" hint="hirosco why">
+    ${answer?.length ? html`<ol class="why" data-test="why">${answer.map((cause) => html`<li><span class="time">${clock_text(cause.t, 3)}</span>${cause.text}</li>`)}</ol>` :
+      html`<p class="empty">${answer ? 'Nothing has stopped.' : '…'}</p>`}</${Panel}>`;
+}
+
+export function Events({query}) {
+  const [text, set_text] = useState(query.get_raw('text') ?? '');
+  const [who, set_who] = useState('');
+  const asked = query.get_raw('severity');
+  const [shown, set_shown] = useState(null);
+  const [archive, set_archive] = useState(null);
+  const wanted = shown ?? (asked ? severities.slice(0, severities.indexOf(asked) + 1) : severities);
+  const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+  const fits = (event) => wanted.includes(event.severity) && (!who || event.subsystem === who) &&
+    words.every((word) => `${event.subsystem} ${event.name} ${event.text ?? ''} ${event_text(event)}`.toLowerCase().includes(word));
+  const list = (archive ?? events.value).filter(fits);
+  const search_archive = async () => {
+    if (archive) return set_archive(null);
+    const found = await get('/api/events', {text, limit: 2000, to: replay.value ? replay.value.at : undefined}).catch(() => ({events: []}));
+    set_archive((found.events ?? found).map((event, i) => ({...event, key: i})));
+  };
+  return html`<main class="event_view">
+    <${Panel} title="Events" hint=${archive ? `archive, ${list.length} found` : `${list.length} of ${events.value.length}`}>
+      <div class="toolbar">
+        ${severities.map((one) => html`<button class=${`chip ${wanted.includes(one) ? 'on' : ''}`} aria-pressed=${wanted.includes(one)}
+          onClick=${() => set_shown(wanted.includes(one) ? wanted.filter((other) => other !== one) : [...wanted, one])}>
+          <${Severity} severity=${one} word /> ${counts.value[one]}</button>`)}
+        <select aria-label="subsystem" value=${who} onChange=${(event) => set_who(event.currentTarget.value)}><option value="">all subsystems</option>
+          ${(mission.value?.subsystems ?? []).map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select>
+        <input class="search" type="search" placeholder="search  /" aria-label="search events" data-search value=${text} onInput=${(event) => { set_text(event.currentTarget.value); set_archive(null); }} />
+        <button class=${`chip ${archive ? 'on' : ''}`} onClick=${search_archive}>whole archive</button>
+      </div>
+      <${EventTable} list=${list} wide most=${400} /></${Panel}>
+    <${Why} />
+  </main>`;
+}

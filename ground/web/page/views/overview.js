@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+import {useState} from 'preact/hooks';
+import {CommandForm} from '../parts/command_form.js';
+import {EventTable} from '../parts/event_list.js';
+import {Lanes} from '../parts/lanes.js';
+import {LinkGraph} from '../parts/link_graph.js';
+import {Panel} from '../parts/panel.js';
+import {Legend, TimePlot} from '../parts/plot.js';
+import {Robot, scene_of_mission} from '../parts/robot.js';
+import {SubsystemCard} from '../parts/subsystem_card.js';
+import {html} from '../html.js';
+import {columns, events, mission} from '../store.js';
+
+/// What a mission without a scene shows first: the first arrays and numbers of its housekeeping.
+export function first_plots() {
+  const described = scene_of_mission.value?.plots;
+  if (described) return described.map((names) => names.filter((name) => columns.value.has(name))).filter((names) => names.length);
+  const by_parameter = new Map();
+  for (const column of columns.value.values()) {
+    if (column.enumeration?.length || /CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name)) continue;
+    const base = column.name.replace(/\[\d+\]$/, '');
+    by_parameter.set(base, [...(by_parameter.get(base) ?? []), column.name]);
+  }
+  return [...by_parameter.entries()].sort(([, a], [, b]) => columns.value.get(a[0]).period_s - columns.value.get(b[0]).period_s)
+      .map(([, names]) => names.slice(0, 4)).slice(0, 2);
+}
+
+export const plot_title = (names) => {
+  const base = (names[0] ?? '').replace(/\[\d+\]$/, '').split('.');
+  return base.slice(base.length > 2 ? 2 : 1).join('.').replaceAll('_', ' ').toLowerCase();
+};
+
+function QuickCommand() {
+  const list = mission.value?.subsystems ?? [];
+  const first = list.find((one) => (one.functions ?? []).some((action) => !['SET_STATE', 'CONFIGURE', 'PING'].includes(action.name)) && one.id !== 1) ?? list[0];
+  const [subsystem, set_subsystem] = useState(null);
+  const [action, set_action] = useState(null);
+  const chosen = list.find((one) => one.name === subsystem) ?? first;
+  if (!chosen) return null;
+  const actions = chosen.functions ?? [];
+  const command = actions.find((one) => one.name === action) ?? actions.find((one) => !['SET_STATE', 'CONFIGURE', 'PING'].includes(one.name)) ?? actions[0];
+  return html`<div class="quick">
+    <label class="field"><span>Subsystem</span><select data-test="quick-subsystem" value=${chosen.name}
+      onChange=${(event) => { set_subsystem(event.currentTarget.value); set_action(null); }}>
+      ${list.map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select></label>
+    <label class="field"><span>Command</span><select data-test="quick-command" value=${command?.name}
+      onChange=${(event) => set_action(event.currentTarget.value)}>
+      ${actions.map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select></label>
+    ${command ? html`<${CommandForm} key=${`${chosen.name}.${command.name}`} subsystem=${chosen.name} action=${command} />` : null}</div>`;
+}
+
+export function Overview() {
+  const plots = first_plots();
+  return html`<main class="overview">
+    <${Panel} title="Subsystems" area="subsystems" href="#/subsystems">
+      ${(mission.value?.subsystems ?? []).map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
+    <${Panel} title="3D" area="robot" bare><${Robot} /></${Panel}>
+    <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>
+    <${Panel} title="Real-time links" area="links" href="#/links"><${LinkGraph} width=${310} height=${190} box=${122} /></${Panel}>
+    ${[0, 1].map((i) => plots[i] ? html`<${Panel} title=${plot_title(plots[i])} area=${`plot_${i}`} bare
+      href=${`#/plots?p=${plots[i].map(encodeURIComponent).join('+')}`}>
+      <${Legend} names=${plots[i]} brief /><${TimePlot} names=${plots[i]} window_s=${30} /></${Panel}>` :
+      html`<${Panel} title="plot" area=${`plot_${i}`} href="#/plots"><p class="empty">No housekeeping to plot.</p></${Panel}>`)}
+    <${Panel} title="Events" area="events" href="#/events"><${EventTable} list=${events.value} most=${40} /></${Panel}>
+    <${Panel} title="Timeline" hint="click to replay from there" area="timeline" href="#/timeline"><${Lanes} window_s=${120} /></${Panel}>
+  </main>`;
+}

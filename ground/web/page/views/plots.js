@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+import {useRef, useState} from 'preact/hooks';
+import {token} from '../api.js';
+import {say} from '../commanding.js';
+import {clock_text} from '../format.js';
+import {html} from '../html.js';
+import {Panel} from '../parts/panel.js';
+import {Legend, TimePlot, XyPlot} from '../parts/plot.js';
+import {aligned} from '../series.js';
+import {columns, mission, now_s} from '../store.js';
+import {first_plots, plot_title} from './overview.js';
+
+const windows = [[10, '10 s'], [30, '30 s'], [60, '1 min'], [300, '5 min'], [900, '15 min'], [3600, '1 h']];
+
+/// #/plots?p=A+B|C&w=60&xy=1: groups divided by |, names by +.
+export function parsed(query) {
+  const groups = (query.get_raw('p') ?? '').split('|').map((group) => group.split('+').filter(Boolean).map(decodeURIComponent)).filter((group) => group.length);
+  return {groups, window_s: Number(query.get_raw('w')) || 60, xy: new Set((query.get_raw('xy') ?? '').split(',').filter(Boolean).map(Number))};
+}
+
+function address({groups, window_s, xy}) {
+  const p = groups.map((group) => group.map(encodeURIComponent).join('+')).join('|');
+  return `#/plots?p=${p}&w=${window_s}${xy.size ? `&xy=${[...xy].join(',')}` : ''}`;
+}
+
+function save(name, blob) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function save_png(plot, names) {
+  const source = plot.ctx.canvas;
+  const canvas = document.createElement('canvas');
+  const line = 18 * devicePixelRatio;
+  canvas.width = source.width;
+  canvas.height = source.height + 2 * line;
+  const ctx = canvas.getContext('2d');
+  ctx.fillStyle = '#0f1420';
+  ctx.fillRect(0, 0, canvas.width, canvas.height);
+  ctx.fillStyle = '#e7ecf5';
+  ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.fillText(`${mission.peek().name}: ${names.join(', ')}`, 10, line);
+  ctx.drawImage(source, 0, 1.5 * line);
+  canvas.toBlob((blob) => save(`${names[0]}.png`, blob));
+}
+
+function save_csv(list, names, range) {
+  const rows = aligned(list, ...range);
+  const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
+  const lines = [['t_s', ...names].map(quoted).join(',')];
+  for (let i = 0; i < rows[0].length; ++i) {
+    lines.push([rows[0][i].toFixed(6), ...names.map((_, k) => rows[1 + 3 * k][i] ?? '')].join(','));
+  }
+  save(`${names[0]}.csv`, new Blob([lines.join('\n'), '\n'], {type: 'text/csv'}));
+}
+
+function PlotPanel({names, window_s, range, xy, on_zoom, on_remove, on_xy, on_drop}) {
+  const plot_ref = useRef(null);
+  const shown = range ?? [now_s() - window_s, now_s()];
+  const whole = `/api/export.csv?${names.map((name) => `parameter=${encodeURIComponent(name)}`).join('&')}&from=${shown[0]}&to=${shown[1]}`;
+  const fetch_whole = async () => {
+    try {
+      const answer = await fetch(whole, {headers: {Authorization: `Bearer ${token()}`}});
+      if (!answer.ok) throw new Error(`HTTP ${answer.status}`);
+      save(`${names[0]}-archive.csv`, await answer.blob());
+    } catch (error) {
+      say(`archive: ${error.message}`, 'bad');
+    }
+  };
+  const tools = html`
+    <button class=${`chip ${xy ? 'on' : ''}`} disabled=${names.length < 2} title="the second parameter over the first" onClick=${on_xy}>x-y</button>
+    <button class="chip" disabled=${xy} onClick=${() => plot_ref.current && save_png(plot_ref.current.plot, names)}>PNG</button>
+    <button class="chip" disabled=${xy} title="the samples shown" onClick=${() => plot_ref.current && save_csv(plot_ref.current.list, names, shown)}>CSV</button>
+    <button class="chip" title="every sample of the archive" onClick=${fetch_whole}>archive CSV</button>
+    <button class="tiny" title="close this plot" aria-label="close this plot" onClick=${on_drop}>×</button>`;
+  return html`<${Panel} title=${plot_title(names)} bare tools=${tools}>
+    <${Legend} names=${names} on_remove=${on_remove} />
+    ${xy ? html`<${XyPlot} names=${names} window_s=${window_s} range=${range} />` :
+      html`<${TimePlot} names=${names} window_s=${window_s} range=${range} on_zoom=${on_zoom} plot_ref=${plot_ref} />`}</${Panel}>`;
+}
+
+function Picker({on_pick}) {
+  const [search, set_search] = useState('');
+  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  const all = [...columns.value.values()];
+  const found = all.filter((column) => words.every((word) => column.name.toLowerCase().includes(word)));
+  const groups = new Map();
+  for (const column of found) groups.set(column.subsystem, [...(groups.get(column.subsystem) ?? []), column]);
+  return html`<${Panel} title="Parameters" hint="click: into the last plot, Shift: a new one">
+    <input class="search" type="search" placeholder="search  /" aria-label="search parameters" data-search value=${search} onInput=${(event) => set_search(event.currentTarget.value)} />
+    ${[...groups.entries()].map(([name, list]) => html`<div class="group" key=${name}><h3>${name}</h3>${list.map((column) => html`
+      <button class="action" onClick=${(event) => on_pick(column.name, event.shiftKey)}>${column.name.slice(name.length + 1)}<small>${column.unit}</small></button>`)}</div>`)}
+  </${Panel}>`;
+}
+
+export function Plots({query, paused, set_paused}) {
+  const asked = parsed(query);
+  const state = asked.groups.length ? asked : {...asked, groups: first_plots()};
+  const [zoom, set_zoom] = useState(null);
+  const go = (change) => { location.hash = address({...state, ...change}); };
+  const range = zoom ?? (paused !== null ? [paused - state.window_s, paused] : null);
+  const pick = (name, alone) => {
+    const groups = state.groups.map((group) => [...group]);
+    if (alone || groups.length === 0) groups.push([name]);
+    else if (!groups[groups.length - 1].includes(name)) groups[groups.length - 1].push(name);
+    go({groups});
+  };
+  return html`<main class="plots">
+    <${Picker} on_pick=${pick} />
+    <div class="column">
+      <div class="toolbar">
+        ${windows.map(([seconds, text]) => html`<button class=${`chip ${!zoom && state.window_s === seconds ? 'on' : ''}`}
+          onClick=${() => { set_zoom(null); go({window_s: seconds}); }}>${text}</button>`)}
+        <button class=${`chip ${paused !== null ? 'on' : ''}`} title="Space" data-test="pause" onClick=${() => set_paused(paused === null ? now_s() : null)}>
+          ${paused !== null ? 'paused' : 'pause'}</button>
+        ${zoom || paused !== null ? html`<button class="chip" onClick=${() => { set_zoom(null); set_paused(null); }}>follow</button>` : null}
+        <span class="space" /><small>${zoom ? `${clock_text(zoom[0])} … ${clock_text(zoom[1])}` : 'drag to zoom, cursor is shared'}</small>
+        <button class="chip" onClick=${() => navigator.clipboard?.writeText(location.href).then(() => say('address copied'))}>copy address</button>
+      </div>
+      ${state.groups.map((names, i) => html`<${PlotPanel} key=${`${i}/${names.join()}`} names=${names} window_s=${state.window_s} range=${range}
+        xy=${state.xy.has(i)} on_zoom=${set_zoom}
+        on_xy=${() => { const xy = new Set(state.xy); xy.has(i) ? xy.delete(i) : xy.add(i); go({xy}); }}
+        on_remove=${(name) => go({groups: state.groups.map((group, k) => k === i ? group.filter((one) => one !== name) : group).filter((group) => group.length)})}
+        on_drop=${() => go({groups: state.groups.filter((_, k) => k !== i)})} />`)}
+      ${state.groups.length ? null : html`<p class="empty">Pick a parameter on the left.</p>`}
+    </div></main>`;
+}
