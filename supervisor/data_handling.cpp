@@ -25,6 +25,11 @@ constexpr Duration log_patience = 1s;
 constexpr int damaged_reports_per_second = 10;
 constexpr std::size_t most_waiting = 1024;
 
+/// The supervisor's own source id is nobody else's: reports to a forged one would end its own requests.
+[[nodiscard]] bool forged(const pus::Request& request, Sender sender) {
+  return sender != Sender::Supervisor && request.source == own_source;
+}
+
 [[nodiscard]] std::string telecommand_text(const pus::TelecommandView& telecommand) {
   if (const auto call = called_function(telecommand)) {
     if (call->first_argument) return fmt::format("{} {}", call->name, *call->first_argument);
@@ -49,18 +54,13 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
     ++reports_in_window_;
     return reject(incoming, {request_id, 0, 0}, telecommand.error());
   }
-  const pus::Request request = pus::request_of(*telecommand);
+  pus::Request request = pus::request_of(*telecommand);
+  if (forged(request, incoming.sender)) request = {request.id, 0, 0};
   const std::uint16_t apid = telecommand->apid();
-  // Its own source id is nobody else's: reports to a forged one would end its own requests.
-  if (incoming.sender != Sender::Supervisor && request.source == own_source)
-    return reject(incoming, {request.id, 0, 0}, pus::FailureNotice{pus::FailureCode::IllegalField});
-  const auto decision = decide(*telecommand, incoming.sender, situation_of(apid));
+  const auto decision = judge(*telecommand, incoming.sender);
   if (!decision) return reject(incoming, request, decision.error());
-  if (Member* addressee = member(apid); decision->releases_stop && addressee != nullptr) {
-    // What a recovery has stopped is not released by a command that crosses it.
-    if (addressee->recovering) return reject(incoming, request, pus::FailureNotice{pus::FailureCode::WrongState});
-    addressee->release_fence();
-  }
+  if (apid == 1 && telecommand->service() == permission_query::service) return answer_query(incoming, *telecommand);
+  if (Member* addressee = member(apid); decision->releases_stop && addressee != nullptr) addressee->release_fence();
   const std::string text = telecommand_text(*telecommand);
   const LogEntry received{.kind = LogKind::TelecommandReceived,
                           .source = incoming.source,
@@ -80,6 +80,45 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
   waiting_.push_back(
       {number, apid, {incoming.packet.begin(), incoming.packet.end()}, incoming.memory, request, mode_epoch, now_});
   forward_durable();
+}
+
+/// All that may refuse a well-formed telecommand, without doing anything about it: what is asked before sending and what
+/// is decided on sending are this one function.
+std::expected<Permitted, pus::FailureNotice> Supervisor::judge(const pus::TelecommandView& telecommand,
+                                                               Sender sender) const {
+  if (forged(pus::request_of(telecommand), sender))
+    return std::unexpected{pus::FailureNotice{pus::FailureCode::IllegalField}};
+  const auto decision = decide(telecommand, sender, situation_of(telecommand.apid()));
+  if (!decision || !decision->releases_stop) return decision;
+  // What a recovery has stopped is not released by a command that crosses it.
+  const auto addressee = std::ranges::find(members_, telecommand.apid(), &Member::apid);
+  if (addressee != members_.end() && addressee->recovering)
+    return std::unexpected{pus::FailureNotice{pus::FailureCode::WrongState}};
+  return decision;
+}
+
+/// TC[129,1]: nothing is done but answered. Whoever asks is judged as the sender that it is.
+void Supervisor::answer_query(const Incoming& incoming, const pus::TelecommandView& query) {
+  const pus::Request request = pus::request_of(query);
+  const Octets asked = query.application_data();
+  const auto header = pus::read_primary_header(asked);
+  if (!header) return reject(incoming, request, pus::FailureNotice{pus::FailureCode::DataLength});
+  static_cast<void>(parts_.log.append({.kind = LogKind::TelecommandReceived,
+                                       .source = incoming.source,
+                                       .peer = 1,
+                                       .packet = incoming.packet,
+                                       .note = "is it permitted?"}));
+  engine_.verification().accepted(request);
+  engine_.verification().started(request);
+  const auto telecommand = pus::TelecommandView::parse(asked);
+  const auto decision = telecommand ? judge(*telecommand, incoming.sender) : std::unexpected{telecommand.error()};
+  std::array<std::byte, 7> data;
+  OctetWriter writer{data};
+  writer.put(header->request_id);
+  writer.put(static_cast<std::uint8_t>(decision ? 1 : 0));
+  writer.put(static_cast<std::uint16_t>(decision ? 0 : static_cast<std::uint16_t>(decision.error().code())));
+  engine_.telemetry().report(permission_query::service, permission_query::answer, request.source, data);
+  engine_.verification().completed(request);
 }
 
 /// Nothing that is not essential leaves before it is on the disk (decision 24).

@@ -163,6 +163,11 @@ void Supervisor::member_died(Member& subject, const ProcessEnd& end) {
 }
 
 void Supervisor::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {
+  watched_links_.erase(link.id);
+  // Without a mapping the link is only not told about.
+  if (auto mapping = up ? parts_.world.memory.map(links_.memory_of(link.id), Access::ReadOnly)
+                        : Result<Mapping>{fail(ErrorCode::NotFound, "link is down")})
+    watched_links_.emplace(link.id, std::move(*mapping));
   tell("link " + std::to_string(link.id) + " " + link.from + "." + link.provides + " -> " + link.to +
        (up ? " up: " : " down: ") + text);
 }

@@ -40,6 +40,8 @@ Result<Step> Supervisor::software_init() {
   publish("LINKS", links_parameter_);
   publish("REJECTIONS", rejections_parameter_);
   publish("COUNTS", counts_parameter_);
+  publish("SUBSYSTEMS", subsystems_parameter_);
+  publish("LINK_STATUS", link_status_parameter_);
   on_function("SET_MODE", [this](double mode) -> Outcome {
     const auto found = std::ranges::find(mission_.modes, static_cast<std::uint8_t>(mode), &descriptor::Mode::id);
     if (found == mission_.modes.end()) return refused(pus::FailureCode::UnknownIdentifier);
@@ -76,15 +78,6 @@ Result<Step> Supervisor::software_init() {
     return ok();
   });
   return done;
-}
-
-Result<> Supervisor::show(const Cycle&) noexcept {
-  mode_parameter_.store(mode_->id);
-  links_parameter_.store({static_cast<std::uint32_t>(links_.graph().up_count()),
-                          static_cast<std::uint32_t>(links_.graph().defined_count())});
-  rejections_parameter_.store(rejections_);
-  counts_parameter_.store(counts_);
-  return ok();
 }
 
 void Supervisor::start() {

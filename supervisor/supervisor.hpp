@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <expected>
 #include <functional>
 #include <map>
 #include <memory>
@@ -83,6 +84,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   Result<> operational(const Cycle& cycle) noexcept override { return show(cycle); }
   Result<> error_operational(const Cycle& cycle) noexcept override { return show(cycle); }
   Result<> show(const Cycle& cycle) noexcept;
+  void show_members() noexcept;
+  void show_links() noexcept;
   // LinkOperator
   void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) override;
   void link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) override;
@@ -98,6 +101,9 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     MemoryHandle memory;
   };
   void handle_telecommand(const Incoming& incoming);
+  [[nodiscard]] std::expected<Permitted, pus::FailureNotice> judge(const pus::TelecommandView& telecommand,
+                                                                   Sender sender) const;
+  void answer_query(const Incoming& incoming, const pus::TelecommandView& query);
   void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
   /// A permitted telecommand on its way to the addressee.
   struct Outgoing {
@@ -209,6 +215,28 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   Parameter<Counts> counts_parameter_;
   std::array<std::uint32_t, rejection_reasons> rejections_{};
   Counts counts_{};
+  /// What ground is told of everybody (housekeeping 4702); where a mission has more, only the first.
+  static constexpr std::size_t told_members = 16;
+  struct SubsystemsStatus {
+    std::array<std::uint16_t, told_members> apid{};
+    std::array<std::uint8_t, told_members> state{};  ///< 255 = not running
+    std::array<std::uint8_t, told_members> configuration{};
+    std::array<std::uint8_t, told_members> inhibited{};  ///< bits of Inhibition
+    std::array<std::uint32_t, told_members> cycles{};
+    std::array<std::uint32_t, told_members> overruns{};
+    std::array<std::uint32_t, told_members> missed{};
+    std::array<std::uint32_t, told_members> latency_max_ns{};
+    std::array<std::uint32_t, told_members> execution_mean_ns{};
+  };
+  Parameter<SubsystemsStatus> subsystems_parameter_;
+  struct LinksStatus {
+    std::array<std::uint8_t, told_members> link{};
+    std::array<std::uint8_t, told_members> up{};
+    std::array<std::uint32_t, told_members> samples{};
+    std::array<std::uint32_t, told_members> age_us{};
+  };
+  Parameter<LinksStatus> link_status_parameter_;
+  std::map<std::uint8_t, Mapping> watched_links_;  ///< memory of the links that are up
   std::optional<Call> link_call_;
 };
 

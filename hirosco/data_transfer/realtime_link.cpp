@@ -79,6 +79,15 @@ std::size_t link_memory_octets(std::uint32_t payload_octets) noexcept {
   return (used + line - 1) / line * line;
 }
 
+std::optional<LinkGlance> glance_at_link(Octets memory) noexcept {
+  const bool aligned = std::bit_cast<std::uintptr_t>(memory.data()) % line == 0;
+  if (!aligned || memory.size() < link_memory::payload_at) return std::nullopt;
+  if (load(memory.data(), link_memory::magic_at, std::memory_order_acquire) != link_memory::magic) return std::nullopt;
+  const auto stamp = load(memory.data(), link_memory::stamp_at, std::memory_order_relaxed);
+  return LinkGlance{load(memory.data(), link_memory::count_at, std::memory_order_relaxed),
+                    TimePoint{Duration{std::bit_cast<std::int64_t>(stamp)}}};
+}
+
 Result<LinkWriter> LinkWriter::make(MutableOctets memory, const LinkLayout& layout) noexcept {
   if (!fits(memory.data(), memory.size(), layout)) {
     return fail(ErrorCode::Mismatch, "link memory too small, not aligned, or payload size impossible",

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
@@ -43,6 +44,14 @@ inline constexpr std::size_t payload_at = 96;        ///< filled up with zero to
 /// Octets of memory that a link with this payload needs (a multiple of 64).
 [[nodiscard]] std::size_t link_memory_octets(std::uint32_t payload_octets) noexcept;
 
+/// How a link is doing, for displays: no sample is read, no reader's count moves. The two values may be of neighbouring
+/// samples. Empty: no link's memory.  Realtime: wait-free. Thread: any.
+struct LinkGlance {
+  std::uint64_t count{0};  ///< samples written so far
+  TimePoint sampled_at{};  ///< of the newest
+};
+[[nodiscard]] std::optional<LinkGlance> glance_at_link(Octets memory) noexcept;
+
 /// The producer's end.  Realtime: wait-free, no system call. Thread: one.
 class LinkWriter {
  public:
@@ -67,8 +76,8 @@ class LinkWriter {
 struct LinkSample {
   Flow flow{Flow::None};
   LinkStatus status{LinkStatus::None};
-  std::uint64_t count{0};            ///< of the sample in `payload`
-  std::uint64_t lost{0};             ///< samples never seen between this and the one before
+  std::uint64_t count{0};  ///< of the sample in `payload`
+  std::uint64_t lost{0};  ///< samples never seen between this and the one before
   TimePoint sampled_at{};
 };
 

@@ -63,6 +63,18 @@ class RealtimeLink : public testing::Test {
   Payload seen_{};
 };
 
+TEST_F(RealtimeLink, AGlanceTellsTheCountAndTheTimeOfTheNewestSampleAndTakesNothingFromTheReader) {
+  write(1);
+  write(2);
+  const auto glance = glance_at_link(memory_.all());
+  ASSERT_TRUE(glance);
+  EXPECT_EQ(glance->count, 2U);
+  EXPECT_EQ(glance->sampled_at, TimePoint{Duration{2000}});
+  EXPECT_FALSE(glance_at_link(LinkMemory{payload_octets}.all()));
+  EXPECT_FALSE(glance_at_link(memory_.all().first(64)));
+  EXPECT_FALSE(glance_at_link({}));
+}
+
 TEST_F(RealtimeLink, HasNothingBeforeTheFirstSample) {
   const LinkSample sample = reader_.read(seen_);
   EXPECT_EQ(sample.flow, Flow::None);

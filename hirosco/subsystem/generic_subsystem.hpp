@@ -85,6 +85,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
   [[nodiscard]] pus::Verification& verification() noexcept { return verification_; }
+  [[nodiscard]] pus::TelemetrySink& telemetry() noexcept { return *this; }
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
   void raise_in_service(std::uint16_t event, std::span<const double> arguments);
 

@@ -27,11 +27,13 @@ constexpr std::uint16_t supervisor_apid = 1;
     case 17: return subtype == 1;
     case 20: return subtype == 1 || subtype == 3;
     case 128: return subtype >= 1 && subtype <= 4;
+    case permission_query::service: return subtype == permission_query::question;
     default: return false;
   }
 }
 
-[[nodiscard]] bool known_service(std::uint8_t service) {
+[[nodiscard]] bool known_service(std::uint8_t service, std::uint16_t apid) {
+  if (service == permission_query::service) return apid == supervisor_apid;
   constexpr std::array services{3, 5, 8, 17, 20, 128};
   return std::ranges::find(services, int{service}) != services.end();
 }
@@ -93,13 +95,14 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   if (subsystem == nullptr || !situation.state) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
   const std::uint8_t service = telecommand.service();
   const std::uint8_t subtype = telecommand.subtype();
-  if (!known_service(service)) return std::unexpected{FailureNotice{FailureCode::UnknownService}.with(service)};
+  if (!known_service(service, telecommand.apid()))
+    return std::unexpected{FailureNotice{FailureCode::UnknownService}.with(service)};
   if (!known_subtype(service, subtype))
     return std::unexpected{FailureNotice{FailureCode::UnknownSubtype}.with(service).with(subtype)};
   // The handshake of links is the supervisor's alone (decision 10).
   if (service == 128 && sender != Sender::Supervisor)
     return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
-  if (service == 17) return Permitted{.essential = true};
+  if (service == 17 || service == permission_query::service) return Permitted{.essential = true};
 
   const auto call = called_function(telecommand);
   const descriptor::Function* function = call ? subsystem->find_function(call->name) : nullptr;

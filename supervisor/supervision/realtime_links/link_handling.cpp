@@ -168,6 +168,11 @@ void LinkHandling::give_up(std::uint8_t link, const std::string& why, std::uint1
   if (failed.done) failed.done(false);
 }
 
+MemoryHandle LinkHandling::memory_of(std::uint8_t link) const {
+  const auto found = established_.find(link);
+  return found != established_.end() ? found->second : MemoryHandle{};
+}
+
 void LinkHandling::down(std::uint8_t link, const std::string& why) {
   if (graph_.is_up(link)) {
     graph_.set_up(link, false);

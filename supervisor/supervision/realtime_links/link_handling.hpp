@@ -40,6 +40,8 @@ class LinkHandling {
   [[nodiscard]] bool establish(std::uint8_t link, TimePoint now, Done done);
   /// Takes a link down at both ends. False: it is not up, or being taken down already.
   [[nodiscard]] bool release(std::uint8_t link, Done done);
+  /// Of a link that is up; else an empty handle.
+  [[nodiscard]] MemoryHandle memory_of(std::uint8_t link) const;
   /// Reports of service 128.
   void handle(std::uint16_t from, const pus::TelemetryView& report);
   /// A subsystem is gone without reporting: all its links are down.
