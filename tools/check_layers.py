@@ -19,12 +19,12 @@ def wrong(path, to):
     if system.match(to):
         return not path.startswith(shells) and not path.endswith(("_test.cpp", "main.cpp", "run.cpp")) and "the operating system"
     if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
-    if path.startswith("simulation/spacecraft/"): return False  # assembles all parts; nothing below tools and tests knows it
+    if path.startswith(("simulation/spacecraft/", "simulation/scenarios/")): return False  # assemble and fly all parts
     same = path.split("/")[:2] == to.split("/")[:2]
     if top in may and target not in may[top] and not same: return "another part"
     if top == target == "hirosco" and rank(to) > rank(path): return "a higher rank"
     if top == "ground" and to.startswith("hirosco/subsystem"): return "the generic subsystem"
-    if top in may and to.startswith("simulation/spacecraft") and not same: return "the simulated spacecraft"
+    if top in may and to.startswith(("simulation/spacecraft", "simulation/scenarios")) and not same: return "the simulated spacecraft"
     return "/detail/" in to and not path.startswith(to.split("/detail/")[0] + "/") and "a private header"
 planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "subsystems/a/a.cpp subsystems/b/b.hpp", "ground/a.cpp supervisor/b.hpp",
            "ground/a.cpp hirosco/subsystem/b.hpp", "hirosco/pus/a.cpp sys/mman.h", "supervisor/a.cpp unistd.h",

@@ -3,58 +3,30 @@
 // The figures of the rokviss mission at the level of physics and control laws, against missions/rokviss/expected.csv,
 // which is written from the design notes and closed forms, never from a run.
 #include <cmath>
-#include <fstream>
 #include <iostream>
-#include <map>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "simulation/scenarios/expected.hpp"
 #include "tests/figures/rokviss_loop.hpp"
 
 namespace hirosco::simulation {
 namespace {
 
-struct Expected {
-  std::string quantity;
-  double value;
-  double tolerance;
-  std::string unit;
-};
-
-std::map<std::string, Expected> read_expected() {
-  std::map<std::string, Expected> table;
-  std::ifstream file{HIROSCO_SOURCE_DIR "/missions/rokviss/expected.csv"};
-  std::string line;
-  std::getline(file, line);
-  EXPECT_EQ(line, "name,quantity,value,tolerance,unit");
-  while (std::getline(file, line)) {
-    std::vector<std::string> cells;
-    std::stringstream rest{line};
-    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
-    if (cells.size() != 5) ADD_FAILURE() << line;
-    else table[cells[0]] = {cells[1], std::stod(cells[2]), std::stod(cells[3]), cells[4]};
-  }
-  return table;
-}
-
 class RokvissFigures : public testing::Test {
  protected:
   void expect(const std::string& name, double measured) {
-    const auto found = expected_.find(name);
-    ASSERT_NE(found, expected_.end()) << name << " is not in expected.csv";
-    const Expected& row = found->second;
-    std::cout << fmt::format("  {:22} expected {:>10.6g} +- {:<10.4g} measured {:>12.7g} {}\n", name, row.value,
-                             row.tolerance, measured, row.unit);
-    EXPECT_NEAR(measured, row.value, row.tolerance) << name << ": " << row.quantity;
+    static const auto table = ExpectedTable::read(HIROSCO_SOURCE_DIR "/missions/rokviss/expected.csv");
+    ASSERT_TRUE(table) << table.error();
+    const Expected* row = table->find(name);
+    ASSERT_NE(row, nullptr) << name << " is not in expected.csv";
+    std::cout << fmt::format("  {:26} expected {:>20} measured {:>12.7g} {}\n", name, row->text(), measured, row->unit);
+    EXPECT_TRUE(row->holds(measured)) << name << ": " << row->quantity;
   }
-
- private:
-  std::map<std::string, Expected> expected_ = read_expected();
 };
 
 double worst_of(const Vec2& a, const Vec2& b) { return std::max(std::abs(a[0] - b[0]), std::abs(a[1] - b[1])); }
@@ -143,7 +115,7 @@ Contacts hard_contact(bool passivity) {
 TEST_F(RokvissFigures, RO6BouncesOffTheRailWithoutPassivityAndRestsOnItWith) {
   const Contacts without = hard_contact(false);
   expect("RO6-off-lost", without.lost_share);
-  EXPECT_GT(without.peak_force_n, 400);
+  expect("RO6-off-peak", without.peak_force_n);
   const Contacts with = hard_contact(true);
   expect("RO6-on-lost", with.lost_share);
   expect("RO6-on-peak", with.peak_force_n);
@@ -167,12 +139,22 @@ TEST_F(RokvissFigures, RO8TripsTheTorqueLimitAndLetsGo) {
   EXPECT_EQ(loop.trip()->finding.joint, 1);
   expect("RO8-trip-time", loop.trip()->time_s);
   expect("RO8-trip-force", loop.trip()->contact_force_n);
-  expect("RO8-peak-torque", peak_n_m);
+  expect("LAWS-RO8-peak", peak_n_m);
   expect("RO8-force-80ms", force_at_80ms / loop.trip()->contact_force_n);
   expect("RO8-force-85ms", force_after_85ms);
   expect("RO8-display-zero", std::round((display_last_s - loop.trip()->time_s) / RokvissLoop::period_s) + 1);
   EXPECT_LT(loop.trace().contact.penetration_m, 0) << "the finger ends free of the rail";
   EXPECT_EQ(loop.trace().display_n_m, (Vec2{}));
+}
+
+/// The 12.31 N m of the design note are those of a craft where nothing reacts until the motors go off after 20 cycles.
+/// With the clamp of FC1 it comes to 12.20, and on the whole spacecraft, where they go off at once, to 12.03.
+TEST_F(RokvissFigures, RO8PeaksAsTheNoteSaysWhenNothingReacts) {
+  RokvissLoop loop{{.reacting = false}};
+  loop.joystick().handle().hand().ramp({0.065, 0}, 0.04);
+  double peak_n_m = 0;
+  loop.run_to(2, [&] { peak_n_m = std::max(peak_n_m, std::abs(loop.trace().robot.torque_n_m[1])); });
+  expect("LAWS-RO8-peak-late", peak_n_m);
 }
 
 TEST_F(RokvissFigures, RepeatThemselvesBitForBit) {

@@ -76,7 +76,7 @@ Vec2 RokvissLoop::manipulator_cycle(const Sample& handle) noexcept {
   if (finding.verdict != manipulator::TorqueVerdict::Fine && !trip_)
     trip_ = Trip{time_s_, finding, robot_.arm().contact().normal_force_n};
   const Vec2 torque = controller_.motor_torque(trace_.desired_rad, trace_.robot, {});
-  if (!trip_) return torque;
+  if (!trip_ || !settings_.reacting) return torque;
   return manipulator::relieving(torque, trace_.robot.torque_n_m, settings_.soft_limit_n_m);  // FC1: in the same cycle
 }
 
@@ -98,7 +98,7 @@ void RokvissLoop::step() {
   const Vec2 motor = manipulator_cycle(handle);
   const bool off = torque_off();
   if (trip_) ++cycles_since_trip_;
-  const Sample felt = to_display_.pass({trace_.robot.torque_n_m, !trip_});
+  const Sample felt = to_display_.pass({trace_.robot.torque_n_m, settings_.reacting ? !trip_ : !off});
   trace_.display_n_m = display_.torque({trace_.joystick_rad_s, felt.value, felt.active}, settings_.force_scale);
   ++cycle_;
   command(*to_robot_, off ? DeviceMode::Off : DeviceMode::Active, cycle_, motor);

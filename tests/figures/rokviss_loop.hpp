@@ -34,6 +34,9 @@ class RokvissLoop {
     double hard_limit_n_m{15};
     int link_cycles{1};
     int torque_off_cycles{20};  ///< from the trip of the limit to torque off: the most that FC1 allows
+    /// FC1: from the trip on the motors may relieve a joint, not load it further, and the hand feels nothing; else all
+    /// goes on until torque off.
+    bool reacting{true};
     ArmParameters arm{};
     HandleParameters handle{};
   };

@@ -97,12 +97,16 @@ TEST(Commissioning, StopsWithALineWhenASubsystemNeverAnswers) {
   EXPECT_EQ(flight.state("MANIPULATOR"), State::PreOperational);
 }
 
+descriptor::Configuration& coupled(descriptor::MissionSubsystem& member) {
+  return *std::ranges::find(member.subsystem.configurations, "COUPLED", &descriptor::Configuration::name);
+}
+
 TEST(Commissioning, StopsWithALineWhenAConfigurationFails) {
   Plan plan;
   plan.edit = [](descriptor::Mission& mission) {
     for (auto& member : mission.subsystems)
       if (member.subsystem.name == "JOYSTICK")
-        member.subsystem.configurations.back().devices.front().endnode.address = "rokviss-robot";
+        coupled(member).devices.front().endnode.address = "rokviss-robot";
   };
   Flight flight{plan};
   EXPECT_FALSE(flight.commission());
@@ -119,7 +123,7 @@ TEST(Commissioning, StopsWithALineWhenALinkIsRefused) {
   plan.edit = [](descriptor::Mission& mission) {
     for (auto& member : mission.subsystems)
       if (member.subsystem.name == "JOYSTICK")
-        member.subsystem.configurations.back().requires_.front().fields[1].name = "FORCE";
+        coupled(member).requires_.front().fields[1].name = "FORCE";
   };
   Flight flight{plan};
   EXPECT_FALSE(flight.commission());

@@ -2,100 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "hirosco/descriptor/read.hpp"
-#include "hirosco/pus/packet.hpp"
-#include "simulation/spacecraft/catalogue.hpp"
-#include "simulation/spacecraft/spacecraft.hpp"
+#include "simulation/scenarios/flight.hpp"
 
-/// A whole spacecraft on virtual time with everything that a test wants to see of it. Shared by the tests of this folder.
+/// Flights of the repository's missions, and packets that no decent ground would send.
 namespace hirosco::testing {
 
-/// What the supervisor told, in order.
-class Story final : public supervisor::Observer {
- public:
-  struct Line {
-    OnboardTime when{};
-    std::string text;
-  };
-  void told(OnboardTime when, std::string_view line) override;
-  void routed(const pus::TelemetryView& packet) override;
+using simulation::hand_rests;
+using simulation::Plan;
+using simulation::Story;
 
-  [[nodiscard]] const std::vector<Line>& lines() const noexcept { return lines_; }
-  /// The first line that contains `part`, from index `from` on.
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view part, std::size_t from = 0) const;
-  [[nodiscard]] bool has(std::string_view part) const { return find(part).has_value(); }
-  [[nodiscard]] std::size_t count(std::string_view part) const;
-  /// Empty when lines with these parts stand there in this order, else the first part that is missing.
-  [[nodiscard]] std::string missing_in_order(const std::vector<std::string>& parts) const;
-  [[nodiscard]] std::string text() const;
-  /// Called for every telemetry packet that is routed.
-  std::function<void(const pus::TelemetryView&)> on_telemetry;
-  /// Called for every line, for what must be timed to the cycle.
-  std::function<void(std::string_view)> on_line;
+/// Plan::mission is the name of a mission of the repository.
+class Flight final : public simulation::Flight {
+ public:
+  explicit Flight(Plan plan) : simulation::Flight{with_file(std::move(plan))} {}
 
  private:
-  std::vector<Line> lines_;
-};
-
-struct Plan {
-  std::string mission{"rokviss"};
-  std::function<void(descriptor::Mission&)> edit{};
-  simulation::SubsystemCatalogue subsystems = simulation::known_subsystems();
-  simulation::DeviceCatalogue devices = simulation::known_devices();
-  /// Texts that stand in for files, by file name.
-  std::map<std::string, std::string> files{};
-  std::uint64_t seed{1};
-};
-
-/// Edit of rokviss: the hand rests until the test moves it.
-void hand_rests(descriptor::Mission& mission);
-
-class Flight {
- public:
-  explicit Flight(Plan plan);
-
-  [[nodiscard]] simulation::Spacecraft& craft() noexcept { return *craft_; }
-  [[nodiscard]] Story& story() noexcept { return story_; }
-  [[nodiscard]] const descriptor::Mission& mission() const noexcept { return *mission_; }
-  [[nodiscard]] std::vector<supervisor::LogRecord> records();
-  /// Runs until the start mode is commissioned; false when it never is.
-  [[nodiscard]] bool commission();
-  /// As the vital page says; Offline when the process is gone.
-  [[nodiscard]] State state(std::string_view subsystem);
-  [[nodiscard]] std::uint32_t inhibited(std::string_view subsystem);
-  [[nodiscard]] bool run_until_state(std::string_view subsystem, State state, Duration limit);
-  [[nodiscard]] std::uint64_t cycles(std::string_view subsystem);
-  template <class Device>
-  [[nodiscard]] Device& device(std::string_view name) {
-    return dynamic_cast<Device&>(*craft_->device(name));
+  static Plan with_file(Plan plan) {
+    plan.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions" / plan.mission / "mission.xml";
+    return plan;
   }
-  simulation::CommandOutcome set_state(std::string_view subsystem, State state);
-  simulation::CommandOutcome configure(std::string_view subsystem, std::string_view configuration);
-  simulation::CommandOutcome set_mode(std::string_view mode);
-  /// Sends octets as they are and returns the first report of service 1 on them that is a failure or a completion.
-  struct Verdict {
-    std::uint8_t subtype{0};
-    std::uint16_t code{0};
-    std::uint16_t apid{0};  ///< who reported
-  };
-  Verdict send(Octets packet);
-
- private:
-  std::optional<descriptor::Mission> mission_;
-  supervisor::MemoryDatabase log_;
-  Story story_;
-  simulation::SubsystemCatalogue subsystems_;
-  simulation::DeviceCatalogue devices_;
-  std::unique_ptr<simulation::Spacecraft> craft_;
 };
 
 /// A telecommand TC[8,1] to `apid` with octets of the caller's choice.

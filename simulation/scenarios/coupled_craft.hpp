@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "simulation/devices/joystick_device.hpp"
+#include "simulation/devices/robot_device.hpp"
+#include "simulation/scenarios/flight.hpp"
+
+namespace hirosco::simulation {
+
+/// Errors put into the model on purpose, as factors: a report that cannot see them shows nothing.
+struct Plant {
+  double stiffness{1};    ///< of the flexible joints
+  double rail{1};         ///< stiffness of the contour
+  double mass{1};         ///< of both links, with their inertias
+  double force_scale{1};  ///< of what the hand feels
+};
+
+struct CraftOptions {
+  std::filesystem::path mission;  ///< the mission file
+  std::uint64_t seed{1};
+  Plant plant{};
+  /// Initial values of parameters, by "SUBSYSTEM.PARAMETER", over those of the descriptors.
+  std::map<std::string, double> initial{};
+  bool friction{true};
+  bool hand_of_mission{false};  ///< else the hand rests until told
+  /// Of the manipulator's report 4713, so that a peak between two is no more than 0.01 % higher; 0 = as in the mission.
+  std::uint32_t cycles_per_report{10};
+};
+
+/// rokviss in its start mode on the whole spacecraft, with what the scenarios want to see at cycle rate.
+class CoupledCraft {
+ public:
+  static constexpr double period_s = 0.0005;
+
+  /// Throws std::runtime_error with the supervisor's story when the mission cannot be commissioned.
+  explicit CoupledCraft(const CraftOptions& options);
+
+  [[nodiscard]] Flight& flight() noexcept { return flight_; }
+  [[nodiscard]] Spacecraft& craft() noexcept { return flight_.craft(); }
+  /// A line of the operator's hand (JoystickDevice::hand); throws std::runtime_error for one that it does not take.
+  void hand(const std::string& line);
+  void run(double seconds);
+  /// Since commissioning.
+  [[nodiscard]] double time_s() { return seconds(craft().now() - start_); }
+  /// Called once per control cycle, when both subsystems have done theirs.
+  void each_cycle(std::function<void()> watch);
+
+  [[nodiscard]] const RobotDevice& robot() const noexcept { return *robot_; }
+  [[nodiscard]] const JoystickDevice& joystick() const noexcept { return *joystick_; }
+  [[nodiscard]] const TwoJointArm& arm() const noexcept { return robot_->arm(); }
+  /// Largest absolute torque or value of the hand's display.
+  [[nodiscard]] Vec2 felt_n_m() const noexcept { return joystick_->motor_torque_n_m(); }
+
+  /// From the manipulator's report 4713, of one cycle.
+  struct Report {
+    Vec2 position_rad{}, torque_n_m{}, desired_rad{};
+  };
+  [[nodiscard]] const Report& report() const noexcept { return report_; }
+  std::function<void()> on_report;
+
+ private:
+  static Plan plan_of(const CraftOptions& options);
+  void take(const pus::TelemetryView& packet);
+
+  Flight flight_;
+  RobotDevice* robot_{nullptr};
+  JoystickDevice* joystick_{nullptr};
+  Report report_{};
+  TimePoint start_{};
+};
+
+}  // namespace hirosco::simulation
