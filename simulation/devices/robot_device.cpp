@@ -27,9 +27,17 @@ RobotDevice::RobotDevice(FlowFactory& flows, FlowAddress address, const Settings
 
 Result<> RobotDevice::take(OctetReader payload) noexcept {
   const Vec2 torque{payload.get<double>(), payload.get<double>()};
+  const auto spring = payload.get<std::uint8_t>();
   if (!payload.exhausted()) return fail(ErrorCode::Malformed, "robot command size");
   for (std::size_t i = 0; i < 2; ++i) commanded_[i] = std::isfinite(torque[i]) ? torque[i] : 0;
+  if (spring != spring_asked_) ask_for(spring);
   return ok();
+}
+
+void RobotDevice::ask_for(std::uint8_t spring) noexcept {
+  spring_asked_ = spring;
+  if (spring == 0) arm_.release_spring();
+  else if (!arm_.hooked_spring()) static_cast<void>(arm_.hook_spring(std::size_t{spring} - 1));
 }
 
 void RobotDevice::advance(Duration cycle) noexcept {
@@ -62,6 +70,8 @@ void RobotDevice::write_sensors(OctetWriter& payload) noexcept {
   put(payload, state.link_rad_s);
   put(payload, torque);
   for (const double celsius : arm_.temperature_c()) payload.put(static_cast<float>(celsius));
+  const auto hooked = arm_.hooked_spring();
+  payload.put(static_cast<std::uint8_t>(hooked ? *hooked + 1 : 0));
 }
 
 Result<> RobotDevice::do_fault(const Words& words) {
@@ -89,6 +99,12 @@ Result<> RobotDevice::do_fault(const Words& words) {
     HIROSCO_TRY(words.expect(2));
     if (words[1] != "on" && words[1] != "off") return fail(ErrorCode::InvalidArgument, "friction on or off");
     arm_.set_friction(words[1] == "on");
+    return ok();
+  }
+  if (what == "thermal_accel") {
+    HIROSCO_TRY(words.expect(2));
+    HIROSCO_TRY_LET(const double factor, words.number(1, 0, 1000));
+    arm_.set_thermal_acceleration(factor);
     return ok();
   }
   if (what == "noise") {

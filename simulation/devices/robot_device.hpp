@@ -15,14 +15,17 @@ struct RobotSensors {
 
 /// The rokviss robot behind its joint bus.
 /// To the subsystem: MOTOR_POSITION DOUBLE[2], MOTOR_VELOCITY DOUBLE[2], POSITION DOUBLE[2], VELOCITY DOUBLE[2],
-/// TORQUE DOUBLE[2], TEMPERATURE FLOAT[2] (rad, rad/s, N m, C). From it: TORQUE DOUBLE[2] of the motors.
+/// TORQUE DOUBLE[2], TEMPERATURE FLOAT[2], SPRING UINT8 (rad, rad/s, N m, C; the spring that is hooked, 0: none).
+/// From it: TORQUE DOUBLE[2] of the motors, SPRING UINT8: a change of it hooks or releases, and hooks nothing that is not
+/// within reach of the tip.
 /// Stop mode: the drives brake by themselves; Off: no torque (the arm has no brakes).
 /// Faults besides the common ones:
-///   temperature JOINT C | hook SPRING | release | friction on|off | noise N_M     (joints and springs count from 1)
+///   temperature JOINT C | hook SPRING | release | friction on|off | noise N_M | thermal_accel FACTOR
+///   (joints and springs count from 1)
 class RobotDevice final : public SimulatedDevice {
  public:
-  static constexpr std::size_t sensor_octets = 5 * 16 + 2 * 4;
-  static constexpr std::size_t command_octets = 16;
+  static constexpr std::size_t sensor_octets = 5 * 16 + 2 * 4 + 1;
+  static constexpr std::size_t command_octets = 17;
 
   RobotDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {}, const ArmParameters& arm = {},
               const RobotSensors& sensors = {});
@@ -34,6 +37,7 @@ class RobotDevice final : public SimulatedDevice {
   [[nodiscard]] const Vec2& motor_torque_n_m() const noexcept { return applied_; }
 
  private:
+  void ask_for(std::uint8_t spring) noexcept;
   void advance(Duration cycle) noexcept override;
   [[nodiscard]] Result<> take(OctetReader payload) noexcept override;
   void write_sensors(OctetWriter& payload) noexcept override;
@@ -44,6 +48,7 @@ class RobotDevice final : public SimulatedDevice {
   RobotSensors sensors_;
   Random random_;
   Vec2 commanded_{};
+  std::uint8_t spring_asked_{0};
   Vec2 applied_{};
 };
 

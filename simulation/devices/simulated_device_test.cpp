@@ -37,12 +37,15 @@ class Bench {
   }
   void command(DeviceMode mode, std::uint32_t epoch, double torque_1 = 0, double torque_2 = 0,
                std::uint32_t watchdog_us = 0) {
-    std::array<std::byte, 16> payload;
+    std::array<std::byte, Device::command_octets> payload{};
     OctetWriter writer{payload, std::endian::little};
     writer.put(torque_1).put(torque_2);
+    std::ranges::copy(beyond_torque, payload.begin() + 16);
     std::array<std::byte, max_device_frame_octets> buffer;
     (void)flow->send(write_command(buffer, {mode, epoch, ++sequence, watchdog_us, payload}).value());
   }
+  /// What follows the torques in a command's payload.
+  std::array<std::byte, Device::command_octets - 16> beyond_torque{};
   /// One cycle later.
   void step() { device.step(now += cycle); }
   void active(double torque_1 = 0, std::uint32_t epoch = 1) {
@@ -84,7 +87,7 @@ TEST(RobotDevice, AnswersEachCommandWithItsSensors) {
   EXPECT_EQ(status->payload.size(), RobotDevice::sensor_octets);
   EXPECT_NEAR(status->value(0), -0.80, 1e-6);
   EXPECT_NEAR(status->value(5), 1.60, 5e-5);
-  OctetReader tail{Octets{status->payload}.last(8), std::endian::little};
+  OctetReader tail{Octets{status->payload}.last(9), std::endian::little};
   EXPECT_EQ(tail.get<float>(), 20.0F);
 }
 
@@ -123,8 +126,21 @@ TEST(RobotDevice, SaysWhenItSaturatesAndWhenItIsHot) {
   bench.active(0);
   const auto status = bench.status();
   EXPECT_EQ(status->head.flags, device_flag::over_temperature);
-  OctetReader tail{Octets{status->payload}.last(4), std::endian::little};
+  OctetReader tail{Octets{status->payload}.last(5), std::endian::little};
   EXPECT_NEAR(tail.get<float>(), 85.5F, 0.01F);
+}
+
+TEST(RobotDevice, HooksAndReleasesASpringWhenTheCommandChanges) {
+  RobotBench bench;
+  const auto hooked = [&](std::uint8_t wanted) {
+    bench.beyond_torque[0] = std::byte{wanted};
+    bench.active();
+    return std::to_integer<int>(bench.status()->payload.back());
+  };
+  EXPECT_EQ(hooked(1), 0) << "the vertical spring is not within reach at home";
+  EXPECT_EQ(hooked(2), 2);
+  EXPECT_EQ(hooked(1), 2) << "one spring at a time";
+  EXPECT_EQ(hooked(0), 0);
 }
 
 TEST(RobotDevice, HooksASpringAtHome) {

@@ -115,6 +115,11 @@ class TwoJointArm {
   [[nodiscard]] const Vec2& temperature_c() const noexcept { return temperature_c_; }
   void set_temperature(std::size_t joint, double celsius) noexcept { temperature_c_[joint] = celsius; }
 
+  /// Runs the thermal clock faster, for demonstrations.
+  void set_thermal_acceleration(double factor) noexcept {
+    made_.thermal.acceleration = parameters_.thermal.acceleration = factor;
+  }
+
   /// Joint and contact friction as they were made, or none.
   void set_friction(bool on) noexcept;
 

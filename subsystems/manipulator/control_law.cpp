@@ -107,6 +107,15 @@ Joints tip(const Geometry& geometry, const Joints& position_rad) noexcept {
           geometry.l1_m * std::sin(position_rad[0]) + geometry.l2_m * std::sin(both)};
 }
 
+Joints joints_for(const Geometry& geometry, const Joints& tip_m) noexcept {
+  const double l1 = geometry.l1_m;
+  const double l2 = geometry.l2_m;
+  const double square_m2 = tip_m[0] * tip_m[0] + tip_m[1] * tip_m[1];
+  const double q2 = std::acos(std::clamp((square_m2 - l1 * l1 - l2 * l2) / (2 * l1 * l2), -1.0, 1.0));
+  const double q1 = std::atan2(tip_m[1], tip_m[0]) - std::atan2(l2 * std::sin(q2), l1 + l2 * std::cos(q2));
+  return {q1, q2};
+}
+
 Joints tip_force(const Geometry& geometry, const Joints& position_rad, const Joints& torque_n_m) noexcept {
   const double both = position_rad[0] + position_rad[1];
   const double x2 = geometry.l2_m * std::cos(both);

@@ -131,6 +131,8 @@ struct Geometry {
   double l2_m{0.22};
 };
 [[nodiscard]] Joints tip(const Geometry& geometry, const Joints& position_rad) noexcept;
+/// Joint angles that bring the tip there, second joint bent as at home; the nearest ones where it is out of reach.
+[[nodiscard]] Joints joints_for(const Geometry& geometry, const Joints& tip_m) noexcept;
 /// Force of the tip on its surroundings that the joint torques tell of at rest: solves J^T f = tau. Zero where the arm is
 /// closer to singular than |det J| < 1e-3 m2.
 [[nodiscard]] Joints tip_force(const Geometry& geometry, const Joints& position_rad, const Joints& torque_n_m) noexcept;

@@ -45,11 +45,11 @@ struct ManipulatorTest : ::testing::Test {
     if (!found || found->flow != Flow::New) return;
     const auto command = read_command(Octets{frame}.first(found->octets)).value();
     mode = command.mode;
-    std::array<std::byte, 88> payload{};
+    std::array<std::byte, 89> payload{};
     OctetWriter writer{payload, std::endian::little};
     const std::array<double, 2> still{};
     for (const auto& pair : {position_rad, still, position_rad, still, torque_n_m}) writer.put(pair[0]).put(pair[1]);
-    writer.put(temperature_deg_c).put(temperature_deg_c);
+    writer.put(temperature_deg_c).put(temperature_deg_c).put(std::uint8_t{0});
     std::array<std::byte, max_device_frame_octets> answer{};
     const auto status = write_status(answer, {.epoch = 1, .sequence = command.sequence, .payload = payload});
     static_cast<void>(robot->send(status.value()));

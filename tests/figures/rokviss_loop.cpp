@@ -80,12 +80,13 @@ Vec2 RokvissLoop::manipulator_cycle(const Sample& handle) noexcept {
   return manipulator::relieving(torque, trace_.robot.torque_n_m, settings_.soft_limit_n_m);  // FC1: in the same cycle
 }
 
-void RokvissLoop::command(DataFlow& flow, DeviceMode mode, std::uint32_t sequence, const Vec2& torque_n_m) noexcept {
-  std::array<std::byte, 16> payload;
+void RokvissLoop::command(DataFlow& flow, DeviceMode mode, std::uint32_t sequence, const Vec2& torque_n_m,
+                          std::size_t payload_octets) noexcept {
+  std::array<std::byte, max_device_payload_octets> payload{};
   OctetWriter writer{payload, std::endian::little};
   writer.put(torque_n_m[0]).put(torque_n_m[1]);
   std::array<std::byte, max_device_frame_octets> buffer;
-  const auto frame = write_command(buffer, {mode, 1, sequence, 10'000, payload});
+  const auto frame = write_command(buffer, {mode, 1, sequence, 10'000, Octets{payload}.first(payload_octets)});
   if (frame) (void)flow.send(*frame);
 }
 
@@ -101,8 +102,8 @@ void RokvissLoop::step() {
   const Sample felt = to_display_.pass({trace_.robot.torque_n_m, settings_.reacting ? !trip_ : !off});
   trace_.display_n_m = display_.torque({trace_.joystick_rad_s, felt.value, felt.active}, settings_.force_scale);
   ++cycle_;
-  command(*to_robot_, off ? DeviceMode::Off : DeviceMode::Active, cycle_, motor);
-  command(*to_joystick_, DeviceMode::Active, cycle_, trace_.display_n_m);
+  command(*to_robot_, off ? DeviceMode::Off : DeviceMode::Active, cycle_, motor, RobotDevice::command_octets);
+  command(*to_joystick_, DeviceMode::Active, cycle_, trace_.display_n_m, JoystickDevice::command_octets);
   const TimePoint now{cycle * cycle_};
   robot_.step(now);
   joystick_.step(now);

@@ -101,7 +101,8 @@ class RokvissLoop {
   void read_robot() noexcept;
   void read_joystick() noexcept;
   [[nodiscard]] Vec2 manipulator_cycle(const Sample& handle) noexcept;
-  static void command(DataFlow& flow, DeviceMode mode, std::uint32_t sequence, const Vec2& torque_n_m) noexcept;
+  static void command(DataFlow& flow, DeviceMode mode, std::uint32_t sequence, const Vec2& torque_n_m,
+                      std::size_t payload_octets) noexcept;
 
   Settings settings_;
   SimulatedFlows flows_;
