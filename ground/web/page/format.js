@@ -32,10 +32,13 @@ export function number_text(value) {
   if (!Number.isFinite(value)) return value > 0 ? '+∞' : '−∞';
   if (Number.isInteger(value) && Math.abs(value) < 1e9) return String(value).replace('-', '−');
   const size = Math.abs(value);
-  const text = size >= 1e6 || (size < 1e-4 && size > 0) ? value.toExponential(3) :
+  const text = size >= 1e6 || (size < 1e-4 && size > 0) ? value.toExponential(size >= 1e6 ? 3 : 1) :
     value.toFixed(size >= 1000 ? 1 : size >= 100 ? 2 : size >= 10 ? 3 : 4);
   return text.replace('-', '−');
 }
+
+/// Without the zeros that a table of changing numbers keeps.
+export const brief_text = (value) => number_text(value).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
 
 export const value_text = (value, column) =>
   column?.enumeration?.find((entry) => entry.value === value)?.name ?? number_text(value);

@@ -5,7 +5,7 @@
 // answer to "permitted now?" before sending, the chain of verdicts after.
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {preview, send} from '../commanding.js';
-import {clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
+import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, mission, mode_of, outcome_of, replay, status_of, subsystem_of} from '../store.js';
 
@@ -21,7 +21,7 @@ export function range_of(argument) {
 const range_text = (argument) => {
   const [low, high] = range_of(argument);
   if (low === -Infinity && high === Infinity) return '';
-  const brief = (value) => Math.abs(value) === Infinity ? '' : number_text(value).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
+  const brief = (value) => Math.abs(value) === Infinity ? '' : brief_text(value);
   return `${brief(low)} … ${brief(high)}`;
 };
 

@@ -59,14 +59,16 @@ function Edge({link, places, both, node_width}) {
   const ux = (x2 - x1) / length, uy = (y2 - y1) / length;
   const a = [x1 + ux * cut + nx * off, y1 + uy * cut + ny * off], b = [x2 - ux * cut + nx * off, y2 - uy * cut + ny * off];
   const middle = [(a[0] + b[0]) / 2 + nx * bend, (a[1] + b[1]) / 2 + ny * bend];
+  // Two lines of words outside of the curve.
+  const label = [(a[0] + b[0]) / 2 + nx * bend / 2, (a[1] + b[1]) / 2 + ny * bend / 2 + (ny >= 0 ? 14 : -19)];
   const up = now.up === true;
   const look = !is_known() ? 'stale' : up ? 'good' : link.required === false ? 'off' : 'bad';
   const lit = hovered.value && network_of(hovered.value).has(link.from);
   const words = up ? `${rate_text(now.rate_hz ?? link.rate_hz)} · age ${now.age_cycles ?? '–'}` : link.required === false ? 'down' : 'required, down';
   return html`<g class=${`edge ${look} ${lit ? 'lit' : ''}`}>
     <path d=${`M${a} Q${middle} ${b}`} marker-end=${`url(#to_${look})`} />
-    <text x=${(a[0] + b[0]) / 2 + nx * (bend / 2 + 10)} y=${(a[1] + b[1]) / 2 + ny * (bend / 2 + 10) - 2}>${link.provides ?? link.name ?? `link ${link.id}`}</text>
-    <text class="facts" x=${(a[0] + b[0]) / 2 + nx * (bend / 2 + 10)} y=${(a[1] + b[1]) / 2 + ny * (bend / 2 + 10) + 11}>${words}</text>
+    <text x=${label[0]} y=${label[1]}>${link.provides ?? link.name ?? `link ${link.id}`}</text>
+    <text class="facts" x=${label[0]} y=${label[1] + 13}>${words}</text>
   </g>`;
 }
 

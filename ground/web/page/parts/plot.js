@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import uPlot from 'uplot';
-import {clock_text, number_text, unit_text} from '../format.js';
+import {brief_text, clock_text, number_text, unit_text} from '../format.js';
 import {html} from '../html.js';
 import {aligned, drop_series, extend, use_series} from '../series.js';
 import {columns, freshness, gaps, now_s, replay, slow, values} from '../store.js';
@@ -23,7 +23,7 @@ function axis_of(unit, index) {
   return {scale: unit, side: index % 2 ? 1 : 3, stroke: axis_colour, font, size: 52, label: unit_text(unit) || 'value',
     labelSize: 14, labelFont: font, labelGap: 0, ticks: {stroke: grid_colour, width: 1, size: 4},
     grid: {show: index === 0, stroke: grid_colour, width: 1},
-    values: (_, splits) => splits.map((value) => number_text(+value.toPrecision(6)).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, ''))};
+    values: (_, splits) => splits.map((value) => brief_text(+value.toPrecision(6)))};
 }
 
 /// Gaps of the archive stand grey behind the curves: a line through them would be a lie.
@@ -96,7 +96,8 @@ export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}
 
   useEffect(() => {
     if (!size || !columns.value.size) return;
-    const plot = new uPlot(options_of(names, size, (span) => drawn.current.on_zoom(span)), [[]], node.current);
+    const plot = new uPlot(options_of(names, size, (span) => drawn.current.on_zoom(span)),
+      Array.from({length: 1 + 3 * names.length}, () => []), node.current);
     drawn.current.plot = plot;
     if (plot_ref) plot_ref.current = {plot, list: drawn.current.list};
     draw();
@@ -124,11 +125,12 @@ export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}
 /// What the curves are, with their newest values; stale ones are grey.
 export function Legend({names, brief, on_remove}) {
   slow.value;
+  const mixed = new Set(names.map((name) => name.split('.')[0])).size > 1;
   return html`<div class=${`legend ${brief ? 'brief' : ''}`}>${names.map((name, i) => {
     const column = columns.value.get(name);
     const {stale} = freshness(name);
     return html`<span class=${stale ? 'stale' : ''} title=${name}><i style=${{background: colours[i % colours.length]}} />
-      ${brief ? name.split('.').at(-1) : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`} <b>${number_text(values.get(name)?.v)}</b>
+      ${brief ? html`${mixed ? html`<small>${name.slice(0, 3)}</small> ` : null}${name.split('.').at(-1)}` : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`} <b>${number_text(values.get(name)?.v)}</b>
       <small>${unit_text(column?.unit)}</small>
       ${on_remove ? html`<button class="tiny" title=${`take ${name} out`} onClick=${() => on_remove(name)}>×</button>` : null}</span>`;
   })}</div>`;
@@ -196,12 +198,12 @@ function draw_xy(canvas, size, list, names, range) {
   ctx.textAlign = 'center';
   for (const tick of nice_ticks(...bounds[0], box.width / 90)) {
     ctx.beginPath(); ctx.moveTo(x(tick), box.top); ctx.lineTo(x(tick), box.top + box.height); ctx.stroke();
-    ctx.fillText(number_text(+tick.toPrecision(5)), x(tick), box.top + box.height + 15);
+    ctx.fillText(brief_text(+tick.toPrecision(5)), x(tick), box.top + box.height + 15);
   }
   ctx.textAlign = 'right';
   for (const tick of nice_ticks(...bounds[1], box.height / 40)) {
     ctx.beginPath(); ctx.moveTo(box.left, y(tick)); ctx.lineTo(box.left + box.width, y(tick)); ctx.stroke();
-    ctx.fillText(number_text(+tick.toPrecision(5)), box.left - 6, y(tick) + 4);
+    ctx.fillText(brief_text(+tick.toPrecision(5)), box.left - 6, y(tick) + 4);
   }
   ctx.textAlign = 'center';
   const labels = names.map((name) => `${short_name(name)} ${unit_text(columns.peek().get(name)?.unit) && `[${unit_text(columns.peek().get(name)?.unit)}]`}`);

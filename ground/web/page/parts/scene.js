@@ -32,7 +32,8 @@ function dress(robot, ghost) {
     if (!part.isMesh) return;
     const colour = ghost ? new Color(0x3f8cff) : part.material.color.clone();
     part.material = new MeshStandardMaterial(ghost ?
-      {color: colour, transparent: true, opacity: 0.26, depthWrite: false, roughness: 1} :
+      {color: colour, transparent: true, opacity: 0.3, depthWrite: false, roughness: 1,
+        polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4} :
       {color: colour, roughness: 0.55, metalness: 0.15});
     part.renderOrder = ghost ? 1 : 0;
   });
@@ -115,6 +116,7 @@ export class RobotView {
     this.show = {ghost: true, trail: true, force: true};
     this.frames = 0;
     this.light();
+    this.make_traces();
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(node);
     this.listen();
@@ -138,10 +140,6 @@ export class RobotView {
     }
     if (description.contour) this.scene.add(contour_mesh(description.contour));
     for (const spring of description.springs ?? []) this.scene.add(spring_mesh(spring, description.plane_z_m));
-    this.make_trail();
-    this.force = new ArrowHelper(new Vector3(-1, 0, 0), new Vector3(), 0.1, 0xff5f5f, 0.022, 0.014);
-    this.force.visible = false;
-    this.scene.add(this.force);
     this.resize();
     this.update();
   }
@@ -157,7 +155,10 @@ export class RobotView {
     this.scene.add(grid);
   }
 
-  make_trail() {
+  make_traces() {
+    this.force = new ArrowHelper(new Vector3(-1, 0, 0), new Vector3(), 0.1, 0xff5f5f, 0.022, 0.014);
+    this.force.visible = false;
+    this.scene.add(this.force);
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * trail_points), 3));
     geometry.setDrawRange(0, 0);

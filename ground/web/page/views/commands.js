@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 import {useState} from 'preact/hooks';
-import {clock_text, number_text, state_text} from '../format.js';
+import {brief_text, clock_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {CommandForm, VerdictChain} from '../parts/command_form.js';
 import {Panel} from '../parts/panel.js';
 import {commands, mission, mode_of, outcome_of} from '../store.js';
 
-const argument_text = (value) => typeof value === 'number' ? number_text(value) : state_text(String(value));
+const argument_text = (value) => typeof value === 'number' ? brief_text(value) : state_text(String(value));
 export const arguments_text = (command) => Object.entries(command.arguments ?? {}).map(([name, value]) => `${name} ${argument_text(value)}`).join(', ');
 
 /// Whether the mode's list permits it at all; the supervisor's own answer stands in the form.
