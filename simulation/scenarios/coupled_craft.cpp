@@ -55,7 +55,7 @@ Plan CoupledCraft::plan_of(const CraftOptions& options) {
   plan.seed = options.seed;
   plan.edit = [&options](descriptor::Mission& mission) { edit(mission, options); };
   plan.devices["hirosco-sim-robot"] = [arm = planted(options.plant)](FlowFactory& flows, const FlowAddress& address,
-                                                                    const SimulatedDevice::Settings& settings) {
+                                                                     const SimulatedDevice::Settings& settings) {
     return std::make_unique<RobotDevice>(flows, address, settings, arm);
   };
   return plan;

@@ -74,7 +74,8 @@ bool Expected::holds(double measured) const noexcept {
 
 std::string Expected::text() const {
   switch (bound) {
-    case Bound::Near: return tolerance == 0 ? fmt::format("{:g}", value) : fmt::format("{:g} ± {:.2g}", value, tolerance);
+    case Bound::Near:
+      return tolerance == 0 ? fmt::format("{:g}", value) : fmt::format("{:g} ± {:.2g}", value, tolerance);
     case Bound::AtMost: return fmt::format("≤ {:g}", value);
     case Bound::AtLeast: return fmt::format("≥ {:g}", value);
   }

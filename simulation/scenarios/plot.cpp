@@ -59,6 +59,8 @@ class Drawing {
       y_ = {y_.low - margin, y_.high + margin};
     }
     if (!(x_.high > x_.low)) x_.high = x_.low + 1;
+    // A curve from the first sample on begins at zero for the eye.
+    if (x_.low > 0 && x_.low < 0.01 * x_.high) x_.low = 0;
   }
 
   std::string draw() {
@@ -105,9 +107,9 @@ class Drawing {
   }
 
   void frame() {
-    text_ += fmt::format(
-        "<rect x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" fill=\"none\" stroke=\"#1c1c1c\"/>\n", left, top,
-        inner_width, inner_height);
+    text_ +=
+        fmt::format("<rect x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" fill=\"none\" stroke=\"#1c1c1c\"/>\n",
+                    left, top, inner_width, inner_height);
     label(left + inner_width / 2, height - 12, "middle", plot_.x_label);
     label(0, 0, "middle", plot_.y_label,
           fmt::format("transform=\"translate(18 {:g}) rotate(-90)\"", top + inner_height / 2));
@@ -146,8 +148,9 @@ class Drawing {
       point(std::min(smallest, largest));
       if (smallest != largest) point(std::max(smallest, largest));
     }
-    text_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" stroke-linejoin=\"round\" {}/>\n",
-                         points, colour, dashes(curve.stroke));
+    text_ +=
+        fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" stroke-linejoin=\"round\" {}/>\n",
+                    points, colour, dashes(curve.stroke));
   }
 
   void bars() {
@@ -169,7 +172,7 @@ class Drawing {
       if (mark.vertical) {
         const bool at_right = px(mark.at) > left + 0.75 * inner_width;
         line(px(mark.at), top, px(mark.at), top + inner_height, style);
-        label(px(mark.at) + (at_right ? -5 : 5), top + inner_height - 8, at_right ? "end" : "start", mark.name, words);
+        label(px(mark.at) + (at_right ? -5 : 5), top + 16, at_right ? "end" : "start", mark.name, words);
       } else {
         line(left, py(mark.at), left + inner_width, py(mark.at), style);
         label(left + inner_width - 6, py(mark.at) - 4, "end", mark.name, words);

@@ -39,7 +39,7 @@ struct Plot {
   std::string caption{};  ///< one or two sentences: what to see
   std::vector<Curve> curves{};
   std::vector<Mark> marks{};
-  bool bars{false};   ///< a histogram: one bar for each x, logarithmic y
+  bool bars{false};  ///< a histogram: one bar for each x, logarithmic y
 };
 
 /// The plot as a whole SVG document. Curves with more points than can be seen are drawn by the smallest and the largest

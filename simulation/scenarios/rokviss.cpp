@@ -90,8 +90,8 @@ void identify_inertia(const RunSettings& settings, Findings& findings) {
   const double w = 2 * std::numbers::pi * identification_hz;
   const auto entry = [&](std::size_t row, std::size_t column) {
     const auto& [a, b] = std::pair{one.torque_n_m[row], two.torque_n_m[row]};
-    const auto value = column == 0 ? a * two.angle_rad[1] - b * one.angle_rad[1]
-                                   : b * one.angle_rad[0] - a * two.angle_rad[0];
+    const auto value =
+        column == 0 ? a * two.angle_rad[1] - b * one.angle_rad[1] : b * one.angle_rad[0] - a * two.angle_rad[0];
     return -(value / determinant).real() / (w * w);
   };
   findings.figures["RO1-inertia-11"] = entry(0, 0);
@@ -151,7 +151,7 @@ Findings fly_tracking(const RunSettings& settings) {
                               .title = "RO1: tracking error of joint 1, 1 Hz",
                               .x_label = "time / s",
                               .y_label = "q_d - q / mrad",
-                              .caption = "The notches are the Coulomb friction of the motor at its turning points.",
+                              .caption = "The kinks are the Coulomb friction of the motor where it turns round.",
                               .curves = {alone.error}});
   }
   identify_inertia(settings, findings);

@@ -35,6 +35,7 @@ struct Run {
   std::string_view title;
   std::string_view how;
   Findings (*fly)(const RunSettings&);
+  bool by_default{true};
 };
 
 /// In the order of a report.

@@ -67,7 +67,7 @@ struct Trip {
   double time_s{-1};
   double force_n{0};
   double peak_n_m{0};
-  double off_s{-1};           ///< since when the robot's motors are off
+  double off_s{-1};  ///< since when the robot's motors are off
   double display_zero_s{-1};  ///< since when the hand feels nothing
   double force_at_80ms_n{-1};
   double force_after_85ms_n{0};
@@ -112,9 +112,10 @@ void plot_trip(Findings& findings, Trip& trip) {
                             .title = "RO8: the torque limit trips",
                             .x_label = "time from the trip / ms",
                             .y_label = "torque / N m",
-                            .caption = "Two of three samples beyond 12 N m switch the motors off in the same cycle; the "
-                                       "joystick's display goes to zero because the link says that the robot is not "
-                                       "active.",
+                            .caption =
+                                "Two of three samples beyond 12 N m switch the motors off in the same cycle; the "
+                                "joystick's display goes to zero because the link says that the robot is not "
+                                "active.",
                             .curves = {around(trip.torque, trip.time_s, before_s, after_s),
                                        around(trip.felt, trip.time_s, before_s, after_s)},
                             .marks = {{"soft limit -12 N m", -12}, {"motors off", 0, true}}});
@@ -133,18 +134,15 @@ Findings fly_bounce(const RunSettings& settings) {
   Bounce without = press_hard(settings, false);
   Bounce with = press_hard(settings, true);
   Findings findings;
-  findings.figures = {{"RO6-off-lost", without.lost_share},
-                      {"RO6-off-peak", without.peak_n},
-                      {"RO6-on-lost", with.lost_share},
-                      {"RO6-on-peak", with.peak_n},
-                      {"RO6-on-steady", with.steady_n},
-                      {"RO6-off-limit", limit_ends_bouncing(settings)}};
+  findings.figures = {{"RO6-off-lost", without.lost_share}, {"RO6-off-peak", without.peak_n},
+                      {"RO6-on-lost", with.lost_share},     {"RO6-on-peak", with.peak_n},
+                      {"RO6-on-steady", with.steady_n},     {"RO6-off-limit", limit_ends_bouncing(settings)}};
   findings.plots.push_back({.name = "ro6-bounce",
                             .title = "RO6: hard contact without and with time-domain passivity",
                             .x_label = "time / s",
                             .y_label = "normal force / N",
                             .caption = "The same hand, the same rail, force scale 0.08. Without passivity the finger "
-                                       "bounces for ever; with it the contact comes to rest.",
+                                       "goes on bouncing; with it the contact comes to rest.",
                             .curves = {std::move(without.force), with.force}});
   findings.plots.push_back({.name = "ro6-calm",
                             .title = "RO6: with passivity, magnified",
@@ -169,24 +167,21 @@ Findings fly_torque_limit(const RunSettings& settings) {
     findings.problems.emplace_back(trip.time_s < 0 ? "the limit never tripped" : "no event 1020 came");
     return findings;
   }
-  const auto cycles_since = [&](double time_s) {
-    return std::round((time_s - trip.time_s) / CoupledCraft::period_s);
-  };
+  const auto cycles_since = [&](double time_s) { return std::round((time_s - trip.time_s) / CoupledCraft::period_s); };
   const double display = trip.display_zero_s < 0 ? HUGE_VAL : cycles_since(trip.display_zero_s);
   const double off = trip.off_s < 0 ? HUGE_VAL : cycles_since(trip.off_s);
-  findings.figures = {
-      // A cycle judges what the device answered in the one before it: the sample is that much older.
-      {"RO8-trip-time", trip.time_s - CoupledCraft::period_s},
-      {"RO8-trip-force", trip.force_n},
-      {"RO8-peak", trip.peak_n_m},
-      {"RO8-event", cycles_since(trip.event_s)},
-      {"RO8-torque-off", off},
-      {"RO8-force-80ms", trip.force_at_80ms_n / trip.force_n},
-      {"RO8-force-85ms", trip.force_after_85ms_n},
-      {"RO8-display-zero", display},
-      {"RO8-end-gap", -1e3 * craft.arm().contact().penetration_m},
-      {"RO8-states", (craft.flight().state("MANIPULATOR") == State::SafeOperational ? 1 : 0) +
-                         (craft.flight().state("JOYSTICK") == State::Operational ? 1 : 0)}};
+  findings.figures = {// A cycle judges what the device answered in the one before it: the sample is that much older.
+                      {"RO8-trip-time", trip.time_s - CoupledCraft::period_s},
+                      {"RO8-trip-force", trip.force_n},
+                      {"RO8-peak", trip.peak_n_m},
+                      {"RO8-event", cycles_since(trip.event_s)},
+                      {"RO8-torque-off", off},
+                      {"RO8-force-80ms", trip.force_at_80ms_n / trip.force_n},
+                      {"RO8-force-85ms", trip.force_after_85ms_n},
+                      {"RO8-display-zero", display},
+                      {"RO8-end-gap", -1e3 * craft.arm().contact().penetration_m},
+                      {"RO8-states", (craft.flight().state("MANIPULATOR") == State::SafeOperational ? 1 : 0) +
+                                         (craft.flight().state("JOYSTICK") == State::Operational ? 1 : 0)}};
   plot_trip(findings, trip);
   return findings;
 }

@@ -103,8 +103,8 @@ void unplug_again_and_again(const RunSettings& settings, const std::string& whic
   findings.figures[prefix + "offline"] = offline_s;
   findings.figures[prefix + "told"] = static_cast<double>(told) / settings.repetitions;
   findings.notes.push_back(
-      fmt::format("{} unplugged, {}: {} times; without torque and brakes the joints coast by at most {:.0f} mrad.", which,
-                  condition.name, settings.repetitions, way_rad * 1e3));
+      fmt::format("{} unplugged, {}: {} times; without torque and brakes the joints coast by at most {:.0f} mrad.",
+                  which, condition.name, settings.repetitions, way_rad * 1e3));
 }
 
 // --- RO10 --------------------------------------------------------------------------------------------------------------
@@ -183,12 +183,12 @@ Findings fly_endurance(const RunSettings& settings) {
   const auto cycles = static_cast<double>(craft.flight().cycles("JOYSTICK") - cycles_before);
   Findings findings;
   const Story& story = craft.flight().story();
-  findings.figures = {{"RO10-torque-mismatches", to_joystick.mismatches()},
-                      {"RO10-angle-mismatches", to_manipulator.mismatches()},
-                      {"RO10-missing-cycles", settings.endurance_s / CoupledCraft::period_s - cycles},
-                      {"RO10-report-silence", longest_silence_s * 1e3},
-                      {"RO10-reactions", static_cast<double>(story.count("plan ") + story.count(" high ") +
-                                                             story.count(" medium "))}};
+  findings.figures = {
+      {"RO10-torque-mismatches", to_joystick.mismatches()},
+      {"RO10-angle-mismatches", to_manipulator.mismatches()},
+      {"RO10-missing-cycles", settings.endurance_s / CoupledCraft::period_s - cycles},
+      {"RO10-report-silence", longest_silence_s * 1e3},
+      {"RO10-reactions", static_cast<double>(story.count("plan ") + story.count(" high ") + story.count(" medium "))}};
   findings.notes.push_back(fmt::format(
       "{:.0f} cycles of 0.5 ms; {} samples of the torque and {} of the handle compared with what was sent; in contact "
       "{:.0f} % of the time.",

@@ -46,6 +46,16 @@ struct SimulateOptions {
 };
 int simulate(const SimulateOptions& options);
 
+struct ReportOptions {
+  std::string mission;
+  std::string out;                   ///< folder of the page and its plots; empty = none
+  std::uint64_t seed{1};
+  std::vector<std::string> only;     ///< ids of runs; empty = those that a report has by default
+  std::vector<std::string> plant;    ///< "NAME=FACTOR": errors put into the model on purpose
+  int repetitions{20};               ///< of each fault
+};
+int report(const ReportOptions& options);
+
 /// How clients reach the spacecraft.
 struct Connection {
   std::string mission{"rokviss"};

@@ -72,6 +72,19 @@ int main(int argc, char** argv) {
                                "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
   simulate_command->add_flag("--summary", simulate_options.summary, "Print counts instead of the log");
 
+  ReportOptions report_options;
+  int faults = 0;
+  auto* report_command =
+      app.add_subcommand("report", "Fly the runs that a mission is judged by and compare their figures");
+  report_command->add_option("mission", report_options.mission, "Name or path of a mission (rokviss)")->required();
+  report_command->add_option("--out", report_options.out, "Folder for index.html and its plots");
+  report_command->add_option("--seed", report_options.seed, "Seed of everything random")->capture_default_str();
+  report_command->add_option("--only", report_options.only, "Only these runs (RO1,RO8)")->delimiter(',');
+  report_command->add_option("--faults", faults, "Only the fault cases, each so many times")
+      ->check(CLI::Range(1, 100000));
+  report_command->add_option("--plant", report_options.plant,
+                             "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=");
+
   TelecommandOptions tc_options;
   std::string tc_limit = "70s";
   auto* tc_command = app.add_subcommand("tc", "Send a telecommand by name and wait for its verification reports");
@@ -118,6 +131,11 @@ int main(int argc, char** argv) {
   if (*run_command) return run(run_options);
   if (*check_command) return check(check_options);
   if (*simulate_command) return simulate(simulate_options);
+  if (*report_command) {
+    if (faults > 0) report_options.only = {"FC"};
+    if (faults > 0) report_options.repetitions = faults;
+    return report(report_options);
+  }
   if (*tc_command) return telecommand(tc_options);
   if (*status_command) return status(status_options);
   if (*log_command) return log(log_options);

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/report_page.hpp"
+
+namespace hirosco::tools {
+namespace {
+
+/// "mass=1.01" into the plant; false for what is none.
+[[nodiscard]] bool plant_one(const std::string& text, simulation::Plant& plant) {
+  const auto equals = text.find('=');
+  if (equals == text.npos) return false;
+  const std::string name = text.substr(0, equals);
+  char* end = nullptr;
+  const double factor = std::strtod(text.c_str() + equals + 1, &end);
+  if (*end != '\0' || end == text.c_str() + equals + 1 || !(factor > 0) || !std::isfinite(factor)) return false;
+  if (name == "stiffness") plant.stiffness = factor;
+  else if (name == "rail") plant.rail = factor;
+  else if (name == "mass") plant.mass = factor;
+  else if (name == "force_scale") plant.force_scale = factor;
+  else return false;
+  return true;
+}
+
+/// The runs that were asked for, in the order of the report; empty after a word about one that does not exist.
+[[nodiscard]] std::vector<simulation::Run> chosen(const ReportOptions& options) {
+  const auto all = simulation::rokviss_runs();
+  for (const std::string& id : options.only) {
+    if (std::ranges::find(all, id, &simulation::Run::id) != all.end()) continue;
+    fmt::print(stderr, "hirosco report: no run '{}'; there are", id);
+    for (const auto& run : all) fmt::print(stderr, " {}", run.id);
+    fmt::print(stderr, "\n");
+    return {};
+  }
+  std::vector<simulation::Run> runs;
+  for (const auto& run : all)
+    if (options.only.empty() ? run.by_default : std::ranges::find(options.only, run.id) != options.only.end())
+      runs.push_back(run);
+  return runs;
+}
+
+[[nodiscard]] std::string subtitle_of(const ReportOptions& options) {
+  std::string text = fmt::format("Flown by hirosco report {} --seed {}", options.mission, options.seed);
+  for (const std::string& planted : options.plant) text += " --plant " + planted;
+  return text + "; every figure from the whole spacecraft on virtual time.";
+}
+
+[[nodiscard]] int verdict(const std::vector<Chapter>& chapters) {
+  std::size_t rows = 0, holding = 0;
+  std::string failing;
+  bool all = true;
+  for (const Chapter& chapter : chapters) {
+    all = all && chapter.holds();
+    for (const auto& row : chapter.rows) {
+      ++rows;
+      if (row.holds) ++holding;
+      else failing += " " + row.expected.name;
+    }
+  }
+  fmt::print("\n{} of {} figures hold{}{}\n", holding, rows, failing.empty() ? "" : "; these do not:", failing);
+  return all ? exit_ok : exit_finding;
+}
+
+}  // namespace
+
+int report(const ReportOptions& options) {
+  const std::filesystem::path mission = find_mission(options.mission);
+  if (mission.empty()) {
+    fmt::print(stderr, "hirosco report: no mission '{}'\n", options.mission);
+    return exit_finding;
+  }
+  const auto table = simulation::ExpectedTable::read(mission.parent_path() / "expected.csv");
+  if (!table) {
+    fmt::print(stderr, "hirosco report: {}\n", table.error());
+    return exit_finding;
+  }
+  simulation::RunSettings settings{.mission = mission, .seed = options.seed, .repetitions = options.repetitions};
+  for (const std::string& text : options.plant) {
+    if (plant_one(text, settings.plant)) continue;
+    fmt::print(stderr,
+               "hirosco report: --plant '{}' is not NAME=FACTOR with stiffness, rail, mass or force_scale, for example "
+               "mass=1.01\n",
+               text);
+    return exit_usage;
+  }
+  const auto runs = chosen(options);
+  if (runs.empty()) return exit_usage;
+
+  std::vector<Chapter> chapters;
+  for (const simulation::Run& run : runs) {
+    Chapter chapter{std::string{run.id}, std::string{run.title}, std::string{run.how}, fly(run, settings), {}};
+    chapter.rows = simulation::judged(*table, run.id, chapter.findings.figures);
+    if (chapter.rows.empty()) chapter.findings.problems.emplace_back("the table expects nothing of this run");
+    fmt::print("{}", text_of(chapter));
+    std::fflush(stdout);
+    chapters.push_back(std::move(chapter));
+  }
+  if (!options.out.empty()) {
+    const auto written =
+        write_page(options.out, "Report on mission " + options.mission, subtitle_of(options), chapters);
+    if (!written) {
+      fmt::print(stderr, "hirosco report: {}: {}\n", options.out,
+                 std::strerror(static_cast<int>(written.error().value)));
+      return exit_environment;
+    }
+    fmt::print("\nwritten: {}\n", (std::filesystem::path{options.out} / "index.html").string());
+  }
+  return verdict(chapters);
+}
+
+}  // namespace hirosco::tools
