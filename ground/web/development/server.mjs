@@ -1,24 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// node development/server.mjs RECORDING [PAGE [PORT]]: the page without a spacecraft. Answers as ground/api/README.md says, from a
-// recorded flight that it plays in a loop (development/record.mjs makes one); takes telecommands and completes them. For work on the
-// page's looks, with the token "development"; nothing here is part of what flies.
+// node development/server.mjs RECORDING|synthetic|hostile [PAGE [PORT]]: the page without a spacecraft. Answers as ground/api/README.md says,
+// from a recorded flight that it plays in a loop (development/record.mjs makes one) or from a made-up one; takes telecommands and completes
+// them. For work on the page's looks and tests of the page alone, with the token "development"; nothing here is part of what flies.
+// Port 0 takes a free one; the URL is the first line of what it prints.
 import {createReadStream, existsSync, readFileSync, statSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {dirname, extname, join, normalize} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {WebSocketServer} from 'ws';
+import {synthetic_flight} from './synthetic.mjs';
 
 const [recording, page = join(dirname(fileURLToPath(import.meta.url)), '../dist'), port = '8090'] = process.argv.slice(2);
 if (!recording) {
-  console.error('usage: node development/server.mjs RECORDING [PAGE [PORT]]');
+  console.error('usage: node development/server.mjs RECORDING|synthetic|hostile [PAGE [PORT]]');
   process.exit(2);
 }
 const token = 'development';
-const flight = JSON.parse(readFileSync(recording, 'utf8'));
+const made_up = ['synthetic', 'hostile'].includes(recording);
+const flight = made_up ? synthetic_flight({hostile: recording === 'hostile'}) : JSON.parse(readFileSync(recording, 'utf8'));
 const list = flight.messages;
 const first_t = list[0].t, length_s = list[list.length - 1].t - first_t + 2;
+const burst_events = 10000;
 const step_ms = 50, past_s = 120, longest_value_s = 0.1;
 
 let now = first_t;
@@ -142,6 +146,7 @@ const server = createServer(async (request, response) => {
     '/api/timeline': () => timeline(query),
     '/api/why': () => ({causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one) => ({t: one.t, text: `${one.subsystem} reports ${one.name}`}))}),
     '/api/faults': () => {
+      if (body.line === 'burst') for (let i = 0; i < burst_events; ++i) tell({...list.find((one) => one.type === 'event'), t: now, id: 3, text: `burst ${i}`});
       injections = [...injections, {t: now, device: body.device, line: body.line, answer: 'ok'}];
       return {answer: 'ok'};
     },
@@ -182,4 +187,4 @@ setInterval(() => {
 }, step_ms);
 setInterval(() => tell({type: 'status', ...status()}), 500);
 
-server.listen(+port, '127.0.0.1', () => console.log(`http://127.0.0.1:${port}/#token=${token}`));
+server.listen(+port, '127.0.0.1', () => console.log(`http://127.0.0.1:${server.address().port}/#token=${token}`));

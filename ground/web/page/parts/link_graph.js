@@ -78,7 +78,7 @@ export function LinkGraph({width = 420, height = 230, box: node_width = 150}) {
   const links = mission.value?.links ?? [];
   const places = layout(names, links, width, height, node_width);
   const falls = hovered.value ? network_of(hovered.value) : new Set();
-  return html`<svg class="links" viewBox=${`0 0 ${width} ${height}`} role="img" aria-label="real-time links">
+  return html`<svg class="links" viewBox=${`0 0 ${width} ${height}`} role="group" aria-label="real-time links">
     <defs>${['good', 'bad', 'off', 'stale'].map((look) => html`<marker id=${`to_${look}`} class=${look} viewBox="0 0 8 8" refX="7" refY="4"
       markerWidth="7" markerHeight="7" orient="auto"><path d="M0 0L8 4L0 8z" /></marker>`)}</defs>
     ${links.map((link) => html`<${Edge} key=${link.id} link=${link} places=${places} node_width=${node_width}

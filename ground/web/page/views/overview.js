@@ -27,7 +27,7 @@ export function first_plots() {
 }
 
 export const plot_title = (names) => {
-  const base = (names[0] ?? '').replace(/\[\d+\]$/, '').split('.');
+  const base = (names.at(-1) ?? '').replace(/\[\d+\]$/, '').split('.');
   return base.slice(base.length > 2 ? 2 : 1).join('.').replaceAll('_', ' ').toLowerCase();
 };
 

@@ -102,7 +102,7 @@ function Values({name}) {
       const {age_s, stale} = freshness(column.name);
       return html`<tr key=${column.name} class=${stale ? 'stale' : ''}>
         <td><a href=${`#/plots?p=${encodeURIComponent(column.name)}`} title="plot">${column.name.slice(name.length + 1)}</a></td>
-        <td class="number">${state_text(value_text(value, column))}</td><td>${unit_text(column.unit)}</td>
+        <td class="number">${column.enumeration?.length ? state_text(value_text(value, column)) : value_text(value, column)}</td><td>${unit_text(column.unit)}</td>
         <td><${Bar} value=${value} column=${column} /></td><td class="number age">${age_text(age_s)}</td></tr>`;
     })}</tbody></table>`)}</div>
     ${own.length ? null : html`<p class="empty">This subsystem tells no housekeeping.</p>`}`;

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// HIROSCO_PAGE_SERVER=… HIROSCO_PAGE=… node --test page_test.mjs: the page alone against made-up flights (ground/web/development/server.mjs): hostile telemetry, forms, keys,
+// replay, accessibility, sizes.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {readFileSync, readdirSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {join} from 'node:path';
+import {after, before, describe, it} from 'node:test';
+import {gzipSync} from 'node:zlib';
+import {open_browser, open_page} from './browser.mjs';
+
+const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
+
+async function serve(recording) {
+  const process_of = spawn('node', [server_file, recording, page_folder, '0'], {stdio: ['ignore', 'pipe', 'inherit']});
+  const url = await new Promise((resolve) => process_of.stdout.once('data', (data) => resolve(String(data).trim())));
+  return {url, end: () => process_of.kill()};
+}
+
+const views = ['overview', 'subsystems/MANIPULATOR', 'plots', 'commands/MANIPULATOR/MOVE_TO', 'links', 'events', 'timeline', 'help'];
+const go = (page, view) => page.evaluate((to) => { location.hash = `#/${to}`; }, view);
+
+let browser;
+before(async () => { browser = await open_browser(); });
+after(() => browser.close());
+
+describe('a flight that means well', () => {
+  let served, page, faults;
+  before(async () => {
+    served = await serve('synthetic');
+    ({page, faults} = await open_page(browser.context, served.url));
+    await page.waitForSelector('[data-test=subsystem-MANIPULATOR]');
+  });
+  after(() => served.end());
+
+  it('shows every view at its own address, with no error and no request to another host', async () => {
+    for (const view of views) {
+      await go(page, view);
+      await page.waitForSelector('main .panel');
+    }
+    assert.deepEqual(faults, []);
+  });
+
+  it('takes the token out of the address line', () => assert.ok(!page.url().includes('token')));
+
+  it('draws the robot when joints move, and rests when nothing does', async () => {
+    await go(page, 'overview');
+    await page.waitForFunction(() => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
+  });
+
+  it('accepts the ends of a range and rejects what lies beyond, text, NaN and fractions of whole numbers', async () => {
+    await go(page, 'commands/MANIPULATOR/MOVE_TO');
+    const wrong = (field) => page.locator(`label.field:has([data-test=field-${field}])`).evaluate((node) => node.classList.contains('wrong'));
+    const cases = {Q1: {good: ['-2', '1', '0.5', '1e-3'], bad: ['-2.001', '1.001', 'NaN', 'Infinity', 'left', '0x1', '1 2']},
+      Q2: {good: ['0.2', '2.6'], bad: ['0.19', '2.61', '-']}, STEPS: {good: ['0', '65535'], bad: ['-1', '65536', '1.5', 'NaN', 'two']}};
+    for (const [field, {good, bad}] of Object.entries(cases)) {
+      for (const text of good) {
+        await page.fill(`[data-test=field-${field}]`, text);
+        assert.equal(await wrong(field), false, `${field} ${text}`);
+      }
+      for (const text of bad) {
+        await page.fill(`[data-test=field-${field}]`, text);
+        assert.equal(await wrong(field), true, `${field} ${text}`);
+        assert.ok(await page.locator('[data-test=send]').isDisabled());
+      }
+      await page.fill(`[data-test=field-${field}]`, good[0]);
+    }
+    assert.ok(await page.locator('[data-test=send]').isEnabled());
+  });
+
+  it('shows octets and the refusal before sending, and the verdict after', async () => {
+    await page.waitForFunction(() => /^[0-9A-F]{2} /.test(document.querySelector('[data-test=octets]').textContent));
+    await page.waitForSelector('[data-test=permission].no');
+    await page.click('[data-test=send]');
+    await page.waitForSelector('[data-test=verdict].failed');
+    assert.match(await page.textContent('[data-test=verdict]'), /setpoint owned by a link/);
+    assert.match(await page.textContent('[data-test=history]'), /MANIPULATOR MOVE_TO/);
+  });
+
+  it('sends SAFE ALL when held, and not when only touched', async () => {
+    await page.click('[data-test=safe-all]');
+    assert.doesNotMatch(await page.textContent('[data-test=history]'), /SAFE_ALL/);
+    const box = await page.locator('[data-test=safe-all]').boundingBox();
+    await page.mouse.move(box.x + 20, box.y + 15);
+    await page.mouse.down();
+    await page.waitForFunction(() => document.querySelector('[data-test=history]').textContent.includes('SAFE_ALL'));
+    await page.mouse.up();
+  });
+
+  it('offers the legal next states only', async () => {
+    await go(page, 'subsystems/MANIPULATOR');
+    await page.waitForFunction(() => document.querySelector('.diagram .here')?.textContent.includes('Operational'));
+    const state = (await page.textContent('.diagram .here text')).trim();
+    const open = await page.locator('.diagram .open text').allTextContents();
+    const legal = {'Operational': ['Safe-Operational', 'Error-Operational'], 'Pre-Operational': ['Safe-Operational', 'Error-Operational', 'Post-Operational', 'Offline'],
+      'Safe-Operational': ['Operational', 'Error-Operational', 'Post-Operational', 'Offline']};
+    assert.deepEqual(open.sort(), legal[state].sort());
+  });
+
+  it('follows the keys', async () => {
+    await page.keyboard.press('Escape');
+    await page.locator('main').click({position: {x: 2, y: 2}});
+    for (const [keys, view] of [[['g', 'l'], 'links'], [['c'], 'commands'], [['?'], 'help']]) {
+      await page.evaluate(() => document.activeElement?.blur());
+      for (const key of keys) await page.keyboard.press(key);
+      await page.waitForFunction((to) => location.hash.startsWith(`#/${to}`), view);
+    }
+    await page.evaluate(() => document.activeElement?.blur());
+    await go(page, 'events');
+    await page.waitForSelector('[data-search]');
+    await page.keyboard.press('/');
+    assert.equal(await page.evaluate(() => document.activeElement.matches('[data-search]')), true);
+    await page.keyboard.press('Escape');
+  });
+
+  it('replays in the same views, framed, with telecommands locked, and comes back', async () => {
+    await go(page, 'timeline');
+    await page.click('[data-test=replay-30]');
+    await page.waitForSelector('[data-test=replay-bar]');
+    assert.equal(await page.evaluate(() => document.body.classList.contains('replaying')), true);
+    await go(page, 'commands/MANIPULATOR/MOVE_TO');
+    await page.waitForSelector('[data-test=command-form]');
+    assert.ok(await page.locator('[data-test=send]').isDisabled());
+    await page.click('[data-test=live]');
+    await page.waitForSelector('[data-test=replay-bar]', {state: 'detached'});
+    await page.waitForSelector('[data-test=link].good');
+  });
+
+  it('has no serious finding of axe-core in any view', async () => {
+    const source = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+    const found = [];
+    for (const view of views) {
+      await go(page, view);
+      await page.waitForSelector('main .panel');
+      await page.evaluate(source);
+      const {violations} = await page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
+      for (const one of violations.filter(({impact}) => ['serious', 'critical'].includes(impact))) {
+        found.push(`${view}: ${one.id}: ${one.nodes.slice(0, 3).map((node) => node.html.slice(0, 120)).join(' | ')}`);
+      }
+    }
+    assert.deepEqual(found, []);
+  });
+});
+
+describe('a flight that does not', () => {
+  let served, page, faults;
+  before(async () => {
+    served = await serve('hostile');
+    ({page, faults} = await open_page(browser.context, served.url));
+    await page.waitForSelector('[data-test=subsystem-MANIPULATOR]');
+  });
+  after(() => served.end());
+
+  it('runs no markup of names, texts and values, in any view', async () => {
+    for (const view of views) {
+      await go(page, view);
+      await page.waitForSelector('main .panel');
+    }
+    await go(page, 'events');
+    await page.waitForFunction(() => document.querySelector('[data-test=events]')?.textContent.includes('<img src=x'));
+    assert.equal(await page.evaluate(() => window.hurt), undefined);
+    assert.equal(await page.locator('img[src="x"]').count(), 0);
+    assert.deepEqual(faults.filter((one) => !one.includes('404')), []);
+  });
+
+  it('still answers after 10,000 events at once', async () => {
+    await go(page, 'events');
+    await page.fill('[data-search]', 'burst 9999');
+    await page.evaluate(() => fetch('/api/faults', {method: 'POST', headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`},
+      body: '{"device":"joystick","line":"burst"}'}));
+    await page.waitForFunction(() => document.querySelector('[data-test=events]')?.textContent.includes('burst 9999'));
+    await go(page, 'links');
+    await page.waitForSelector('svg.links');
+  });
+
+  it('shows NaN and infinity by name', async () => {
+    await go(page, 'subsystems/MANIPULATOR');
+    await page.waitForFunction(() => /NaN/.test(document.querySelector('[data-test=values]')?.textContent));
+    assert.match(await page.textContent('[data-test=values]'), /∞/);
+  });
+});
+
+describe('the bundle', () => {
+  it('is smaller than 120 kB without 3D and 350 kB in all, compressed', () => {
+    const sizes = readdirSync(page_folder).filter((name) => /\.(js|css|html)$/.test(name))
+        .map((name) => [name, gzipSync(readFileSync(join(page_folder, name))).length]);
+    const sum = (list) => list.reduce((total, [, size]) => total + size, 0);
+    const without = sum(sizes.filter(([name]) => !name.startsWith('scene')));
+    console.log(`measured: ${(without / 1000).toFixed(0)} kB without 3D, ${(sum(sizes) / 1000).toFixed(0)} kB in all`);
+    assert.ok(without < 120e3);
+    assert.ok(sum(sizes) < 350e3);
+  });
+
+  it('holds no address of another host that it would ask', () => {
+    const html_text = readFileSync(join(page_folder, 'index.html'), 'utf8');
+    assert.doesNotMatch(html_text, /https?:\/\//);
+    assert.doesNotMatch(html_text, /<script(?![^>]*src=)/);
+  });
+});
