@@ -69,7 +69,12 @@ void Supervisor::recovered(std::uint16_t apid, Severity severity) {
 }
 
 void Supervisor::shut_down_network(Member& origin, std::string_view plan) {
-  const auto network = links_.graph().network_of(origin.apid());
+  auto network = links_.graph().network_of(origin.apid());
+  // The ground link may carry sets of the network; it has no actuators, and ground must hear what goes on.
+  std::erase_if(network, [&](std::uint16_t apid) {
+    const Member* subject = member(apid);
+    return subject != nullptr && subject != &origin && subject->descriptor().name == mission_.ground.subsystem;
+  });
   std::string names;
   for (const std::uint16_t apid : network) names += (names.empty() ? "" : ", ") + name_of(apid);
   // The actuators first, by shared memory: no packet, no queue and no disk is in that way.

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/communication/communication.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
+
+#include "subsystems/communication/delay_line.hpp"
 
 namespace hirosco {
 namespace {
@@ -30,27 +35,61 @@ class Communication final : public Subsystem, private communication::GroundTraff
     std::uint32_t bad_length;
     std::uint32_t incomplete;
   };
+  /// What the joystick on ground sends up, and what it is sent down.
+  struct JoystickSet {
+    std::array<double, 2> position_rad;
+    std::array<double, 2> velocity_rad_per_s;
+    std::uint8_t enable;
+  };
+  struct RobotSet {
+    std::array<double, 2> position_rad;
+    std::array<double, 2> torque_n_m;
+    std::uint8_t active;
+  };
   static constexpr Duration ground_patience = 2s;
   enum Event : std::uint16_t { ground_link_lost = 201, ground_link_restored = 202, client_cut = 203 };
 
   Result<Step> software_init() override {
     publish("LINK", link_);
     publish("CLIENTS", clients_);
+    publish("DELAY_MS", delay_ms_);
+    publish("LOSS", loss_share_);
+    publish("UPLINK", uplink_);
+    publish("DOWNLINK", downlink_);
+    require_link("JOYSTICK_STATE", joystick_);
+    require_link("ROBOT_STATE", robot_);
+    on_function("SET_DELAY", [this](float delay_ms, float loss) -> Outcome {
+      if (!remote_) return refused(pus::FailureCode::NotPermittedNow);
+      delay_ms_.store(delay_ms);
+      loss_share_.store(loss);
+      return ok();
+    });
     return done;
   }
 
-  Result<> configure(const descriptor::Configuration&) override {
+  Result<> configure(const descriptor::Configuration& configuration) override {
+    remote_ = !configuration.requires_.empty();
+    up_.reset();
+    down_.reset();
+    relay_lost_ = false;
+    if (transport_) return ok();  // a ground that reconfigures its own link must not be cut off by that
     HIROSCO_TRY_LET(transport_, open_(*this));
     had_client_ = false;
     return ok();
   }
 
   Result<> pre_operational(const Cycle&) noexcept override { return show(); }
-  Result<> safe_operational(const Cycle&) noexcept override { return show(); }
-  Result<> operational(const Cycle&) noexcept override { return show(); }
+  Result<> safe_operational(const Cycle& cycle) noexcept override {
+    relay(cycle);
+    return show();
+  }
+  Result<> operational(const Cycle& cycle) noexcept override {
+    relay(cycle);
+    return show();
+  }
   Result<> error_operational(const Cycle&) noexcept override { return show(); }
 
-  Result<Step> post_operational() override {
+  Result<Step> hardware_deinit() override {
     transport_.reset();
     return done;
   }
@@ -106,10 +145,44 @@ class Communication final : public Subsystem, private communication::GroundTraff
     return ok();
   }
 
+  /// Carries the telepresence sets between the joystick on ground and the robot, late and with losses as asked for.
+  /// What has not arrived for a while is no operator any more: ENABLE and ACTIVE go to 0, the robot holds its setpoint
+  /// and the hand feels nothing.
+  void relay(const Cycle& cycle) noexcept {
+    if (!remote_) return;
+    const double cycle_ms = seconds(cycle.period) * 1e3;
+    const auto there_and_back = static_cast<std::size_t>(std::lround(static_cast<double>(delay_ms_.load()) / cycle_ms));
+    const std::size_t up_cycles = std::min(there_and_back / 2, up_.longest_cycles);
+    const std::size_t down_cycles = std::min(there_and_back - there_and_back / 2, down_.longest_cycles);
+    const double share = static_cast<double>(loss_share_.load());
+    JoystickSet up = up_.pass(joystick_.value(), joystick_.valid() && !loss_.strikes(share), up_cycles);
+    RobotSet down = down_.pass(robot_.value(), robot_.valid() && !loss_.strikes(share), down_cycles);
+    if (up_.age_cycles() * cycle.period > relay_patience) up.enable = 0;
+    if (down_.age_cycles() * cycle.period > relay_patience) down.active = 0;
+    uplink_.store(up);
+    downlink_.store(down);
+    const bool lost = up_.age_cycles() != up_.never && up_.age_cycles() * cycle.period > ground_patience;
+    if (lost != relay_lost_) raise(lost ? ground_link_lost : ground_link_restored);
+    relay_lost_ = lost;
+  }
+
+  static constexpr Duration relay_patience = 100ms;
+
   OpenGroundTransport open_;
   std::unique_ptr<GroundTransport> transport_;
   Parameter<Link> link_;
   Parameter<Clients> clients_;
+  Parameter<float> delay_ms_;  ///< there and back
+  Parameter<float> loss_share_;
+  Parameter<JoystickSet> uplink_;
+  Parameter<RobotSet> downlink_;
+  LinkInput<JoystickSet> joystick_;
+  LinkInput<RobotSet> robot_;
+  communication::DelayLine<JoystickSet> up_;
+  communication::DelayLine<RobotSet> down_;
+  communication::Loss loss_;
+  bool remote_{false};
+  bool relay_lost_{false};
   // Single-writer cells of the service loop: the wait-free hand-over to the cycle.
   Parameter<Link> shared_link_;
   Parameter<Clients> shared_clients_;

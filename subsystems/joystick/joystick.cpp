@@ -50,6 +50,7 @@ class Joystick final : public Subsystem {
     publish("PEER", peer_);
     publish("ENABLE", enable_);
     require_link("ROBOT_STATE", robot_);
+    require_link("REMOTE_ROBOT", remote_robot_);
     use_device("JOYSTICK", handle_);
     on_function("DISPLAY_TORQUE", [this](double t1, double t2) { return show({t1, t2}); });
     on_function("CENTRE", [this]() { return show({0.0, 0.0}); });
@@ -67,6 +68,8 @@ class Joystick final : public Subsystem {
 
   Result<> configure(const descriptor::Configuration& configuration) override {
     coupled_ = !configuration.requires_.empty();
+    const bool remote = coupled_ && configuration.requires_.front().name == "REMOTE_ROBOT";
+    peer_link_ = remote ? &remote_robot_ : &robot_;
     position_force_.emplace(seconds(configuration.sampling));
     passive_position_force_.emplace(seconds(configuration.sampling));
     law_ = &*position_force_;
@@ -104,10 +107,10 @@ class Joystick final : public Subsystem {
   [[nodiscard]] Axes torque() noexcept {
     if (!coupled_) return commanded_;
     choose_law();
-    const RobotState& robot = robot_.value();
+    const RobotState& robot = peer_link_->value();
     const Axes shown = law_->torque({.velocity_rad_s = handle_.input().velocity_rad_per_s,
                                      .peer_torque_n_m = robot.torque_n_m,
-                                     .peer_active = robot_.valid() && robot.active != 0},
+                                     .peer_active = peer_link_->valid() && robot.active != 0},
                                     force_scale_.load());
     observed_energy_.store(law_->observed_energy_j());
     dissipated_.store(law_->dissipated_j());
@@ -134,7 +137,7 @@ class Joystick final : public Subsystem {
     desired_torque_.store(torque_n_m);
     current_.store({static_cast<std::int32_t>(cycle.state), in.position_rad, in.velocity_rad_per_s,
                     cycle.active ? torque_n_m : Axes{}});
-    peer_.store({robot_.value().position_rad, robot_.value().torque_n_m, robot_.age_cycles()});
+    peer_.store({peer_link_->value().position_rad, peer_link_->value().torque_n_m, peer_link_->age_cycles()});
     enable_.store(0);
   }
 
@@ -153,6 +156,8 @@ class Joystick final : public Subsystem {
   Parameter<Peer> peer_;
   Parameter<std::uint8_t> enable_;
   LinkInput<RobotState> robot_;
+  LinkInput<RobotState> remote_robot_;
+  const LinkInput<RobotState>* peer_link_{&robot_};  ///< the one of the two that the configuration requires
   DevicePort<HandleInput, HandleOutput> handle_;
 
   std::optional<joystick::PositionForce> position_force_;

@@ -85,6 +85,7 @@ class Manipulator final : public Subsystem {
     publish("SPRING", spring_);
     publish("SCRIPT", script_values_);
     require_link("JOYSTICK_STATE", joystick_);
+    require_link("REMOTE_JOYSTICK", remote_joystick_);
     use_device("ROBOT", robot_);
     on_function("MOVE_TO", [this](double q1, double q2, double duration_s, Call call) {
       return move({q1, q2}, duration_s, call);
@@ -112,6 +113,8 @@ class Manipulator final : public Subsystem {
 
   Result<> configure(const descriptor::Configuration& configuration) override {
     coupled_ = !configuration.requires_.empty();
+    const bool remote = coupled_ && configuration.requires_.front().name == "REMOTE_JOYSTICK";
+    operator_ = remote ? &remote_joystick_ : &joystick_;
     scripted_ = configuration.name == "SCRIPT";
     controller_.emplace(seconds(configuration.sampling));
     move_.reset();
@@ -184,9 +187,9 @@ class Manipulator final : public Subsystem {
     torque_guard_.reset();
     controller_->reset(here);
     trajectory_.start(here, here, 0.0);
-    clutch_.engage(here, joystick_.value().position_rad);
-    clutch_values_.store({clutch_.joint_rad(), clutch_.handle_rad()});
+    following_ = false;
     set_desired(here);
+    engage_clutch();
   }
 
   void rest() noexcept {
@@ -195,9 +198,18 @@ class Manipulator final : public Subsystem {
     set_desired(here);
   }
 
+  /// From here the handle moves the setpoint: neither the handle's angle now nor a link that was away makes it jump.
+  void engage_clutch() noexcept {
+    clutch_.engage(desired_position_.load(), operator_->value().position_rad);
+    clutch_values_.store({clutch_.joint_rad(), clutch_.handle_rad()});
+  }
+
   void follow() noexcept {
-    if (!joystick_.valid() || joystick_.value().enable == 0) return;  // hold the last setpoint
-    set_desired(clutch_.desired(joystick_.value().position_rad, position_scale_.load()));
+    const bool enabled = operator_->valid() && operator_->value().enable != 0;
+    if (enabled && !following_) engage_clutch();
+    following_ = enabled;
+    if (!enabled) return;  // hold the last setpoint
+    set_desired(clutch_.desired(operator_->value().position_rad, position_scale_.load()));
   }
 
   void advance_motion(const Cycle& cycle) noexcept {
@@ -376,6 +388,8 @@ class Manipulator final : public Subsystem {
   Parameter<std::uint8_t> spring_;
   Parameter<ScriptValues> script_values_;
   LinkInput<JoystickState> joystick_;
+  LinkInput<JoystickState> remote_joystick_;
+  const LinkInput<JoystickState>* operator_{&joystick_};  ///< the one of the two that the configuration requires
   DevicePort<RobotInput, RobotOutput> robot_;
 
   manipulator::Geometry geometry_;
@@ -393,6 +407,7 @@ class Manipulator final : public Subsystem {
   std::optional<Call> move_;
   bool half_reported_{false};
   bool coupled_{false};
+  bool following_{false};
   bool scripted_{false};
   bool limited_{false};
 };
