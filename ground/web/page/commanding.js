@@ -15,9 +15,18 @@ export function say(text, kind = 'info') {
   setTimeout(() => { toasts.value = toasts.value.filter((other) => other !== one); }, kind === 'bad' ? 9000 : 4000);
 }
 
+const name_kept = 'hirosco-operator';
+/// What the others see as sender; the gateway has a name of its own for who gives none.
+export const operator_name = signal(localStorage.getItem(name_kept) ?? '');
+export function name_operator(name) {
+  operator_name.value = name.slice(0, 32);
+  localStorage.setItem(name_kept, operator_name.value);
+}
+
 export async function send(subsystem, function_name, values = {}) {
   if (replay.value) throw new Error('This is a replay: telecommands are locked.');
-  const answer = await post('/api/commands', {subsystem, function: function_name, arguments: values});
+  const answer = await post('/api/commands', {subsystem, function: function_name, arguments: values,
+    sender: operator_name.value || undefined});
   commands.value = with_report(commands.value, {id: answer.id, subsystem, function: function_name, arguments: values,
     octets: answer.octets, mine: true});
   return answer.id;

@@ -12,7 +12,7 @@ import {Header} from './parts/header.js';
 import {Icon} from './parts/icons.js';
 import {ReplayBar} from './parts/replay_bar.js';
 import {live, mission, now_s, problem, start} from './store.js';
-import {Tour} from './tour.js';
+import {Tour, tour_to} from './tour.js';
 import {Commands} from './views/commands.js';
 import {Events} from './views/events.js';
 import {Help} from './views/help.js';
@@ -36,6 +36,7 @@ function parsed_route() {
   return {view: view in views ? view : 'overview', rest: rest.filter(Boolean), query: {get_raw: (name) => entries.get(name)}};
 }
 
+const tour_asked = /[#&?]tour\b/.test(location.hash);
 const token_first = take_token();
 const route = signal(parsed_route());
 addEventListener('hashchange', () => { route.value = parsed_route(); });
@@ -90,3 +91,4 @@ root.textContent = '';
 render(html`<${Page} />`, root);
 if (!token_first) problem.value = 'Open the URL that `hirosco run` printed: it carries the token.';
 start();
+if (tour_asked) tour_to(0);

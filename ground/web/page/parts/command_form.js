@@ -7,7 +7,7 @@ import {useEffect, useRef, useState} from 'preact/hooks';
 import {preview, send} from '../commanding.js';
 import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
-import {commands, mission, mode_of, outcome_of, replay, status_of, subsystem_of} from '../store.js';
+import {commands, mission, mode_of, operator, outcome_of, replay, status_of, subsystem_of} from '../store.js';
 
 const integer_ranges = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 4294967295], UINT64: [0, Number.MAX_SAFE_INTEGER],
   INT8: [-128, 127], INT16: [-32768, 32767], INT32: [-2147483648, 2147483647],
@@ -25,8 +25,16 @@ const range_text = (argument) => {
   return `${brief(low)} … ${brief(high)}`;
 };
 
-/// {value} or {error}: what was typed, by the argument's type and range.
+/// {value} or {error}: what was typed, by the argument's type and range; arrays as values with blanks between them.
 export function judged(argument, text) {
+  if ((argument.count ?? 1) <= 1) return judged_one(argument, text);
+  const words = String(text ?? '').trim().split(/[\s;]+/).filter(Boolean);
+  if (words.length !== argument.count) return {error: `needs ${argument.count} values with blanks between them`};
+  const results = words.map((word) => judged_one(argument, word));
+  return results.find((result) => result.error) ?? {value: results.map((result) => result.value)};
+}
+
+function judged_one(argument, text) {
   const words = String(text ?? '').trim().replace('−', '-').replace(',', '.');
   if (words === '') return {error: 'needs a value'};
   if (/CHAR|STRING|TEXT/.test(argument.type)) return {value: String(text)};
@@ -40,6 +48,7 @@ export function judged(argument, text) {
 
 /// The mission knows more names for values than a descriptor: modes, links, configurations.
 function choices_of(subsystem, action, argument) {
+  if ((argument.count ?? 1) > 1) return [];
   if (argument.enumeration?.length) return argument.enumeration;
   const known = mission.value;
   const named = (list, label = (one) => one.name) => list?.map((one) => ({value: one.id, name: label(one)}));
@@ -53,7 +62,7 @@ function choices_of(subsystem, action, argument) {
 }
 
 const first_text = (argument, choices) => {
-  if (argument.default !== undefined && argument.default !== null) return String(argument.default);
+  if (argument.default !== undefined && argument.default !== null) return [argument.default].flat().join(' ');
   return choices?.length ? String(choices[0].value) : '';
 };
 
@@ -102,7 +111,7 @@ function usePreview(subsystem, action, values) {
   const [answer, set_answer] = useState(null);
   const key = JSON.stringify([subsystem, action.name, values, mode_of.value.name, status_of(subsystem)?.state]);
   useEffect(() => {
-    if (!values || replay.value) return set_answer(null);
+    if (!values || replay.value || !operator.value) return set_answer(null);
     let over = false;
     const timer = setTimeout(() => preview(subsystem, action.name, values).then(
       (found) => over || set_answer(found), (error) => over || set_answer({problem: error.message})), preview_after_ms);
@@ -130,7 +139,7 @@ export function CommandForm({subsystem, action, given = {}, focus = false}) {
 
   const submit = async (event) => {
     event.preventDefault();
-    if (wrong || replay.value) return;
+    if (wrong || replay.value || !operator.value) return;
     set_problem('');
     try {
       set_sent(await send(subsystem, action.name, values));
@@ -144,9 +153,10 @@ export function CommandForm({subsystem, action, given = {}, focus = false}) {
       argument=${argument} text=${text_of(argument)} result=${results[i]} focus=${focus && i === 0}
       on_text=${(text) => set_texts({...texts, [argument.name]: text})} />`)}
     <p class="octets" title="the telecommand packet" data-test="octets">${values ? hex_text(answer?.octets) || '…' : ' '}</p>
-    ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` : values ?
+    ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` :
+      !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : values ?
       html`<${Permission} answer=${answer} problem=${answer?.problem} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
-    <button class="primary" type="submit" disabled=${wrong > 0 || Boolean(replay.value)} data-test="send">
+    <button class="primary" type="submit" disabled=${wrong > 0 || Boolean(replay.value) || !operator.value} data-test="send">
       ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : `Send ${action.name}`}</button>
     ${problem ? html`<p class="permission no">${problem}</p>` : null}
     ${mine ? html`<div class=${`verdict ${outcome_of(mine).stage}`} data-test="verdict">

@@ -4,7 +4,7 @@ import {useRef, useState} from 'preact/hooks';
 import {say, send_and_say} from '../commanding.js';
 import {age_text, clock_text, date_text} from '../format.js';
 import {html} from '../html.js';
-import {counts, link, mission, mode_of, now_s, replay, slow, subsystem_of} from '../store.js';
+import {counts, link, mission, mode_of, now_s, operator, replay, slow, subsystem_of} from '../store.js';
 import {Severity} from './icons.js';
 
 const hold_ms = 800;
@@ -76,6 +76,7 @@ export function Header({on_faults, faults_open}) {
     <a class=${`pill count ${medium ? 'has' : ''}`} href="#/events?severity=medium">
       <${Severity} severity="medium" />${medium} medium</a>
     <span class="space" />
+    ${operator.value ? null : html`<span class="pill" title="this token reads everything and commands nothing">observer</span>`}
     ${mission.value?.simulated && mission.value.devices?.length ? html`
       <button class=${`quiet ${faults_open ? 'on' : ''}`} data-test="faults" onClick=${on_faults}>Faults</button>` : null}
     <${SafeAll} />

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useState} from 'preact/hooks';
 import {brief_text, clock_text, state_text} from '../format.js';
+import {name_operator, operator_name} from '../commanding.js';
 import {html} from '../html.js';
 import {CommandForm, VerdictChain} from '../parts/command_form.js';
 import {Panel} from '../parts/panel.js';
@@ -46,7 +47,8 @@ export function Commands({rest}) {
       ${chosen ? html`<${CommandForm} key=${`${chosen.subsystem.name}.${chosen.action.name}`} subsystem=${chosen.subsystem.name} action=${chosen.action} focus />
         ${chosen.action.states?.length ? html`<p class="about">Taken in ${chosen.action.states.map(state_text).join(', ')}.</p>` : null}` : html`<p class="empty">Nothing found.</p>`}
     </${Panel}>
-    <${Panel} title="History" hint="of all operators"><${History} /></${Panel}>
+    <${Panel} title="History" hint="of all operators" tools=${html`<label class="sender_name">you are <input aria-label="your name" maxlength="32"
+      placeholder="operator" value=${operator_name.value} onInput=${(event) => name_operator(event.currentTarget.value)} /></label>`}><${History} /></${Panel}>
   </main>`;
 }
 
