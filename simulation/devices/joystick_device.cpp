@@ -27,9 +27,30 @@ JoystickDevice::JoystickDevice(FlowFactory& flows, FlowAddress address, const Se
 
 Result<> JoystickDevice::take(OctetReader payload) noexcept {
   const Vec2 torque{payload.get<double>(), payload.get<double>()};
+  const auto hand = payload.get<std::uint8_t>();
+  const Vec2 intent{payload.get<double>(), payload.get<double>()};
   if (!payload.exhausted()) return fail(ErrorCode::Malformed, "joystick command size");
+  lay_on(hand == static_cast<std::uint8_t>(Hand::Commanded) ? Hand::Commanded : Hand::Simulated);
+  if (hand_ == Hand::Commanded && intent != intent_rad_ && std::isfinite(intent[0]) && std::isfinite(intent[1])) {
+    const double range = handle_.parameters().range_rad;
+    intent_rad_ = intent;
+    handle_.hand().follow({std::clamp(intent[0], -range, range), std::clamp(intent[1], -range, range)});
+  }
   for (std::size_t i = 0; i < 2; ++i) commanded_[i] = std::isfinite(torque[i]) ? torque[i] : 0;
   return ok();
+}
+
+void JoystickDevice::lay_on(Hand hand) noexcept {
+  if (hand == hand_) return;
+  hand_ = hand;
+  OperatorHand& operators = handle_.hand();
+  if (hand == Hand::Commanded) {
+    wandered_ = operators.wandering();
+    intent_rad_ = operators.intent().angle_rad;
+    operators.hold(intent_rad_);
+  } else if (wandered_) {
+    operators.wander();
+  }
 }
 
 void JoystickDevice::advance(Duration cycle) noexcept {
@@ -43,12 +64,14 @@ void JoystickDevice::advance(Duration cycle) noexcept {
 void JoystickDevice::write_sensors(OctetWriter& payload) noexcept {
   payload.put(handle_.angle_rad()[0]).put(handle_.angle_rad()[1]);
   payload.put(handle_.rate_rad_s()[0]).put(handle_.rate_rad_s()[1]);
+  payload.put(static_cast<std::uint8_t>(hand_)).put(hands);
 }
 
 Result<> JoystickDevice::hand(std::string_view line) { return fault("hand " + std::string{line}); }
 
 Result<> JoystickDevice::do_fault(const Words& words) {
   if (words[0] != "hand") return fail(ErrorCode::InvalidArgument, "unknown fault");
+  if (hand_ == Hand::Commanded) return fail(ErrorCode::Unavailable, "the hand is commanded");
   OperatorHand& hand = handle_.hand();
   const std::string_view what = words[1];
   if (what == "wander") {

@@ -8,11 +8,17 @@
 namespace hirosco::simulation {
 
 /// The force-reflecting joystick behind its bus, with an operator's hand on it.
-/// To the subsystem: POSITION DOUBLE[2], VELOCITY DOUBLE[2] (rad, rad/s). From it: TORQUE DOUBLE[2] (N m).
+/// To the subsystem: POSITION DOUBLE[2], VELOCITY DOUBLE[2] (rad, rad/s), HAND UINT8 (whose hand is on it), HANDS UINT8
+/// (those that there are, one bit each). From it: TORQUE DOUBLE[2] (N m), HAND UINT8, INTENT DOUBLE[2] (rad, of a commanded
+/// hand).
 class JoystickDevice final : public SimulatedDevice {
  public:
-  static constexpr std::size_t sensor_octets = 32;
-  static constexpr std::size_t command_octets = 16;
+  static constexpr std::size_t sensor_octets = 34;
+  static constexpr std::size_t command_octets = 33;
+
+  /// Whose hand: one that the simulation moves, or one that goes where it is commanded.
+  enum class Hand : std::uint8_t { Simulated = 0, Commanded = 1 };
+  static constexpr std::uint8_t hands = 0b11;
 
   /// The hand rests at zero until hand() tells otherwise.
   JoystickDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {},
@@ -20,7 +26,7 @@ class JoystickDevice final : public SimulatedDevice {
 
   /// What the operator's hand does from now on; recorded like a fault:
   ///   hold A B | sine AXIS AMPLITUDE HZ [PHASE] | ramp DX DY SPEED | cartesian DX DY SECONDS | wander
-  /// Angles rad, axes count from 1; DX DY m from the robot's home, SPEED m/s. Also as the fault line "hand ...".
+  /// Unavailable while the hand is commanded by the subsystem. Angles rad, axes count from 1; DX DY m from the robot's home, SPEED m/s. Also as the fault line "hand ...".
   [[nodiscard]] Result<> hand(std::string_view line);
 
   [[nodiscard]] const JoystickHandle& handle() const noexcept { return handle_; }
@@ -35,7 +41,12 @@ class JoystickDevice final : public SimulatedDevice {
   [[nodiscard]] Result<> do_fault(const Words& words) override;
   [[nodiscard]] std::string do_truth() const override;
 
+  void lay_on(Hand hand) noexcept;
+
   JoystickHandle handle_;
+  Hand hand_{Hand::Simulated};
+  bool wandered_{false};  ///< before the hand was commanded
+  Vec2 intent_rad_{};
   Vec2 commanded_{};
   Vec2 applied_{};
 };

@@ -42,6 +42,11 @@ void OperatorHand::cartesian(const Vec2& offset_m, double span_s) noexcept {
   begin(Mode::Cartesian, solve(jacobian_, offset_m), span_s);
 }
 
+void OperatorHand::follow(const Vec2& angle_rad) noexcept {
+  constexpr double between_commands_s = 0.02;
+  begin(Mode::Ramp, angle_rad, between_commands_s);
+}
+
 void OperatorHand::wander() noexcept {
   begin(Mode::Wander, intent().angle_rad, 0);
   next_wish();

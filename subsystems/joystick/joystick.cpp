@@ -33,10 +33,16 @@ class Joystick final : public Subsystem {
   struct HandleInput {
     Axes position_rad;
     Axes velocity_rad_per_s;
+    std::uint8_t hand;   ///< whose hand is on it
+    std::uint8_t hands;  ///< bit of each hand that there is
   };
   struct HandleOutput {
     Axes torque_n_m;
+    std::uint8_t hand;
+    Axes intent_rad;  ///< of a commanded hand
   };
+  /// Hands: 0 simulated, 1 commanded, 2 a person's.
+  static constexpr std::uint8_t commanded_hand = 1;
 
   enum Event : std::uint16_t { force_clipped = 1103, passivity_active = 1104 };
 
@@ -49,11 +55,18 @@ class Joystick final : public Subsystem {
     publish("PC_DISSIPATED", dissipated_);
     publish("PEER", peer_);
     publish("ENABLE", enable_);
+    publish("HAND", hand_);
     require_link("ROBOT_STATE", robot_);
     require_link("REMOTE_ROBOT", remote_robot_);
     use_device("JOYSTICK", handle_);
     on_function("DISPLAY_TORQUE", [this](double t1, double t2) { return show({t1, t2}); });
     on_function("CENTRE", [this]() { return show({0.0, 0.0}); });
+    on_function("SET_HAND", [this](std::uint8_t hand) -> Outcome { return lay_on(hand); });
+    on_function("HAND", [this](double angle_1, double angle_2) -> Outcome {
+      if (handle_.output().hand != commanded_hand) return refused(pus::FailureCode::WrongStatus);
+      handle_.output().intent_rad = {angle_1, angle_2};
+      return ok();
+    });
     on_function("SET_FORCE_SCALE", [this](double scale) -> Outcome {
       force_scale_.store(scale);
       return ok();
@@ -102,6 +115,16 @@ class Joystick final : public Subsystem {
   void restart() noexcept {
     law_->reset();
     commanded_ = {};
+    handle_.output().hand = handle_.input().hand;
+    handle_.output().intent_rad = handle_.input().position_rad;
+  }
+
+  Outcome lay_on(std::uint8_t hand) noexcept {
+    const HandleInput& in = handle_.input();
+    if ((in.hands >> hand & 1) == 0) return refused(pus::FailureCode::NotPermittedNow);  // this device has no such hand
+    if (hand == commanded_hand && handle_.output().hand != hand) handle_.output().intent_rad = in.position_rad;
+    handle_.output().hand = hand;
+    return ok();
   }
 
   [[nodiscard]] Axes torque() noexcept {
@@ -139,6 +162,7 @@ class Joystick final : public Subsystem {
                     cycle.active ? torque_n_m : Axes{}});
     peer_.store({peer_link_->value().position_rad, peer_link_->value().torque_n_m, peer_link_->age_cycles()});
     enable_.store(0);
+    hand_.store(in.hand);
   }
 
   Outcome show(const Axes& torque_n_m) noexcept {
@@ -155,6 +179,7 @@ class Joystick final : public Subsystem {
   Parameter<double> dissipated_;
   Parameter<Peer> peer_;
   Parameter<std::uint8_t> enable_;
+  Parameter<std::uint8_t> hand_;
   LinkInput<RobotState> robot_;
   LinkInput<RobotState> remote_robot_;
   const LinkInput<RobotState>* peer_link_{&robot_};  ///< the one of the two that the configuration requires

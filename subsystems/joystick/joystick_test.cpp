@@ -52,7 +52,7 @@ struct JoystickTest : ::testing::Test {
     OctetReader reader{command.payload, std::endian::little};
     shown_n_m[0] = reader.get<double>();
     shown_n_m[1] = reader.get<double>();
-    const std::array<std::byte, 32> at_rest{};
+    const std::array<std::byte, 34> at_rest{};
     std::array<std::byte, max_device_frame_octets> answer{};
     const auto status = write_status(answer, {.epoch = 1, .sequence = command.sequence, .payload = at_rest});
     static_cast<void>(handle->send(status.value()));
