@@ -22,6 +22,7 @@ constexpr std::array runs{
         fly_bounce},
     Run{"RO8", "Torque limit", "coupled, the hand ramps at 40 mm/s to 65 mm", fly_torque_limit},
     Run{"RO9", "Unplugging", "each device unplugged in free motion and in contact", fly_unplugging},
+    Run{"FC", "Fault cases", "FC1 to FC7, each again and again in motion and in contact", fly_faults, false},
     Run{"RO10", "Endurance", "30 minutes coupled, the hand wanders", fly_endurance},
 };
 

@@ -53,6 +53,7 @@ struct Run {
 [[nodiscard]] Findings fly_bounce(const RunSettings& settings);
 [[nodiscard]] Findings fly_torque_limit(const RunSettings& settings);
 [[nodiscard]] Findings fly_unplugging(const RunSettings& settings);
+[[nodiscard]] Findings fly_faults(const RunSettings& settings);
 [[nodiscard]] Findings fly_endurance(const RunSettings& settings);
 
 }  // namespace hirosco::simulation
