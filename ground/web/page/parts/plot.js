@@ -122,6 +122,8 @@ export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}
   return html`<div class="plot" ref=${node} data-test="plot" />`;
 }
 
+const three_digits = (value) => Number.isFinite(value) ? brief_text(Math.abs(value) < 1e-3 ? 0 : +value.toPrecision(3)) : number_text(value);
+
 /// What the curves are, with their newest values; stale ones are grey.
 export function Legend({names, brief, on_remove}) {
   slow.value;
@@ -130,8 +132,8 @@ export function Legend({names, brief, on_remove}) {
     const column = columns.value.get(name);
     const {stale} = freshness(name);
     return html`<span class=${stale ? 'stale' : ''} title=${name}><i style=${{background: colours[i % colours.length]}} />
-      ${brief ? html`${mixed ? html`<small>${name.slice(0, 3)}</small> ` : null}${name.split('.').at(-1)}` : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`} <b>${number_text(values.get(name)?.v)}</b>
-      <small>${unit_text(column?.unit)}</small>
+      ${brief ? html`${mixed ? html`<small>${name.slice(0, 3)}</small> ` : null}${name.split('.').at(-1)}` : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`} <b>${brief ? three_digits(values.get(name)?.v) :
+        number_text(values.get(name)?.v)}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
       ${on_remove ? html`<button class="tiny" title=${`take ${name} out`} onClick=${() => on_remove(name)}>×</button>` : null}</span>`;
   })}</div>`;
 }

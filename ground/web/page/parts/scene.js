@@ -91,6 +91,15 @@ function spring_mesh({from_m, to_m}, z) {
   return group;
 }
 
+/// Without a graphics card smooth edges cost as much as all the rest.
+function drawn_by_processor() {
+  const probe = document.createElement('canvas').getContext('webgl2');
+  const about = probe?.getExtension('WEBGL_debug_renderer_info');
+  const name = about ? String(probe.getParameter(about.UNMASKED_RENDERER_WEBGL)) : '';
+  probe?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
 export class RobotView {
   constructor(node, folder, description) {
     this.node = node;
@@ -98,7 +107,7 @@ export class RobotView {
     this.description = description;
     this.scene = new Scene();
     this.scene.background = new Color(0x0a0e17);
-    this.renderer = new WebGLRenderer({antialias: devicePixelRatio < 1.5, powerPreference: 'low-power'});
+    this.renderer = new WebGLRenderer({antialias: devicePixelRatio < 1.5 && !drawn_by_processor(), powerPreference: 'low-power'});
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 1.5));
     this.renderer.domElement.setAttribute('aria-label', 'the robot in 3D');
     node.appendChild(this.renderer.domElement);
