@@ -101,8 +101,7 @@ class Parameter final : public ParameterCell {
 
   Parameter() noexcept : Parameter(T{}) {}
   explicit Parameter(const T& initial) noexcept
-      : ParameterCell{layout, ParameterStructure<T>, std::as_writable_bytes(std::span{&value_, 1}), &sequence_,
-                      words_.data()},
+      : ParameterCell{layout, ParameterStructure<T>, std::as_writable_bytes(std::span{&value_, 1}), &sequence_, words_},
         value_{initial} {
     show();
   }
@@ -122,12 +121,12 @@ class Parameter final : public ParameterCell {
 
  private:
   void show() noexcept {
-    parameter_detail::publish(sequence_, words_.data(), reinterpret_cast<const std::byte*>(&value_), sizeof(T));
+    parameter_detail::publish(sequence_, words_, reinterpret_cast<const std::byte*>(&value_), sizeof(T));
   }
 
   T value_{};
   alignas(64) std::atomic<Word> sequence_{0};  // the sequence shares a cache line with the first seven words
-  std::array<std::atomic<Word>, word_count> words_{};
+  std::atomic<Word> words_[word_count]{};  // no std::array: the base takes its address before it is constructed
 };
 
 }  // namespace hirosco

@@ -182,7 +182,7 @@ TEST_F(Housekeeping, ReportsAsInTheVectors) {
   EXPECT_THAT(sink.take(), ElementsAre("3.10 " + expected));
   for (int i = 0; i < 12; ++i) sampler.tick(source, cycle);
   ASSERT_EQ(cycle.reports.size(), 1U);
-  EXPECT_EQ(to_hex(cycle.reports[0].data), vector_of("st03", "ST03-E").fields.at("source_data"));
+  EXPECT_EQ(to_hex(cycle.reports[0].data), vector_of("st03", "ST03-E").fields.at("source_data").get<std::string>());
   handle(vectors, vector_of("st03", "ST03-C").octets);
   EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac06a", "1.4 180ac06a0105000000012c")) << "50 is no multiple of 3";
 }

@@ -42,7 +42,7 @@ TEST_F(Events, AreReportedAsInTheVectorsWithTheirSeverityAsSubtype) {
     ASSERT_TRUE(service.raise(declared[i].id, data.value()).has_value());
     const Report report = sink.reports.at(0);
     EXPECT_EQ(report.subtype, static_cast<std::uint8_t>(i + 1));
-    EXPECT_EQ(to_hex(report.data), vector.fields.at("source_data")) << vector.id;
+    EXPECT_EQ(to_hex(report.data), vector.fields.at("source_data").get<std::string>()) << vector.id;
     Bytes packet(64);
     EXPECT_EQ(to_hex(write_telemetry(packet, telemetry_header(vector.fields), report.data).value()),
               to_hex(vector.octets));

@@ -66,7 +66,7 @@ TEST_F(Functions, AreDecodedFromTheVector) {
   EXPECT_EQ(call->arguments[0], 0.25);
   EXPECT_EQ(call->arguments[1], 3);
   const std::vector<double> values{0.25, 3};
-  EXPECT_EQ(to_hex(encode_call(functions[0], values).value()), vector.fields.at("app_data"));
+  EXPECT_EQ(to_hex(encode_call(functions[0], values).value()), vector.fields.at("app_data").get<std::string>());
 }
 
 TEST_F(Functions, TakeArgumentsInAnyOrderAndDeclaredValuesForAbsentOnes) {

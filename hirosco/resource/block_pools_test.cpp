@@ -64,7 +64,7 @@ TYPED_TEST(Pool, RefusesWhatIsLargerThanItsLargestBlock) {
 TYPED_TEST(Pool, BlocksDoNotOverlapAndAreAligned) {
   const auto pools = this->make({{48, 7}, {100, 5}, {64, 3}});
   std::vector<std::pair<std::byte*, std::size_t>> blocks;
-  for (const std::size_t octets : {48, 112, 64})
+  for (const std::size_t octets : {48UZ, 112UZ, 64UZ})
     while (auto* block = static_cast<std::byte*>(pools->allocate(octets))) {
       std::memset(block, static_cast<int>(blocks.size()), octets);
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(block) % block_alignment, 0U);

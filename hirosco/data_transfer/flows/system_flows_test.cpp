@@ -46,21 +46,18 @@ struct SharedMemoryTraits {
   using Factory = SystemFlowFactory;
   static constexpr bool newest_wins = true;
   static constexpr bool knows_its_peer = true;
-  static constexpr bool time_passes = true;
   static FlowAddress address() { return {0, unique_name()}; }
 };
 struct UnixTraits {
   using Factory = SystemFlowFactory;
   static constexpr bool newest_wins = false;
   static constexpr bool knows_its_peer = false;
-  static constexpr bool time_passes = true;
   static FlowAddress address() { return {2, "/tmp/hirosco-" + unique_name()}; }
 };
 struct UdpTraits {
   using Factory = SystemFlowFactory;
   static constexpr bool newest_wins = false;
   static constexpr bool knows_its_peer = false;
-  static constexpr bool time_passes = true;
   static FlowAddress address() { return {3, "127.0.0.1:" + free_port()}; }
 };
 

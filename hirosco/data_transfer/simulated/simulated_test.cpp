@@ -29,7 +29,6 @@ struct SimulatedFlowTraits {
   using Factory = SimulatedFlows;
   static constexpr bool newest_wins = true;
   static constexpr bool knows_its_peer = true;
-  static constexpr bool time_passes = false;
   static FlowAddress address() { return {0, "joint1"}; }
 };
 

@@ -12,8 +12,7 @@
 #include "hirosco/data_transfer/data_flow.hpp"
 
 /// What every DataFlow must do. `Traits` has: Factory; static FlowAddress address(), another one for each test where
-/// the system keeps addresses; newest_wins (else frames come in order); knows_its_peer (sees a hang-up without sending);
-/// time_passes (wait() really waits).
+/// the system keeps addresses; newest_wins (else frames come in order); knows_its_peer (sees a hang-up without sending).
 namespace hirosco::testing {
 
 template <class Traits>
