@@ -129,7 +129,7 @@ class Flight:
         self.environment = {**os.environ, "XDG_RUNTIME_DIR": str(runtime), "NO_COLOR": "1", MARK: self.mark, **self.extra}
         self.started = time.monotonic()
         self.process = subprocess.Popen(
-            [*self.prefix, str(self.binaries / "hirosco"), "run", self.mission, "--json"], cwd=self.folder,
+            [*self.prefix, str(self.binaries / "hirosco"), "run", self.mission, "--json", "--no-ground"], cwd=self.folder,
             env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.errors = []
         self._readers = [threading.Thread(target=self._read_lines, daemon=True),

@@ -26,6 +26,7 @@ struct RunOptions {
   std::optional<Duration> run_for;
   bool quiet{false};
   bool json{false};
+  bool ground{true};                 ///< the ground station too
 };
 int run(const RunOptions& options);
 
@@ -90,6 +91,20 @@ struct FaultOptions {
   std::vector<std::string> words;
 };
 int fault(const FaultOptions& options);
+
+struct GroundOptions {
+  std::string mission{"rokviss"};
+  std::uint16_t port{8080};
+  std::string token;                 ///< empty = a new one
+  std::string observer_token;        ///< empty = no observers
+  std::string telemetry;             ///< HOST:PORT; empty = as the mission says
+  std::string archive;               ///< empty = beside the mission's log
+  std::string page;                  ///< folder; empty = the one that was built
+  bool json{false};
+};
+int ground(const GroundOptions& options);
+/// The chain of causes of the last stop, from the ground station's archive.
+int why(const GroundOptions& options);
 
 // --- shared ------------------------------------------------------------------------------------------------------------
 /// "rokviss" or a path: the mission file; a name is looked for in missions/NAME/mission.xml from the working directory and

@@ -52,6 +52,8 @@ int main(int argc, char** argv) {
   run_command->add_option("mission", run_options.mission, "Name (rokviss, hello) or path of a mission")->required();
   run_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
   run_command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");
+  bool no_ground = false;
+  run_command->add_flag("--no-ground", no_ground, "Without the ground station and its page");
   run_command->add_flag("--json", run_options.json, "One JSON object a line");
 
   CheckOptions check_options;
@@ -116,6 +118,21 @@ int main(int argc, char** argv) {
       ->required()
       ->allow_extra_args();
   fault_command->add_option("--mission", fault_options.mission, "Mission that runs")->capture_default_str();
+  GroundOptions ground_options;
+  auto* ground_command = app.add_subcommand("ground", "Serve the ground station's page and API for a flying mission");
+  ground_command->add_option("mission", ground_options.mission, "Name or path of the mission")->capture_default_str();
+  ground_command->add_option("--port", ground_options.port, "Port on the loopback address")->capture_default_str();
+  ground_command->add_option("--token", ground_options.token,
+                             "What the page must know; a new one each time by default");
+  ground_command->add_option("--observer-token", ground_options.observer_token,
+                             "For those who may look but not command");
+  ground_command->add_option("--telemetry", ground_options.telemetry, "ADDRESS:PORT of the spacecraft");
+  ground_command->add_option("--archive", ground_options.archive, "File of the archive");
+  ground_command->add_option("--page", ground_options.page, "Folder with another page");
+  ground_command->add_flag("--json", ground_options.json, "The URL as JSON");
+  auto* why_command = app.add_subcommand("why", "The chain of causes of the last stop");
+  why_command->add_option("mission", ground_options.mission, "Name or path of the mission")->capture_default_str();
+  why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");
   // Values such as -0.8 are arguments, not options.
   tc_command->prefix_command(false);
 
@@ -128,7 +145,10 @@ int main(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? exit_ok : exit_usage;
   }
+  run_options.ground = !no_ground;
   if (*run_command) return run(run_options);
+  if (*ground_command) return ground(ground_options);
+  if (*why_command) return why(ground_options);
   if (*check_command) return check(check_options);
   if (*simulate_command) return simulate(simulate_options);
   if (*report_command) {

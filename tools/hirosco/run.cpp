@@ -72,6 +72,15 @@ int run(const RunOptions& options) {
     if (!start) return exit_environment;
     plan.devices.push_back(std::move(*start));
   }
+  // Not everybody builds it, and no flight needs it.
+  if (const auto station = supervisor::find_program("hirosco-ground"); options.ground && !station.empty()) {
+    ProcessStart start;
+    start.executable = station.string();
+    start.arguments = {"--child", "--mission", mission->file.string()};
+    if (options.json) start.arguments.emplace_back("--json");
+    if (options.quiet) start.arguments.emplace_back("--quiet");
+    plan.devices.push_back(std::move(start));
+  }
   const auto program = supervisor::find_program("hirosco-supervisor");
   if (program.empty()) {
     fmt::print(stderr, "hirosco run: no program hirosco-supervisor beside this one or in PATH\n");

@@ -1,0 +1,492 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/api.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "ground/json.hpp"
+
+namespace hirosco::ground {
+namespace {
+
+using nlohmann::json;
+
+constexpr double default_span_s = 60.0;
+constexpr double default_timeline_s = 600.0;
+constexpr std::size_t most_rows = 10'000;
+constexpr std::size_t fewest_points = 10, usual_points = 2000, most_points = 20'000;
+/// Beyond it an answer says so by its last time: one question must not hold up the live view for seconds.
+constexpr std::size_t most_samples = 1'000'000;
+constexpr std::size_t most_csv_octets = std::size_t{64} << 20;
+constexpr std::size_t most_file_octets = std::size_t{16} << 20;
+
+/// No script but ours, nothing from anywhere else, in nobody's frame.
+constexpr const char* policy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; "
+    "connect-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+[[nodiscard]] HttpResponse with_headers(HttpResponse response) {
+  response.headers.emplace_back("Content-Security-Policy", policy);
+  response.headers.emplace_back("X-Content-Type-Options", "nosniff");
+  response.headers.emplace_back("Referrer-Policy", "no-referrer");
+  response.headers.emplace_back("Cross-Origin-Resource-Policy", "same-origin");
+  response.headers.emplace_back("Cross-Origin-Opener-Policy", "same-origin");
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
+}
+
+[[nodiscard]] HttpResponse answer(const json& content, unsigned status = 200) {
+  return with_headers({.status = status, .body = to_string(content), .headers = {}});
+}
+[[nodiscard]] HttpResponse error(unsigned status, const std::string& text) { return answer({{"error", text}}, status); }
+
+[[nodiscard]] HttpResponse outcome(const Answered<json>& result, unsigned status = 200) {
+  return result ? answer(*result, status) : error(result.error().status, result.error().text);
+}
+
+/// In a time that does not tell how much of it was right.
+[[nodiscard]] bool same_secret(std::string_view given, std::string_view secret) {
+  if (secret.empty() || given.size() != secret.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < given.size(); ++i)
+    difference |= static_cast<unsigned char>(given[i]) ^ static_cast<unsigned char>(secret[i]);
+  return difference == 0;
+}
+
+[[nodiscard]] std::string header(const HttpRequest& request, const char* name) {
+  const auto found = request.headers.find(name);
+  return found != request.headers.end() ? found->second : std::string{};
+}
+
+[[nodiscard]] int hex_digit(char letter) {
+  if (letter >= '0' && letter <= '9') return letter - '0';
+  if (letter >= 'a' && letter <= 'f') return letter - 'a' + 10;
+  if (letter >= 'A' && letter <= 'F') return letter - 'A' + 10;
+  return -1;
+}
+
+[[nodiscard]] std::optional<std::string> decoded(std::string_view text, bool plus_is_space) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%') {
+      if (i + 2 >= text.size()) return std::nullopt;
+      const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
+      if (high < 0 || low < 0 || high * 16 + low == 0) return std::nullopt;
+      result += static_cast<char>(high * 16 + low);
+      i += 2;
+    } else {
+      result += plus_is_space && text[i] == '+' ? ' ' : text[i];
+    }
+  }
+  return result;
+}
+
+[[nodiscard]] const char* type_of(const std::filesystem::path& file) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 14> types{{{".html", "text/html; charset=utf-8"},
+                                                                            {".js", "text/javascript; charset=utf-8"},
+                                                                            {".mjs", "text/javascript; charset=utf-8"},
+                                                                            {".css", "text/css; charset=utf-8"},
+                                                                            {".json", "application/json"},
+                                                                            {".svg", "image/svg+xml"},
+                                                                            {".png", "image/png"},
+                                                                            {".ico", "image/x-icon"},
+                                                                            {".woff2", "font/woff2"},
+                                                                            {".urdf", "application/xml"},
+                                                                            {".stl", "model/stl"},
+                                                                            {".glb", "model/gltf-binary"},
+                                                                            {".txt", "text/plain; charset=utf-8"},
+                                                                            {".map", "application/json"}}};
+  const std::string extension = file.extension().string();
+  const auto found = std::ranges::find(types, extension, &std::pair<std::string_view, const char*>::first);
+  return found != types.end() ? found->second : "application/octet-stream";
+}
+
+constexpr const char* plain_page = R"(<!doctype html><html lang="en"><meta charset="utf-8"><title>HIROSCO</title>
+<h1>HIROSCO ground station</h1>
+<p>The gateway runs, but its page is not built: install npm and node (18 or later), configure the build again and build
+the target hirosco_ground_page. The API works without it; see ground/api/README.md.</p></html>
+)";
+
+[[nodiscard]] std::optional<std::string> content_of(const std::filesystem::path& file) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed) || std::filesystem::file_size(file, failed) > most_file_octets)
+    return std::nullopt;
+  std::ifstream stream{file, std::ios::binary};
+  std::string content{std::istreambuf_iterator<char>{stream}, {}};
+  return stream ? std::optional{std::move(content)} : std::nullopt;
+}
+
+/// A path of plain names: nothing that leads out of the folder or to a hidden file.
+[[nodiscard]] bool plain_path(const std::string& path) {
+  if (!path.starts_with('/')) return false;
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
+           c == '.' || c == '/';
+  };
+  return std::ranges::all_of(path, plain) && path.find("/.") == std::string::npos &&
+         path.find("//") == std::string::npos;
+}
+
+[[nodiscard]] json gaps_json(const std::vector<StoredGap>& gaps) {
+  json list = json::array();
+  for (const auto& gap : gaps) list.push_back({{"from", json_time(gap.from)}, {"to", json_time(gap.to)}});
+  return list;
+}
+
+[[nodiscard]] int severity_of(const std::string& text) {
+  for (const auto& row : EnumTexts<descriptor::Severity>::table)
+    if (row.text == text) return static_cast<int>(row.value);
+  return 0;
+}
+
+/// Min and max of each of `points` equal parts of a span: long histories at the cost of short ones.
+class Buckets {
+ public:
+  Buckets(const Span& span, std::size_t points)
+      : from_s_{json_time(span.from)},
+        width_s_{(json_time(span.to) - from_s_) / static_cast<double>(points)},
+        parts_(points) {}
+  void add(double t, double value) {
+    const double place = width_s_ > 0 ? (t - from_s_) / width_s_ : 0.0;
+    Part& part = parts_[std::min(parts_.size() - 1, static_cast<std::size_t>(std::max(0.0, place)))];
+    const bool number = !std::isnan(value);
+    if (part.count == 0 || (number && !(part.min <= value))) part.min = value;
+    if (part.count == 0 || (number && !(part.max >= value))) part.max = value;
+    ++part.count;
+  }
+  void write(json& into) const {
+    json t = json::array(), min = json::array(), max = json::array();
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (parts_[i].count == 0) continue;
+      t.push_back(from_s_ + (static_cast<double>(i) + 0.5) * width_s_);
+      min.push_back(json_number(parts_[i].min));
+      max.push_back(json_number(parts_[i].max));
+    }
+    into["t"] = std::move(t);
+    into["min"] = std::move(min);
+    into["max"] = std::move(max);
+  }
+
+ private:
+  struct Part {
+    std::size_t count{0};
+    double min{}, max{};
+  };
+  double from_s_;
+  double width_s_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace
+
+// --- targets -------------------------------------------------------------------------------------------------------------
+
+std::optional<Target> read_target(std::string_view target) {
+  const auto question = target.find('?');
+  auto path = decoded(target.substr(0, question), false);
+  if (!path) return std::nullopt;
+  Target result{std::move(*path), {}};
+  std::string_view rest = question == std::string_view::npos ? std::string_view{} : target.substr(question + 1);
+  while (!rest.empty()) {
+    const auto end = std::min(rest.find('&'), rest.size());
+    const std::string_view one = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const auto equals = std::min(one.find('='), one.size());
+    const auto name = decoded(one.substr(0, equals), true);
+    const auto value = decoded(one.substr(std::min(equals + 1, one.size())), true);
+    if (!name || !value) return std::nullopt;
+    result.parameters.emplace(*name, *value);
+  }
+  return result;
+}
+
+std::optional<std::string> Target::text(const std::string& name) const {
+  const auto found = parameters.find(name);
+  return found != parameters.end() ? std::optional{found->second} : std::nullopt;
+}
+
+std::optional<double> Target::number(const std::string& name) const {
+  const auto found = text(name);
+  if (!found) return std::nullopt;
+  double value = 0.0;
+  const auto [end, failed] = std::from_chars(found->data(), found->data() + found->size(), value);
+  const bool whole = failed == std::errc{} && end == found->data() + found->size() && std::isfinite(value);
+  return whole ? std::optional{value} : std::nullopt;
+}
+
+// --- who may ---------------------------------------------------------------------------------------------------------------
+
+bool Api::from_here(const HttpRequest& request) const {
+  const std::array<std::string, 3> hosts{fmt::format("127.0.0.1:{}", options_.port),
+                                         fmt::format("localhost:{}", options_.port),
+                                         fmt::format("[::1]:{}", options_.port)};
+  const auto ours = [&](const std::string& host) { return std::ranges::find(hosts, host) != hosts.end(); };
+  if (!ours(header(request, "host"))) return false;
+  const std::string origin = header(request, "origin");
+  constexpr std::string_view scheme = "http://";
+  return origin.empty() || (origin.starts_with(scheme) && ours(origin.substr(scheme.size())));
+}
+
+Api::Role Api::role_of(const HttpRequest& request, const Target& target) const {
+  constexpr std::string_view scheme = "Bearer ";
+  const std::string authorization = header(request, "authorization");
+  const std::string given =
+      authorization.starts_with(scheme) ? authorization.substr(scheme.size()) : target.text("token").value_or("");
+  if (same_secret(given, options_.token)) return Role::Operator;
+  return same_secret(given, options_.observer_token) ? Role::Observer : Role::Nobody;
+}
+
+void Api::handle(const HttpRequest& request, std::function<void(HttpResponse)> respond) {
+  const auto target = read_target(request.target);
+  if (!target) return respond(error(400, "the address is not understood"));
+  if (!from_here(request)) return respond(error(403, "Host or Origin is not this station"));
+  const bool reading = request.method == "GET" || request.method == "HEAD";
+  if (!target->path.starts_with("/api/")) {
+    if (!reading) return respond(error(405, "only GET"));
+    return respond(page_file(request, target->path));
+  }
+  const Role role = role_of(request, *target);
+  if (role == Role::Nobody) return respond(error(401, "the token is missing or wrong"));
+  if (reading) return respond(get(*target));
+  if (request.method != "POST") return respond(error(405, "only GET and POST"));
+  post(request, *target, role, std::move(respond));
+}
+
+std::optional<HttpResponse> Api::refuse_socket(const HttpRequest& request) {
+  const auto target = read_target(request.target);
+  if (!target || target->path != "/ws") return error(404, "WebSockets are at /ws");
+  if (!from_here(request)) return error(403, "Host or Origin is not this station");
+  if (role_of(request, *target) == Role::Nobody) return error(401, "the token is missing or wrong");
+  return std::nullopt;
+}
+
+void Api::opened(const HttpRequest& request, Peer& peer) {
+  const auto target = read_target(request.target);
+  static_cast<void>(session_.opened(peer, target && role_of(request, *target) == Role::Operator));
+}
+
+void Api::post(const HttpRequest& request, const Target& target, Role role, std::function<void(HttpResponse)> respond) {
+  if (role != Role::Operator) return respond(error(403, "observers do not command"));
+  if (session_.in_replay(header(request, "x-client"))) return respond(error(409, "this page replays the past"));
+  const json body = json::parse(request.body, nullptr, false);
+  if (!body.is_object()) return respond(error(400, "a JSON object is wanted"));
+  if (target.path == "/api/commands") return respond(outcome(session_.command(body), 202));
+  const auto later = [respond](const Answered<json>& result) { respond(outcome(result)); };
+  if (target.path == "/api/commands/preview") return session_.preview(body, later);
+  if (target.path == "/api/faults") return session_.fault(body, later);
+  respond(error(404, "nothing takes POSTs there"));
+}
+
+// --- reading ---------------------------------------------------------------------------------------------------------------
+
+Span Api::span_of(const Target& target, double last_s) const {
+  Span span;
+  span.to = target.number("to") ? onboard_time(*target.number("to")) : session_.now();
+  const double last = target.number("last").value_or(last_s);
+  span.from = target.number("from") ? onboard_time(*target.number("from")) : onboard_time(json_time(span.to) - last);
+  return span;
+}
+
+HttpResponse Api::get(const Target& target) {
+  const std::string& path = target.path;
+  if (path == "/api/mission") return answer(mission_json(session_.catalogue(), options_.transitions));
+  if (path == "/api/status") return answer(session_.status());
+  if (path == "/api/history") return history(target);
+  if (path == "/api/export.csv") return csv(target);
+  if (path == "/api/timeline") return answer(timeline(target));
+  if (path == "/api/why") return answer(why());
+  constexpr double usual_limit = 200;
+  Archive::Filter filter{.span = {}, .text = target.text("text").value_or(""), .newest_first = true};
+  if (const auto from = target.number("from")) filter.span.from = onboard_time(*from);
+  if (const auto to = target.number("to")) filter.span.to = onboard_time(*to);
+  filter.severity = severity_of(target.text("severity").value_or(""));
+  const double limit = target.number("limit").value_or(usual_limit);
+  filter.limit = static_cast<std::size_t>(std::clamp(limit, 0.0, static_cast<double>(most_rows)));
+  json list = json::array();
+  if (path == "/api/events") {
+    for (const auto& event : session_.archive().events(filter)) list.push_back(event_json(event));
+    return answer({{"events", std::move(list)}});
+  }
+  if (path == "/api/commands") {
+    for (const auto& command : session_.archive().commands(filter)) {
+      json one = command_json(command);
+      one["reports"] = json::array();
+      for (const auto& report : session_.archive().reports(command.number))
+        one["reports"].push_back(report_json(report));
+      list.push_back(std::move(one));
+    }
+    return answer({{"commands", std::move(list)}});
+  }
+  return error(404, "nothing is there");
+}
+
+void samples(Session& session, std::size_t column, const Span& span,
+             const std::function<void(OnboardTime, double)>& take) {
+  const Catalogue& catalogue = session.catalogue();
+  const std::uint16_t apid = catalogue.columns()[column].apid;
+  std::vector<std::uint16_t> sids;
+  for (const Report& report : catalogue.reports())
+    if (report.apid == apid && std::ranges::find(report.places, column, &Place::column) != report.places.end() &&
+        std::ranges::find(sids, report.sid) == sids.end())
+      sids.push_back(report.sid);
+  std::vector<std::pair<OnboardTime, double>> found;
+  for (const std::uint16_t sid : sids)
+    session.archive().packets_of(apid, sid, span, [&](const StoredPacket& packet) {
+      const auto view = pus::TelemetryView::parse(packet.octets);
+      const Report* report = view ? catalogue.report_of(apid, view->source_data()) : nullptr;
+      if (report == nullptr) return true;
+      const auto place = std::ranges::find(report->places, column, &Place::column);
+      if (place != report->places.end()) found.emplace_back(packet.t, catalogue.read(*place, view->source_data()));
+      return found.size() < most_samples;
+    });
+  if (sids.size() > 1) std::ranges::stable_sort(found, {}, &std::pair<OnboardTime, double>::first);
+  for (const auto& [t, value] : found) take(t, value);
+}
+
+HttpResponse Api::history(const Target& target) {
+  const std::string name = target.text("parameter").value_or("");
+  const auto column = session_.catalogue().find_column(name);
+  if (!column) return error(404, "no parameter '" + name + "'");
+  const Span span = span_of(target, default_span_s);
+  const double wanted = target.number("points").value_or(static_cast<double>(usual_points));
+  const auto points = static_cast<std::size_t>(
+      std::clamp(wanted, static_cast<double>(fewest_points), static_cast<double>(most_points)));
+  std::vector<std::pair<double, double>> found;
+  samples(session_, *column, span, [&](OnboardTime t, double value) { found.emplace_back(json_time(t), value); });
+  json result{{"parameter", name},
+              {"unit", session_.catalogue().columns()[*column].unit},
+              {"gaps", gaps_json(session_.archive().gaps(span))}};
+  if (found.size() > points) {
+    // From the first sample on: an open beginning must not put all of them into one bucket.
+    Buckets buckets{{onboard_time(found.front().first), onboard_time(found.back().first)}, points};
+    for (const auto& [t, value] : found) buckets.add(t, value);
+    buckets.write(result);
+    return answer(result);
+  }
+  json t = json::array(), v = json::array();
+  for (const auto& [time, value] : found) {
+    t.push_back(time);
+    v.push_back(json_number(value));
+  }
+  result["t"] = std::move(t);
+  result["v"] = std::move(v);
+  return answer(result);
+}
+
+HttpResponse Api::csv(const Target& target) {
+  const auto [first, last] = target.parameters.equal_range("parameter");
+  std::vector<std::string> names;
+  for (auto name = first; name != last; ++name) names.push_back(name->second);
+  constexpr std::size_t most_columns = 64;
+  if (names.empty() || names.size() > most_columns) return error(400, "parameter: 1 to 64 of them are wanted");
+  const Span span = span_of(target, default_span_s);
+  std::map<OnboardTime, std::vector<std::optional<double>>> rows;
+  std::string body = "t";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto column = session_.catalogue().find_column(names[i]);
+    if (!column) return error(404, "no parameter '" + names[i] + "'");
+    body += "," + names[i];
+    samples(session_, *column, span, [&](OnboardTime t, double value) {
+      auto& row = rows[t];
+      row.resize(names.size());
+      row[i] = value;
+    });
+  }
+  body += "\n";
+  for (const auto& [t, row] : rows) {
+    body += fmt::format("{:.6f}", json_time(t));
+    for (const auto& value : row) body += value ? fmt::format(",{}", *value) : ",";
+    body += "\n";
+    if (body.size() > most_csv_octets) return error(413, "more than 64 MiB: ask for a shorter span");
+  }
+  HttpResponse response{.type = "text/csv; charset=utf-8", .body = std::move(body), .headers = {}};
+  response.headers.emplace_back("Content-Disposition", "attachment; filename=\"telemetry.csv\"");
+  return with_headers(std::move(response));
+}
+
+json Api::timeline(const Target& target) {
+  const Span span = span_of(target, default_timeline_s);
+  json modes = json::array(), states = json::array(), links = json::array();
+  for (const auto& change : session_.archive().changes(span)) {
+    const double t = json_time(change.t);
+    if (change.kind == "mode") modes.push_back({{"t", t}, {"mode", change.value}});
+    if (change.kind == "state")
+      states.push_back(
+          {{"t", t}, {"subsystem", change.name}, {"state", change.value.empty() ? json(nullptr) : json(change.value)}});
+    if (change.kind == "link")
+      links.push_back({{"t", t}, {"id", std::atoi(change.name.c_str())}, {"up", change.value == "up"}});
+  }
+  const Archive::Filter filter{.span = span, .text = {}, .limit = most_rows, .newest_first = false};
+  json commands = json::array(), events = json::array(), faults = json::array();
+  for (const auto& command : session_.archive().commands(filter)) commands.push_back(command_json(command));
+  for (const auto& event : session_.archive().events(filter)) events.push_back(event_json(event));
+  for (const auto& fault : session_.archive().faults(span))
+    faults.push_back(
+        {{"t", json_time(fault.t)}, {"device", fault.device}, {"line", fault.line}, {"answer", fault.answer}});
+  return {{"modes", std::move(modes)},
+          {"states", std::move(states)},
+          {"links", std::move(links)},
+          {"commands", std::move(commands)},
+          {"events", std::move(events)},
+          {"faults", std::move(faults)},
+          {"gaps", gaps_json(session_.archive().gaps(span))}};
+}
+
+/// The last group of events of medium and high severity, with what happened around it: injected faults, state changes,
+/// recovery steps, in order of time.
+json Api::why() {
+  constexpr Duration same_story = std::chrono::seconds{3};
+  constexpr Duration before = std::chrono::seconds{2};
+  Archive& archive = session_.archive();
+  const auto severe = archive.events(
+      {.span = {}, .severity = static_cast<int>(descriptor::Severity::Medium), .text = {}, .limit = 1000});
+  json causes = json::array();
+  if (severe.empty()) return {{"causes", causes}};
+  Span span{severe.front().t, severe.front().t + same_story};
+  for (const auto& event : severe)
+    if (span.from - event.t <= same_story) span.from = event.t;
+  span.from -= before;
+  std::vector<std::pair<OnboardTime, std::string>> story;
+  for (const auto& fault : archive.faults(span))
+    story.emplace_back(fault.t, "injected: " + fault.device + " " + fault.line);
+  const auto events = archive.events({.span = span, .text = {}, .limit = 1000, .newest_first = false});
+  const OnboardTime first = span.from + before;
+  for (const auto& event : events) {
+    const bool cause = event.severity >= static_cast<int>(descriptor::Severity::Medium);
+    if (event.t < first && !cause) continue;
+    const auto severity = to_text(static_cast<descriptor::Severity>(event.severity));
+    story.emplace_back(event.t, cause ? fmt::format("{} reports {}: {}", event.subsystem, severity, event.text)
+                                      : fmt::format("{}: {}", event.subsystem, event.text));
+  }
+  for (const auto& change : archive.changes(span))
+    if (change.kind == "link" && change.t > span.from)
+      story.emplace_back(change.t, fmt::format("link {} {}", change.name, change.value));
+  std::ranges::stable_sort(story, {}, &std::pair<OnboardTime, std::string>::first);
+  for (const auto& [t, text] : story) causes.push_back({{"t", json_time(t)}, {"text", text}});
+  return {{"causes", std::move(causes)}};
+}
+
+HttpResponse Api::page_file(const HttpRequest& request, const std::string& path) const {
+  if (!plain_path(path)) return error(404, "nothing is there");
+  const std::string wanted = path == "/" ? "/index.html" : path;
+  const std::filesystem::path file = options_.page / wanted.substr(1);
+  HttpResponse response;
+  response.type = type_of(file);
+  const bool zipped = header(request, "accept-encoding").find("gzip") != std::string::npos;
+  auto content = zipped ? content_of(file.string() + ".gz") : std::nullopt;
+  if (content) response.headers.emplace_back("Content-Encoding", "gzip");
+  if (!content) content = content_of(file);
+  if (!content && wanted == "/index.html") content = plain_page;
+  if (!content) return error(404, "nothing is there");
+  response.body = std::move(*content);
+  return with_headers(std::move(response));
+}
+
+}  // namespace hirosco::ground

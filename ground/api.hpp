@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ground/http_server.hpp"
+#include "ground/session.hpp"
+
+/// ground/api/README.md as code: who may ask, what is asked, what is answered. Does no I/O but reading the page's files.
+namespace hirosco::ground {
+
+/// Path and decoded parameters of a request's target.
+struct Target {
+  std::string path;
+  std::multimap<std::string, std::string> parameters;
+  [[nodiscard]] std::optional<std::string> text(const std::string& name) const;
+  [[nodiscard]] std::optional<double> number(const std::string& name) const;
+};
+/// Empty: broken percent signs or a NUL.
+[[nodiscard]] std::optional<Target> read_target(std::string_view target);
+
+/// One edge of the ten states' table, which belongs to the generic subsystem.
+struct Transition {
+  descriptor::State from{};
+  descriptor::State to{};
+  bool failure{false};  ///< taken only when the state it leaves has failed
+};
+
+class Api final : public Application {
+ public:
+  struct Options {
+    std::string token;
+    std::string observer_token;  ///< empty = no observers
+    std::uint16_t port{8080};
+    std::filesystem::path page;  ///< folder of the page's files
+    std::vector<Transition> transitions;
+  };
+  Api(Session& session, Options options) : session_{session}, options_{std::move(options)} {}
+
+  void handle(const HttpRequest& request, std::function<void(HttpResponse)> respond) override;
+  [[nodiscard]] std::optional<HttpResponse> refuse_socket(const HttpRequest& request) override;
+  void opened(const HttpRequest& request, Peer& peer) override;
+  void received(const Peer& peer, const std::string& text) override { session_.received(peer, text); }
+  void closed(const Peer& peer) override { session_.closed(peer); }
+  void link_up() override { session_.link_up(); }
+  void link_down() override { session_.link_down(); }
+  [[nodiscard]] bool link_received(Octets octets) override { return session_.receive(octets); }
+  void tick() override { session_.tick(); }
+
+ private:
+  enum class Role { Nobody, Observer, Operator };
+  [[nodiscard]] Role role_of(const HttpRequest& request, const Target& target) const;
+  [[nodiscard]] bool from_here(const HttpRequest& request) const;
+  void post(const HttpRequest& request, const Target& target, Role role, std::function<void(HttpResponse)> respond);
+  [[nodiscard]] HttpResponse get(const Target& target);
+  [[nodiscard]] HttpResponse history(const Target& target);
+  [[nodiscard]] HttpResponse csv(const Target& target);
+  [[nodiscard]] nlohmann::json timeline(const Target& target);
+  [[nodiscard]] nlohmann::json why();
+  [[nodiscard]] Span span_of(const Target& target, double last_s) const;
+  [[nodiscard]] HttpResponse page_file(const HttpRequest& request, const std::string& path) const;
+
+  Session& session_;
+  Options options_;
+};
+
+/// GET /api/mission.
+[[nodiscard]] nlohmann::json mission_json(const Catalogue& catalogue, std::span<const Transition> transitions);
+
+/// Samples of one column in a span, oldest first. Calls `take(t, value)`.
+void samples(Session& session, std::size_t column, const Span& span,
+             const std::function<void(OnboardTime, double)>& take);
+
+}  // namespace hirosco::ground

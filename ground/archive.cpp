@@ -1,0 +1,427 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/archive.hpp"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace hirosco::ground {
+namespace {
+
+constexpr const char* schema = R"(
+  PRAGMA journal_mode=WAL;
+  PRAGMA synchronous=NORMAL;
+  PRAGMA auto_vacuum=NONE;
+  CREATE TABLE IF NOT EXISTS packets(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, apid INTEGER NOT NULL,
+    service INTEGER NOT NULL, subtype INTEGER NOT NULL, sid INTEGER NOT NULL, octets BLOB NOT NULL);
+  CREATE INDEX IF NOT EXISTS packets_by_time ON packets(t);
+  CREATE INDEX IF NOT EXISTS packets_by_structure ON packets(apid, sid, t) WHERE sid != 0;
+  CREATE TABLE IF NOT EXISTS events(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, apid INTEGER NOT NULL,
+    subsystem TEXT NOT NULL, event INTEGER NOT NULL, name TEXT NOT NULL, severity INTEGER NOT NULL, text TEXT NOT NULL,
+    vals TEXT NOT NULL);
+  CREATE INDEX IF NOT EXISTS events_by_time ON events(t);
+  CREATE TABLE IF NOT EXISTS commands(id INTEGER PRIMARY KEY AUTOINCREMENT, t INTEGER NOT NULL, sender TEXT NOT NULL,
+    apid INTEGER NOT NULL, subsystem TEXT NOT NULL, function TEXT NOT NULL, arguments TEXT NOT NULL, stage TEXT NOT NULL,
+    code INTEGER, reason TEXT NOT NULL);
+  CREATE INDEX IF NOT EXISTS commands_by_time ON commands(t);
+  CREATE TABLE IF NOT EXISTS reports(id INTEGER PRIMARY KEY, command INTEGER NOT NULL, t INTEGER NOT NULL,
+    stage TEXT NOT NULL, code INTEGER, reason TEXT NOT NULL);
+  CREATE INDEX IF NOT EXISTS reports_by_command ON reports(command);
+  CREATE INDEX IF NOT EXISTS reports_by_time ON reports(t);
+  CREATE TABLE IF NOT EXISTS changes(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL,
+    value TEXT NOT NULL);
+  CREATE INDEX IF NOT EXISTS changes_by_time ON changes(t);
+  CREATE INDEX IF NOT EXISTS changes_by_name ON changes(kind, name, t);
+  CREATE TABLE IF NOT EXISTS gaps(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, until INTEGER NOT NULL);
+  CREATE TABLE IF NOT EXISTS faults(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, device TEXT NOT NULL, line TEXT NOT NULL,
+    answer TEXT NOT NULL);
+)";
+constexpr int busy_limit_ms = 2000;
+
+[[nodiscard]] std::int64_t ns(OnboardTime t) noexcept { return t.time_since_epoch().count(); }
+[[nodiscard]] OnboardTime time_of(std::int64_t value) noexcept { return OnboardTime{Duration{value}}; }
+
+/// Text as a LIKE pattern that matches it anywhere, its own wildcards as letters.
+[[nodiscard]] std::string pattern_of(std::string_view text) {
+  std::string pattern = "%";
+  for (const char letter : text) {
+    if (letter == '%' || letter == '_' || letter == '\\') pattern += '\\';
+    pattern += letter;
+  }
+  return pattern + "%";
+}
+
+}  // namespace
+
+/// One prepared statement: values in, rows out.
+class Archive::Statement {
+ public:
+  Statement(sqlite3* database, const char* sql) {
+    static_cast<void>(sqlite3_prepare_v2(database, sql, -1, &statement_, nullptr));
+  }
+  ~Statement() { sqlite3_finalize(statement_); }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  Statement& operator<<(std::int64_t value) {
+    sqlite3_bind_int64(statement_, ++bound_, value);
+    return *this;
+  }
+  Statement& operator<<(int value) { return *this << std::int64_t{value}; }
+  Statement& operator<<(OnboardTime value) { return *this << ns(value); }
+  Statement& operator<<(const std::string& value) {
+    sqlite3_bind_text(statement_, ++bound_, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
+    return *this;
+  }
+  Statement& operator<<(const std::optional<int>& value) {
+    if (value) return *this << *value;
+    sqlite3_bind_null(statement_, ++bound_);
+    return *this;
+  }
+  [[nodiscard]] bool row() {
+    read_ = 0;
+    return sqlite3_step(statement_) == SQLITE_ROW;
+  }
+  [[nodiscard]] bool run() { return sqlite3_step(statement_) == SQLITE_DONE; }
+
+  [[nodiscard]] std::int64_t integer() { return sqlite3_column_int64(statement_, read_++); }
+  [[nodiscard]] OnboardTime time() { return time_of(integer()); }
+  template <class T>
+  [[nodiscard]] T number() {
+    return static_cast<T>(integer());
+  }
+  [[nodiscard]] std::optional<int> optional() {
+    if (sqlite3_column_type(statement_, read_) != SQLITE_NULL) return number<int>();
+    ++read_;
+    return std::nullopt;
+  }
+  [[nodiscard]] std::string text() {
+    const auto* letters = reinterpret_cast<const char*>(sqlite3_column_text(statement_, read_));
+    const int size = sqlite3_column_bytes(statement_, read_++);
+    return letters != nullptr ? std::string{letters, static_cast<std::size_t>(size)} : std::string{};
+  }
+  [[nodiscard]] std::vector<std::byte> octets() {
+    const auto* first = static_cast<const std::byte*>(sqlite3_column_blob(statement_, read_));
+    const int size = sqlite3_column_bytes(statement_, read_++);
+    return first != nullptr ? std::vector<std::byte>{first, first + size} : std::vector<std::byte>{};
+  }
+
+ private:
+  sqlite3_stmt* statement_{nullptr};
+  int bound_{0};
+  int read_{0};
+};
+
+Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, std::int64_t limit_octets) {
+  sqlite3* database = nullptr;
+  const int opened = sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+  if (opened != SQLITE_OK) {
+    sqlite3_close(database);
+    return fail(ErrorCode::Unavailable, "the archive cannot be opened", opened);
+  }
+  auto archive = std::unique_ptr<Archive>{new Archive{database, limit_octets}};
+  sqlite3_busy_timeout(database, busy_limit_ms);
+  constexpr const char* add_packet =
+      "INSERT INTO packets(t, apid, service, subtype, sid, octets) VALUES(?, ?, ?, ?, ?, ?)";
+  if (!archive->execute(schema) ||
+      sqlite3_prepare_v2(database, add_packet, -1, &archive->add_packet_, nullptr) != SQLITE_OK)
+    return fail(ErrorCode::Malformed, "the archive is not one of ours", sqlite3_extended_errcode(database));
+  return archive;
+}
+
+Archive::~Archive() {
+  commit();
+  sqlite3_finalize(add_packet_);
+  sqlite3_close(database_);
+}
+
+bool Archive::execute(const char* sql) { return sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) == SQLITE_OK; }
+
+void Archive::begin() {
+  if (!in_transaction_) in_transaction_ = execute("BEGIN");
+}
+
+void Archive::commit() {
+  if (!in_transaction_) return;
+  if (!execute("COMMIT")) {
+    ++failures_;
+    if (sqlite3_get_autocommit(database_) == 0) return;  // full or busy: what waits is tried again with the next
+  }
+  in_transaction_ = false;
+}
+
+void Archive::keep_within_limit() {
+  commit();
+  const auto value = [this](const char* sql) {
+    Statement statement{database_, sql};
+    return statement.row() ? statement.integer() : 0;
+  };
+  const std::int64_t used = (value("PRAGMA page_count") - value("PRAGMA freelist_count")) * value("PRAGMA page_size");
+  if (used < limit_octets_) return;
+  const std::int64_t oldest = value("SELECT min(id) FROM packets");
+  const std::int64_t newest = value("SELECT max(id) FROM packets");
+  Statement remove{database_, "DELETE FROM packets WHERE id <= ?"};
+  remove << oldest + (newest - oldest) / 10;
+  if (!remove.run()) ++failures_;
+}
+
+void Archive::add(const StoredPacket& packet, Octets octets) {
+  begin();
+  sqlite3_reset(add_packet_);
+  sqlite3_bind_int64(add_packet_, 1, ns(packet.t));
+  sqlite3_bind_int(add_packet_, 2, packet.apid);
+  sqlite3_bind_int(add_packet_, 3, packet.service);
+  sqlite3_bind_int(add_packet_, 4, packet.subtype);
+  sqlite3_bind_int(add_packet_, 5, packet.sid);
+  sqlite3_bind_blob(add_packet_, 6, octets.data(), static_cast<int>(octets.size()), SQLITE_STATIC);
+  if (sqlite3_step(add_packet_) != SQLITE_DONE) ++failures_;
+  sqlite3_reset(add_packet_);
+}
+
+void Archive::add(const StoredEvent& event) {
+  begin();
+  Statement add{database_,
+                "INSERT INTO events(t, apid, subsystem, event, name, severity, text, vals) VALUES(?,?,?,?,?,?,?,?)"};
+  add << event.t << event.apid << event.subsystem << event.id << event.name << event.severity << event.text
+      << event.values;
+  if (!add.run()) ++failures_;
+}
+
+std::int64_t Archive::add(const StoredCommand& command) {
+  begin();
+  Statement add{database_,
+                "INSERT INTO commands(t, sender, apid, subsystem, function, arguments, stage, code, reason) "
+                "VALUES(?,?,?,?,?,?,?,?,?)"};
+  add << command.t << command.sender << command.apid << command.subsystem << command.function << command.arguments
+      << command.stage << command.code << command.reason;
+  if (!add.run()) ++failures_;
+  return sqlite3_last_insert_rowid(database_);
+}
+
+void Archive::add(std::int64_t command, const StoredReport& report) {
+  begin();
+  Statement add{database_, "INSERT INTO reports(command, t, stage, code, reason) VALUES(?,?,?,?,?)"};
+  add << command << report.t << report.stage << report.code << report.reason;
+  Statement update{database_, "UPDATE commands SET stage=?, code=?, reason=? WHERE id=?"};
+  update << report.stage << report.code << report.reason << command;
+  if (!add.run() || !update.run()) ++failures_;
+}
+
+void Archive::add(const StoredChange& change) {
+  begin();
+  Statement add{database_, "INSERT INTO changes(t, kind, name, value) VALUES(?,?,?,?)"};
+  add << change.t << change.kind << change.name << change.value;
+  if (!add.run()) ++failures_;
+}
+
+void Archive::add(const StoredGap& gap) {
+  begin();
+  Statement add{database_, "INSERT INTO gaps(t, until) VALUES(?,?)"};
+  add << gap.from << gap.to;
+  if (!add.run()) ++failures_;
+}
+
+void Archive::add(const StoredFault& fault) {
+  begin();
+  Statement add{database_, "INSERT INTO faults(t, device, line, answer) VALUES(?,?,?,?)"};
+  add << fault.t << fault.device << fault.line << fault.answer;
+  if (!add.run()) ++failures_;
+}
+
+std::optional<Span> Archive::extent() {
+  Statement find{database_, "SELECT min(t), max(t), count(*) FROM (SELECT t FROM packets ORDER BY t LIMIT 1)"};
+  Statement last{database_, "SELECT max(t) FROM packets"};
+  if (!find.row() || !last.row()) return std::nullopt;
+  Span span;
+  span.from = find.time();
+  static_cast<void>(find.time());
+  if (find.integer() == 0) return std::nullopt;
+  span.to = last.time();
+  return span;
+}
+
+void Archive::packets(const Span& span, const std::function<bool(const StoredPacket&)>& take) {
+  Statement find{database_,
+                 "SELECT t, apid, service, subtype, sid, octets FROM packets WHERE t >= ? AND t <= ? ORDER BY t, id"};
+  find << span.from << span.to;
+  while (find.row()) {
+    StoredPacket packet{.t = find.time(), .octets = {}};
+    packet.apid = find.number<std::uint16_t>();
+    packet.service = find.number<std::uint8_t>();
+    packet.subtype = find.number<std::uint8_t>();
+    packet.sid = find.number<std::uint16_t>();
+    packet.octets = find.octets();
+    if (!take(packet)) return;
+  }
+}
+
+void Archive::packets_of(std::uint16_t apid, std::uint16_t sid, const Span& span,
+                         const std::function<bool(const StoredPacket&)>& take) {
+  Statement find{database_,
+                 "SELECT t, octets FROM packets WHERE apid = ? AND sid = ? AND sid != 0 AND t >= ? AND t <= ? "
+                 "ORDER BY t"};
+  find << apid << sid << span.from << span.to;
+  StoredPacket packet{.apid = apid, .service = 3, .subtype = 25, .sid = sid, .octets = {}};
+  while (find.row()) {
+    packet.t = find.time();
+    packet.octets = find.octets();
+    if (!take(packet)) return;
+  }
+}
+
+std::optional<StoredPacket> Archive::last_of(std::uint16_t apid, std::uint16_t sid, OnboardTime before) {
+  Statement find{database_,
+                 "SELECT t, octets FROM packets WHERE apid = ? AND sid = ? AND sid != 0 AND t <= ? "
+                 "ORDER BY t DESC LIMIT 1"};
+  find << apid << sid << before;
+  if (!find.row()) return std::nullopt;
+  StoredPacket packet{.apid = apid, .service = 3, .subtype = 25, .sid = sid, .octets = {}};
+  packet.t = find.time();
+  packet.octets = find.octets();
+  return packet;
+}
+
+std::vector<StoredEvent> Archive::events(const Filter& filter) {
+  const char* sql = filter.newest_first
+                        ? "SELECT t, apid, subsystem, event, name, severity, text, vals FROM events WHERE t >= ? AND "
+                          "t <= ? AND severity >= ? AND (subsystem || ' ' || name || ' ' || text) LIKE ? ESCAPE '\\' "
+                          "ORDER BY t DESC, id DESC LIMIT ?"
+                        : "SELECT t, apid, subsystem, event, name, severity, text, vals FROM events WHERE t >= ? AND "
+                          "t <= ? AND severity >= ? AND (subsystem || ' ' || name || ' ' || text) LIKE ? ESCAPE '\\' "
+                          "ORDER BY t, id LIMIT ?";
+  Statement find{database_, sql};
+  find << filter.span.from << filter.span.to << filter.severity << pattern_of(filter.text)
+       << static_cast<std::int64_t>(filter.limit);
+  std::vector<StoredEvent> events;
+  while (find.row()) {
+    StoredEvent event;
+    event.t = find.time();
+    event.apid = find.number<std::uint16_t>();
+    event.subsystem = find.text();
+    event.id = find.number<std::uint16_t>();
+    event.name = find.text();
+    event.severity = find.number<int>();
+    event.text = find.text();
+    event.values = find.text();
+    events.push_back(std::move(event));
+  }
+  return events;
+}
+
+namespace {
+
+template <class Row>
+[[nodiscard]] StoredCommand command_of(Row& row) {
+  StoredCommand command;
+  command.number = row.integer();
+  command.t = row.time();
+  command.sender = row.text();
+  command.apid = row.template number<std::uint16_t>();
+  command.subsystem = row.text();
+  command.function = row.text();
+  command.arguments = row.text();
+  command.stage = row.text();
+  command.code = row.optional();
+  command.reason = row.text();
+  return command;
+}
+
+}  // namespace
+
+std::vector<StoredCommand> Archive::commands(const Filter& filter) {
+  const char* sql = filter.newest_first
+                        ? "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM "
+                          "commands WHERE t >= ? AND t <= ? AND (subsystem || ' ' || function || ' ' || sender) LIKE ? "
+                          "ESCAPE '\\' ORDER BY t DESC, id DESC LIMIT ?"
+                        : "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM "
+                          "commands WHERE t >= ? AND t <= ? AND (subsystem || ' ' || function || ' ' || sender) LIKE ? "
+                          "ESCAPE '\\' ORDER BY t, id LIMIT ?";
+  Statement find{database_, sql};
+  find << filter.span.from << filter.span.to << pattern_of(filter.text) << static_cast<std::int64_t>(filter.limit);
+  std::vector<StoredCommand> commands;
+  while (find.row()) commands.push_back(command_of(find));
+  return commands;
+}
+
+std::optional<StoredCommand> Archive::command(std::int64_t number) {
+  Statement find{database_,
+                 "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM commands "
+                 "WHERE id = ?"};
+  find << number;
+  if (!find.row()) return std::nullopt;
+  return command_of(find);
+}
+
+std::vector<StoredReport> Archive::reports(std::int64_t command) {
+  Statement find{database_, "SELECT t, stage, code, reason FROM reports WHERE command = ? ORDER BY id"};
+  find << command;
+  std::vector<StoredReport> reports;
+  while (find.row()) {
+    StoredReport report{.t = find.time(), .stage = find.text(), .code = find.optional(), .reason = {}};
+    report.reason = find.text();
+    reports.push_back(std::move(report));
+  }
+  return reports;
+}
+
+std::vector<std::pair<std::int64_t, StoredReport>> Archive::reports_in(const Span& span) {
+  Statement find{database_,
+                 "SELECT command, t, stage, code, reason FROM reports WHERE t >= ? AND t <= ? ORDER BY t, id"};
+  find << span.from << span.to;
+  std::vector<std::pair<std::int64_t, StoredReport>> reports;
+  while (find.row()) {
+    const std::int64_t command = find.integer();
+    StoredReport report{.t = find.time(), .stage = find.text(), .code = find.optional(), .reason = {}};
+    report.reason = find.text();
+    reports.emplace_back(command, std::move(report));
+  }
+  return reports;
+}
+
+std::vector<StoredChange> Archive::changes(const Span& span) {
+  std::vector<StoredChange> changes;
+  const auto take = [&](Statement& find) {
+    while (find.row()) {
+      StoredChange change{.t = find.time(), .kind = find.text(), .name = find.text(), .value = {}};
+      change.value = find.text();
+      changes.push_back(std::move(change));
+    }
+  };
+  // SQLite takes the other columns from the row that has the greatest time.
+  Statement before{database_, "SELECT max(t), kind, name, value FROM changes WHERE t < ? GROUP BY kind, name"};
+  before << span.from;
+  take(before);
+  for (StoredChange& change : changes) change.t = span.from;
+  Statement within{database_, "SELECT t, kind, name, value FROM changes WHERE t >= ? AND t <= ? ORDER BY t, id"};
+  within << span.from << span.to;
+  take(within);
+  return changes;
+}
+
+std::vector<StoredGap> Archive::gaps(const Span& span) {
+  Statement find{database_, "SELECT t, until FROM gaps WHERE until >= ? AND t <= ? ORDER BY t"};
+  find << span.from << span.to;
+  std::vector<StoredGap> gaps;
+  while (find.row()) {
+    StoredGap gap{.from = find.time()};
+    gap.to = find.time();
+    gaps.push_back(gap);
+  }
+  return gaps;
+}
+
+std::vector<StoredFault> Archive::faults(const Span& span) {
+  Statement find{database_, "SELECT t, device, line, answer FROM faults WHERE t >= ? AND t <= ? ORDER BY t"};
+  find << span.from << span.to;
+  std::vector<StoredFault> faults;
+  while (find.row()) {
+    StoredFault fault{.t = find.time(), .device = find.text(), .line = find.text(), .answer = {}};
+    fault.answer = find.text();
+    faults.push_back(std::move(fault));
+  }
+  return faults;
+}
+
+}  // namespace hirosco::ground

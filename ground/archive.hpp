@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+/// The memory of the ground station: every packet as it came, and what the live view made of it. The packets are the
+/// truth; histories and replay decode them again.
+namespace hirosco::ground {
+
+struct StoredPacket {
+  OnboardTime t{};
+  std::uint16_t apid{};
+  std::uint8_t service{};
+  std::uint8_t subtype{};
+  std::uint16_t sid{};               ///< of TM[3,25], else 0
+  std::vector<std::byte> octets;
+};
+struct StoredEvent {
+  OnboardTime t{};
+  std::uint16_t apid{};
+  std::string subsystem;
+  std::uint16_t id{};
+  std::string name;
+  int severity{};
+  std::string text;
+  std::string values;                ///< a JSON object
+};
+struct StoredCommand {
+  std::int64_t number{};
+  OnboardTime t{};
+  std::string sender;
+  std::uint16_t apid{};
+  std::string subsystem;
+  std::string function;
+  std::string arguments;             ///< a JSON object
+  std::string stage;
+  std::optional<int> code;
+  std::string reason;
+};
+struct StoredReport {
+  OnboardTime t{};
+  std::string stage;
+  std::optional<int> code;
+  std::string reason;
+};
+/// The mode, a subsystem's state, a link: what it is from `t` on.
+struct StoredChange {
+  OnboardTime t{};
+  std::string kind;                  ///< "mode", "state", "link"
+  std::string name;                  ///< of the subsystem, id of the link, "" of the mode
+  std::string value;
+};
+struct StoredGap {
+  OnboardTime from{};
+  OnboardTime to{};
+};
+struct StoredFault {
+  OnboardTime t{};
+  std::string device;
+  std::string line;
+  std::string answer;
+};
+/// A span of time and what is wanted of it.
+struct Span {
+  OnboardTime from{};
+  OnboardTime to{OnboardTime::max()};
+};
+
+/// SQLite in write-ahead mode: what is committed survives the end of this process, however it comes about.
+/// Thread: one.
+class Archive {
+ public:
+  /// ":memory:" for one that is forgotten. Old packets make room when the file would exceed `limit_octets`.
+  [[nodiscard]] static Result<std::unique_ptr<Archive>> open(const std::string& path,
+                                                             std::int64_t limit_octets = std::int64_t{4} << 30);
+  ~Archive();
+  Archive(const Archive&) = delete;
+  Archive& operator=(const Archive&) = delete;
+
+  /// What was added since the last call is kept from now on.
+  void commit();
+  /// Deletes the oldest tenth of the packets when the limit is reached. Call now and then.
+  void keep_within_limit();
+  /// Additions and commits that the disk refused.
+  [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
+
+  void add(const StoredPacket& packet, Octets octets);
+  void add(const StoredEvent& event);
+  [[nodiscard]] std::int64_t add(const StoredCommand& command);
+  void add(std::int64_t command, const StoredReport& report);
+  void add(const StoredChange& change);
+  void add(const StoredGap& gap);
+  void add(const StoredFault& fault);
+
+  /// Times of the oldest and newest packet.
+  [[nodiscard]] std::optional<Span> extent();
+  /// In order of time; `take` says whether to go on.
+  void packets(const Span& span, const std::function<bool(const StoredPacket&)>& take);
+  void packets_of(std::uint16_t apid, std::uint16_t sid, const Span& span,
+                  const std::function<bool(const StoredPacket&)>& take);
+  /// The newest one before a time.
+  [[nodiscard]] std::optional<StoredPacket> last_of(std::uint16_t apid, std::uint16_t sid, OnboardTime before);
+
+  struct Filter {
+    Span span;
+    int severity{0};                 ///< the lowest
+    std::string text;
+    std::size_t limit{200};
+    bool newest_first{true};
+  };
+  [[nodiscard]] std::vector<StoredEvent> events(const Filter& filter);
+  [[nodiscard]] std::vector<StoredCommand> commands(const Filter& filter);
+  [[nodiscard]] std::optional<StoredCommand> command(std::int64_t number);
+  [[nodiscard]] std::vector<StoredReport> reports(std::int64_t command);
+  /// Of all commands, in order of time: number of the command and its report.
+  [[nodiscard]] std::vector<std::pair<std::int64_t, StoredReport>> reports_in(const Span& span);
+  /// Begins with what held at the beginning of the span.
+  [[nodiscard]] std::vector<StoredChange> changes(const Span& span);
+  [[nodiscard]] std::vector<StoredGap> gaps(const Span& span);
+  [[nodiscard]] std::vector<StoredFault> faults(const Span& span);
+
+ private:
+  class Statement;
+  explicit Archive(sqlite3* database, std::int64_t limit_octets) : database_{database}, limit_octets_{limit_octets} {}
+  void begin();
+  [[nodiscard]] bool execute(const char* sql);
+
+  sqlite3* database_;
+  std::int64_t limit_octets_;
+  bool in_transaction_{false};
+  std::uint64_t failures_{0};
+  sqlite3_stmt* add_packet_{nullptr};
+};
+
+}  // namespace hirosco::ground

@@ -1,0 +1,470 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/http_server.hpp"
+
+#include <utility>  // before Asio: Boost 1.74 forgets it
+
+#include <boost/asio.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <deque>
+#include <set>
+
+/// The only file that knows Boost. One thread, nothing blocks; every queue has a limit.
+namespace hirosco::ground {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using Failure = boost::system::error_code;
+
+constexpr auto request_limit = std::chrono::seconds{30};
+constexpr auto device_limit = std::chrono::seconds{2};
+constexpr auto reconnect_pause = std::chrono::milliseconds{300};
+constexpr std::size_t most_header_octets = std::size_t{16} << 10;
+constexpr std::size_t most_message_octets = std::size_t{4} << 10;
+constexpr std::size_t most_waiting_telecommands = std::size_t{256} << 10;
+
+class Server;
+
+[[nodiscard]] HttpRequest plain(const http::request<http::string_body>& request) {
+  HttpRequest copy;
+  copy.method = std::string{request.method_string()};
+  copy.target = std::string{request.target()};
+  copy.body = request.body();
+  for (const auto& field : request) {
+    std::string name{field.name_string()};
+    for (char& letter : name) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    // Two of one name could mean two things to two readers: neither counts.
+    const auto [known, first] = copy.headers.emplace(name, std::string{field.value()});
+    if (!first) known->second = "\n";
+  }
+  return copy;
+}
+
+[[nodiscard]] http::response<http::string_body> boxed(const HttpResponse& response, unsigned version, bool keep_alive) {
+  http::response<http::string_body> message{static_cast<http::status>(response.status), version};
+  message.set(http::field::content_type, response.type);
+  for (const auto& [name, value] : response.headers) message.set(name, value);
+  message.body() = response.body;
+  message.keep_alive(keep_alive);
+  message.prepare_payload();
+  return message;
+}
+
+/// One WebSocket. Lives while the server lists it or a handler of it is pending.
+class SocketPeer final : public Peer, public std::enable_shared_from_this<SocketPeer> {
+ public:
+  SocketPeer(Server& server, beast::tcp_stream stream) : server_{server}, socket_{std::move(stream)} {}
+  void accept(http::request<http::string_body> request);
+  void send(std::string text) override;
+  [[nodiscard]] std::size_t pending_octets() const override { return pending_; }
+  void close(std::uint16_t code, const std::string& reason) override;
+  void drop();
+
+ private:
+  void read();
+  void write();
+  void ended();
+
+  Server& server_;
+  websocket::stream<beast::tcp_stream> socket_;
+  http::request<http::string_body> request_;
+  beast::flat_buffer buffer_;
+  std::deque<std::string> queue_;
+  std::size_t pending_{0};
+  bool open_{false};
+  bool writing_{false};
+  bool closing_{false};
+};
+
+/// One HTTP connection: a request at a time.
+class Connection final : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(Server& server, tcp::socket socket) : server_{server}, stream_{std::move(socket)} {}
+  ~Connection();
+  void read();
+  void drop() { stream_.close(); }
+
+ private:
+  void handle();
+  void respond(const HttpResponse& response);
+
+  Server& server_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{most_header_octets + HttpServer::most_body_octets};
+  std::optional<http::request_parser<http::string_body>> parser_;
+  std::optional<http::response<http::string_body>> response_;
+};
+
+class Server final : public HttpServer {
+ public:
+  explicit Server(Options options) : options_{std::move(options)} {}
+  [[nodiscard]] Result<> open();
+  [[nodiscard]] std::uint16_t port() const override { return port_; }
+  void run(Application& application) override;
+  void stop() override {
+    asio::post(io_, [this] { shut(); });
+  }
+  [[nodiscard]] bool send(Octets packet) override;
+  void ask(const std::string& socket_path, const std::string& line,
+           std::function<void(std::optional<std::string>)> done) override;
+
+  [[nodiscard]] Application& application() noexcept { return *application_; }
+  std::set<std::shared_ptr<SocketPeer>> peers;
+  std::set<Connection*> connections;
+  asio::io_context& io() noexcept { return io_; }
+
+ private:
+  void accept();
+  void tick();
+  void shut();
+  void watch_input();
+  void connect();
+  void read_link();
+  void write_link();
+  void lose_link();
+
+  Options options_;
+  asio::io_context io_{1};
+  tcp::acceptor acceptor_{io_};
+  asio::steady_timer ticker_{io_};
+  asio::steady_timer pause_{io_};
+  asio::signal_set signals_{io_, SIGINT, SIGTERM};
+  asio::posix::stream_descriptor input_{io_};
+  std::array<char, 64> input_buffer_{};
+  Application* application_{nullptr};
+  std::uint16_t port_{0};
+  bool ending_{false};
+
+  tcp::endpoint spacecraft_;
+  tcp::socket link_{io_};
+  bool linked_{false};
+  bool link_writing_{false};
+  std::array<std::byte, std::size_t{64} << 10> link_buffer_{};
+  std::deque<std::vector<std::byte>> link_queue_;
+  std::size_t link_pending_{0};
+};
+
+// --- WebSocket -----------------------------------------------------------------------------------------------------------
+
+void SocketPeer::accept(http::request<http::string_body> request) {
+  request_ = std::move(request);
+  beast::get_lowest_layer(socket_).expires_never();
+  auto limits = websocket::stream_base::timeout::suggested(beast::role_type::server);
+  limits.idle_timeout = std::chrono::seconds{30};
+  limits.keep_alive_pings = true;
+  socket_.set_option(limits);
+  socket_.read_message_max(most_message_octets);
+  socket_.text(true);
+  server_.peers.insert(shared_from_this());
+  socket_.async_accept(request_, [self = shared_from_this()](Failure failed) {
+    if (failed) {
+      self->server_.peers.erase(self);
+      return;
+    }
+    self->open_ = true;
+    self->server_.application().opened(plain(self->request_), *self);
+    self->read();
+  });
+}
+
+void SocketPeer::read() {
+  socket_.async_read(buffer_, [self = shared_from_this()](Failure failed, std::size_t) {
+    if (failed) return self->ended();
+    const std::string text = beast::buffers_to_string(self->buffer_.data());
+    self->buffer_.consume(self->buffer_.size());
+    self->server_.application().received(*self, text);
+    self->read();
+  });
+}
+
+void SocketPeer::send(std::string text) {
+  if (!open_ || closing_) return;
+  pending_ += text.size();
+  queue_.push_back(std::move(text));
+  if (!writing_) write();
+}
+
+void SocketPeer::write() {
+  writing_ = true;
+  socket_.async_write(asio::buffer(queue_.front()), [self = shared_from_this()](Failure failed, std::size_t) {
+    self->writing_ = false;
+    if (failed) return self->ended();
+    self->pending_ -= self->queue_.front().size();
+    self->queue_.pop_front();
+    if (!self->queue_.empty()) self->write();
+  });
+}
+
+void SocketPeer::close(std::uint16_t code, const std::string& reason) {
+  if (closing_) return;
+  closing_ = true;
+  // Who takes nothing would not take a closing word either: it is said if there is room, and the line is cut.
+  websocket::close_reason why{static_cast<websocket::close_code>(code)};
+  why.reason = reason.substr(0, 100);
+  if (!writing_) socket_.async_close(why, [self = shared_from_this()](Failure) {});
+  auto timer = std::make_shared<asio::steady_timer>(server_.io(), std::chrono::milliseconds{500});
+  timer->async_wait([self = shared_from_this(), timer](Failure) { self->drop(); });
+}
+
+void SocketPeer::drop() { beast::get_lowest_layer(socket_).close(); }
+
+void SocketPeer::ended() {
+  if (!open_) return;
+  open_ = false;
+  drop();
+  server_.application().closed(*this);
+  server_.peers.erase(shared_from_this());
+}
+
+// --- HTTP ----------------------------------------------------------------------------------------------------------------
+
+Connection::~Connection() { server_.connections.erase(this); }
+
+void Connection::read() {
+  parser_.emplace();
+  parser_->header_limit(most_header_octets);
+  parser_->body_limit(HttpServer::most_body_octets);
+  stream_.expires_after(request_limit);
+  http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Failure failed, std::size_t) {
+    if (failed == http::error::body_limit) {
+      HttpResponse response{.status = 413, .body = R"({"error":"more than 64 KiB"})", .headers = {}};
+      response.headers.emplace_back("Connection", "close");
+      return self->respond(response);
+    }
+    if (!failed) self->handle();
+  });
+}
+
+void Connection::handle() {
+  const HttpRequest request = plain(parser_->get());
+  if (websocket::is_upgrade(parser_->get())) {
+    if (const auto refusal = server_.application().refuse_socket(request)) return respond(*refusal);
+    return std::make_shared<SocketPeer>(server_, std::move(stream_))->accept(parser_->release());
+  }
+  // Whoever answers later keeps the connection alive until then.
+  server_.application().handle(request,
+                               [self = shared_from_this()](const HttpResponse& response) { self->respond(response); });
+}
+
+void Connection::respond(const HttpResponse& response) {
+  const bool keep = parser_->is_done() && parser_->keep_alive() && response.status != 413;
+  const unsigned version = parser_->is_header_done() ? parser_->get().version() : 11;
+  response_ = boxed(response, version, keep);
+  if (parser_->is_header_done() && parser_->get().method() == http::verb::head) response_->body().clear();
+  stream_.expires_after(request_limit);
+  http::async_write(stream_, *response_, [self = shared_from_this(), keep](Failure failed, std::size_t) {
+    if (!failed && keep) return self->read();
+    Failure ignored;
+    self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+  });
+}
+
+// --- server --------------------------------------------------------------------------------------------------------------
+
+Result<> Server::open() {
+  const auto colon = options_.spacecraft.rfind(':');
+  Failure failed;
+  const auto address = asio::ip::make_address(options_.spacecraft.substr(0, colon), failed);
+  const int port = colon == std::string::npos ? 0 : std::atoi(options_.spacecraft.c_str() + colon + 1);
+  if (failed || port <= 0 || port > 65'535)
+    return fail(ErrorCode::InvalidArgument, "the spacecraft's address is not ADDRESS:PORT");
+  spacecraft_ = {address, static_cast<std::uint16_t>(port)};
+  const tcp::endpoint own{asio::ip::address_v4::loopback(), options_.port};
+  if (acceptor_.open(own.protocol(), failed); failed) return fail(ErrorCode::SystemFailure, "socket", failed.value());
+  acceptor_.set_option(asio::socket_base::reuse_address{true}, failed);
+  if (acceptor_.bind(own, failed); failed) return fail(ErrorCode::Unavailable, "the port is taken", failed.value());
+  if (acceptor_.listen(asio::socket_base::max_listen_connections, failed); failed)
+    return fail(ErrorCode::Unavailable, "the port is taken", failed.value());
+  port_ = acceptor_.local_endpoint().port();
+  return ok();
+}
+
+void Server::run(Application& application) {
+  application_ = &application;
+  signals_.async_wait([this](Failure failed, int) {
+    if (!failed) shut();
+  });
+  if (options_.end_with_input) {
+    Failure failed;
+    input_.assign(0, failed);
+    if (!failed) watch_input();
+  }
+  accept();
+  connect();
+  ticker_.expires_after(options_.tick_period);
+  tick();
+  io_.run();
+  // Their sockets must not outlive the loop.
+  for (const auto& peer : peers) application.closed(*peer);
+  peers.clear();
+}
+
+void Server::watch_input() {
+  input_.async_read_some(asio::buffer(input_buffer_), [this](Failure failed, std::size_t) {
+    if (failed == asio::error::operation_aborted) return;
+    if (failed) return shut();
+    watch_input();
+  });
+}
+
+void Server::shut() {
+  if (ending_) return;
+  ending_ = true;
+  Failure ignored;
+  acceptor_.close(ignored);
+  signals_.cancel(ignored);
+  ticker_.cancel();
+  pause_.cancel();
+  link_.close(ignored);
+  if (input_.is_open()) static_cast<void>(input_.release());
+  for (const auto& peer : std::set{peers}) peer->drop();
+  for (Connection* connection : std::set{connections}) connection->drop();
+  // What is pending ends now; handlers of closed sockets are not waited for.
+  io_.stop();
+}
+
+void Server::accept() {
+  acceptor_.async_accept([this](Failure failed, tcp::socket socket) {
+    if (ending_) return;
+    if (!failed && connections.size() + peers.size() < most_connections) {
+      Failure ignored;
+      socket.set_option(tcp::no_delay{true}, ignored);
+      auto connection = std::make_shared<Connection>(*this, std::move(socket));
+      connections.insert(connection.get());
+      connection->read();
+    }
+    accept();
+  });
+}
+
+void Server::tick() {
+  ticker_.async_wait([this](Failure failed) {
+    if (failed || ending_) return;
+    application_->tick();
+    // A late tick is not made up for.
+    const auto next =
+        ticker_.expiry() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(options_.tick_period);
+    ticker_.expires_at(std::max(next, std::chrono::steady_clock::now()));
+    tick();
+  });
+}
+
+// --- the spacecraft's link -----------------------------------------------------------------------------------------------
+
+void Server::connect() {
+  link_ = tcp::socket{io_};
+  link_.async_connect(spacecraft_, [this](Failure failed) {
+    if (ending_) return;
+    if (failed) return lose_link();
+    Failure ignored;
+    link_.set_option(tcp::no_delay{true}, ignored);
+    linked_ = true;
+    application_->link_up();
+    read_link();
+  });
+}
+
+void Server::read_link() {
+  link_.async_read_some(asio::buffer(link_buffer_), [this](Failure failed, std::size_t octets) {
+    if (ending_) return;
+    if (failed || !application_->link_received(Octets{link_buffer_}.first(octets))) return lose_link();
+    read_link();
+  });
+}
+
+void Server::lose_link() {
+  Failure ignored;
+  link_.close(ignored);
+  link_queue_.clear();
+  link_pending_ = 0;
+  if (linked_) application_->link_down();
+  linked_ = false;
+  pause_.expires_after(reconnect_pause);
+  pause_.async_wait([this](Failure failed) {
+    if (!failed && !ending_) connect();
+  });
+}
+
+bool Server::send(Octets packet) {
+  if (!linked_ || link_pending_ + packet.size() > most_waiting_telecommands) return false;
+  link_pending_ += packet.size();
+  link_queue_.emplace_back(packet.begin(), packet.end());
+  if (!link_writing_) write_link();
+  return true;
+}
+
+void Server::write_link() {
+  link_writing_ = true;
+  auto packet = std::make_shared<std::vector<std::byte>>(std::move(link_queue_.front()));
+  link_queue_.pop_front();
+  asio::async_write(link_, asio::buffer(*packet), [this, packet](Failure, std::size_t) {
+    link_writing_ = false;
+    // A failure shows to the reader too, which makes a new link.
+    link_pending_ -= std::min(link_pending_, packet->size());
+    if (linked_ && !link_queue_.empty()) write_link();
+  });
+}
+
+// --- devices -------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// One question to one control socket.
+struct Question final : std::enable_shared_from_this<Question> {
+  explicit Question(asio::io_context& io) : socket{io}, timer{io} {}
+  void finish(std::optional<std::string> result) {
+    if (!done) return;
+    const auto tell = std::exchange(done, nullptr);
+    Failure ignored;
+    socket.close(ignored);
+    timer.cancel();
+    tell(std::move(result));
+  }
+  asio::local::stream_protocol::socket socket;
+  asio::steady_timer timer;
+  std::string line;
+  std::string answer;
+  std::function<void(std::optional<std::string>)> done;
+};
+
+}  // namespace
+
+void Server::ask(const std::string& socket_path, const std::string& line,
+                 std::function<void(std::optional<std::string>)> done) {
+  constexpr std::size_t longest_path = 107;
+  if (socket_path.size() > longest_path) return done(std::nullopt);
+  auto question = std::make_shared<Question>(io_);
+  question->line = line + "\n";
+  question->done = std::move(done);
+  question->timer.expires_after(device_limit);
+  question->timer.async_wait([question](Failure failed) {
+    if (!failed) question->finish(std::nullopt);
+  });
+  question->socket.async_connect(asio::local::stream_protocol::endpoint{socket_path}, [question](Failure failed) {
+    if (failed) return question->finish(std::nullopt);
+    asio::async_write(question->socket, asio::buffer(question->line), [question](Failure lost, std::size_t) {
+      if (lost) return question->finish(std::nullopt);
+      asio::async_read_until(question->socket, asio::dynamic_buffer(question->answer, std::size_t{4096}), '\n',
+                             [question](Failure cut, std::size_t octets) {
+                               if (cut) return question->finish(std::nullopt);
+                               question->finish(question->answer.substr(0, octets - 1));
+                             });
+    });
+  });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<HttpServer>> HttpServer::listen(const Options& options) {
+  auto server = std::make_unique<Server>(options);
+  HIROSCO_TRY(server->open());
+  return server;
+}
+
+}  // namespace hirosco::ground

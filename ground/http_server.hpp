@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ground/session.hpp"
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// The shell of the ground station: loop, sockets, timer. All of Boost stands behind this interface, in one file.
+namespace hirosco::ground {
+
+struct HttpRequest {
+  std::string method;
+  std::string target;                ///< path and query as sent
+  std::map<std::string, std::string> headers;  ///< names in small letters
+  std::string body;
+};
+struct HttpResponse {
+  unsigned status{200};
+  std::string type{"application/json"};
+  std::string body;
+  std::vector<std::pair<std::string, std::string>> headers;
+};
+
+/// What the server serves. Every call comes from the thread of run().
+class Application {
+ public:
+  virtual ~Application() = default;
+  /// Answers now or later, once.
+  virtual void handle(const HttpRequest& request, std::function<void(HttpResponse)> respond) = 0;
+  /// A WebSocket asks to be opened: empty lets it in.
+  [[nodiscard]] virtual std::optional<HttpResponse> refuse_socket(const HttpRequest& request) = 0;
+  virtual void opened(const HttpRequest& request, Peer& peer) = 0;
+  virtual void received(const Peer& peer, const std::string& text) = 0;
+  virtual void closed(const Peer& peer) = 0;
+  /// The spacecraft's stream.
+  virtual void link_up() = 0;
+  virtual void link_down() = 0;
+  /// False: close the link and make a new one.
+  [[nodiscard]] virtual bool link_received(Octets octets) = 0;
+  virtual void tick() = 0;
+};
+
+class HttpServer {
+ public:
+  struct Options {
+    std::uint16_t port{8080};          ///< on the loopback address, no other
+    std::string spacecraft{"127.0.0.1:10015"};
+    Duration tick_period{std::chrono::milliseconds{50}};
+    /// End when standard input ends: the process that started us is gone.
+    bool end_with_input{false};
+  };
+  static constexpr std::size_t most_connections = 64;
+  static constexpr std::size_t most_body_octets = std::size_t{64} << 10;
+
+  /// Unavailable: the port is taken.
+  [[nodiscard]] static Result<std::unique_ptr<HttpServer>> listen(const Options& options);
+  virtual ~HttpServer() = default;
+  /// Port that was taken; of interest when 0 was asked for.
+  [[nodiscard]] virtual std::uint16_t port() const = 0;
+  /// Serves until SIGINT, SIGTERM or stop().
+  virtual void run(Application& application) = 0;
+  virtual void stop() = 0;
+
+  // --- for the application, from the thread of run() ------------------------------------------------------------------
+  /// To the spacecraft; false without a link, or when it takes nothing.
+  [[nodiscard]] virtual bool send(Octets packet) = 0;
+  /// One line to a UNIX stream socket and its answer, within 2 s; empty when nobody answers.
+  virtual void ask(const std::string& socket_path, const std::string& line,
+                   std::function<void(std::optional<std::string>)> done) = 0;
+};
+
+}  // namespace hirosco::ground

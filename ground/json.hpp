@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "hirosco/utilities/time.hpp"
+
+/// How numbers, times and hostile texts stand in the ground station's JSON (ground/api/README.md).
+namespace hirosco::ground {
+
+/// JSON has no NaN and no infinities: they are texts that JavaScript's Number() understands.
+[[nodiscard]] inline nlohmann::json json_number(double number) {
+  if (std::isnan(number)) return "NaN";
+  if (std::isinf(number)) return number > 0 ? "Infinity" : "-Infinity";
+  // Whole numbers without ".0": counters read better and are shorter.
+  constexpr double exact = 9.0e15;
+  if (number == std::floor(number) && std::abs(number) < exact) return static_cast<std::int64_t>(number);
+  return number;
+}
+
+[[nodiscard]] inline double json_time(OnboardTime t) { return seconds(t.time_since_epoch()); }
+
+/// Times that do not fit become the nearest that does.
+[[nodiscard]] inline OnboardTime onboard_time(double t) {
+  constexpr double longest_s = 9.0e9;
+  if (std::isnan(t)) return {};
+  const double clamped = t > longest_s ? longest_s : t < 0.0 ? 0.0 : t;
+  return OnboardTime{Duration{static_cast<std::int64_t>(clamped * 1e9)}};
+}
+
+/// A text of an object; empty when there is none.
+[[nodiscard]] inline std::string text_of(const nlohmann::json& object, const char* name) {
+  if (!object.is_object()) return {};
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string{};
+}
+
+/// Octets that are no UTF-8 are replaced instead of thrown about.
+[[nodiscard]] inline std::string to_string(const nlohmann::json& value) {
+  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace hirosco::ground

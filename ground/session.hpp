@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ground/archive.hpp"
+#include "ground/catalogue.hpp"
+#include "ground/model.hpp"
+
+/// The ground station without sockets: takes octets and points in time, says what to send. Thread: one.
+namespace hirosco::ground {
+
+/// The other end of one WebSocket.
+class Peer {
+ public:
+  virtual ~Peer() = default;
+  /// Queues a message; never blocks.
+  virtual void send(std::string text) = 0;
+  /// Octets that the network has not yet taken.
+  [[nodiscard]] virtual std::size_t pending_octets() const = 0;
+  virtual void close(std::uint16_t code, const std::string& reason) = 0;
+};
+
+/// What the session asks of the shell around it.
+struct Surroundings {
+  /// Sends a telecommand to the spacecraft; false without a link.
+  std::function<bool(Octets)> send;
+  /// One line to the control socket of a simulated device; the answer comes later, empty when nobody answers.
+  std::function<void(const std::string& device, const std::string& line,
+                     std::function<void(std::optional<std::string>)>)>
+      ask_device;
+};
+
+/// Why a request was not done, as an HTTP status.
+struct Refusal {
+  unsigned status{400};
+  std::string text;
+};
+template <class T>
+using Answered = std::expected<T, Refusal>;
+
+class Client;
+
+class Session {
+ public:
+  struct Parts {
+    const Catalogue& catalogue;
+    Archive& archive;
+    const Clock& clock;
+    Surroundings outside;
+    std::uint16_t source{0x2000};      ///< of its telecommands (decision 27)
+    std::uint16_t first_count{0};
+  };
+  explicit Session(Parts parts);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  // --- the link -----------------------------------------------------------------------------------------------------
+  void link_up();
+  void link_down();
+  /// Octets of the telemetry stream as they come, in pieces of any size. False: this is no telemetry, close the link.
+  [[nodiscard]] bool receive(Octets octets);
+  /// Batches to the clients, limits of time. Call 20 times a second.
+  void tick();
+
+  // --- clients ------------------------------------------------------------------------------------------------------
+  /// Client::id of a new client; it is told everything at once. `peer` lives until closed().
+  std::string opened(Peer& peer, bool is_operator);
+  void received(const Peer& peer, const std::string& text);
+  void closed(const Peer& peer);
+  /// Whether this client looks at the past: its commands are refused.
+  [[nodiscard]] bool in_replay(const std::string& client) const;
+
+  // --- requests (bodies as in ground/api/README.md) -----------------------------------------------------------------
+  [[nodiscard]] Answered<nlohmann::json> command(const nlohmann::json& body);
+  /// Answers through `done`, at the latest after 2 s.
+  void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
+  void fault(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
+  [[nodiscard]] nlohmann::json status() const;
+
+  [[nodiscard]] const Catalogue& catalogue() const noexcept { return parts_.catalogue; }
+  [[nodiscard]] Archive& archive() const noexcept { return parts_.archive; }
+  [[nodiscard]] const Model& model() const noexcept { return model_; }
+  /// On-board time now as far as the ground can tell.
+  [[nodiscard]] OnboardTime now() const;
+  [[nodiscard]] std::size_t client_count() const noexcept { return clients_.size(); }
+
+ private:
+  friend class Client;
+  struct Prepared {
+    const descriptor::Subsystem* subsystem{};
+    std::string function;
+    std::uint8_t service{8};
+    std::string arguments;  ///< a JSON object with the values that are sent
+    std::vector<std::byte> data;
+  };
+  [[nodiscard]] Answered<Prepared> prepare(const nlohmann::json& body) const;
+  [[nodiscard]] Answered<std::vector<std::byte>> packet_of(std::uint16_t apid, std::uint8_t service,
+                                                           std::uint8_t subtype, std::uint8_t ack, Octets data,
+                                                           std::uint16_t count) const;
+  void take_packet(Octets octets);
+  void count_lost(const pus::TelemetryView& packet);
+  void add_gap(OnboardTime from, OnboardTime to);
+  void take_verdict(const Verdict& verdict, OnboardTime t);
+  void take_answer(const PermissionAnswer& answer);
+  void expire(TimePoint now);
+  [[nodiscard]] nlohmann::json link_json() const;
+  [[nodiscard]] std::uint16_t next_count();
+  void broadcast(const nlohmann::json& message);
+
+  Parts parts_;
+  Model model_;
+  std::vector<std::byte> stream_;
+  bool connected_{false};
+  bool fresh_link_{false};
+  TimePoint newest_received_{};
+  std::uint64_t received_{0}, sent_{0}, lost_{0}, damaged_{0};
+  std::map<std::uint16_t, std::pair<std::uint16_t, OnboardTime>> expected_;  ///< by APID: next count, last time
+  std::optional<OnboardTime> last_known_;  ///< end of what the archive has before this link
+
+  struct Open {
+    std::int64_t number{};
+    TimePoint since{};
+  };
+  std::map<std::pair<std::uint16_t, std::uint32_t>, Open> open_commands_;  ///< by destination and request id
+  struct Question {
+    std::string octets;
+    std::function<void(Answered<nlohmann::json>)> done;
+    TimePoint since{};
+  };
+  std::multimap<std::uint32_t, Question> questions_;
+  std::uint16_t count_;
+  std::vector<std::unique_ptr<Client>> clients_;
+  std::uint64_t next_client_{1};
+  TimePoint next_housekeeping_{};
+};
+
+// --- shared with replay and the requests ---------------------------------------------------------------------------------
+[[nodiscard]] nlohmann::json event_json(const StoredEvent& event);
+[[nodiscard]] nlohmann::json command_json(const StoredCommand& command);
+[[nodiscard]] nlohmann::json report_json(const StoredReport& report);
+/// What a model says of mode, subsystems and links at a time; without `link` and `values`.
+[[nodiscard]] nlohmann::json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now);
+/// {NAME: [v, t]} of what is newer than a revision.
+[[nodiscard]] nlohmann::json values_json(const Catalogue& catalogue, const Model& model, std::uint64_t since);
+
+}  // namespace hirosco::ground

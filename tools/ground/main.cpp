@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+
+#include "ground/api.hpp"
+#include "ground/http_server.hpp"
+#include "hirosco/subsystem/states.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+#include "tools/hirosco/commands.hpp"
+
+/// `hirosco-ground`: the process behind `hirosco ground` and `hirosco why`, which check the command line. Options in
+/// pairs: --name value.
+namespace {
+
+using namespace hirosco;
+using namespace hirosco::ground;
+namespace fs = std::filesystem;
+using Options = std::map<std::string, std::string>;
+
+[[nodiscard]] std::string new_token() {
+  std::random_device device;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
+  return token;
+}
+
+[[nodiscard]] std::string option(const Options& options, const std::string& name, const std::string& otherwise = "") {
+  const auto found = options.find(name);
+  return found != options.end() ? found->second : otherwise;
+}
+
+[[nodiscard]] std::vector<Transition> state_table() {
+  std::vector<Transition> table;
+  for (const Edge& edge : transitions) table.push_back({edge.from, edge.to, edge.kind == EdgeKind::Failure});
+  return table;
+}
+
+/// Beside the log that the supervisor writes.
+[[nodiscard]] fs::path archive_of(const descriptor::Mission& mission) {
+  fs::path path = mission.database.path;
+  if (path.empty()) path = "log/" + mission.name + ".db";
+  return path.replace_filename(path.stem().string() + "-ground.db");
+}
+
+[[nodiscard]] fs::path page_folder() {
+  std::error_code failed;
+  return fs::read_symlink("/proc/self/exe", failed).parent_path().parent_path() / "share" / "ground";
+}
+
+[[nodiscard]] int print_why(Session& session) {
+  Api api{session, {.token = "-", .observer_token = {}, .page = {}, .transitions = {}}};
+  const HttpRequest request{"GET", "/api/why", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer -"}}, {}};
+  api.handle(request, [](const HttpResponse& response) { fmt::print("{}\n", response.body); });
+  return tools::exit_ok;
+}
+
+[[nodiscard]] int serve(const Options& options, const descriptor::Mission& mission, const Catalogue& catalogue,
+                        Archive& archive) {
+  const SystemClock clock;
+  HttpServer::Options server_options;
+  server_options.port = static_cast<std::uint16_t>(std::atoi(option(options, "--port", "8080").c_str()));
+  server_options.spacecraft = option(options, "--telemetry", mission.ground.telemetry);
+  server_options.end_with_input = options.contains("--child");
+  auto server = HttpServer::listen(server_options);
+  if (!server) {
+    fmt::print(stderr, "hirosco ground: port {}: {} (another one: --port N; none at all: hirosco run --no-ground)\n",
+               server_options.port, server.error().text);
+    return tools::exit_environment;
+  }
+  HttpServer& shell = **server;
+  const fs::path devices = tools::runtime_folder(mission);
+  Surroundings outside;
+  outside.send = [&](Octets packet) { return shell.send(packet); };
+  outside.ask_device = [&](const std::string& device, const std::string& line, auto done) {
+    shell.ask((devices / device).string(), line, std::move(done));
+  };
+  const auto process = static_cast<unsigned>(::getpid());
+  Session session{{.catalogue = catalogue,
+                   .archive = archive,
+                   .clock = clock,
+                   .outside = std::move(outside),
+                   .source = static_cast<std::uint16_t>(0x2000U | (process & 0x1FFFU)),
+                   .first_count = static_cast<std::uint16_t>(std::random_device{}() & 0x3FFFU)}};
+  // Not in the arguments, which everybody on this computer can read.
+  const char* given = std::getenv("HIROSCO_GROUND_TOKEN");
+  const char* observer = std::getenv("HIROSCO_GROUND_OBSERVER_TOKEN");
+  const std::string token = given != nullptr && *given != '\0' ? given : new_token();
+  Api api{session,
+          {.token = token,
+           .observer_token = observer != nullptr ? observer : "",
+           .port = shell.port(),
+           .page = option(options, "--page", page_folder().string()),
+           .transitions = state_table()}};
+  const std::string url = fmt::format("http://127.0.0.1:{}/#token={}", shell.port(), token);
+  if (options.contains("--json")) fmt::print("{{\"url\":\"{}\"}}\n", url);
+  else if (!options.contains("--quiet")) fmt::print("ground station: {}\n", url);
+  std::fflush(stdout);
+  shell.run(api);
+  return tools::exit_ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  const std::set<std::string> flags{"--child", "--json", "--quiet", "--why"};
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    if (flags.contains(name)) options[name] = "";
+    else if (i + 1 < argc) options[name] = argv[++i];
+  }
+  auto mission = tools::load_mission(option(options, "--mission"));
+  if (!mission) return tools::exit_finding;
+  const fs::path path = option(options, "--archive", archive_of(*mission).string());
+  std::error_code failed;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), failed);
+  auto archive = Archive::open(path.string());
+  if (!archive) {
+    fmt::print(stderr, "hirosco ground: {}: {}\n", path.string(), archive.error().text);
+    return tools::exit_environment;
+  }
+  const Catalogue catalogue{*mission};
+  if (!options.contains("--why")) return serve(options, *mission, catalogue, **archive);
+  const SystemClock clock;
+  Session session{{.catalogue = catalogue, .archive = **archive, .clock = clock, .outside = {}}};
+  return print_why(session);
+}
