@@ -13,8 +13,10 @@ namespace {
 constexpr std::uint16_t manipulator_apid = 10;
 constexpr std::uint16_t cycle_report = 4713;
 
-ArmParameters planted(const Plant& plant) {
+ArmParameters arm_of(const CraftOptions& options) {
+  const Plant& plant = options.plant;
   ArmParameters arm;
+  arm.contour.bump_height_m = options.bump_m;
   arm.joint.stiffness_n_m_per_rad *= plant.stiffness;
   arm.contour.stiffness_n_per_m *= plant.rail;
   for (LinkParameters& link : arm.links) {
@@ -36,6 +38,7 @@ void each_initial(descriptor::Mission& mission, const std::function<void(std::st
 
 void edit(descriptor::Mission& mission, const CraftOptions& options) {
   if (!options.hand_of_mission) hand_rests(mission);
+  if (!options.start_mode.empty()) mission.start_mode = options.start_mode;
   each_initial(mission, [&](const std::string& name, std::vector<double>& init) {
     if (const auto value = options.initial.find(name); value != options.initial.end()) init = {value->second};
     if (name == "JOYSTICK.FORCE_SCALE" && !init.empty()) init[0] *= options.plant.force_scale;
@@ -54,8 +57,8 @@ Plan CoupledCraft::plan_of(const CraftOptions& options) {
   plan.mission = options.mission;
   plan.seed = options.seed;
   plan.edit = [&options](descriptor::Mission& mission) { edit(mission, options); };
-  plan.devices["hirosco-sim-robot"] = [arm = planted(options.plant)](FlowFactory& flows, const FlowAddress& address,
-                                                                     const SimulatedDevice::Settings& settings) {
+  plan.devices["hirosco-sim-robot"] = [arm = arm_of(options)](FlowFactory& flows, const FlowAddress& address,
+                                                              const SimulatedDevice::Settings& settings) {
     return std::make_unique<RobotDevice>(flows, address, settings, arm);
   };
   return plan;
@@ -75,6 +78,13 @@ void CoupledCraft::hand(const std::string& line) {
 }
 
 void CoupledCraft::run(double seconds) { craft().run(Duration{std::llround(seconds * 1e9)}); }
+
+void CoupledCraft::command(std::string_view subsystem, std::string_view function,
+                           const std::vector<double>& arguments) {
+  constexpr Duration limit = 60s;
+  if (!craft().command(subsystem, function, arguments, limit).completed)
+    throw std::runtime_error{"not completed: " + std::string{subsystem} + " " + std::string{function}};
+}
 
 void CoupledCraft::each_cycle(std::function<void()> watch) {
   craft().on_cycle([watch = std::move(watch)](std::string_view subsystem, TimePoint) {

@@ -28,7 +28,9 @@ struct CraftOptions {
   Plant plant{};
   /// Initial values of parameters, by "SUBSYSTEM.PARAMETER", over those of the descriptors.
   std::map<std::string, double> initial{};
+  std::string start_mode{};  ///< empty = the mission's
   bool friction{true};
+  double bump_m{0.010};  ///< height of the contour's bump, in the world
   bool hand_of_mission{false};  ///< else the hand rests until told
   /// Of the manipulator's report 4713, so that a peak between two is no more than 0.01 % higher; 0 = as in the mission.
   std::uint32_t cycles_per_report{10};
@@ -47,6 +49,8 @@ class CoupledCraft {
   /// A line of the operator's hand (JoystickDevice::hand); throws std::runtime_error for one that it does not take.
   void hand(const std::string& line);
   void run(double seconds);
+  /// A function from ground; throws std::runtime_error unless it is completed.
+  void command(std::string_view subsystem, std::string_view function, const std::vector<double>& arguments);
   /// Since commissioning.
   [[nodiscard]] double time_s() { return seconds(craft().now() - start_); }
   /// Called once per control cycle, when both subsystems have done theirs.

@@ -50,6 +50,9 @@ struct Run {
 [[nodiscard]] Findings fly_tracking(const RunSettings& settings);
 [[nodiscard]] Findings fly_rail(const RunSettings& settings);
 [[nodiscard]] Findings fly_display(const RunSettings& settings);
+[[nodiscard]] Findings fly_springs(const RunSettings& settings);
+[[nodiscard]] Findings fly_contour(const RunSettings& settings);
+[[nodiscard]] Findings fly_remote(const RunSettings& settings);
 [[nodiscard]] Findings fly_bounce(const RunSettings& settings);
 [[nodiscard]] Findings fly_torque_limit(const RunSettings& settings);
 [[nodiscard]] Findings fly_unplugging(const RunSettings& settings);
