@@ -4,7 +4,7 @@
 // Holds the WebSocket beside the page's thread: a hidden or busy tab never leaves the gateway with a full queue. What comes is
 // handed on in batches, so that a burst of 10,000 events costs the page one redraw.
 
-const batch_ms = 50;
+const batch_ms = 10;
 const longest_wait_ms = 2000;
 
 let socket = null;

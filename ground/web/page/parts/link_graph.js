@@ -6,7 +6,7 @@ import {signal} from '@preact/signals';
 import {state_name} from '../commanding.js';
 import {rate_text, state_text} from '../format.js';
 import {html} from '../html.js';
-import {mission, slow, status, status_of} from '../store.js';
+import {mission, mode_of, slow, status, status_of} from '../store.js';
 import {is_known, state_look} from './subsystem_card.js';
 
 const node_height = 46;
@@ -16,7 +16,7 @@ export const hovered = signal(null);
 /// Everyone who hangs on `name` over required links, in both ways: who shuts down together.
 export function network_of(name) {
   const found = new Set([name]);
-  const links = (mission.value?.links ?? []).filter((link) => link.required !== false);
+  const links = (mission.value?.links ?? []).filter((link) => is_wanted(link) || live_link(link.id).up);
   for (let grown = true; grown;) {
     grown = false;
     for (const link of links) {
@@ -34,27 +34,34 @@ function layout(names, links, width, height, node_width) {
   const alone = names.filter((name) => !linked.includes(name));
   const places = new Map();
   const spread = (list, y) => list.forEach((name, i) => places.set(name, [width * (i + 0.5) / list.length, y]));
-  if (linked.length > 4) {
+  if (linked.length > 2) {
     linked.forEach((name, i) => {
       const angle = 2 * Math.PI * i / linked.length - Math.PI / 2;
-      places.set(name, [width / 2 + Math.cos(angle) * (width / 2 - node_width / 2 - 8), height * 0.55 + Math.sin(angle) * height * 0.34]);
+      places.set(name, [width / 2 + Math.cos(angle) * (width / 2 - node_width / 2 - 60), height * 0.58 + Math.sin(angle) * height * 0.33]);
     });
-  } else if (linked.length) {
-    linked.forEach((name, i) => places.set(name, [linked.length === 1 ? width / 2 :
-      node_width / 2 + 8 + (width - node_width - 16) * i / (linked.length - 1), height * 0.66]));
+  } else {
+    linked.forEach((name, i) => places.set(name, [node_width / 2 + 8 + (width - node_width - 16) * i, height * 0.66]));
   }
-  spread(alone, linked.length ? height * 0.18 : height / 2);
+  if (linked.length > 2) alone.forEach((name, i) => places.set(name, [node_width / 2 + 8, node_height / 2 + 8 + i * (node_height + 10)]));
+  else spread(alone, linked.length ? height * 0.18 : height / 2);
   return places;
+}
+
+/// Whether the present mode wants this link; a mode that says nothing of links wants those that are required.
+export function is_wanted(link) {
+  const established = mode_of.value.establish;
+  return link.required !== false && (Array.isArray(established) ? established.includes(link.id) : true);
 }
 
 export const live_link = (id) => status.value?.links?.find((one) => one.id === id) ?? {};
 
-function Edge({link, places, both, node_width}) {
+function Edge({link, places, beside, node_width}) {
   const now = live_link(link.id);
   const [x1, y1] = places.get(link.from), [x2, y2] = places.get(link.to);
   const length = Math.hypot(x2 - x1, y2 - y1) || 1;
   const nx = -(y2 - y1) / length, ny = (x2 - x1) / length;
-  const bend = both ? 40 : 0, off = both ? 9 : 0;
+  // Ways there and back, and several of the same way, lie beside each other.
+  const bend = beside * 40, off = beside * 9;
   const cut = Math.abs(x2 - x1) > Math.abs(y2 - y1) ? node_width / 2 + 4 : node_height / 2 + 4;
   const ux = (x2 - x1) / length, uy = (y2 - y1) / length;
   const a = [x1 + ux * cut + nx * off, y1 + uy * cut + ny * off], b = [x2 - ux * cut + nx * off, y2 - uy * cut + ny * off];
@@ -62,9 +69,9 @@ function Edge({link, places, both, node_width}) {
   // Two lines of words outside of the curve.
   const label = [(a[0] + b[0]) / 2 + nx * bend / 2, (a[1] + b[1]) / 2 + ny * bend / 2 + (ny >= 0 ? 14 : -19)];
   const up = now.up === true;
-  const look = !is_known() ? 'stale' : up ? 'good' : link.required === false ? 'off' : 'bad';
+  const look = !is_known() ? 'stale' : up ? 'good' : is_wanted(link) ? 'bad' : 'off';
   const lit = hovered.value && network_of(hovered.value).has(link.from);
-  const words = up ? `${rate_text(now.rate_hz ?? link.rate_hz)} · age ${now.age_cycles ?? '–'}` : link.required === false ? 'down' : 'required, down';
+  const words = up ? `${rate_text(now.rate_hz ?? link.rate_hz)} · age ${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'}` : is_wanted(link) ? 'required, down' : 'not in this mode';
   return html`<g class=${`edge ${look} ${lit ? 'lit' : ''}`}>
     <path d=${`M${a} Q${middle} ${b}`} marker-end=${`url(#to_${look})`} />
     <text x=${label[0]} y=${label[1]}>${link.provides ?? link.name ?? `link ${link.id}`}</text>
@@ -72,17 +79,23 @@ function Edge({link, places, both, node_width}) {
   </g>`;
 }
 
-export function LinkGraph({width = 420, height = 230, box: node_width = 150}) {
+function beside(link, links) {
+  const back = links.some((other) => other.from === link.to && other.to === link.from);
+  const same = links.filter((other) => other.from === link.from && other.to === link.to);
+  return (back ? 1 : 0) + same.indexOf(link) * (back ? 1.6 : 1);
+}
+
+export function LinkGraph({width = 420, height = 230, box: node_width = 150, all = false}) {
   slow.value;
   const names = (mission.value?.subsystems ?? []).map((one) => one.name);
-  const links = mission.value?.links ?? [];
+  const links = (mission.value?.links ?? []).filter((link) => all || is_wanted(link) || live_link(link.id).up);
   const places = layout(names, links, width, height, node_width);
   const falls = hovered.value ? network_of(hovered.value) : new Set();
   return html`<svg class="links" viewBox=${`0 0 ${width} ${height}`} role="group" aria-label="real-time links">
     <defs>${['good', 'bad', 'off', 'stale'].map((look) => html`<marker id=${`to_${look}`} class=${look} viewBox="0 0 8 8" refX="7" refY="4"
       markerWidth="7" markerHeight="7" orient="auto"><path d="M0 0L8 4L0 8z" /></marker>`)}</defs>
     ${links.map((link) => html`<${Edge} key=${link.id} link=${link} places=${places} node_width=${node_width}
-      both=${links.some((other) => other.from === link.to && other.to === link.from)} />`)}
+      beside=${beside(link, links)} />`)}
     ${names.map((name) => {
       const [x, y] = places.get(name);
       const state = state_name(status_of(name)?.state);

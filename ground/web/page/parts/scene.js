@@ -4,9 +4,9 @@
 // The robot in 3D: measured solid, commanded as a ghost, with what it touches. Draws only when a joint or the camera has
 // moved. A chunk of its own: three.js is loaded by the views that show it. Realtime: none.
 import {
-  AmbientLight, ArrowHelper, BufferAttribute, BufferGeometry, CatmullRomCurve3, Color, DirectionalLight, EdgesGeometry,
-  ExtrudeGeometry, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial,
-  PerspectiveCamera, Plane, Raycaster, Scene, Shape, SphereGeometry, TubeGeometry, Vector2, Vector3, WebGLRenderer, Box3,
+  AmbientLight, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry,
+  ExtrudeGeometry, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
+  PerspectiveCamera, Plane, Raycaster, Scene, Shape, SphereGeometry, Vector2, Vector3, WebGLRenderer, Box3,
 } from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import URDFLoader from 'urdf-loader';
@@ -31,10 +31,10 @@ function dress(robot, ghost) {
   robot.traverse((part) => {
     if (!part.isMesh) return;
     const colour = ghost ? new Color(0x3f8cff) : part.material.color.clone();
-    part.material = new MeshStandardMaterial(ghost ?
-      {color: colour, transparent: true, opacity: 0.3, depthWrite: false, roughness: 1,
+    part.material = new MeshLambertMaterial(ghost ?
+      {color: colour, transparent: true, opacity: 0.3, depthWrite: false,
         polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4} :
-      {color: colour, roughness: 0.55, metalness: 0.15});
+      {color: colour});
     part.renderOrder = ghost ? 1 : 0;
   });
 }
@@ -64,30 +64,35 @@ function contour_mesh(contour) {
   }
   shape.lineTo(contour.rail_x_m + contour.depth_m, contour.to_y_m);
   const geometry = new ExtrudeGeometry(shape, {depth: contour.height_m, bevelEnabled: false});
-  const mesh = new Mesh(geometry, new MeshStandardMaterial({color: 0x8a6f45, roughness: 0.8}));
+  const mesh = new Mesh(geometry, new MeshLambertMaterial({color: 0x8a6f45}));
   mesh.add(new LineSegments(new EdgesGeometry(geometry, 40), new LineBasicMaterial({color: 0xd9b06a})));
   return mesh;
 }
 
+/// A coil along x from the origin, of unit length; stretched and turned by its group.
 function spring_mesh({from_m, to_m}, z) {
-  const from = new Vector3(from_m[0], from_m[1], z), to = new Vector3(to_m[0], to_m[1], z);
-  const along = to.clone().sub(from), length = along.length();
-  const direction = along.clone().normalize();
-  const side = new Vector3(0, 0, 1), across = direction.clone().cross(side);
   const points = [];
-  const turns = 9, radius = 0.0045;
+  const turns = 9, radius_m = 0.0045;
   for (let i = 0; i <= turns * 12; ++i) {
     const angle = i / 12 * 2 * Math.PI, part = i / (turns * 12);
-    const inner = part < 0.06 || part > 0.94 ? 0 : radius;
-    points.push(from.clone().addScaledVector(direction, part * length).addScaledVector(side, inner * Math.sin(angle))
-        .addScaledVector(across, inner * Math.cos(angle)));
+    const inner = part < 0.06 || part > 0.94 ? 0 : radius_m;
+    points.push(new Vector3(part, inner * Math.cos(angle), inner * Math.sin(angle)));
   }
+  const steel = new MeshLambertMaterial({color: 0x9fd8c0});
+  const coil = new Group();
+  const wire = new Line(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({color: 0x9fd8c0}));
+  coil.add(wire);
   const group = new Group();
-  const steel = new MeshStandardMaterial({color: 0x9fd8c0, roughness: 0.4, metalness: 0.3});
-  group.add(new Mesh(new TubeGeometry(new CatmullRomCurve3(points), turns * 14, 0.0011, 5), steel));
   const post = new Mesh(new SphereGeometry(0.005, 12, 8), steel);
-  post.position.copy(from);
-  group.add(post);
+  group.add(coil, post);
+  group.position.set(from_m[0], from_m[1], z);
+  group.reach = (x, y) => {
+    const dx = x - from_m[0], dy = y - from_m[1];
+    coil.rotation.z = Math.atan2(dy, dx);
+    coil.scale.x = Math.hypot(dx, dy);
+  };
+  group.rest = () => group.reach(to_m[0], to_m[1]);
+  group.rest();
   return group;
 }
 
@@ -122,6 +127,7 @@ export class RobotView {
     this.controls.addEventListener('change', () => this.draw_soon());
     this.controls.update();
     this.robots = [];
+    this.springs = [];
     this.show = {ghost: true, trail: true, force: true};
     this.frames = 0;
     this.light();
@@ -148,7 +154,8 @@ export class RobotView {
       this.robots.push(entry);
     }
     if (description.contour) this.scene.add(contour_mesh(description.contour));
-    for (const spring of description.springs ?? []) this.scene.add(spring_mesh(spring, description.plane_z_m));
+    this.springs = (description.springs ?? []).map((spring) => spring_mesh(spring, description.plane_z_m));
+    this.scene.add(...this.springs);
     this.resize();
     this.update();
   }
@@ -239,6 +246,8 @@ export class RobotView {
       this.trail.geometry.setDrawRange(0, this.trail_list.length);
     }
     this.trail.visible = this.show.trail;
+    const hooked = values.get(this.description.hooked)?.v ?? 0;
+    this.springs.forEach((spring, i) => hooked === i + 1 ? spring.reach(tip.x, tip.y) : spring.rest());
     const [fx, fy] = (robot.force ?? []).map((name) => values.get(name)?.v ?? 0);
     const size = Math.hypot(fx, fy);
     this.force.visible = this.show.force && size > 0.5;

@@ -3,7 +3,7 @@
 import {send_and_say} from '../commanding.js';
 import {number_text, rate_text} from '../format.js';
 import {html} from '../html.js';
-import {LinkGraph, live_link, network_of} from '../parts/link_graph.js';
+import {LinkGraph, is_wanted, live_link, network_of} from '../parts/link_graph.js';
 import {Panel} from '../parts/panel.js';
 import {is_known} from '../parts/subsystem_card.js';
 import {mission, operator, replay, slow} from '../store.js';
@@ -12,15 +12,15 @@ export function Links() {
   slow.value;
   const locked = Boolean(replay.value) || !operator.value;
   return html`<main class="link_view">
-    <${Panel} title="Real-time links" hint="point at a subsystem to see what falls with it"><${LinkGraph} width=${860} height=${360} /></${Panel}>
+    <${Panel} title="Real-time links" hint="point at a subsystem to see what falls with it"><${LinkGraph} width=${860} height=${380} all /></${Panel}>
     <${Panel} title="Now"><table class="values"><thead><tr><th>link</th><th>from</th><th>to</th><th>state</th><th>rate</th><th>age</th><th>limit</th><th>lost</th><th>network</th><th /></tr></thead>
       <tbody>${(mission.value?.links ?? []).map((link) => {
         const now = live_link(link.id);
         const up = now.up === true;
         return html`<tr class=${is_known() ? '' : 'stale'}><td>${link.id}</td><td>${link.from}${link.provides ? html` <small>${link.provides}</small>` : null}</td>
           <td>${link.to}${link.requires ? html` <small>${link.requires}</small>` : null}</td>
-          <td><b class=${`state ${up ? 'good' : link.required === false ? 'off' : 'bad'}`}>${up ? 'up' : link.required === false ? 'down' : 'down, required'}</b></td>
-          <td class="number">${rate_text(now.rate_hz ?? NaN)}</td><td class="number">${number_text(now.age_cycles)} cycles</td>
+          <td><b class=${`state ${up ? 'good' : is_wanted(link) ? 'bad' : 'off'}`}>${up ? 'up' : is_wanted(link) ? 'down, required' : 'not in this mode'}</b></td>
+          <td class="number">${rate_text(now.rate_hz ?? NaN)}</td><td class="number">${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles</td>
           <td class="number">${number_text(link.age_limit_cycles)} cycles</td><td class="number">${number_text(now.lost)}</td>
           <td>${[...network_of(link.from)].join(', ')}</td>
           <td><button class="chip" disabled=${locked} onClick=${() => send_and_say('SUPERVISOR', up ? 'UNLINK' : 'LINK', {LINK: link.id})}>${up ? 'cut' : 'make'}</button></td></tr>`;

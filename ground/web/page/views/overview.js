@@ -33,7 +33,8 @@ export const plot_title = (names) => {
 
 function QuickCommand() {
   const list = mission.value?.subsystems ?? [];
-  const first = list.find((one) => (one.functions ?? []).some((action) => !['SET_STATE', 'CONFIGURE', 'PING'].includes(action.name)) && one.id !== 1) ?? list[0];
+  const own = (one) => (one.functions ?? []).filter((action) => !['SET_STATE', 'CONFIGURE', 'PING'].includes(action.name)).length;
+  const first = list.filter((one) => one.id !== 1).sort((one, other) => own(other) - own(one))[0] ?? list[0];
   const [subsystem, set_subsystem] = useState(null);
   const [action, set_action] = useState(null);
   const chosen = list.find((one) => one.name === subsystem) ?? first;
