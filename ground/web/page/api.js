@@ -30,7 +30,8 @@ export const introduce = (name) => { client = String(name ?? ''); };
 
 async function request(path, options = {}) {
   const own = client ? {'X-Client': client} : {};
-  const response = await fetch(path, {...options, headers: {...options.headers, ...own, Authorization: `Bearer ${token()}`}});
+  const response = await fetch(path, {...options, headers: {...options.headers, ...own, Authorization: `Bearer ${token()}`}})
+      .catch(() => { throw new RequestError(0, 'the gateway does not answer'); });
   const text = await response.text();
   let answer;
   try {

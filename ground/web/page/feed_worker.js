@@ -5,7 +5,7 @@
 // handed on in batches, so that a burst of 10,000 events costs the page one redraw.
 
 const batch_ms = 10;
-const longest_wait_ms = 2000;
+const longest_wait_ms = 1000;
 
 let socket = null;
 let waiting = [];

@@ -3,7 +3,7 @@
 //
 // Samples of the parameters that are drawn: the past from the archive, then what the feed brings. Shared between plots.
 import {get} from './api.js';
-import {newest_s, now_s, on_values, replay} from './store.js';
+import {gateway, newest_s, now_s, on_values, replay} from './store.js';
 
 const most_samples = 40000;
 const longest_window_s = 3600;
@@ -96,6 +96,19 @@ on_values((set) => {
     if (series.t.length && t < series.t[series.t.length - 1] - 5) series.forget();
     series.push(t, v);
   }
+});
+
+/// What the archive got while the page had no gateway comes from there: a line over the time between would be a lie.
+let was_connected = true;
+gateway.subscribe(({connected}) => {
+  if (connected && !was_connected) {
+    for (const series of known.values()) {
+      const from = series.from;
+      series.forget();
+      if (Number.isFinite(from)) series.fetch(from);
+    }
+  }
+  was_connected = connected;
 });
 
 let was = null;

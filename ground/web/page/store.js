@@ -57,7 +57,7 @@ export const status_of = (name) => status.value?.subsystems?.find((subsystem) =>
 export const mode_of = computed(() => {
   const mode = status.value?.mode;
   const known = mission.value?.modes ?? [];
-  return (known.find((one) => one.id === mode || one.name === mode) ?? {name: mode === undefined ? 'unknown' : String(mode)});
+  return (known.find((one) => one.id === mode || one.name === mode) ?? {name: mode === undefined || mode === null ? 'unknown' : String(mode)});
 });
 
 /// NAME -> {name, type, unit, min, max, enumeration, period_s, subsystem}
@@ -133,7 +133,7 @@ export const outcome_of = (command) => {
   return {stage: 'sent'};
 };
 
-let fetched_mission = false;
+let mission_text = '';
 let counted = 0;
 
 /// A key for what a browser lists; archive rows and messages of the same event must agree.
@@ -182,6 +182,8 @@ function take(list) {
 
 const rows = (answer, name) => Array.isArray(answer) ? answer : answer?.[name] ?? [];
 
+const refused = 'The gateway refuses this page: open the URL that `hirosco run` printed last, with its token.';
+
 /// What happened before the page came, so that it opens with a past.
 async function fetch_past(until) {
   const [event_rows, command_rows] = await Promise.all([
@@ -200,9 +202,12 @@ async function fetch_past(until) {
 
 async function fetch_present() {
   try {
-    if (!fetched_mission) {
-      mission.value = await get('/api/mission');
-      fetched_mission = true;
+    // The gateway may be another one than before, with other descriptors.
+    const found = await get('/api/mission');
+    const text = JSON.stringify(found);
+    if (text !== mission_text) {
+      mission_text = text;
+      mission.value = found;
     }
     const {values: set, ...rest} = await get('/api/status');
     if (!replay.value) {
@@ -216,8 +221,7 @@ async function fetch_present() {
     problem.value = '';
     await fetch_past(replay.value?.at);
   } catch (error) {
-    problem.value = error.status === 401 || error.status === 403 ?
-      'The gateway refuses this page: open the URL that `hirosco run` printed, with its token.' : String(error.message);
+    problem.value = error.status === 401 || error.status === 403 ? refused : error.status === 0 ? '' : String(error.message);
     if (error.status !== 401) setTimeout(() => gateway.value.connected && fetch_present(), 1000);
   }
 }
@@ -232,7 +236,11 @@ worker.onmessage = ({data}) => {
     if (replay.value) send_to_gateway({type: 'replay', at: now_s(), speed: replay.value.speed});
     fetch_present();
   }
-  if (data.kind === 'closed' && gateway.value.connected) gateway.value = {connected: false, since_ms: performance.now()};
+  if (data.kind === 'closed') {
+    if (gateway.value.connected) gateway.value = {connected: false, since_ms: performance.now()};
+    // A refused WebSocket does not say why; an answer does.
+    get('/api/status').catch((error) => { if (error.status === 401 || error.status === 403) problem.value = refused; });
+  }
 };
 
 export function start() {

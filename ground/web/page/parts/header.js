@@ -27,7 +27,8 @@ function LinkState() {
 function Clock() {
   slow.value;
   const t = now_s();
-  return html`<span class="obt" title="On-board time"><small>${date_text(t)}</small>
+  const known = link.value.state === 'up' || replay.value !== null;
+  return html`<span class=${`obt ${known ? '' : 'stale'}`} title=${known ? 'On-board time' : 'On-board time as it would be: nothing comes'}><small>${date_text(t)}</small>
     <b>${clock_text(t)}</b><small>OBT</small></span>`;
 }
 

@@ -8,8 +8,8 @@ import {get} from '../api.js';
 import {state_name} from '../commanding.js';
 import {clock_text, state_text} from '../format.js';
 import {html} from '../html.js';
-import {commands, events, mission, mode_of, now_s, outcome_of, replay, replay_from, slow} from '../store.js';
-import {state_look} from './subsystem_card.js';
+import {commands, events, mission, mode_of, newest_s, now_s, outcome_of, replay, replay_from, slow} from '../store.js';
+import {is_known, state_look} from './subsystem_card.js';
 
 const refresh_ms = 2000;
 const label_width = 112, lane_height = 20;
@@ -71,22 +71,24 @@ export function Lanes({window_s = 120, big = false}) {
   const names = (mission.value?.subsystems ?? []).map((one) => one.name);
 
   const lanes = [];
+  // What nobody tells any more is not drawn on.
+  const told_to = is_known() ? to : Math.min(to, newest_s());
   const bar = (span, look, text) => html`<g class=${`bar ${look}`}><rect x=${x(span.from)} y="3" rx="3" height=${lane_height - 6}
     width=${Math.max(1, x(span.to) - x(span.from))}><title>${text} from ${clock_text(span.from)}</title></rect>
     ${x(span.to) - x(span.from) > text.length * 7 + 8 ? html`<text x=${x(span.from) + 6} y=${lane_height / 2 + 4}>${text}</text>` : null}</g>`;
   const current = {t: from, mode: mode_of.value.name};
   const mode_list = data.modes.length ? data.modes : [current];
-  lanes.push({label: 'mode', body: spans(mode_list, (one) => one.mode, from, to)
+  lanes.push({label: 'mode', body: spans(mode_list, (one) => one.mode, from, told_to)
       .map((span, i) => bar(span, `mode ${i % 2 ? 'odd' : ''}`, mission.value?.modes.find((mode) => mode.id === span.value)?.name ?? String(span.value)))});
   for (const name of names) {
     const own = data.states.filter((one) => one.subsystem === name);
-    lanes.push({label: name, body: spans(own, (one) => state_name(one.state), from, to)
+    lanes.push({label: name, body: spans(own, (one) => state_name(one.state), from, told_to)
         .map((span) => bar(span, state_look(span.value), state_text(span.value)))});
   }
   if (big) {
     for (const link of mission.value?.links ?? []) {
       const own = data.links.filter((one) => one.id === link.id);
-      lanes.push({label: `link ${link.id}`, body: spans(own, (one) => one.up, from, to)
+      lanes.push({label: `link ${link.id}`, body: spans(own, (one) => one.up, from, told_to)
           .map((span) => bar(span, span.value ? 'good' : 'bad', span.value ? `${link.from} → ${link.to}` : 'down'))});
     }
   }

@@ -99,7 +99,7 @@ export function LinkGraph({width = 420, height = 230, box: node_width = 150, all
     ${names.map((name) => {
       const [x, y] = places.get(name);
       const state = state_name(status_of(name)?.state);
-      return html`<a href=${`#/subsystems/${name}`} class=${`node ${state_look(state)} ${falls.has(name) && falls.size > 1 ? 'falls' : ''}`}
+      return html`<a href=${`#/subsystems/${name}`} class=${`node ${is_known() ? state_look(state) : ''} ${falls.has(name) && falls.size > 1 ? 'falls' : ''}`}
         onPointerEnter=${() => { hovered.value = name; }} onPointerLeave=${() => { hovered.value = null; }}>
         <rect x=${x - node_width / 2} y=${y - node_height / 2} width=${node_width} height=${node_height} rx="8" />
         <text x=${x} y=${y - 5}>${name}</text><text class="facts" x=${x} y=${y + 12}>${state_text(state)}</text></a>`;

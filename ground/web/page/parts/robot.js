@@ -102,7 +102,7 @@ export function Robot() {
       <button class="chip" onClick=${() => view.current?.view_from(from)}>orbit</button>
       <button class="chip" onClick=${() => view.current?.view_from([0.2, 0.049, 1.05])}>top</button>
     </div>
-    <div class="stage" ref=${node} data-test="robot">
+    <div class=${`stage ${description && freshness(Object.values(description.robots[0]?.joints ?? {})[0]).stale ? 'old' : ''}`} ref=${node} data-test="robot">
       ${description === null ? html`<p class="empty">This mission has no 3D model.<br />
         <small>models/${mission.value?.name.toLowerCase()}/scene.json would be shown here.</small></p>` : null}
       ${problem ? html`<p class="empty">${problem}</p>` : null}
