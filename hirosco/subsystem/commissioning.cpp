@@ -108,6 +108,8 @@ Result<Step> GenericSubsystem::initialise_software() {
   HIROSCO_TRY_LET(const Step step, author_.software_init());
   if (step == Step::Again) return again;
   if (dictionary_.index_of("CYCLE_STATS")) publish("CYCLE_STATS", cycle_.statistics());
+  if (dictionary_.index_of("CYCLE_TIMES")) publish("CYCLE_TIMES", cycle_.times());
+  if (dictionary_.index_of("LINK_STATS")) publish("LINK_STATS", cycle_.link_statistics());
   std::string missing;
   if (latched_problem_.empty() && !dictionary_.all_published(missing))
     latched_problem_ = "parameters declared but not published: " + missing;

@@ -3,6 +3,7 @@
 #include "hirosco/subsystem/cycle.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -18,6 +19,13 @@ namespace {
 
 [[nodiscard]] Octets octets_of_report(const CycleReport& report) noexcept {
   return std::as_bytes(std::span{&report, 1});
+}
+
+/// Bin of CycleTimes.
+std::size_t bin_of(Duration span) noexcept {
+  constexpr std::int64_t ns_per_us = 1000;
+  const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(span.count() / ns_per_us, 0));
+  return std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(us)), CycleTimes{}.execution.size() - 1);
 }
 
 }  // namespace
@@ -36,7 +44,10 @@ void CycleLoop::prepare(CyclePlan plan) {
   latency_max_ns_ = 0;
   execution_max_ns_ = 0;
   execution_mean_ns_ = 0.0;
+  times_ = {};
   statistics_.store({});
+  times_parameter_.store({});
+  link_statistics_.store({});
 }
 
 void CycleLoop::release() { plan_ = {}; }
@@ -177,6 +188,15 @@ void CycleLoop::write_outputs(TimePoint planned) noexcept {
   for (LinkOutputSlot& output : plan_.outputs) output.write(planned, link_status());
 }
 
+void CycleLoop::count_links() noexcept {
+  LinkStatistics sum;
+  for (const LinkInputSlot& input : plan_.inputs) {
+    sum.received += static_cast<std::uint32_t>(input.port()->received());
+    sum.lost += static_cast<std::uint32_t>(input.port()->lost());
+  }
+  link_statistics_.store(sum);
+}
+
 void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   const TimePoint finished = parts_.clock.now();
   const Duration execution = finished - started;
@@ -184,6 +204,11 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   execution_max_ns_ = std::max(execution_max_ns_, clamped_ns(execution));
   constexpr double weight = 1e-3;
   execution_mean_ns_ += weight * (static_cast<double>(execution.count()) - execution_mean_ns_);
+
+  ++times_.execution[bin_of(execution)];
+  ++times_.latency[bin_of(started - planned)];
+  times_parameter_.store(times_);
+  count_links();
 
   const descriptor::CycleLimit& limit = plan_.configuration->overruns;
   // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007).

@@ -29,6 +29,20 @@ struct CycleStatistics {
   float avg_us{0.0F};  ///< mean over about the last 1,000 cycles
 };
 
+/// Where the cycles of a configuration fell, as a parameter: published by the framework where a descriptor declares
+/// CYCLE_TIMES. Bin 0: below 1 us; bin i: from 2^(i-1) us to below 2^i us; the last one: all above.
+struct CycleTimes {
+  std::array<std::uint32_t, 16> execution{};  ///< of the cycle's own work
+  std::array<std::uint32_t, 16> latency{};  ///< from the planned instant to the start
+};
+
+/// What the real-time links brought since they were made, as a parameter: published where a descriptor declares
+/// LINK_STATS.
+struct LinkStatistics {
+  std::uint32_t received{0};
+  std::uint32_t lost{0};  ///< samples that came and went between two cycles: gaps of the count
+};
+
 /// A function's handler and what the cycle needs to know of it.
 struct BoundFunction {
   FunctionHandler handler;
@@ -74,6 +88,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] CyclePlan& plan() noexcept { return plan_; }
   [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
   [[nodiscard]] Parameter<CycleStatistics>& statistics() noexcept { return statistics_; }
+  [[nodiscard]] Parameter<CycleTimes>& times() noexcept { return times_parameter_; }
+  [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
 
   // --- the cycle --------------------------------------------------------------------------------------------------
   /// One cycle that was due at `planned`; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
@@ -94,6 +110,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void run_node(TimePoint planned) noexcept;
   void write_outputs(TimePoint planned) noexcept;
   void account(TimePoint planned, TimePoint started) noexcept;
+  void count_links() noexcept;
   [[nodiscard]] bool controlling() const noexcept;
   [[nodiscard]] LinkStatus link_status() const noexcept;
 
@@ -105,6 +122,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   CyclePlan plan_;
   std::vector<BoundFunction> functions_;
   Parameter<CycleStatistics> statistics_;
+  Parameter<CycleTimes> times_parameter_;
+  Parameter<LinkStatistics> link_statistics_;
   std::array<std::byte, 1024> event_buffer_{};
   MutableOctets reserved_;  ///< housekeeping report under assembly
 
@@ -119,6 +138,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   std::uint32_t latency_max_ns_{0};
   std::uint32_t execution_max_ns_{0};
   double execution_mean_ns_{0.0};
+  CycleTimes times_{};
   std::vector<char> input_was_stale_;
 };
 

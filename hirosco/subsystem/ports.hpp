@@ -23,6 +23,9 @@ class LinkInputPort {
   [[nodiscard]] std::uint32_t age_cycles() const noexcept { return age_cycles_; }
   [[nodiscard]] LinkStatus status() const noexcept { return status_; }
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  /// Samples that came over the present link, and those that came and went between two cycles.
+  [[nodiscard]] std::uint64_t received() const noexcept { return received_; }
+  [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
   [[nodiscard]] std::span<const NativeField> layout() const noexcept { return layout_; }
 
  protected:
@@ -40,6 +43,8 @@ class LinkInputPort {
   std::uint32_t age_cycles_{0};
   LinkStatus status_{LinkStatus::None};
   std::uint64_t count_{0};
+  std::uint64_t received_{0};
+  std::uint64_t lost_{0};
 };
 
 /// T: an aggregate with one member per <Field> of the <Requires> element, in their order.

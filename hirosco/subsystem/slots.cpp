@@ -86,6 +86,8 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   port_->age_cycles_ = 0;
   // What an earlier link brought must not pass for a sample of this one.
   port_->count_ = 0;
+  port_->received_ = 0;
+  port_->lost_ = 0;
   port_->status_ = LinkStatus::None;
 }
 
@@ -110,6 +112,8 @@ void LinkInputSlot::read() noexcept {
     }
     port_->age_cycles_ = 0;
     port_->count_ = sample.count;
+    ++port_->received_;
+    port_->lost_ += sample.lost;
   } else if (port_->age_cycles_ < longest_silence) {
     ++port_->age_cycles_;
   }

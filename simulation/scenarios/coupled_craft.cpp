@@ -11,7 +11,7 @@ namespace hirosco::simulation {
 namespace {
 
 constexpr std::uint16_t manipulator_apid = 10;
-constexpr std::uint16_t cycle_report = 4713;
+constexpr std::uint16_t cycle_report = 4713, manipulator_links = 4714, joystick_links = 4723;
 
 ArmParameters arm_of(const CraftOptions& options) {
   const Plant& plant = options.plant;
@@ -93,9 +93,16 @@ void CoupledCraft::each_cycle(std::function<void()> watch) {
 }
 
 void CoupledCraft::take(const pus::TelemetryView& packet) {
-  if (packet.apid() != manipulator_apid || packet.service() != 3 || packet.subtype() != 25) return;
+  if (packet.service() != 3 || packet.subtype() != 25) return;
   OctetReader reader{packet.source_data()};
-  if (reader.get<std::uint16_t>() != cycle_report) return;
+  const auto structure = reader.get<std::uint16_t>();
+  if (structure == manipulator_links || structure == joystick_links) {
+    constexpr std::size_t octets_of_cycle_times = 2 * 16 * 4;
+    static_cast<void>(reader.get(octets_of_cycle_times));
+    const auto received = reader.get<std::uint32_t>();
+    incoming_[packet.apid()] = {received, reader.get<std::uint32_t>()};
+  }
+  if (packet.apid() != manipulator_apid || structure != cycle_report) return;
   for (Vec2* values : {&report_.position_rad, &report_.torque_n_m, &report_.desired_rad})
     for (double& value : *values) value = reader.get<double>();
   if (on_report) on_report();

@@ -68,6 +68,12 @@ class CoupledCraft {
   };
   [[nodiscard]] const Report& report() const noexcept { return report_; }
   std::function<void()> on_report;
+  /// What a subsystem says of its incoming links, by APID: LINK_STATS of reports 4714 and 4723, once a second.
+  struct Incoming {
+    std::uint32_t received{0};
+    std::uint32_t lost{0};
+  };
+  [[nodiscard]] const std::map<std::uint16_t, Incoming>& incoming() const noexcept { return incoming_; }
 
  private:
   static Plan plan_of(const CraftOptions& options);
@@ -77,6 +83,7 @@ class CoupledCraft {
   RobotDevice* robot_{nullptr};
   JoystickDevice* joystick_{nullptr};
   Report report_{};
+  std::map<std::uint16_t, Incoming> incoming_;
   TimePoint start_{};
 };
 

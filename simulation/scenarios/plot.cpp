@@ -94,10 +94,11 @@ class Drawing {
 
   void grid() {
     constexpr std::string_view thin = "stroke=\"#dcdcdc\" stroke-width=\"1\"";
-    const double x_step = step_of(x_, 9), y_step = plot_.bars ? 1 : step_of(y_, 6);
+    const double x_step = plot_.bars ? 1 : step_of(x_, 9), y_step = plot_.bars ? 1 : step_of(y_, 6);
     for (double n = std::ceil(x_.low / x_step); n * x_step <= x_.high * (1 + 1e-12) + 1e-12; ++n) {
       line(px(n * x_step), top, px(n * x_step), top + inner_height, thin);
-      label(px(n * x_step), top + inner_height + 18, "middle", fmt::format("{:.6g}", n * x_step + 0.0));
+      const double value = plot_.bars ? std::exp2(n) : n * x_step + 0.0;
+      label(px(n * x_step), top + inner_height + 18, "middle", fmt::format("{:.6g}", value));
     }
     for (double n = std::ceil(y_.low / y_step); n * y_step <= y_.high; ++n) {
       line(left, py(n * y_step), left + inner_width, py(n * y_step), thin);

@@ -181,11 +181,18 @@ Findings fly_endurance(const RunSettings& settings) {
   const std::uint64_t cycles_before = craft.flight().cycles("JOYSTICK");
   craft.run(settings.endurance_s);
   const auto cycles = static_cast<double>(craft.flight().cycles("JOYSTICK") - cycles_before);
+  double received = 0, lost = craft.incoming().size() == 2 ? 0 : never;
+  for (const auto& [apid, link] : craft.incoming()) {
+    received += link.received;
+    lost += link.lost;
+  }
   Findings findings;
   const Story& story = craft.flight().story();
   findings.figures = {
       {"RO10-torque-mismatches", to_joystick.mismatches()},
       {"RO10-angle-mismatches", to_manipulator.mismatches()},
+      {"RO10-received", received / cycles / 2},
+      {"RO10-lost", lost},
       {"RO10-missing-cycles", settings.endurance_s / CoupledCraft::period_s - cycles},
       {"RO10-report-silence", longest_silence_s * 1e3},
       {"RO10-reactions", static_cast<double>(story.count("plan ") + story.count(" high ") + story.count(" medium "))}};
