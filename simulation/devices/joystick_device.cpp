@@ -22,15 +22,17 @@ constexpr double farthest_m = 0.2;
 }  // namespace
 
 JoystickDevice::JoystickDevice(FlowFactory& flows, FlowAddress address, const Settings& settings,
-                               const HandleParameters& handle)
-    : SimulatedDevice{flows, std::move(address), settings}, handle_{settings.seed, robot_home_jacobian(), handle} {}
+                               const HandleParameters& handle, OpenStick open_stick)
+    : SimulatedDevice{flows, std::move(address), settings},
+      handle_{settings.seed, robot_home_jacobian(), handle},
+      open_stick_{std::move(open_stick)} {}
 
 Result<> JoystickDevice::take(OctetReader payload) noexcept {
   const Vec2 torque{payload.get<double>(), payload.get<double>()};
   const auto hand = payload.get<std::uint8_t>();
   const Vec2 intent{payload.get<double>(), payload.get<double>()};
   if (!payload.exhausted()) return fail(ErrorCode::Malformed, "joystick command size");
-  lay_on(hand == static_cast<std::uint8_t>(Hand::Commanded) ? Hand::Commanded : Hand::Simulated);
+  if (hand <= static_cast<std::uint8_t>(stick_ ? Hand::Person : Hand::Commanded)) lay_on(static_cast<Hand>(hand));
   if (hand_ == Hand::Commanded && intent != intent_rad_ && std::isfinite(intent[0]) && std::isfinite(intent[1])) {
     const double range = handle_.parameters().range_rad;
     intent_rad_ = intent;
@@ -44,13 +46,25 @@ void JoystickDevice::lay_on(Hand hand) noexcept {
   if (hand == hand_) return;
   hand_ = hand;
   OperatorHand& operators = handle_.hand();
-  if (hand == Hand::Commanded) {
-    wandered_ = operators.wandering();
+  if (hand != Hand::Simulated) {
+    wandered_ = wandered_ || operators.wandering();
     intent_rad_ = operators.intent().angle_rad;
     operators.hold(intent_rad_);
   } else if (wandered_) {
     operators.wander();
+    wandered_ = false;
   }
+}
+
+void JoystickDevice::take_from_person() noexcept {
+  const auto deflection = stick_->deflection();
+  if (!deflection) {
+    stick_.reset();
+    static_cast<void>(fault("unplug"));
+    return;
+  }
+  handle_.hand().follow(handle_.parameters().range_rad * *deflection);
+  stick_->feel(1 / handle_.parameters().torque_max_n_m * applied_);
 }
 
 void JoystickDevice::advance(Duration cycle) noexcept {
@@ -58,20 +72,29 @@ void JoystickDevice::advance(Duration cycle) noexcept {
   applied_ = mode() == DeviceMode::Active ? commanded_ : Vec2{};
   raise(device_flag::torque_saturated, std::abs(applied_[0]) > limit || std::abs(applied_[1]) > limit);
   for (double& torque : applied_) torque = std::clamp(torque, -limit, limit);
+  if (hand_ == Hand::Person && stick_) take_from_person();
   handle_.step(applied_, cycle);
 }
 
 void JoystickDevice::write_sensors(OctetWriter& payload) noexcept {
   payload.put(handle_.angle_rad()[0]).put(handle_.angle_rad()[1]);
   payload.put(handle_.rate_rad_s()[0]).put(handle_.rate_rad_s()[1]);
-  payload.put(static_cast<std::uint8_t>(hand_)).put(hands);
+  constexpr std::uint8_t simulated_and_commanded = 0b011, persons = 0b100;
+  payload.put(static_cast<std::uint8_t>(hand_));
+  payload.put(static_cast<std::uint8_t>(simulated_and_commanded | (stick_ ? persons : 0)));
 }
 
 Result<> JoystickDevice::hand(std::string_view line) { return fault("hand " + std::string{line}); }
 
 Result<> JoystickDevice::do_fault(const Words& words) {
+  if (words[0] == "stick") {
+    HIROSCO_TRY(words.expect(2));
+    if (!open_stick_) return fail(ErrorCode::Unavailable, "no sticks in this world");
+    HIROSCO_TRY_LET(stick_, open_stick_(words[1]));
+    return ok();
+  }
   if (words[0] != "hand") return fail(ErrorCode::InvalidArgument, "unknown fault");
-  if (hand_ == Hand::Commanded) return fail(ErrorCode::Unavailable, "the hand is commanded");
+  if (hand_ != Hand::Simulated) return fail(ErrorCode::Unavailable, "another hand is on the handle");
   OperatorHand& hand = handle_.hand();
   const std::string_view what = words[1];
   if (what == "wander") {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "simulation/devices/simulated_device.hpp"
+#include "simulation/devices/stick.hpp"
 #include "simulation/world/joystick_handle.hpp"
 
 namespace hirosco::simulation {
@@ -10,23 +11,23 @@ namespace hirosco::simulation {
 /// The force-reflecting joystick behind its bus, with an operator's hand on it.
 /// To the subsystem: POSITION DOUBLE[2], VELOCITY DOUBLE[2] (rad, rad/s), HAND UINT8 (whose hand is on it), HANDS UINT8
 /// (those that there are, one bit each). From it: TORQUE DOUBLE[2] (N m), HAND UINT8, INTENT DOUBLE[2] (rad, of a commanded
-/// hand).
+/// hand). A person's hand is there after the line "stick PATH" or "stick auto"; when its stick is unplugged, so is this
+/// device.
 class JoystickDevice final : public SimulatedDevice {
  public:
   static constexpr std::size_t sensor_octets = 34;
   static constexpr std::size_t command_octets = 33;
 
-  /// Whose hand: one that the simulation moves, or one that goes where it is commanded.
-  enum class Hand : std::uint8_t { Simulated = 0, Commanded = 1 };
-  static constexpr std::uint8_t hands = 0b11;
+  /// Whose hand: one that the simulation moves, one that goes where it is commanded, or a person's on a real stick.
+  enum class Hand : std::uint8_t { Simulated = 0, Commanded = 1, Person = 2 };
 
   /// The hand rests at zero until hand() tells otherwise.
   JoystickDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {},
-                 const HandleParameters& handle = {});
+                 const HandleParameters& handle = {}, OpenStick open_stick = {});
 
   /// What the operator's hand does from now on; recorded like a fault:
   ///   hold A B | sine AXIS AMPLITUDE HZ [PHASE] | ramp DX DY SPEED | cartesian DX DY SECONDS | wander
-  /// Unavailable while the hand is commanded by the subsystem. Angles rad, axes count from 1; DX DY m from the robot's home, SPEED m/s. Also as the fault line "hand ...".
+  /// Unavailable while another hand is on the handle. Angles rad, axes count from 1; DX DY m from the robot's home, SPEED m/s. Also as the fault line "hand ...".
   [[nodiscard]] Result<> hand(std::string_view line);
 
   [[nodiscard]] const JoystickHandle& handle() const noexcept { return handle_; }
@@ -42,8 +43,11 @@ class JoystickDevice final : public SimulatedDevice {
   [[nodiscard]] std::string do_truth() const override;
 
   void lay_on(Hand hand) noexcept;
+  void take_from_person() noexcept;
 
   JoystickHandle handle_;
+  OpenStick open_stick_;
+  std::unique_ptr<Stick> stick_;
   Hand hand_{Hand::Simulated};
   bool wandered_{false};  ///< before the hand was commanded
   Vec2 intent_rad_{};
