@@ -9,6 +9,7 @@ import {state_name} from '../commanding.js';
 import {clock_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, events, mission, mode_of, newest_s, now_s, outcome_of, replay, replay_from, slow} from '../store.js';
+import {is_wanted} from './link_graph.js';
 import {is_known, state_look} from './subsystem_card.js';
 
 const refresh_ms = 2000;
@@ -89,7 +90,7 @@ export function Lanes({window_s = 120, big = false}) {
     for (const link of mission.value?.links ?? []) {
       const own = data.links.filter((one) => one.id === link.id);
       lanes.push({label: `link ${link.id}`, body: spans(own, (one) => one.up, from, told_to)
-          .map((span) => bar(span, span.value ? 'good' : 'bad', span.value ? `${link.from} → ${link.to}` : 'down'))});
+          .map((span) => bar(span, span.value ? 'good' : is_wanted(link) ? 'bad' : 'off', span.value ? `${link.from} → ${link.to}` : 'down'))});
     }
   }
   const sent = replay.value ? data.commands : merged(data.commands, commands.value);
@@ -114,10 +115,10 @@ export function Lanes({window_s = 120, big = false}) {
     <svg width=${width} height=${height} onPointerMove=${(event) => set_hint(time_at(event))} onPointerLeave=${() => set_hint(null)}
       onClick=${(event) => { const at = time_at(event); if (at >= from && at <= to) replay_from(at); }} role="img"
       aria-label="timeline; a click replays from there">
-      ${data.gaps.map((gap) => html`<rect class="gap" x=${x(gap.from)} y="0" width=${Math.max(1, x(gap.to) - x(gap.from))} height=${height - 20}>
-        <title>no telemetry</title></rect>`)}
       ${ticks.map((t) => html`<g class="tick"><line x1=${x(t)} x2=${x(t)} y1="0" y2=${height - 18} /><text x=${x(t)} y=${height - 5}>${clock_text(t, 0)}</text></g>`)}
       ${lanes.map((lane, i) => html`<g transform=${`translate(0 ${i * lane_height})`}><text class="label" x="4" y=${lane_height / 2 + 4}>${lane.label}</text>${lane.body}</g>`)}
+      ${data.gaps.map((gap) => html`<rect class="gap" x=${x(gap.from)} y="0" width=${Math.max(1, x(gap.to) - x(gap.from))} height=${height - 20}>
+        <title>no telemetry came</title></rect>`)}
       ${replay.value ? html`<g class="now replay"><line x1=${x(now)} x2=${x(now)} y1="0" y2=${height - 16} /></g>` :
         html`<g class="now"><line x1=${x(to)} x2=${x(to)} y1="0" y2=${height - 16} /></g>`}
       ${hint !== null && hint >= from && hint <= to ? html`<g class="hint"><line x1=${x(hint)} x2=${x(hint)} y1="0" y2=${height - 16} />

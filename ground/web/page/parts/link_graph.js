@@ -62,8 +62,8 @@ function Edge({link, places, beside, node_width}) {
   const nx = -(y2 - y1) / length, ny = (x2 - x1) / length;
   // Ways there and back, and several of the same way, lie beside each other.
   const bend = beside * 40, off = beside * 9;
-  const cut = Math.abs(x2 - x1) > Math.abs(y2 - y1) ? node_width / 2 + 4 : node_height / 2 + 4;
   const ux = (x2 - x1) / length, uy = (y2 - y1) / length;
+  const cut = Math.min((node_width / 2 + 4) / Math.abs(ux), (node_height / 2 + 4) / Math.abs(uy));
   const a = [x1 + ux * cut + nx * off, y1 + uy * cut + ny * off], b = [x2 - ux * cut + nx * off, y2 - uy * cut + ny * off];
   const middle = [(a[0] + b[0]) / 2 + nx * bend, (a[1] + b[1]) / 2 + ny * bend];
   // Two lines of words outside of the curve.
