@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "ground/api.hpp"
+#include "ground/archive.hpp"
+#include "ground/catalogue.hpp"
+#include "ground/session.hpp"
+#include "simulation/scenarios/flight.hpp"
+
+/// The ground station beside the whole spacecraft on virtual time: everything but the sockets.
+namespace hirosco::testing {
+
+using nlohmann::json;
+
+/// A page that keeps what it was told. `takes` false: its network has stopped.
+class Page final : public ground::Peer {
+ public:
+  void send(std::string text) override {
+    octets += text.size();
+    if (!takes) pending += text.size();
+    messages.push_back(json::parse(text));
+  }
+  [[nodiscard]] std::size_t pending_octets() const override { return pending; }
+  void close(std::uint16_t code, const std::string&) override { closed_with = code; }
+
+  [[nodiscard]] std::vector<json> of_type(const std::string& type) const {
+    std::vector<json> found;
+    for (const json& message : messages)
+      if (message["type"] == type) found.push_back(message);
+    return found;
+  }
+  [[nodiscard]] json last(const std::string& type) const {
+    const auto found = of_type(type);
+    return found.empty() ? json{} : found.back();
+  }
+
+  std::vector<json> messages;
+  std::size_t octets{0};
+  std::size_t pending{0};
+  bool takes{true};
+  int closed_with{0};
+};
+
+class Station {
+ public:
+  static constexpr const char* token = "right";
+
+  explicit Station(simulation::Flight& flight, const std::string& archive = ":memory:");
+  ~Station();
+
+  /// Lets the spacecraft fly while the station listens, with a batch every 50 ms.
+  void run(Duration span);
+  bool run_until(const std::function<bool()>& condition, Duration limit = 10s);
+  void cut_link();
+  void join_link();
+  /// The answer to a request as `who`; runs until it has come.
+  ground::HttpResponse ask(const std::string& method, const std::string& target, const json& body = {},
+                           std::map<std::string, std::string> headers = {});
+  json get(const std::string& target) { return json::parse(ask("GET", target).body); }
+  json post(const std::string& target, const json& body) { return json::parse(ask("POST", target, body).body); }
+  /// Sends a telecommand and waits for its last report; the command as the archive has it.
+  json command(const std::string& subsystem, const std::string& function, const json& arguments = json::object());
+
+  [[nodiscard]] ground::Session& session() noexcept { return *session_; }
+  [[nodiscard]] const ground::Catalogue& catalogue() const noexcept { return catalogue_; }
+
+ private:
+  class CraftClock final : public Clock {
+   public:
+    explicit CraftClock(simulation::Spacecraft& craft) : craft_{craft} {}
+
+   private:
+    [[nodiscard]] TimePoint do_now() const noexcept override { return craft_.now(); }
+    [[nodiscard]] OnboardTime do_onboard() const noexcept override {
+      return OnboardTime{std::chrono::seconds{2'145'916'837}} + craft_.now().time_since_epoch();
+    }
+    simulation::Spacecraft& craft_;
+  };
+
+  simulation::Flight& flight_;
+  CraftClock clock_;
+  ground::Catalogue catalogue_;
+  std::unique_ptr<ground::Archive> archive_;
+  std::unique_ptr<ground::Session> session_;
+  std::unique_ptr<ground::Api> api_;
+  bool linked_{false};
+};
+
+}  // namespace hirosco::testing
