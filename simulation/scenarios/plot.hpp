@@ -39,7 +39,7 @@ struct Plot {
   std::string caption{};  ///< one or two sentences: what to see
   std::vector<Curve> curves{};
   std::vector<Mark> marks{};
-  bool bars{false};  ///< a histogram: one bar for each x, logarithmic y
+  bool bars{false};  ///< a histogram of one curve: x is the power of two that a bin ends at; logarithmic y
 };
 
 /// The plot as a whole SVG document. Curves with more points than can be seen are drawn by the smallest and the largest

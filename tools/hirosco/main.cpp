@@ -20,11 +20,11 @@ using namespace hirosco::tools;
     throw CLI::ValidationError("not a duration: '" + text + "' (for example 60s, 500ms, 10min)");
   }
   const std::string unit = text.substr(used);
-  const double scale = unit == "ms"                  ? 1e-3
-                       : unit == "min"               ? 60.0
-                       : unit == "h"                 ? 3600.0
-                       : unit.empty() || unit == "s" ? 1.0
-                                                     : -1.0;
+  const double scale = unit == "ms"                   ? 1e-3
+                       : unit == "min" || unit == "m" ? 60.0
+                       : unit == "h"                  ? 3600.0
+                       : unit.empty() || unit == "s"  ? 1.0
+                                                      : -1.0;
   constexpr double longest_s = 1e7;
   if (scale < 0 || !(number >= 0) || number * scale > longest_s)
     throw CLI::ValidationError("not a duration: '" + text + "' (for example 60s, 500ms, 10min)");
@@ -87,6 +87,10 @@ int main(int argc, char** argv) {
   report_command->add_option("--plant", report_options.plant,
                              "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=");
 
+  std::string report_for = "5min";
+  report_command->add_flag("--real", report_options.real, "On real processes: cycle times and links of a flight");
+  report_command->add_option("--for", report_for, "Length of the real flight")->capture_default_str();
+
   TelecommandOptions tc_options;
   std::string tc_limit = "70s";
   auto* tc_command = app.add_subcommand("tc", "Send a telecommand by name and wait for its verification reports");
@@ -140,6 +144,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     if (!run_for.empty()) run_options.run_for = duration_of(run_for);
     simulate_options.run_for = duration_of(simulate_for);
+    report_options.real_for = duration_of(report_for);
     tc_options.limit = duration_of(tc_limit);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);

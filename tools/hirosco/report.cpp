@@ -10,6 +10,7 @@
 
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/report_page.hpp"
+#include "tools/hirosco/report_real.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -50,7 +51,8 @@ namespace {
 [[nodiscard]] std::string subtitle_of(const ReportOptions& options) {
   std::string text = fmt::format("Flown by hirosco report {} --seed {}", options.mission, options.seed);
   for (const std::string& planted : options.plant) text += " --plant " + planted;
-  return text + "; every figure from the whole spacecraft on virtual time.";
+  return text + (options.real ? " --real; every figure from real processes."
+                              : "; every figure from the whole spacecraft on virtual time.");
 }
 
 [[nodiscard]] int verdict(const std::vector<Chapter>& chapters) {
@@ -95,13 +97,18 @@ int report(const ReportOptions& options) {
   if (runs.empty()) return exit_usage;
 
   std::vector<Chapter> chapters;
-  for (const simulation::Run& run : runs) {
-    Chapter chapter{std::string{run.id}, std::string{run.title}, std::string{run.how}, fly(run, settings), {}};
-    chapter.rows = simulation::judged(*table, run.id, chapter.findings.figures);
+  const auto take = [&](Chapter chapter) {
+    chapter.rows = simulation::judged(*table, chapter.id, chapter.findings.figures);
     if (chapter.rows.empty()) chapter.findings.problems.emplace_back("the table expects nothing of this run");
     fmt::print("{}", text_of(chapter));
     std::fflush(stdout);
     chapters.push_back(std::move(chapter));
+  };
+  if (options.real) {
+    take(fly_for_real(mission, options.real_for));
+  } else {
+    for (const simulation::Run& run : runs)
+      take({std::string{run.id}, std::string{run.title}, std::string{run.how}, fly(run, settings), {}});
   }
   if (!options.out.empty()) {
     const auto written =

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/hirosco/report_real.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <csignal>
+#include <map>
+#include <numeric>
+#include <thread>
+
+#include "hirosco/pus/packet.hpp"
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/os/process.hpp"
+#include "tools/hirosco/ground_connection.hpp"
+
+namespace hirosco::tools {
+namespace {
+
+constexpr std::size_t bins = 16;
+using Bins = std::array<std::uint32_t, bins>;
+
+/// CYCLE_TIMES and LINK_STATS, as reports 4714 and 4723 bring them once a second.
+struct Member {
+  std::string_view name;
+  std::uint16_t apid;
+  std::uint16_t structure;
+  Bins execution{}, latency{};
+  std::uint32_t received{0}, lost{0};
+  int reports{0};
+};
+
+struct Heard {
+  std::array<Member, 2> members{{{"MANIPULATOR", 10, 4714}, {"JOYSTICK", 11, 4723}}};
+  int reactions{0};  ///< events of medium or high severity
+  std::size_t packets{0};
+};
+
+void take(Octets octets, Heard& heard) {
+  const auto packet = pus::TelemetryView::parse(octets);
+  if (!packet) return;
+  ++heard.packets;
+  if (packet->service() == 5 && (packet->subtype() == 3 || packet->subtype() == 4)) ++heard.reactions;
+  if (packet->service() != 3 || packet->subtype() != 25) return;
+  OctetReader reader{packet->source_data()};
+  const auto structure = reader.get<std::uint16_t>();
+  for (Member& member : heard.members) {
+    if (packet->apid() != member.apid || structure != member.structure) continue;
+    for (Bins* counts : {&member.execution, &member.latency})
+      for (std::uint32_t& count : *counts) count = reader.get<std::uint32_t>();
+    member.received = reader.get<std::uint32_t>();
+    member.lost = reader.get<std::uint32_t>();
+    ++member.reports;
+  }
+}
+
+/// Listens until the flight closes the link in its end.
+void listen(Process& flight, Heard& heard) {
+  constexpr std::uint16_t port = 10'015;
+  for (;;) {
+    const auto ended = flight.poll();
+    if (!ended || ended->has_value()) return;
+    auto connection = GroundConnection::open("127.0.0.1", port);
+    if (!connection) {
+      std::this_thread::sleep_for(std::chrono::milliseconds{50});
+      continue;
+    }
+    for (;;) {
+      const auto packet = connection->receive(std::chrono::seconds{1});
+      if (!packet) break;
+      if (packet->has_value()) take(**packet, heard);
+    }
+  }
+}
+
+[[nodiscard]] double sum(const Bins& counts) { return std::accumulate(counts.begin(), counts.end(), 0.0); }
+
+/// One line with every bin that is not empty.
+[[nodiscard]] std::string line_of(std::string_view name, std::string_view what, const Bins& counts) {
+  std::string line = fmt::format("{} {}:", name, what);
+  for (std::size_t i = 0; i < bins; ++i)
+    if (counts[i] != 0) line += fmt::format(" <{} us {};", 1U << i, counts[i]);
+  return line;
+}
+
+[[nodiscard]] simulation::Plot plot_of(std::string_view name, std::string_view what, std::string_view title,
+                                       const Bins& counts) {
+  simulation::Curve curve{.name = std::string{what}};
+  for (std::size_t i = 0; i < bins; ++i) curve.add(static_cast<double>(i), counts[i]);
+  return {.name = fmt::format("real-{}-{}", name, what),
+          .title = fmt::format("{}: {}", name, title),
+          .x_label = "below / us (bins of powers of two)",
+          .y_label = "cycles",
+          .caption = fmt::format("{:.0f} cycles of 0.5 ms; the period is 500 us. Logarithmic.", sum(counts)),
+          .curves = {std::move(curve)},
+          .bars = true};
+}
+
+void judge(const Heard& heard, simulation::Findings& findings) {
+  constexpr std::size_t first_bin_beyond = 10;  // 512 us and above: longer than the period
+  for (const Member& member : heard.members) {
+    const std::string prefix = fmt::format("REAL-{}-", member.name);
+    if (member.reports == 0) {
+      findings.problems.push_back(fmt::format("{} told nothing of its cycles", member.name));
+      continue;
+    }
+    const double cycles = sum(member.execution);
+    const double beyond =
+        std::accumulate(member.execution.begin() + first_bin_beyond, member.execution.end(), 0.0) / cycles;
+    findings.figures[prefix + "cycles"] = cycles / member.reports;
+    findings.figures[prefix + "beyond"] = beyond;
+    findings.figures[prefix + "received"] = member.received / cycles;
+    findings.notes.push_back(line_of(member.name, "own work", member.execution));
+    findings.notes.push_back(line_of(member.name, "late start", member.latency));
+    findings.notes.push_back(fmt::format("{}: {} samples came in {:.0f} cycles, {} came and went between two cycles.",
+                                         member.name, member.received, cycles, member.lost));
+    findings.plots.push_back(plot_of(member.name, "execution", "time of a cycle's own work", member.execution));
+    findings.plots.push_back(
+        plot_of(member.name, "latency", "start of a cycle after its planned instant", member.latency));
+  }
+  findings.figures["REAL-reactions"] = heard.reactions;
+}
+
+}  // namespace
+
+Chapter fly_for_real(const std::filesystem::path& mission, Duration span) {
+  Chapter chapter{"REAL",
+                  "On real processes",
+                  fmt::format("{:g} s of the coupled mission with real processes and clocks", seconds(span)),
+                  {},
+                  {}};
+  std::error_code failed;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
+  ProcessStart start;
+  start.executable = self.string();
+  start.arguments = {"run", mission.string(), "--for", fmt::format("{:.3f}", seconds(span)), "--quiet"};
+  auto flight = Process::spawn(start);
+  if (!flight) {
+    chapter.findings.problems.emplace_back("the mission cannot be started");
+    return chapter;
+  }
+  Heard heard;
+  listen(*flight, heard);
+  const auto end = flight->poll();
+  if (!end || !end->has_value() || !(*end)->success())
+    chapter.findings.problems.emplace_back("the flight did not end in order");
+  judge(heard, chapter.findings);
+  return chapter;
+}
+
+}  // namespace hirosco::tools
