@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/manipulator/control_law.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
+
+#include "subsystems/manipulator/script.hpp"
 
 namespace hirosco::manipulator {
 namespace {
@@ -139,6 +142,64 @@ TEST(TipForce, IsTheForceWhoseMomentsAreTheJointTorques) {
 }
 
 TEST(TipForce, IsNotToldWhereTheArmIsStretched) { EXPECT_EQ(tip_force({}, {0.3, 0.0}, {1, 1}), (Joints{0, 0})); }
+
+TEST(JointsFor, UndoTheTipAndReachAsFarAsTheyCan) {
+  for (const Joints& q : {Joints{-0.8, 1.6}, Joints{0.3, 0.4}, Joints{-1.5, 2.5}}) {
+    const Joints back = joints_for({}, tip({}, q));
+    EXPECT_NEAR(back[0], q[0], 1e-12);
+    EXPECT_NEAR(back[1], q[1], 1e-12);
+  }
+  const Joints stretched = joints_for({}, {3, 4});
+  EXPECT_NEAR(stretched[0], std::atan2(4, 3), 1e-12);
+  EXPECT_EQ(stretched[1], 0);
+}
+
+TEST(PressedFinger, LiesInTheContourByItsDepthAlongTheTrueNormal) {
+  const Surroundings around;
+  EXPECT_NEAR(pressed_finger(around, 0, 0.006)[0], 0.350 - 0.010 + 0.006, 1e-12);
+  EXPECT_NEAR(pressed_finger(around, 0.05, 0)[0], 0.350 - 0.010 - 0.010, 1e-12) << "on top of the bump";
+  // On its flank: the centre is a finger's radius from the surface point, at a right angle to the surface.
+  constexpr double y = 0.03, step = 1e-6;
+  const Joints surface = pressed_finger(around, y, around.finger_radius_m);
+  const Joints ahead = pressed_finger(around, y + step, around.finger_radius_m);
+  const Joints centre = pressed_finger(around, y, 0);
+  EXPECT_NEAR(std::hypot(centre[0] - surface[0], centre[1] - surface[1]), 0.010, 1e-12);
+  const double along = (centre[0] - surface[0]) * (ahead[0] - surface[0]) + (centre[1] - surface[1]) * step;
+  EXPECT_NEAR(along / (0.010 * step), 0, 1e-4);
+}
+
+TEST(Script, NeverJumpsAndMovesAlongTheContourAtItsSpeed) {
+  Script script;
+  const Joints home = tip({}, {-0.8, 1.6});
+  script.start(Script::Id::Contour, home, home, {});
+  Joints last = home;
+  double fastest_along_m_s = 0;
+  while (!script.done()) {
+    const bool along = script.leg() == 2;
+    const Joints at = script.advance(period_s);
+    EXPECT_LT(std::hypot(at[0] - last[0], at[1] - last[1]) / period_s, 0.15);
+    if (along) fastest_along_m_s = std::max(fastest_along_m_s, (at[1] - last[1]) / period_s);
+    last = at;
+  }
+  EXPECT_NEAR(std::hypot(last[0] - home[0], last[1] - home[1]), 0, 1e-12) << "it ends at home";
+  EXPECT_NEAR(fastest_along_m_s, 0.020, 0.020 * 0.25) << "along the rail; the finger's centre gains on the flanks";
+}
+
+TEST(Script, WaitsForItsDeeds) {
+  Script script;
+  const Joints slack_end = springs[0].slack_end_m;
+  script.start(Script::Id::Spring, slack_end, slack_end, {});
+  for (int k = 0; k < 100'000; ++k) (void)script.advance(period_s);
+  EXPECT_EQ(script.leg(), 0U);
+  EXPECT_EQ(script.deed(), Script::Deed::Hook);
+  EXPECT_NEAR(distance_to_spring(1, script.advance(period_s)), 0, 1e-12);
+  script.deed_done();
+  for (int k = 0; k < 100'000; ++k) (void)script.advance(period_s);
+  EXPECT_EQ(script.deed(), Script::Deed::Release);
+  script.deed_done();
+  for (int k = 0; k < 100'000; ++k) (void)script.advance(period_s);
+  EXPECT_TRUE(script.done());
+}
 
 }  // namespace
 }  // namespace hirosco::manipulator
