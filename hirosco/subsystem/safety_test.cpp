@@ -299,6 +299,17 @@ TEST_F(Links, ASampleReachesTheAuthorInTheNextCycle) {
   EXPECT_EQ(probe.hand.age_cycles(), 2u);
 }
 
+TEST_F(Links, ASampleThatComesAndGoesBetweenTwoCyclesCountsAsLost) {
+  couple();
+  for (int samples : {1, 3, 0, 1}) {
+    for (int i = 0; i < samples; ++i) sample(0.5);
+    rig.cycle();
+  }
+  const LinkStatistics seen = rig.subsystem.cycle().link_statistics().load();
+  EXPECT_EQ(seen.received, 3u);
+  EXPECT_EQ(seen.lost, 2u);
+}
+
 TEST_F(Links, FieldsAreMatchedByNameWhereverTheProducerPutsThem) {
   hand = rig.attach(1, Role::Consumer, "HAND",
                     {{"MORE", Type::Int32, 2}, {"ENABLE", Type::Uint8, 1}, {"ANGLE", Type::Double, 1}});
@@ -537,6 +548,25 @@ TEST(Overruns, LatencyIsTheDelayBehindThePlannedTime) {
   static_cast<void>(rig.subsystem.cycle_step(planned));
   EXPECT_EQ(rig.vital.latency_max_ns.load(), 40'000u);
   EXPECT_EQ(rig.vital.overruns.load(), 0u);
+}
+
+TEST(CycleTimes, FallIntoBinsOfPowersOfTwo) {
+  Slow slow;
+  Rig rig{slow, probe_descriptor};
+  rig.bring_to(State::PreOperational, 2);
+  slow.clock = &rig.clock;
+  const CycleTimes before = rig.subsystem.cycle().times().load();
+  for (const auto& [takes, late] : {std::pair{999ns, 0ns}, {1us, 40us}, {63us, 64us}, {10s, 1us}}) {
+    slow.takes = takes;
+    const TimePoint planned = rig.clock.now();
+    rig.advance(late);
+    static_cast<void>(rig.subsystem.cycle_step(planned));
+  }
+  CycleTimes times = rig.subsystem.cycle().times().load();
+  for (std::size_t i = 0; i < times.execution.size(); ++i) times.execution[i] -= before.execution[i];
+  for (std::size_t i = 0; i < times.latency.size(); ++i) times.latency[i] -= before.latency[i];
+  EXPECT_THAT(times.execution, ElementsAre(1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1));
+  EXPECT_THAT(times.latency, ElementsAre(1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0));
 }
 
 // --- the supervisor ----------------------------------------------------------------------------------------------------
