@@ -105,8 +105,7 @@ TEST(Commissioning, StopsWithALineWhenAConfigurationFails) {
   Plan plan;
   plan.edit = [](descriptor::Mission& mission) {
     for (auto& member : mission.subsystems)
-      if (member.subsystem.name == "JOYSTICK")
-        coupled(member).devices.front().endnode.address = "rokviss-robot";
+      if (member.subsystem.name == "JOYSTICK") coupled(member).devices.front().endnode.address = "rokviss-robot";
   };
   Flight flight{plan};
   EXPECT_FALSE(flight.commission());
@@ -122,8 +121,7 @@ TEST(Commissioning, StopsWithALineWhenALinkIsRefused) {
   Plan plan;
   plan.edit = [](descriptor::Mission& mission) {
     for (auto& member : mission.subsystems)
-      if (member.subsystem.name == "JOYSTICK")
-        coupled(member).requires_.front().fields[1].name = "FORCE";
+      if (member.subsystem.name == "JOYSTICK") coupled(member).requires_.front().fields[1].name = "FORCE";
   };
   Flight flight{plan};
   EXPECT_FALSE(flight.commission());
