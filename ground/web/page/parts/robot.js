@@ -6,6 +6,7 @@ import {asset} from '../api.js';
 import {fault} from '../commanding.js';
 import {number_text} from '../format.js';
 import {html} from '../html.js';
+import {hand_line, offset_of_angles} from './hand.js';
 import {fast, freshness, mission, operator, replay, slow, values} from '../store.js';
 
 /// models/NAME/scene.json of the mission; null when there is none, undefined while it is not known.
@@ -32,8 +33,10 @@ function useGamepad(on, hand) {
       const pad = [...navigator.getGamepads()].find(Boolean);
       if (!pad) return;
       const [x, y] = pad.axes.map((axis) => Math.abs(axis) < dead_zone ? 0 : axis * hand.handle_range_rad);
-      const line = `hand hold ${x.toFixed(3)} ${(-y).toFixed(3)}`;
-      if (line !== last) fault(hand.device, last = line, {quiet: true}).catch(() => {});
+      const stick = `${x.toFixed(3)} ${y.toFixed(3)}`;
+      if (stick === last) return;
+      last = stick;
+      fault(hand.device, hand_line(offset_of_angles(hand, [x, -y]), [0, 0]), {quiet: true}).catch(() => {});
     }, gamepad_period_ms);
     return () => clearInterval(timer);
   }, [on, hand]);

@@ -13,11 +13,13 @@ import URDFLoader from 'urdf-loader';
 import {asset} from '../api.js';
 import {fault} from '../commanding.js';
 import {replay, values} from '../store.js';
+import {hand_line, offset_of_angles} from './hand.js';
 
 const moved_rad = 1e-5;
 const trail_points = 400;
 const hand_period_ms = 60;
 const near_limit = 0.08;
+const calm_return_s = 0.8;
 
 const colour_ok = new Color(0x5b6880), colour_near = new Color(0xf2a93b), colour_at = new Color(0xf05d5e);
 
@@ -294,7 +296,7 @@ export class RobotView {
       if (!this.dragging) return;
       this.dragging = null;
       this.controls.enabled = true;
-      this.hand('hold 0 0', true);
+      this.hand([0, 0], true);
     };
     canvas.addEventListener('pointerup', end);
     canvas.addEventListener('pointercancel', end);
@@ -327,29 +329,38 @@ export class RobotView {
     if (what === 'tip') {
       if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -this.description.plane_z_m), at)) return;
       const clamp = (x) => Math.max(-hand.tip_range_m, Math.min(hand.tip_range_m, x));
-      return this.hand(`cartesian ${clamp(at.x - hand.tip_home_m[0]).toFixed(4)} ${clamp(at.y - hand.tip_home_m[1]).toFixed(4)} 0.08`);
+      return this.hand([clamp(at.x - hand.tip_home_m[0]), clamp(at.y - hand.tip_home_m[1])]);
     }
     const height = 0.115;
     const pivot = robot.body.position;
     if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -(pivot.z + 0.038 + height * 0.95)), at)) return;
     const range = hand.handle_range_rad;
-    const angle = (x) => Math.max(-range, Math.min(range, Math.atan2(x, height))).toFixed(4);
-    this.hand(`hold ${angle(at.x - pivot.x)} ${angle(at.y - pivot.y)}`);
+    const angle = (x) => Math.max(-range, Math.min(range, Math.atan2(x, height)));
+    this.hand(offset_of_angles(hand, [angle(at.x - pivot.x), angle(at.y - pivot.y)]));
   }
 
   /// At most one line in 60 ms, the last one always.
-  hand(line, now = false) {
-    this.hand_line = line;
+  hand(offset_m, now = false) {
+    this.wanted_m = offset_m;
     const send = () => {
       this.hand_timer = 0;
-      if (this.hand_line) fault(this.description.hand.device, `hand ${this.hand_line}`, {quiet: true}).catch(() => {});
-      this.hand_line = null;
+      if (!this.wanted_m) return;
+      const line = hand_line(this.wanted_m, this.hand_at_m(), now ? calm_return_s : undefined);
+      fault(this.description.hand.device, line, {quiet: true}).catch(() => {});
+      this.wanted_m = null;
     };
     if (now) {
       clearTimeout(this.hand_timer);
       return send();
     }
     this.hand_timer ||= setTimeout(send, hand_period_ms);
+  }
+
+  /// Where the hand is now, by the measured angles of its handle.
+  hand_at_m() {
+    const handle = this.robots.find((robot) => robot.handle);
+    const angles = Object.values(handle?.joints ?? {}).map((name) => values.get(name)?.v ?? 0);
+    return angles.length === 2 ? offset_of_angles(this.description.hand, angles) : [0, 0];
   }
 
   view_from(from_m) {
