@@ -161,6 +161,8 @@ void SocketPeer::accept(http::request<http::string_body> request) {
   socket_.set_option(limits);
   socket_.read_message_max(most_message_octets);
   socket_.text(true);
+  // One message, one frame: simple clients need not put pieces together.
+  socket_.auto_fragment(false);
   server_.peers.insert(shared_from_this());
   socket_.async_accept(request_, [self = shared_from_this()](Failure failed) {
     if (failed) {

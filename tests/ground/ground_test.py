@@ -1,0 +1,274 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""The ground station on a real flight with real sockets: killed and restarted, beside a stalled browser and beside 10,000
+events in a burst. Python's standard library only; prints what it measured."""
+import base64
+import json
+import os
+import pathlib
+import re
+import signal
+import socket
+import struct
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+import urllib.error
+import urllib.parse
+import urllib.request
+
+import flight
+
+TOKEN = "0123456789abcdef"
+
+
+class Gateway:
+    """`hirosco ground` on a port of its own; killed at the end."""
+
+    def __init__(self, folder, telemetry=None, mission=flight.ROKVISS):
+        words = [str(flight.BINARIES / "hirosco"), "ground", str(mission), "--port", "0", "--json",
+                 "--archive", str(pathlib.Path(folder) / "ground.db")]
+        if telemetry:
+            words += ["--telemetry", telemetry]
+        self.started = time.monotonic()
+        self.process = subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE,
+                                        env={**os.environ, "HIROSCO_GROUND_TOKEN": TOKEN})
+        url = json.loads(self.process.stdout.readline())["url"]
+        self.base, self.port = url.split("/#")[0], int(re.search(r":(\d+)/", url)[1])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.end(signal.SIGTERM)
+
+    def end(self, number):
+        if self.process.poll() is None:
+            self.process.send_signal(number)
+        self.process.wait(10)
+        self.process.stdout.close()
+
+    def request(self, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(self.base + path, data, {"Authorization": f"Bearer {TOKEN}"})
+        with urllib.request.urlopen(request, timeout=10) as answer:
+            return json.loads(answer.read())
+
+    def until(self, condition, limit_s=15.0):
+        end = time.monotonic() + limit_s
+        while time.monotonic() < end:
+            status = self.request("/api/status")
+            if condition(status):
+                return status
+            time.sleep(0.02)
+        raise AssertionError(f"not within {limit_s} s: {status['mode']} {status['link']}")
+
+
+class WebSocket:
+    """As much of RFC 6455 as a client needs here."""
+
+    def __init__(self, gateway, receive_octets=None):
+        self.socket = socket.socket()
+        if receive_octets:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_octets)
+        self.socket.connect(("127.0.0.1", gateway.port))
+        key = base64.b64encode(os.urandom(16)).decode()
+        self.socket.sendall((f"GET /ws?token={TOKEN} HTTP/1.1\r\nHost: 127.0.0.1:{gateway.port}\r\nUpgrade: websocket\r\n"
+                             f"Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\n"
+                             "Sec-WebSocket-Version: 13\r\n\r\n").encode())
+        self.buffer = b""
+        while b"\r\n\r\n" not in self.buffer:
+            self.buffer += self.socket.recv(4096)
+        head, self.buffer = self.buffer.split(b"\r\n\r\n", 1)
+        assert b" 101 " in head, head
+
+    def _take(self, octets):
+        while len(self.buffer) < octets:
+            more = self.socket.recv(1 << 16)
+            if not more:
+                raise EOFError
+            self.buffer += more
+        taken, self.buffer = self.buffer[:octets], self.buffer[octets:]
+        return taken
+
+    def receive(self, limit_s=10.0):
+        self.socket.settimeout(limit_s)
+        while True:
+            first, second = self._take(2)
+            length = second & 127
+            if length >= 126:
+                length = int.from_bytes(self._take(2 if length == 126 else 8), "big")
+            payload = self._take(length)
+            if first & 15 == 1:
+                return json.loads(payload)
+            if first & 15 == 8:
+                raise EOFError(int.from_bytes(payload[:2], "big"))
+
+    def close(self):
+        self.socket.close()
+
+
+class Listener(threading.Thread):
+    """Counts what comes, until closed."""
+
+    def __init__(self, gateway):
+        super().__init__(daemon=True)
+        self.socket, self.messages, self.times = WebSocket(gateway), [], []
+        self.start()
+
+    def run(self):
+        try:
+            while True:
+                message = self.socket.receive(30.0)
+                self.times.append(time.monotonic())
+                self.messages.append(message)
+        except (OSError, EOFError):
+            self.socket.close()
+
+    def count(self, kind, since=0.0):
+        return sum(message["type"] == kind and at >= since for message, at in zip(list(self.messages), list(self.times)))
+
+
+def crc16(octets):
+    value = 0xFFFF
+    for octet in octets:
+        value ^= octet << 8
+        for _ in range(8):
+            value = (value << 1 ^ 0x1021) & 0xFFFF if value & 0x8000 else value << 1
+    return value
+
+
+def event_packet(apid, count, seconds, event, severity=1, data=b""):
+    """TM[5,severity]."""
+    source = struct.pack(">BBBHH", 0x20, 5, severity, count & 0xFFFF, 0) + struct.pack(">I", int(seconds)) + \
+        int((seconds % 1) * 2**24).to_bytes(3, "big") + struct.pack(">H", event) + data
+    packet = struct.pack(">HHH", 0x0800 | apid, 0xC000 | count & 0x3FFF, len(source) + 1) + source
+    return packet + struct.pack(">H", crc16(packet))
+
+
+class OnAFlight(unittest.TestCase):
+    def test_killed_and_restarted_it_loses_nothing_that_the_link_delivered(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            first = Gateway(rokviss.folder)
+            first.until(lambda status: status["link"]["rx"] > 100)
+            history = "/api/history?parameter=MANIPULATOR.TIP_FORCE[0]&last=600"
+            before = first.request(history)["t"]
+            first.end(signal.SIGKILL)
+            killed = time.monotonic()
+            time.sleep(1.0)
+            with Gateway(rokviss.folder) as second:
+                second.until(lambda status: status["link"]["rx"] > 50)
+                flight.measure(f"telemetry again {time.monotonic() - second.started:.2f} s after the restart")
+                after = second.request(history)
+                self.assertEqual(after["t"][:len(before)], before)
+                self.assertGreater(len(after["t"]), len(before))
+                self.assertEqual(len(after["gaps"]), 1)
+                gap = after["gaps"][0]["to"] - after["gaps"][0]["from"]
+                self.assertAlmostEqual(gap, second.started - killed + 0.2, delta=0.7)
+                self.assertGreaterEqual(after["gaps"][0]["from"], before[-1])
+
+    def test_a_command_returns_its_report_and_pages_hear_of_each_other(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            with Gateway(rokviss.folder) as gateway:
+                gateway.until(lambda status: status["mode"] == "telepresence")
+                one, other = Listener(gateway), Listener(gateway)
+                delays = []
+                for number in range(20):
+                    sent_at = time.monotonic()
+                    sent = gateway.request("/api/commands", {"subsystem": "MANIPULATOR", "function": "PING",
+                                                             "sender": f"operator {number % 2}"})
+                    end = sent_at + 5.0
+                    done = []
+                    while not done and time.monotonic() < end:
+                        done = [at for message, at in zip(list(other.messages), list(other.times))
+                                if message["type"] == "command" and message["id"] == sent["id"] and
+                                message["stage"] == "completed"]
+                        time.sleep(0.001)
+                    delays.append((done[0] - sent_at) * 1000)
+                flight.measure(f"from the click to its last report on another page: median {sorted(delays)[10]:.1f} ms, "
+                               f"greatest {max(delays):.1f} ms")
+                self.assertLess(sorted(delays)[10], 150.0)
+                self.assertEqual(one.count("command"), other.count("command"))
+                one.socket.close()
+                other.socket.close()
+
+    def test_a_stalled_and_a_killed_browser_cost_the_others_nothing(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            with Gateway(rokviss.folder) as gateway:
+                gateway.until(lambda status: status["mode"] == "telepresence")
+                good = Listener(gateway)
+                time.sleep(1.0)
+
+                def rate(seconds):
+                    since = time.monotonic()
+                    time.sleep(seconds)
+                    return good.count("values", since) / seconds
+
+                alone = rate(4.0)
+                stalled = [WebSocket(gateway, receive_octets=4096) for _ in range(5)]    # never read
+                killed = WebSocket(gateway)
+                killed.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+                killed.close()
+                beside = rate(4.0)
+                flight.measure(f"batches a second: {alone:.2f} alone, {beside:.2f} beside 5 stalled and 1 killed browser")
+                self.assertGreater(beside, alone * 0.95)
+                self.assertGreater(alone, 15.0)
+                for one in [*stalled, good.socket]:
+                    one.close()
+
+
+class OnAStream(unittest.TestCase):
+    """A spacecraft that sends what we want it to send."""
+
+    def test_ten_thousand_events_in_a_burst_all_arrive_in_order_and_are_kept(self):
+        burst = 10_000
+        with socket.create_server(("127.0.0.1", 0)) as server:
+            with tempfile.TemporaryDirectory() as folder, \
+                    Gateway(folder, telemetry=f"127.0.0.1:{server.getsockname()[1]}") as gateway:
+                craft, _ = server.accept()
+                page = Listener(gateway)
+                now = time.time() + 378_691_237
+                packets = [event_packet(10, n, now + n * 1e-4, 1010, 2, struct.pack(">Bf", 1, float(n)))
+                           for n in range(burst)]
+                started = time.monotonic()
+                for at in range(0, burst, 100):
+                    craft.sendall(b"".join(packets[at:at + 100]))
+                end = started + 20
+                while page.count("event") < burst and time.monotonic() < end:
+                    time.sleep(0.05)
+                flight.measure(f"{burst} events on the page after {page.times[-1] - started:.2f} s")
+                page.socket.close()
+                values = [message["values"]["VALUE"] for message in page.messages if message["type"] == "event"]
+                self.assertEqual(values, list(range(burst)))
+                kept = gateway.request("/api/events?limit=10000")["events"]
+                self.assertEqual(len(kept), burst)
+                self.assertEqual(kept[0]["values"]["VALUE"], burst - 1)
+                self.assertEqual(gateway.request("/api/status")["link"]["lost"], 0)
+                craft.close()
+
+    def test_rubbish_costs_the_connection_only(self):
+        with socket.create_server(("127.0.0.1", 0)) as server:
+            with tempfile.TemporaryDirectory() as folder, \
+                    Gateway(folder, telemetry=f"127.0.0.1:{server.getsockname()[1]}") as gateway:
+                for rubbish in (b"\xff" * 5000, b"\x18\x0a" + b"\x00" * 100, os.urandom(20_000)):
+                    craft, _ = server.accept()
+                    craft.sendall(rubbish)
+                    craft.settimeout(5.0)
+                    try:
+                        self.assertEqual(craft.recv(1), b"")
+                    except ConnectionResetError:
+                        pass
+                    craft.close()
+                craft, _ = server.accept()
+                craft.sendall(event_packet(10, 0, time.time() + 378_691_237, 1010, 2, struct.pack(">Bf", 1, 60.0)))
+                gateway.until(lambda status: status["link"]["rx"] == 1)
+                craft.close()
+
+
+if __name__ == "__main__":
+    flight.main()
