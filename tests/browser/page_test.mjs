@@ -51,6 +51,37 @@ describe('a flight that means well', () => {
     await page.waitForFunction(() => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
   });
 
+  for (const [what, from, to] of [['the handle of the joystick', 0.15, 0.4], ['the fingertip', 0.58, 0.75]]) {
+    it(`moves the simulated hand when ${what} is dragged`, async () => {
+      await go(page, 'overview');
+      await page.waitForSelector('[data-test=robot][data-loaded]');
+      const canvas = page.locator('[data-test=robot] canvas');
+      const box = await canvas.boundingBox();
+      const grip = await (async () => {
+        for (let y = box.y + 44; y < box.y + box.height - 30; y += 7) {
+          for (let x = box.x + box.width * from + 20; x < box.x + box.width * to - 20; x += 11) {
+            await page.mouse.move(x, y);
+            if (await canvas.evaluate((node) => node.style.cursor === 'grab')) return [x, y];
+          }
+        }
+        return null;
+      })();
+      assert.ok(grip, 'nothing to grip');
+      const hand_lines = () => page.evaluate(async () => {
+        const answer = await fetch('/api/timeline?from=0&to=9e9', {headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}});
+        return (await answer.json()).faults.map((one) => one.line).filter((line) => line.startsWith('hand cartesian'));
+      });
+      const before = (await hand_lines()).length;
+      await page.mouse.down();
+      await page.mouse.move(grip[0] + 30, grip[1] + 4, {steps: 5});
+      while ((await hand_lines()).length === before);
+      const [dx, dy] = (await hand_lines()).at(-1).split(' ').slice(2).map(Number);
+      assert.ok(Math.hypot(dx, dy) > 0.001 && Math.hypot(dx, dy) < 0.2);
+      await page.mouse.up();
+      while (!(await hand_lines()).at(-1).startsWith('hand cartesian 0.0000 0.0000'));
+    });
+  }
+
   it('accepts the ends of a range and rejects what lies beyond, text, NaN and fractions of whole numbers', async () => {
     await go(page, 'commands/MANIPULATOR/MOVE_TO');
     const wrong = (field) => page.locator(`label.field:has([data-test=field-${field}])`).evaluate((node) => node.classList.contains('wrong'));
