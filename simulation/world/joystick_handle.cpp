@@ -44,7 +44,10 @@ void OperatorHand::cartesian(const Vec2& offset_m, double span_s) noexcept {
 
 void OperatorHand::follow(const Vec2& angle_rad) noexcept {
   constexpr double between_commands_s = 0.02;
-  begin(Mode::Ramp, angle_rad, between_commands_s);
+  constexpr double fastest_rad_s = 0.6;  // of a careful hand: a command of a page may be a jump
+  const Vec2 way = angle_rad - intent().angle_rad;
+  const double farther_rad = std::max(std::abs(way[0]), std::abs(way[1]));
+  begin(Mode::Ramp, angle_rad, std::max(between_commands_s, farther_rad / fastest_rad_s));
 }
 
 void OperatorHand::wander() noexcept {

@@ -37,7 +37,8 @@ class OperatorHand {
   void cartesian(const Vec2& offset_m, double span_s) noexcept;
   /// Slow gentle wandering about home, touching the wall now and then; all from the seed.
   void wander() noexcept;
-  /// As commanded: straight to the angles within the time between two commands at 50 Hz, then holds.
+  /// As commanded: straight to the angles within the time between two commands at 50 Hz, or as fast as a careful hand
+  /// goes, then holds.
   void follow(const Vec2& angle_rad) noexcept;
   [[nodiscard]] bool wandering() const noexcept { return mode_ == Mode::Wander; }
   /// Whatever the caller wants, by seconds since now.

@@ -42,8 +42,13 @@ TEST_F(Hands, TheWanderingHandGivesWayToACommandedOneAndTakesOverAgain) {
     flight.craft().run(30ms);
   }
   EXPECT_LT(fastest_rad_s, 0.5) << "commands of 50 Hz are no jumps for the handle";
+  // A jump of a page's is none for the hand.
+  fastest_rad_s = 0;
+  ASSERT_TRUE(command("HAND", {0.1, 0}).completed);
   ASSERT_TRUE(command("HAND", {-0.1, 0}).completed);
   flight.craft().run(2s);
+  EXPECT_LT(fastest_rad_s, 0.9) << "0.6 rad/s and what the softness of the arm adds";
+  EXPECT_EQ(flight.inhibited("MANIPULATOR"), 0U);
   EXPECT_NEAR(handle().angle_rad()[0], -0.1, 0.01);
   EXPECT_NEAR(flight.device<RobotDevice>("robot").arm().state().link_rad[0] - home[0], -0.1, 0.01);
   EXPECT_FALSE(flight.device<JoystickDevice>("joystick").hand("hold 0 0")) << "two masters would be one too many";
