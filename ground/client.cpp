@@ -49,17 +49,17 @@ void Client::tick(TimePoint now) {
   if (closing_) return;
   if (replay_ != nullptr) return play(now);
   if (peer_.pending_octets() > busy_octets) return;
-  json status = status_json(session_.catalogue(), session_.model(), session_.now());
-  status["link"] = session_.link_json();
-  status["commandable"] = session_.connected_;
   if (session_.connected_ != connected_told_) status_due_ = true;
   connected_told_ = session_.connected_;
-  show(session_.model(), std::move(status), now, false);
+  show(session_.model(), session_.now(), now, false);
 }
 
-void Client::show(const Model& model, json status, TimePoint now, bool replay) {
+void Client::show(const Model& model, OnboardTime at, TimePoint now, bool replay) {
   if (status_due_ || model.status_revision() != status_told_ || now - status_at_ >= status_period) {
+    json status = status_json(session_.catalogue(), model, at);
     status["type"] = "status";
+    status["link"] = session_.link_json();
+    status["commandable"] = session_.connected_ && !replay;
     if (replay) status["replay"] = true;
     send(status);
     status_due_ = false;
@@ -140,10 +140,7 @@ void Client::play(TimePoint now) {
   }
   const bool playing = replay_->speed > 0.0 && before != replay_->at;
   if (playing && (replay_->ended || now - replay_->announced >= status_period)) announce_replay(now);
-  json status = status_json(session_.catalogue(), replay_->model, replay_->at);
-  status["link"] = session_.link_json();
-  status["commandable"] = false;
-  show(replay_->model, std::move(status), now, true);
+  show(replay_->model, replay_->at, now, true);
 }
 
 void Client::tell_past(const Span& span) {

@@ -41,7 +41,7 @@ class Client {
     TimePoint announced{};
   };
   void send(const nlohmann::json& message);
-  void show(const Model& model, nlohmann::json status, TimePoint now, bool replay);
+  void show(const Model& model, OnboardTime at, TimePoint now, bool replay);
   void begin_replay(double at, double speed);
   void play(TimePoint now);
   void tell_past(const Span& span);

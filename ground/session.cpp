@@ -21,6 +21,9 @@ constexpr Duration command_limit = 600s;
 constexpr Duration housekeeping_period = 10s;
 constexpr std::uint16_t count_modulo = 16'384;
 constexpr std::size_t longest_sender = 32;
+constexpr std::size_t most_open_commands = 10'000;
+/// Of the supervisor's own telecommands (decision 27).
+constexpr std::uint16_t supervisor_source = 1;
 
 [[nodiscard]] std::string hex_of(Octets octets) {
   constexpr std::string_view digits = "0123456789ABCDEF";
@@ -162,8 +165,13 @@ void Session::add_gap(OnboardTime from, OnboardTime to) {
 
 void Session::take_verdict(const Verdict& verdict, OnboardTime t) {
   const auto key = std::pair{verdict.destination, verdict.request_id};
-  const auto found = open_commands_.find(key);
-  if (found == open_commands_.end()) return;
+  auto found = open_commands_.find(key);
+  if (found == open_commands_.end()) {
+    // The supervisor's own are its business; of ours that have ended, nothing more is wanted.
+    if (verdict.destination == supervisor_source || verdict.destination == parts_.source) return;
+    if (open_commands_.size() >= most_open_commands) return;
+    found = open_commands_.emplace(key, add_foreign(verdict, t)).first;
+  }
   const std::int64_t number = found->second.number;
   parts_.archive.add(number, StoredReport{t, verdict.stage, verdict.code, verdict.reason});
   if (verdict.last) open_commands_.erase(found);
@@ -173,6 +181,19 @@ void Session::take_verdict(const Verdict& verdict, OnboardTime t) {
     message["type"] = "command";
     broadcast(message);
   }
+}
+
+Session::Open Session::add_foreign(const Verdict& verdict, OnboardTime t) {
+  constexpr std::uint16_t apid_mask = 0x7FF;
+  StoredCommand command;
+  command.t = t;
+  command.sender = "another ground (" + std::to_string(verdict.destination) + ")";
+  command.apid = static_cast<std::uint16_t>(verdict.request_id >> 16 & apid_mask);
+  command.subsystem = parts_.catalogue.name_of(command.apid);
+  command.function = "?";
+  command.arguments = "{}";
+  command.stage = "sent";
+  return {parts_.archive.add(command), parts_.clock.now()};
 }
 
 void Session::take_answer(const PermissionAnswer& answer) {

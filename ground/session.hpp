@@ -98,6 +98,10 @@ class Session {
 
  private:
   friend class Client;
+  struct Open {
+    std::int64_t number{};
+    TimePoint since{};
+  };
   struct Prepared {
     const descriptor::Subsystem* subsystem{};
     std::string function;
@@ -113,6 +117,8 @@ class Session {
   void count_lost(const pus::TelemetryView& packet);
   void add_gap(OnboardTime from, OnboardTime to);
   void take_verdict(const Verdict& verdict, OnboardTime t);
+  /// A telecommand of another ground: all that is known of it is whom it went to and what became of it.
+  [[nodiscard]] Open add_foreign(const Verdict& verdict, OnboardTime t);
   void take_answer(const PermissionAnswer& answer);
   void expire(TimePoint now);
   [[nodiscard]] nlohmann::json link_json() const;
@@ -129,10 +135,6 @@ class Session {
   std::map<std::uint16_t, std::pair<std::uint16_t, OnboardTime>> expected_;  ///< by APID: next count, last time
   std::optional<OnboardTime> last_known_;  ///< end of what the archive has before this link
 
-  struct Open {
-    std::int64_t number{};
-    TimePoint since{};
-  };
   std::map<std::pair<std::uint16_t, std::uint32_t>, Open> open_commands_;  ///< by destination and request id
   struct Question {
     std::string octets;

@@ -163,6 +163,21 @@ TEST_F(GroundStation, EveryPageSeesEveryStageOfEverybodysTelecommands) {
   }
 }
 
+TEST_F(GroundStation, TelecommandsOfAnotherGroundShowWithWhatBecameOfThem) {
+  commission();
+  std::array<std::byte, 64> buffer;
+  const auto ping = pus::write_telecommand(
+      buffer, {.apid = 11, .sequence_count = 7, .ack = pus::ack_all, .service = 17, .subtype = 1, .source = 777}, {});
+  ASSERT_TRUE(ping);
+  flight.craft().ground().send(*ping);
+  station.run(300ms);
+  const json commands = station.get("/api/commands");
+  ASSERT_EQ(commands["commands"].size(), 1U);
+  EXPECT_EQ(commands["commands"][0]["sender"], "another ground (777)");
+  EXPECT_EQ(commands["commands"][0]["subsystem"], "JOYSTICK");
+  EXPECT_EQ(commands["commands"][0]["stage"], "completed");
+}
+
 /// Asking before and sending must agree, for whatever function in whatever situation.
 TEST_F(GroundStation, TheSupervisorSaysBeforeSendingWhatItSaysOnSending) {
   commission();

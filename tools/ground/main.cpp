@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <charconv>
@@ -15,6 +17,7 @@
 #include "ground/http_server.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/file_descriptor.hpp"
 #include "tools/hirosco/commands.hpp"
 
 /// `hirosco-ground`: the process behind `hirosco ground` and `hirosco why`, which check the command line. Options in
@@ -54,6 +57,13 @@ using Options = std::map<std::string, std::string>;
 [[nodiscard]] fs::path page_folder() {
   std::error_code failed;
   return fs::read_symlink("/proc/self/exe", failed).parent_path().parent_path() / "share" / "ground";
+}
+
+/// Two stations that write into one archive would keep everything twice: the lock lives as long as the process.
+[[nodiscard]] FileDescriptor take_lock(const fs::path& archive) {
+  FileDescriptor lock{::open((archive.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)};
+  if (lock && ::flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return lock;
+  return {};
 }
 
 [[nodiscard]] int print_why(Session& session) {
@@ -123,13 +133,21 @@ int main(int argc, char** argv) {
   const fs::path path = option(options, "--archive", archive_of(*mission).string());
   std::error_code failed;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), failed);
+  const bool serves = !options.contains("--why");
+  const FileDescriptor lock = serves ? take_lock(path) : FileDescriptor{};
+  if (serves && !lock) {
+    fmt::print(stderr,
+               "hirosco ground: {} cannot be written, or another station keeps it (another one: --archive FILE)\n",
+               path.string());
+    return tools::exit_environment;
+  }
   auto archive = Archive::open(path.string());
   if (!archive) {
     fmt::print(stderr, "hirosco ground: {}: {}\n", path.string(), archive.error().text);
     return tools::exit_environment;
   }
   const Catalogue catalogue{*mission};
-  if (!options.contains("--why")) return serve(options, *mission, catalogue, **archive);
+  if (serves) return serve(options, *mission, catalogue, **archive);
   const SystemClock clock;
   Session session{{.catalogue = catalogue, .archive = **archive, .clock = clock, .outside = {}}};
   return print_why(session);
