@@ -169,7 +169,8 @@ class Drawing {
   void marks() {
     for (const Mark& mark : plot_.marks) {
       constexpr std::string_view style = "stroke=\"#a11212\" stroke-width=\"1.2\" stroke-dasharray=\"5 4\"";
-      constexpr std::string_view words = "font-size=\"12\" style=\"fill:#a11212\"";
+      constexpr std::string_view words =
+          "font-size=\"12\" style=\"fill:#a11212\" stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"";
       if (mark.vertical) {
         const bool at_right = px(mark.at) > left + 0.75 * inner_width;
         line(px(mark.at), top, px(mark.at), top + inner_height, style);

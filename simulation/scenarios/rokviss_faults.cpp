@@ -25,7 +25,7 @@ struct Unplugging {
   double offline_s{never};
   double way_rad{0};  ///< of the joints until they came to rest
   bool told{false};
-  Curve rate{"rate of joint 1"}, felt{"felt by the hand x 10", {}, {}, Stroke::Dashed};
+  Curve motor{"motor of joint 2"}, felt{"felt by the hand x 50", {}, {}, Stroke::Dashed};
 };
 
 bool log_names_all(Flight& flight, const std::string& subsystem, const std::string& device) {
@@ -43,8 +43,19 @@ bool log_names_all(Flight& flight, const std::string& subsystem, const std::stri
   return true;
 }
 
+/// A little before and after.
+void plot_sample(CoupledCraft& craft, double past_s, Unplugging& seen) {
+  constexpr double shown_s = 0.020;
+  if (std::abs(past_s) > shown_s) return;
+  seen.motor.add(1e3 * past_s, craft.robot().motor_torque_n_m()[1]);
+  seen.felt.add(1e3 * past_s, 50 * craft.felt_n_m()[1]);
+}
+
 void watch_unplugging(CoupledCraft& craft, double pulled_s, const Vec2& q, Unplugging& seen) {
   const double past_s = craft.time_s() - pulled_s;
+  constexpr double rounding_s = 1e-9;
+  plot_sample(craft, past_s, seen);
+  if (past_s < rounding_s) return;
   if (!craft.robot().active()) seen.torque_off_s = std::min(seen.torque_off_s, past_s);
   if (craft.felt_n_m() == Vec2{}) seen.display_zero_s = std::min(seen.display_zero_s, past_s);
   for (std::size_t i = 0; i < 2; ++i)
@@ -55,19 +66,26 @@ Unplugging unplug(const RunSettings& settings, const std::string& which, const s
   CoupledCraft craft{craft_options(settings)};
   Unplugging seen;
   craft.hand(hand);
+  const double pulled_s = craft.time_s() + after_s;
+  Vec2 q{};
+  craft.craft().on_cycle([&](std::string_view, TimePoint) { watch_unplugging(craft, pulled_s, q, seen); });
   craft.run(after_s);
-  const double pulled_s = craft.time_s();
-  const Vec2 q = craft.arm().state().link_rad;
+  q = craft.arm().state().link_rad;
   craft.flight().story().on_line = [&](std::string_view line) {
     if (line.find(" high ") != line.npos && line.find("_LOST") != line.npos)
       seen.event_s = std::min(seen.event_s, craft.time_s() - pulled_s);
   };
-  craft.craft().on_cycle([&](std::string_view, TimePoint) { watch_unplugging(craft, pulled_s, q, seen); });
   if (!craft.craft().device(which)->fault("unplug")) return seen;
   const auto both_offline = [&] {
     return craft.flight().state("MANIPULATOR") == State::Offline && craft.flight().state("JOYSTICK") == State::Offline;
   };
   if (craft.craft().run_until(both_offline, 5s)) seen.offline_s = craft.time_s() - pulled_s;
+  // Nobody cycles any more: what the devices do now is looked at all the same.
+  constexpr int shown_cycles = 40;
+  for (int i = 0; i < shown_cycles; ++i) {
+    craft.run(CoupledCraft::period_s);
+    plot_sample(craft, craft.time_s() - pulled_s, seen);
+  }
   craft.run(0.3);
   for (std::size_t i = 0; i < 2; ++i)
     seen.way_rad = std::max(seen.way_rad, std::abs(craft.arm().state().link_rad[i] - q[i]));
@@ -81,7 +99,21 @@ struct Condition {
   const char* hand;
   double after_s;
   double spread_s;  ///< between the instants of two runs
+  bool plotted;
 };
+
+Plot plot_of(const std::string& which, Unplugging& seen) {
+  return {.name = "ro9-" + which,
+          .title = fmt::format("RO9: the {} is unplugged in contact", which),
+          .x_label = "time from the plug / ms",
+          .y_label = "torque / N m",
+          .caption =
+              "Both subsystems act within 2 ms. A device that nobody commands any more keeps its last torque until its "
+              "own watchdog of 10 ms.",
+          .curves = {std::move(seen.motor), std::move(seen.felt)},
+          .marks = {{"unplugged", 0, true},
+                    {fmt::format("both Offline after {:.1f} ms", 1e3 * seen.offline_s), 1e3 * seen.offline_s, true}}};
+}
 
 void unplug_again_and_again(const RunSettings& settings, const std::string& which, const Condition& condition,
                             Findings& findings) {
@@ -90,12 +122,13 @@ void unplug_again_and_again(const RunSettings& settings, const std::string& whic
   for (int i = 0; i < settings.repetitions; ++i) {
     RunSettings one = settings;
     one.seed = settings.seed + static_cast<std::uint64_t>(i);
-    const Unplugging seen = unplug(one, which, condition.hand, condition.after_s + i * condition.spread_s);
+    Unplugging seen = unplug(one, which, condition.hand, condition.after_s + i * condition.spread_s);
     event_s = std::max(event_s, seen.event_s);
     quiet_s = std::max(quiet_s, which == "robot" ? seen.display_zero_s : seen.torque_off_s);
     offline_s = std::max(offline_s, seen.offline_s);
     way_rad = std::max(way_rad, seen.way_rad);
     told += seen.told ? 1 : 0;
+    if (i == 0 && condition.plotted) findings.plots.push_back(plot_of(which, seen));
   }
   const std::string prefix = fmt::format("RO9-{}-{}-", which, condition.name);
   findings.figures[prefix + "event"] = event_s * 1e3;
@@ -149,8 +182,8 @@ class LinkCheck {
 }  // namespace
 
 Findings fly_unplugging(const RunSettings& settings) {
-  constexpr Condition in_free_motion{"free", "sine 1 0.15 0.5", 2.0, 0.1};
-  constexpr Condition in_contact{"contact", "cartesian 0.0226 0 1", 1.2, 0.037};
+  constexpr Condition in_free_motion{"free", "sine 1 0.15 0.5", 2.0, 0.1, false};
+  constexpr Condition in_contact{"contact", "cartesian 0.0226 0 1", 1.2, 0.037, true};
   Findings findings;
   for (const char* which : {"joystick", "robot"})
     for (const Condition& condition : {in_free_motion, in_contact})

@@ -48,8 +48,8 @@ namespace {
   return runs;
 }
 
-[[nodiscard]] std::string subtitle_of(const ReportOptions& options) {
-  std::string text = fmt::format("Flown by hirosco report {} --seed {}", options.mission, options.seed);
+[[nodiscard]] std::string subtitle_of(const ReportOptions& options, const std::string& name) {
+  std::string text = fmt::format("Flown by hirosco report {} --seed {}", name, options.seed);
   for (const std::string& planted : options.plant) text += " --plant " + planted;
   return text + (options.real ? " --real; every figure from real processes."
                               : "; every figure from the whole spacecraft on virtual time.");
@@ -111,8 +111,8 @@ int report(const ReportOptions& options) {
       take({std::string{run.id}, std::string{run.title}, std::string{run.how}, fly(run, settings), {}});
   }
   if (!options.out.empty()) {
-    const auto written =
-        write_page(options.out, "Report on mission " + options.mission, subtitle_of(options), chapters);
+    const std::string name = mission.parent_path().filename().string();
+    const auto written = write_page(options.out, "Report on mission " + name, subtitle_of(options, name), chapters);
     if (!written) {
       fmt::print(stderr, "hirosco report: {}: {}\n", options.out,
                  std::strerror(static_cast<int>(written.error().value)));

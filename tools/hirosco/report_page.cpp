@@ -19,6 +19,7 @@ body { font: 15px/1.5 Helvetica, Arial, sans-serif; color: #1c1c1c; max-width: 1
 h1 { margin-bottom: 0; } h2 { margin-top: 2.2em; border-bottom: 1px solid #bbb; } .sub, .how, figcaption { color: #555; }
 table { border-collapse: collapse; width: 100%; font-size: 13px; }
 th, td { text-align: left; padding: 3px 8px; border-bottom: 1px solid #ddd; vertical-align: top; }
+td:first-child { white-space: nowrap; }
 td.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; } td.source { color: #555; }
 .holds { color: #1a6b3c; } .fails { color: #a11212; font-weight: bold; }
 figure { margin: 1.2em 0; break-inside: avoid; } img { max-width: 100%; border: 1px solid #ddd; }

@@ -92,7 +92,8 @@ void listen(Process& flight, Heard& heard) {
           .title = fmt::format("{}: {}", name, title),
           .x_label = "below / us (bins of powers of two)",
           .y_label = "cycles",
-          .caption = fmt::format("{:.0f} cycles of 0.5 ms; the period is 500 us. Logarithmic.", sum(counts)),
+          .caption = fmt::format(
+              "{:.0f} cycles of 500 us, counted logarithmically; the last bin holds all above 16,384 us.", sum(counts)),
           .curves = {std::move(curve)},
           .bars = true};
 }
