@@ -61,7 +61,9 @@ Result<> TcpServer::listen_on(GroundPort port, const Options& options) {
   address.sin_port = htons(telemetry ? options.telemetry_port : options.telecommand_port);
   if (::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
       ::listen(listener.get(), listen_backlog) != 0)
-    return fail(ErrorCode::SystemFailure, "port of the ground link", errno);
+    return errno == EADDRINUSE
+               ? fail(ErrorCode::Unavailable, "a port of the ground link is taken, by another flight perhaps", errno)
+               : fail(ErrorCode::SystemFailure, "port of the ground link", errno);
   epoll_event event{};
   event.events = EPOLLIN;
   event.data.u32 = std::to_underlying(port);
