@@ -93,11 +93,24 @@ export const link = computed(() => {
   return {state: reported.connected ? 'up' : 'down', age_s: reported.age_s ?? Infinity, rx: reported.rx, tx: reported.tx};
 });
 
-export const counts = computed(() => {
+function counted_since(from) {
   const found = {high: 0, medium: 0, low: 0, info: 0};
-  for (const event of events.value) if (event.severity in found) ++found[event.severity];
+  for (const event of events.value) if (event.severity in found && event.t > from) ++found[event.severity];
   return found;
+}
+export const counts = computed(() => counted_since(-Infinity));
+
+const seen_kept = 'hirosco-seen-until';
+const seen_until = signal(Number(localStorage.getItem(seen_kept) ?? 0));
+/// What the header counts: the last hour's events that the operator has not looked at. A new flight in virtual time begins anew.
+export const unseen = computed(() => {
+  const newest = events.value[0]?.t ?? 0;
+  return counted_since(Math.max(seen_until.value <= newest + 1 ? seen_until.value : 0, newest - 3600));
 });
+export function see_events() {
+  seen_until.value = now_s();
+  localStorage.setItem(seen_kept, String(seen_until.value));
+}
 
 const number_of = (value) => value === 'NaN' ? NaN : value === 'Infinity' ? Infinity : value === '-Infinity' ? -Infinity : value;
 

@@ -4,7 +4,7 @@ import {useRef, useState} from 'preact/hooks';
 import {say, send_and_say} from '../commanding.js';
 import {age_text, clock_text, date_text} from '../format.js';
 import {html} from '../html.js';
-import {counts, link, mission, mode_of, now_s, operator, replay, slow, subsystem_of} from '../store.js';
+import {link, mission, mode_of, now_s, operator, replay, see_events, slow, subsystem_of, unseen} from '../store.js';
 import {Severity} from './icons.js';
 
 const hold_ms = 800;
@@ -65,7 +65,7 @@ function SafeAll() {
 }
 
 export function Header({on_faults, faults_open}) {
-  const {high, medium} = counts.value;
+  const {high, medium} = unseen.value;
   return html`<header>
     <a class="brand" href="#/overview"><img src="icon.svg" alt="" width="22" height="22" />HIROSCO</a>
     <span class="pill"><small>mission</small><b>${mission.value?.name ?? '…'}</b>${
@@ -73,8 +73,8 @@ export function Header({on_faults, faults_open}) {
     <span class="pill mode" data-test="mode"><small>mode</small><b>${mode_of.value.name}</b></span>
     <${LinkState} />
     <${Clock} />
-    <a class=${`pill count ${high ? 'has' : ''}`} href="#/events?severity=high"><${Severity} severity="high" />${high} high</a>
-    <a class=${`pill count ${medium ? 'has' : ''}`} href="#/events?severity=medium">
+    <a class=${`pill count ${high ? 'has' : ''}`} href="#/events?severity=high" onClick=${see_events} title="not looked at in the last hour; a click shows them"><${Severity} severity="high" />${high} high</a>
+    <a class=${`pill count ${medium ? 'has' : ''}`} href="#/events?severity=medium" onClick=${see_events} title="not looked at in the last hour; a click shows them">
       <${Severity} severity="medium" />${medium} medium</a>
     <span class="space" />
     ${operator.value ? null : html`<span class="pill" title="this token reads everything and commands nothing">observer</span>`}

@@ -29,6 +29,14 @@ export function network_of(name) {
   return found;
 }
 
+/// Nobody is linked: as many rows as it takes.
+function in_rows(names, places, width, height, node_width) {
+  const each = Math.max(1, Math.floor(width / (node_width + 14)));
+  const rows = Math.ceil(names.length / each);
+  names.forEach((name, i) => places.set(name, [width * (i % each + 0.5) / Math.min(each, names.length),
+    height * (Math.floor(i / each) + 0.5) / rows]));
+}
+
 function layout(names, links, width, height, node_width) {
   const linked = names.filter((name) => links.some((link) => link.from === name || link.to === name));
   const alone = names.filter((name) => !linked.includes(name));
@@ -43,7 +51,8 @@ function layout(names, links, width, height, node_width) {
     linked.forEach((name, i) => places.set(name, [node_width / 2 + 8 + (width - node_width - 16) * i, height * 0.66]));
   }
   if (linked.length > 2) alone.forEach((name, i) => places.set(name, [node_width / 2 + 8, node_height / 2 + 8 + i * (node_height + 10)]));
-  else spread(alone, linked.length ? height * 0.18 : height / 2);
+  else if (linked.length) spread(alone, height * 0.18);
+  else in_rows(alone, places, width, height, node_width);
   return places;
 }
 

@@ -145,11 +145,14 @@ export class RobotView {
       const entry = {...one, body: await load_urdf(this.folder, one.urdf), rings: {}, last: {}};
       dress(entry.body, false);
       entry.rings = rings_of(entry.body);
+      // Unseen until the first telemetry says how it stands.
+      entry.body.visible = false;
       entry.body.position.fromArray(one.at_m ?? [0, 0, 0]);
       this.scene.add(entry.body);
       if (one.ghost) {
         entry.shadow = await load_urdf(this.folder, one.urdf);
         dress(entry.shadow, true);
+        entry.shadow.visible = false;
         entry.shadow.position.copy(entry.body.position);
         this.scene.add(entry.shadow);
       }
@@ -203,7 +206,7 @@ export class RobotView {
     for (const robot of this.robots) {
       moved = this.pose(robot, robot.body, robot.joints, 'body') || moved;
       if (robot.shadow) moved = this.pose(robot, robot.shadow, robot.ghost, 'shadow') || moved;
-      if (robot.shadow) robot.shadow.visible = this.show.ghost;
+      if (robot.shadow && !this.show.ghost) robot.shadow.visible = false;
       if (moved && robot.tip) this.follow_tip(robot);
     }
     if (moved) this.draw_soon();
@@ -217,6 +220,7 @@ export class RobotView {
       const key = `${which}/${joint}`;
       if (Math.abs((robot.last[key] ?? Infinity) - angle) < moved_rad) continue;
       robot.last[key] = angle;
+      body.visible = true;
       body.joints[joint].ignoreLimits = true;
       body.setJointValue(joint, angle);
       if (which === 'body') this.colour(robot, joint, angle);
