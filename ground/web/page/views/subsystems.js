@@ -92,18 +92,42 @@ function Bar({value, column}) {
     <rect width="60" height="3" y="2.5" rx="1.5" /><circle cx=${3 + 54 * part} cy="4" r="3" /></svg>`;
 }
 
+const long_array = 8;
+
+/// One entry for a number, one for a whole long array (histograms, counters): {column} or {column, elements}.
+function entries_of(name) {
+  const found = new Map();
+  for (const column of columns.value.values()) {
+    if (column.subsystem !== name) continue;
+    const base = column.name.replace(/\[\d+\]$/, '');
+    found.set(base, [...(found.get(base) ?? []), column]);
+  }
+  return [...found.entries()].flatMap(([base, list]) => list.length >= long_array ?
+    [{column: {...list[0], name: base}, elements: list}] : list.map((column) => ({column})));
+}
+
+/// Heights by the logarithm: one late cycle among a million must be seen.
+function Bars({elements}) {
+  const counts = elements.map((column) => Math.max(0, values.get(column.name)?.v ?? 0));
+  const top = Math.log1p(Math.max(1, ...counts));
+  const width = 130 / counts.length;
+  return html`<svg class="bars" viewBox="0 0 130 20" role="img" aria-label=${counts.map(number_text).join(', ')}>
+    ${counts.map((count, i) => html`<rect x=${i * width} width=${width - 1} y=${19 - 18 * Math.log1p(count) / top}
+      height=${1 + 18 * Math.log1p(count) / top}><title>${elements[i].name}: ${number_text(count)}</title></rect>`)}</svg>`;
+}
+
 function Values({name}) {
   slow.value;
-  const own = [...columns.value.values()].filter((column) => column.subsystem === name);
+  const own = entries_of(name);
   const half = Math.ceil(own.length / 2);
   return html`<div class="two" data-test="values">${[own.slice(0, half), own.slice(half)].map((part) => html`<table class="values"><thead><tr><th>parameter</th><th>value</th><th>unit</th><th>range</th><th>age</th></tr></thead>
-    <tbody>${part.map((column) => {
+    <tbody>${part.map(({column, elements}) => {
       const value = values.get(column.name)?.v;
-      const {age_s, stale} = freshness(column.name);
+      const {age_s, stale} = freshness(elements?.[0].name ?? column.name);
       return html`<tr key=${column.name} class=${stale ? 'stale' : ''}>
-        <td><a href=${`#/plots?p=${encodeURIComponent(column.name)}`} title="plot">${column.name.slice(name.length + 1)}</a></td>
-        <td class="number">${column.enumeration?.length ? state_text(value_text(value, column)) : value_text(value, column)}</td><td>${unit_text(column.unit)}</td>
-        <td><${Bar} value=${value} column=${column} /></td><td class="number age">${age_text(age_s)}</td></tr>`;
+        <td><a href=${`#/plots?p=${(elements ?? [column]).slice(0, 8).map((one) => encodeURIComponent(one.name)).join('+')}`} title="plot">${column.name.slice(name.length + 1)}</a></td>
+        ${elements ? html`<td class="number" colspan="3"><${Bars} elements=${elements} /></td>` : html`<td class="number">${column.enumeration?.length ? state_text(value_text(value, column)) : value_text(value, column)}</td><td>${unit_text(column.unit)}</td>
+        <td><${Bar} value=${value} column=${column} /></td>`}<td class="number age">${age_text(age_s)}</td></tr>`;
     })}</tbody></table>`)}</div>
     ${own.length ? null : html`<p class="empty">This subsystem tells no housekeeping.</p>`}`;
 }
