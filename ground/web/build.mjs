@@ -32,6 +32,8 @@ await build({
 cpSync(join(sources, 'page/index.html'), join(out, 'index.html'));
 cpSync(join(sources, 'page/icon.svg'), join(out, 'icon.svg'));
 cpSync(join(sources, 'page/models'), join(out, 'models'), {recursive: true});
+// Which missions have a model: a page that tried would leave an error in the console for each that has none.
+writeFileSync(join(out, 'models/index.json'), JSON.stringify(readdirSync(join(sources, 'page/models'))));
 
 /// Notices of what is bundled: each licence asks to be carried along.
 const notices = [];

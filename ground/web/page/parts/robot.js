@@ -15,9 +15,11 @@ let looked_for = '';
 mission.subscribe((known) => {
   if (!known || looked_for === known.name) return;
   looked_for = known.name;
-  const folder = `models/${encodeURIComponent(known.name.toLowerCase())}`;
-  asset(`${folder}/scene.json`).then((answer) => answer.json())
-      .then((description) => { scene_of_mission.value = {folder, ...description}; })
+  const name = known.name.toLowerCase();
+  const folder = `models/${encodeURIComponent(name)}`;
+  asset('models/index.json').then((answer) => answer.json())
+      .then((names) => names.includes(name) ? asset(`${folder}/scene.json`).then((answer) => answer.json()) : null)
+      .then((description) => { scene_of_mission.value = description && {folder, ...description}; })
       .catch(() => { scene_of_mission.value = null; });
 });
 
@@ -95,7 +97,7 @@ export function Robot() {
     onClick=${() => set_show({...show, [name]: !show[name]})}>${name}</button>`;
   const from = description?.camera?.from_m;
   return html`<div class="robot">
-    <div class="tools">
+    ${description ? html`<div class="tools">
       ${toggle('ghost')}${toggle('trail')}${toggle('force')}
       <span class="space" />
       ${hand && !replay.value ? html`<button class="chip" title="the simulated hand wanders by itself"
@@ -104,7 +106,7 @@ export function Robot() {
           onClick=${() => set_gamepad(!gamepad)}>gamepad</button>` : null}
       <button class="chip" onClick=${() => view.current?.view_from(from)}>orbit</button>
       <button class="chip" onClick=${() => view.current?.view_from([0.2, 0.049, 1.05])}>top</button>
-    </div>
+    </div>` : null}
     <div class=${`stage ${description && freshness(Object.values(description.robots[0]?.joints ?? {})[0]).stale ? 'old' : ''}`} ref=${node} data-test="robot">
       ${description === null ? html`<p class="empty">This mission has no 3D model.<br />
         <small>models/${mission.value?.name.toLowerCase()}/scene.json would be shown here.</small></p>` : null}

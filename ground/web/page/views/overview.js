@@ -10,7 +10,15 @@ import {Legend, TimePlot} from '../parts/plot.js';
 import {Robot, scene_of_mission} from '../parts/robot.js';
 import {SubsystemCard} from '../parts/subsystem_card.js';
 import {html} from '../html.js';
+import {Values} from './subsystems.js';
 import {columns, events, mission} from '../store.js';
+
+/// Measured numbers before counters, those of the mission's own subsystems before those of every mission, fast ones before slow ones.
+function worth(name) {
+  const {type, subsystem, period_s} = columns.value.get(name);
+  const own = mission.value.subsystems.findIndex((one) => one.name === subsystem);
+  return (/DOUBLE|FLOAT/.test(type) ? 1000 : 0) + own - Math.min(0.9, period_s / 100);
+}
 
 /// What a mission without a scene shows first: the first arrays and numbers of its housekeeping.
 export function first_plots() {
@@ -19,10 +27,11 @@ export function first_plots() {
   const by_parameter = new Map();
   for (const column of columns.value.values()) {
     if (column.enumeration?.length || /CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name)) continue;
+    if (scene_of_mission.value === null && column.subsystem === 'SUPERVISOR') continue;
     const base = column.name.replace(/\[\d+\]$/, '');
     by_parameter.set(base, [...(by_parameter.get(base) ?? []), column.name]);
   }
-  return [...by_parameter.entries()].sort(([, a], [, b]) => columns.value.get(a[0]).period_s - columns.value.get(b[0]).period_s)
+  return [...by_parameter.entries()].sort(([, a], [, b]) => worth(b[0]) - worth(a[0]))
       .map(([, names]) => names.slice(0, 4)).slice(0, 2);
 }
 
@@ -34,7 +43,7 @@ export const plot_title = (names) => {
 function QuickCommand() {
   const list = mission.value?.subsystems ?? [];
   const own = (one) => (one.functions ?? []).filter((action) => !['SET_STATE', 'CONFIGURE', 'PING'].includes(action.name)).length;
-  const first = list.filter((one) => one.id !== 1).sort((one, other) => own(other) - own(one))[0] ?? list[0];
+  const first = list.filter((one) => one.id !== 1).sort((one, other) => own(other) - own(one) || other.id - one.id)[0] ?? list[0];
   const [subsystem, set_subsystem] = useState(null);
   const [action, set_action] = useState(null);
   const chosen = list.find((one) => one.name === subsystem) ?? first;
@@ -53,10 +62,13 @@ function QuickCommand() {
 
 export function Overview() {
   const plots = first_plots();
+  const last = mission.value?.subsystems.at(-1);
   return html`<main class="overview">
     <${Panel} title="Subsystems" area="subsystems" href="#/subsystems">
       ${(mission.value?.subsystems ?? []).map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
-    <${Panel} title="3D" area="robot" bare><${Robot} /></${Panel}>
+    ${scene_of_mission.value === null ? html`<${Panel} title=${`${last?.name ?? ''} housekeeping`} area="robot" href=${`#/subsystems/${last?.name}`}>
+      ${last ? html`<${Values} name=${last.name} />` : null}</${Panel}>` :
+    html`<${Panel} title="3D" area="robot" bare><${Robot} /></${Panel}>`}
     <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>
     <${Panel} title="Real-time links" area="links" href="#/links"><${LinkGraph} width=${310} height=${190} box=${122} /></${Panel}>
     ${[0, 1].map((i) => plots[i] ? html`<${Panel} title=${plot_title(plots[i])} area=${`plot_${i}`} bare

@@ -116,7 +116,7 @@ function Bars({elements}) {
       height=${1 + 18 * Math.log1p(count) / top}><title>${elements[i].name}: ${number_text(count)}</title></rect>`)}</svg>`;
 }
 
-function Values({name}) {
+export function Values({name}) {
   slow.value;
   const own = entries_of(name);
   const half = Math.ceil(own.length / 2);
