@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 #include <string>
@@ -66,10 +67,17 @@ using Options = std::map<std::string, std::string>;
   return {};
 }
 
-[[nodiscard]] int print_why(Session& session) {
+[[nodiscard]] int print_why(Session& session, bool json) {
   Api api{session, {.token = "-", .observer_token = {}, .page = {}, .transitions = {}}};
   const HttpRequest request{"GET", "/api/why", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer -"}}, {}};
-  api.handle(request, [](const HttpResponse& response) { fmt::print("{}\n", response.body); });
+  api.handle(request, [&](const HttpResponse& response) {
+    if (json) return fmt::print("{}\n", response.body);
+    const auto causes = nlohmann::json::parse(response.body)["causes"];
+    if (causes.empty()) fmt::print("nothing has stopped, as far as the archive tells\n");
+    for (const auto& cause : causes)
+      fmt::print("{:9.3f} s  {}\n", cause["t"].get<double>() - causes[0]["t"].get<double>(),
+                 tools::json_text(cause["text"].get<std::string>()));
+  });
   return tools::exit_ok;
 }
 
@@ -150,5 +158,5 @@ int main(int argc, char** argv) {
   if (serves) return serve(options, *mission, catalogue, **archive);
   const SystemClock clock;
   Session session{{.catalogue = catalogue, .archive = **archive, .clock = clock, .outside = {}}};
-  return print_why(session);
+  return print_why(session, options.contains("--json"));
 }

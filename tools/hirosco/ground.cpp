@@ -44,6 +44,10 @@ int ground(const GroundOptions& options) {
   return become_station(std::move(arguments), options);
 }
 
-int why(const GroundOptions& options) { return become_station({"--why"}, options); }
+int why(const GroundOptions& options) {
+  std::vector<std::string> arguments{"--why"};
+  if (options.json) arguments.emplace_back("--json");
+  return become_station(std::move(arguments), options);
+}
 
 }  // namespace hirosco::tools

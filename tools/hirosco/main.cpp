@@ -137,6 +137,7 @@ int main(int argc, char** argv) {
   auto* why_command = app.add_subcommand("why", "The chain of causes of the last stop");
   why_command->add_option("mission", ground_options.mission, "Name or path of the mission")->capture_default_str();
   why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");
+  why_command->add_flag("--json", ground_options.json, "As JSON");
   // Values such as -0.8 are arguments, not options.
   tc_command->prefix_command(false);
 
