@@ -141,7 +141,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   ThreadedPacketLog log{clock, std::move(*database), std::move(log_options)};
   const bool realtime = realtime_permitted();
   // The log's and the console's threads exist already: they stay ordinary.
-  if (realtime) static_cast<void>(set_fifo_priority(supervisor_priority));
+  static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
   Supervisor supervisor{
       {.mission = mission,
        .world = {.clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = {}},

@@ -84,7 +84,7 @@ class CycleThread {
 
  private:
   void run() {
-    if (realtime_) static_cast<void>(pin_to_cycle_cpu());
+    static_cast<void>(realtime_ ? pin_to_cycle_cpu() : ask_for_short_slices());
     while (!ending_.load(std::memory_order_acquire)) {
       const auto demand = subsystem_.cycle_demand();
       if (!demand.wanted) {

@@ -138,7 +138,7 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
   }
   // Both are wishes: without the rights the device runs as well as it can, and its subsystem's limits are announced wider.
   (void)lock_memory();
-  if (realtime_permitted()) (void)pin_to_cycle_cpu();
+  (void)(realtime_permitted() ? pin_to_cycle_cpu() : ask_for_short_slices());
   (void)set_fifo_priority(priority);
   run(*device, control);
   return 0;

@@ -42,6 +42,10 @@ class Thread {
 [[nodiscard]] Result<> set_fifo_priority(int priority) noexcept;
 /// Returns the calling thread to ordinary scheduling.
 [[nodiscard]] Result<> set_ordinary_scheduling() noexcept;
+/// For a thread that may not have SCHED_FIFO: asks the ordinary scheduler for short slices, so that it is served sooner
+/// after it wakes on a busy computer; needs no right. Unavailable where the system has no such wish (Linux from 6.12 on
+/// heeds it, earlier ones accept and ignore it).
+[[nodiscard]] Result<> ask_for_short_slices() noexcept;
 /// Whether the calling thread may have SCHED_FIFO: tried and undone.
 [[nodiscard]] bool realtime_permitted() noexcept;
 /// Keeps the calling thread on one processor, counted from 0; Unavailable where the system has no such call.

@@ -98,6 +98,14 @@ TEST(Scheduling, RefusesAPriorityThatDoesNotExist) {
   EXPECT_EQ(set_fifo_priority(1000).error().code, ErrorCode::OutOfRange);
 }
 
+TEST(Scheduling, ShortSlicesNeedNoRightAndChangeNoPolicy) {
+  Thread::start("modest", [] {
+    const auto asked = ask_for_short_slices();
+    EXPECT_TRUE(asked || asked.error().code == ErrorCode::Unavailable) << "a backend without slices says so";
+    EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
+  })->join();
+}
+
 TEST(Scheduling, ProbeAgreesWithTheAttempt) {
   Thread::start("prober", [] {
     const bool permitted = realtime_permitted();

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pthread.h>
 #include <sched.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 
 #include "hirosco/utilities/os/thread.hpp"
@@ -13,6 +17,24 @@
 // Throughout by sched_*() with 0, the calling thread: pthread_getschedparam() answers from a cache that these do not
 // refresh, and pthread_setschedparam() knows no SCHED_RESET_ON_FORK.
 namespace hirosco {
+namespace {
+
+/// struct sched_attr of the kernel (its header redefines what <sched.h> defines).
+struct SchedulingWish {
+  std::uint32_t size{sizeof(SchedulingWish)};
+  std::uint32_t policy{SCHED_OTHER};
+  std::uint64_t flags{0};
+  std::int32_t nice{0};
+  std::uint32_t priority{0};
+  std::uint64_t runtime_ns{0};
+  std::uint64_t deadline_ns{0};
+  std::uint64_t period_ns{0};
+};
+static_assert(sizeof(SchedulingWish) == 48);
+
+constexpr std::uint64_t shortest_slice_ns = 100'000;  // the kernel grants no shorter one
+
+}  // namespace
 
 Result<> set_fifo_priority(int priority) noexcept {
   if (priority < sched_get_priority_min(SCHED_FIFO) || priority > sched_get_priority_max(SCHED_FIFO))
@@ -30,6 +52,14 @@ Result<> set_ordinary_scheduling() noexcept {
   const int flag = ::sched_getscheduler(0) & SCHED_RESET_ON_FORK;  // only a privileged thread may clear it
   if (::sched_setscheduler(0, SCHED_OTHER | flag, &parameters) != 0)
     return fail(ErrorCode::SystemFailure, "ordinary scheduling", errno);
+  return ok();
+}
+
+Result<> ask_for_short_slices() noexcept {
+  SchedulingWish wish;
+  wish.nice = ::getpriority(PRIO_PROCESS, 0);
+  wish.runtime_ns = shortest_slice_ns;
+  if (::syscall(SYS_sched_setattr, 0, &wish, 0U) != 0) return fail(ErrorCode::Unavailable, "short slices", errno);
   return ok();
 }
 

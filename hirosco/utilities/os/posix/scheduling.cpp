@@ -23,6 +23,8 @@ Result<> set_ordinary_scheduling() noexcept {
   return ok();
 }
 
+Result<> ask_for_short_slices() noexcept { return fail(ErrorCode::Unavailable, "POSIX has no slices"); }
+
 bool realtime_permitted() noexcept {
   int policy = 0;
   sched_param before{};
