@@ -10,10 +10,6 @@ namespace {
 
 constexpr Duration transient_limit = 10s;
 
-[[nodiscard]] pus::FailureNotice wrong_state(State state) {
-  return pus::FailureNotice{pus::FailureCode::WrongState}.with(static_cast<std::uint8_t>(state));
-}
-
 }  // namespace
 
 std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State target, const pus::Request& request) {
@@ -21,12 +17,12 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State ta
   const bool overrides = way_ && target == State::ErrorOperational && is_cyclic(state_) &&
                          is_cyclic(way_->states[way_at_]) && way_->states[way_at_] != State::ErrorOperational;
   if (way_ && !overrides) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
-  if (!route(state_, target)) return std::unexpected{wrong_state(state_)};
+  if (!route(state_, target)) return std::unexpected{wrong_state()};
   if (target == State::SafeOperational && state_ == State::PreOperational) {
-    if (configuration_ == nullptr) return std::unexpected{wrong_state(state_)};
+    if (configuration_ == nullptr) return std::unexpected{wrong_state()};
     if (!required_links_attached()) return std::unexpected{pus::FailureNotice{pus::FailureCode::LinkAbsent}};
   }
-  if (target == State::ErrorOperational && configuration_ == nullptr) return std::unexpected{wrong_state(state_)};
+  if (target == State::ErrorOperational && configuration_ == nullptr) return std::unexpected{wrong_state()};
   if (target == State::Operational && permit_.stop.load(std::memory_order_acquire) != 0)
     return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
   if (overrides && way_request_)
@@ -207,7 +203,7 @@ void GenericSubsystem::go_down_from(State failed) {
 std::expected<void, pus::FailureNotice> GenericSubsystem::command_configuration(std::uint8_t id,
                                                                                 const pus::Request& request) {
   if (way_) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
-  if (state_ != State::PreOperational) return std::unexpected{wrong_state(state_)};
+  if (state_ != State::PreOperational) return std::unexpected{wrong_state()};
   const auto refuse = [&](pus::FailureCode code) {
     return std::unexpected{pus::FailureNotice{code}.with(std::uint8_t{0}).with(std::uint32_t{id})};
   };

@@ -39,11 +39,6 @@ constexpr std::size_t most_unsent_packets = 1024;
   return {};
 }
 
-/// A state that a command or a failure report names, as failure data.
-[[nodiscard]] pus::FailureNotice wrong_state(State state) {
-  return pus::FailureNotice{pus::FailureCode::WrongState}.with(static_cast<std::uint8_t>(state));
-}
-
 }  // namespace
 
 GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const World& world,
@@ -138,8 +133,12 @@ void GenericSubsystem::dispatch(const Message& message) {
                                     pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
   }
   // Housekeeping exists from Pre-Operational on: its structures belong to a configuration.
-  if (service == nullptr) return verification_.rejected(request, wrong_state(state_));
+  if (service == nullptr) return verification_.rejected(request, wrong_state());
   service->handle(*telecommand, request);
+}
+
+pus::FailureNotice GenericSubsystem::wrong_state() const {
+  return pus::FailureNotice{pus::FailureCode::WrongState}.with(static_cast<std::uint8_t>(state_));
 }
 
 void GenericSubsystem::watch_supervisor(TimePoint now) {
@@ -268,7 +267,7 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
     return command_configuration(static_cast<std::uint8_t>(call.arguments[0]), request);
   const descriptor::Function& function = descriptor_.functions[call.function];
   if (!function.permitted_in(state_) || !wanted_.load(std::memory_order_relaxed) || way_)
-    return std::unexpected{wrong_state(state_)};
+    return std::unexpected{wrong_state()};
   if (!cycle_.functions()[call.function].handler)
     return std::unexpected{pus::FailureNotice{pus::FailureCode::ExecutionError}};
   CycleCommand command{.kind = CommandKind::Function, .index = call.function, .request = request};

@@ -131,6 +131,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   bool close_call(const pus::Request& request);
   bool withdraw(std::uint8_t link);
   [[nodiscard]] bool required_links_attached() const noexcept;
+  /// The refusal of what the present state does not permit.
+  [[nodiscard]] pus::FailureNotice wrong_state() const;
   [[nodiscard]] std::uint16_t event_id(std::string_view name) const noexcept;
   void send(const Message& message);
   void flush();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@
 
 /// The runs of the rokviss mission that its figures are judged by: each flies the whole spacecraft on virtual time.
 namespace hirosco::simulation {
+
+/// When something happened that never did.
+inline constexpr double never = std::numeric_limits<double>::infinity();
 
 struct RunSettings {
   std::filesystem::path mission;  ///< the mission file

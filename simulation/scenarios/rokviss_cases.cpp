@@ -15,8 +15,6 @@
 namespace hirosco::simulation {
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
-
 /// What must come to rest.
 enum class Rest : std::uint8_t { Robot, Hand };
 /// How it must end.

@@ -13,8 +13,6 @@
 namespace hirosco::simulation {
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
-
 // --- RO9 ---------------------------------------------------------------------------------------------------------------
 
 /// One unplugging: times since the plug was pulled, infinite for what never happened.

@@ -20,7 +20,7 @@ namespace {
 /// A line holds at most a whole packet in hexadecimal and some 300 letters beside it.
 constexpr std::size_t max_line = 2 * Database::max_packet_octets + 1024;
 constexpr std::size_t checksum_letters = 10;  // " #" and eight digits
-constexpr std::string_view digits = "0123456789abcdef";
+constexpr std::string_view hex_digits = "0123456789abcdef";
 
 constexpr auto crc32_table = [] {
   std::array<std::uint32_t, 256> table{};
@@ -39,7 +39,7 @@ std::uint32_t crc32(std::string_view text) {
 }
 
 void add_hexadecimal(std::string& line, std::uint32_t value) {
-  for (int shift = 28; shift >= 0; shift -= 4) line += digits[(value >> shift) & 0xFU];
+  for (int shift = 28; shift >= 0; shift -= 4) line += hex_digits[(value >> shift) & 0xFU];
 }
 
 std::string_view take_word(std::string_view& rest) {
@@ -62,8 +62,8 @@ bool take_octets(std::string_view& rest, std::vector<std::byte>& octets) {
   if (word.empty() || word.size() % 2 != 0) return false;
   octets.reserve(word.size() / 2);
   for (std::size_t i = 0; i < word.size(); i += 2) {
-    const std::size_t high = digits.find(word[i]);
-    const std::size_t low = digits.find(word[i + 1]);
+    const std::size_t high = hex_digits.find(word[i]);
+    const std::size_t low = hex_digits.find(word[i + 1]);
     if (high == std::string_view::npos || low == std::string_view::npos) return false;
     octets.push_back(static_cast<std::byte>(high << 4 | low));
   }
@@ -107,8 +107,8 @@ std::string ascii_line(const LogRecord& record) {
                      std::to_string(record.peer) + ' ' + std::to_string(record.lost) + ' ';
   if (record.packet.empty()) line += '-';
   for (std::byte octet : record.packet) {
-    line += digits[std::to_integer<std::size_t>(octet) >> 4];
-    line += digits[std::to_integer<std::size_t>(octet) & 0xFU];
+    line += hex_digits[std::to_integer<std::size_t>(octet) >> 4];
+    line += hex_digits[std::to_integer<std::size_t>(octet) & 0xFU];
   }
   line.append(" ").append(record.note.view());
   const std::uint32_t checksum = crc32(line);

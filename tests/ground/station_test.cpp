@@ -324,7 +324,7 @@ TEST_F(GroundStation, ReplayTellsTheSameStoryAndLocksCommanding) {
   const auto texts = [&](const Page& who) {
     std::vector<std::string> list;
     for (const json& message : who.messages) {
-      if (message["t"].is_number() && message["t"].get<double>() > to) continue;
+      if (message.contains("t") && message["t"].is_number() && message["t"].get<double>() > to) continue;
       if (message["type"] == "event")
         list.push_back(message["subsystem"].get<std::string>() + message["text"].get<std::string>());
     }

@@ -32,7 +32,7 @@ using Word = std::uint64_t;
 static_assert(std::atomic<Word>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free);
 
 constexpr Word magic = 0x0001'574F'4C46'5348;  // "HSFLOW", version 1
-constexpr int attempts = 8;
+constexpr int reading_attempts = 8;
 constexpr int opening_attempts = 200;
 
 long futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value, const timespec* timeout) noexcept {
@@ -182,7 +182,7 @@ Result<> SharedMemoryFlow::do_send(Octets frame) noexcept {
 Result<Received> SharedMemoryFlow::do_receive(MutableOctets buffer) noexcept {
   Mailbox& mailbox = segment_.mailboxes[own_];
   std::array<Word, max_frame_octets / sizeof(Word)> copy;
-  for (int attempt = 0; attempt < attempts; ++attempt) {
+  for (int attempt = 0; attempt < reading_attempts; ++attempt) {
     const Word sequence = mailbox.sequence.load(std::memory_order_acquire);
     if (sequence == seen_sequence_) break;
     if (sequence % 2 == 1) continue;
