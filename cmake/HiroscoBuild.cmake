@@ -27,7 +27,8 @@ if(HIROSCO_SANITIZE)
   target_compile_options(hirosco_options INTERFACE
     -fsanitize=${HIROSCO_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(hirosco_options INTERFACE -fsanitize=${HIROSCO_SANITIZE})
-  # Libraries in a few large pieces: half the time to build. Types of one file may then use its anonymous namespace.
+  # A few large pieces: half the time to build. Types of one file may then use its anonymous namespace, and names of the
+  # files of one target must differ.
   set(CMAKE_UNITY_BUILD ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
   target_compile_options(hirosco_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
@@ -36,18 +37,23 @@ endif()
 # -O3 costs a third more time to compile than it gives back here; bench/ would show it.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 
+# These four make the build of a test a third longer; what is under test keeps them. Last of the options, or they have
+# no effect.
+add_library(hirosco_test_options INTERFACE)
+target_link_libraries(hirosco_test_options INTERFACE hirosco_options)
+if(HIROSCO_SANITIZE MATCHES undefined)
+  target_compile_options(hirosco_test_options INTERFACE -fno-sanitize=vptr,null,alignment,object-size)
+endif()
+
 # The headers that every test includes, compiled once, and tests themselves compiled for speed of building: together
 # this halves the build of the tests. What is under test keeps its own options.
 function(hirosco_compile_as_test name)
-  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 4)
   # g++ 12 sees overlong string concatenations where there are none.
   target_compile_options(${name} PRIVATE
     $<$<CONFIG:Release>:-O1>
     $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow>)
-  if(HIROSCO_SANITIZE MATCHES undefined)
-    # These four double the build of a test; what is under test keeps them.
-    target_compile_options(${name} PRIVATE -fno-sanitize=vptr,null,alignment,object-size)
-  endif()
+  target_link_libraries(${name} PRIVATE hirosco_test_options)
   set_target_properties(${name} PROPERTIES PCH_WARN_INVALID OFF)
   if(name STREQUAL "hirosco_test_headers")
     target_precompile_headers(${name} PRIVATE <gtest/gtest.h> <gmock/gmock.h> <algorithm> <array> <chrono> <expected>

@@ -13,9 +13,9 @@ namespace hirosco {
 namespace {
 
 using Buffer = std::array<std::byte, max_device_frame_octets>;
-constexpr std::array payload{std::byte{0xAA}, std::byte{0xBB}, std::byte{0xCC}};
+constexpr std::array a_payload{std::byte{0xAA}, std::byte{0xBB}, std::byte{0xCC}};
 
-DeviceCommand a_command() { return {DeviceMode::Active, 0x01020304, 0xFFFFFFFF, 10'000, payload}; }
+DeviceCommand a_command() { return {DeviceMode::Active, 0x01020304, 0xFFFFFFFF, 10'000, a_payload}; }
 
 TEST(Crc16, GivesThePublishedCheckValue) {
   constexpr std::string_view digits = "123456789";  // check value 0x29B1 of CRC-16/CCITT-FALSE
@@ -31,7 +31,7 @@ TEST(DeviceFrame, HasItsDeclaredLayout) {
   Buffer buffer{};
   const auto frame = write_command(buffer, a_command());
   ASSERT_TRUE(frame);
-  ASSERT_EQ(frame->size(), device_frame_overhead_octets + payload.size());
+  ASSERT_EQ(frame->size(), device_frame_overhead_octets + a_payload.size());
   constexpr std::array<unsigned, 20> header{0x44, 0x48, 1, 1, 4, 3, 2,    1,    0xFF, 0xFF,
                                             0xFF, 0xFF, 0, 0, 3, 0, 0x10, 0x27, 0,    0};
   for (std::size_t i = 0; i < header.size(); ++i) EXPECT_EQ(std::to_integer<unsigned>((*frame)[i]), header[i]) << i;
@@ -45,18 +45,18 @@ TEST(DeviceFrame, BringsACommandBack) {
   EXPECT_EQ(read->epoch, 0x01020304U);
   EXPECT_EQ(read->sequence, 0xFFFFFFFFU);
   EXPECT_EQ(read->watchdog_us, 10'000U);
-  EXPECT_TRUE(std::ranges::equal(read->payload, payload));
+  EXPECT_TRUE(std::ranges::equal(read->payload, a_payload));
 }
 
 TEST(DeviceFrame, BringsAStatusBack) {
   Buffer buffer{};
-  const DeviceStatus status{7, 8, device_flag::watchdog_tripped | device_flag::torque_saturated, payload};
+  const DeviceStatus status{7, 8, device_flag::watchdog_tripped | device_flag::torque_saturated, a_payload};
   const auto read = read_status(write_status(buffer, status).value());
   ASSERT_TRUE(read);
   EXPECT_EQ(read->epoch, 7U);
   EXPECT_EQ(read->sequence, 8U);
   EXPECT_EQ(read->flags, 0b1001);
-  EXPECT_TRUE(std::ranges::equal(read->payload, payload));
+  EXPECT_TRUE(std::ranges::equal(read->payload, a_payload));
 }
 
 TEST(DeviceFrame, RefusesEverySingleBitError) {
@@ -99,7 +99,7 @@ TEST(DeviceFrame, RefusesAPayloadAboveItsLimitAndASmallBuffer) {
   EXPECT_EQ(write_command(room, command).error().code, ErrorCode::OutOfRange);
   command.payload = Octets{big}.first(max_device_payload_octets);
   EXPECT_TRUE(write_command(room, command));
-  for (std::size_t length = 0; length < device_frame_overhead_octets + payload.size(); ++length)
+  for (std::size_t length = 0; length < device_frame_overhead_octets + a_payload.size(); ++length)
     EXPECT_EQ(write_command(MutableOctets{room}.first(length), a_command()).error().code, ErrorCode::ResourceExhausted);
 }
 

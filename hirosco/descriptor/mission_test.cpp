@@ -68,7 +68,7 @@ TEST(MissionDescriptor, FillsModesAndPlans) {
   EXPECT_EQ(mission.plans.at(2).severities, (std::vector{Severity::Low, Severity::Info}));
 }
 
-struct Bad {
+struct Mistake {
   const char* code;
   const char* from;
   const char* to;  ///< '@' marks the line and column that must be named
@@ -76,7 +76,7 @@ struct Bad {
 };
 
 // clang-format off
-constexpr Bad mistakes[] = {
+constexpr Mistake mistakes[] = {
     {"E0102", "<Links>", "@<Link/><Links>", "'Links'"},
     {"E0103", R"(seed="7")", R"(@sed="7")", "'seed'"},
     {"E0105", R"(<Establish link="1"/>)", "@<Establish/>"},
@@ -124,13 +124,17 @@ constexpr Bad mistakes[] = {
     {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@/etc/passwd")"},
     {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@../../../joystick.xml")"},
     {"E0315", R"(descriptor="joystick.xml")", R"(descriptor="@../joystick.xml.none")"},
+    {"E0105", R"(<Links>)", R"(@<Power/><Links>)"},
+    {"E0107", R"(<Links>)", R"(<Power budget_W="9"/>@<Power budget_W="9"/><Links>)"},
+    {"E0111", R"(<Links>)", R"(<Power budget_W="@much"/><Links>)"},
+    {"E0112", R"(<Links>)", R"(<Power budget_W="@-5"/><Links>)", "0.001 to 1000000 W"},
     {"E0316", R"(configuration="COUPLED" state)", R"(configuration="@COUPLE" state)", "'COUPLED'"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
 };
 // clang-format on
 
 TEST(MissionErrors, AreReportedWhereTheyStand) {
-  for (const Bad& bad : mistakes) {
+  for (const Mistake& bad : mistakes) {
     const auto expected = marked(changed(bad.from, bad.to));
     const bool anywhere = std::string_view{bad.to}.find('@') == std::string_view::npos;
     const auto source = overlay({{"mission.xml", expected.text}});
@@ -175,6 +179,29 @@ TEST(MissionErrors, FieldsOfALinkMustMatch) {
   EXPECT_EQ(with("from=\"MANIPULATOR\"", "from=\"OTHER\""),
             "link 1 does not fit: 'ROBOT_STATE' is required from 'OTHER'");
   EXPECT_EQ(with("from=\"MANIPULATOR\"", "methods=\"tipc\""), "link 1 does not fit: no common method");
+}
+
+TEST(MissionErrors, WhatAModeCommissionsMustFitThePowerBudget) {
+  const auto mission_with = [](const std::string& budget_w, const std::string& steps) {
+    const auto at = R"(configuration="COUPLED" state="SafeOperational")";
+    const std::string text = changed("<Links>", "<Power budget_W=\"" + budget_w + "\"/><Links>", good_mission());
+    const std::string robot = file_system()(data / "manipulator.xml").value();
+    const std::string joystick = file_system()(data / "joystick.xml").value();
+    const auto drawing = [](const std::string& descriptor, const char* watts) {
+      const std::string coupled = "<Configuration name=\"COUPLED\"";
+      return changed(coupled, coupled + " power_W=\"" + watts + "\"", descriptor);
+    };
+    return read_mission(data / "mission.xml", overlay({{"mission.xml", steps.empty() ? text : changed(at, steps, text)},
+                                                       {"manipulator.xml", drawing(robot, "60.5")},
+                                                       {"joystick.xml", drawing(joystick, "25")}}));
+  };
+  EXPECT_TRUE(mission_with("85.5", "").value);
+  const auto reading = mission_with("85", "");
+  ASSERT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, file_system());
+  EXPECT_EQ(reading.problems[0].code, "E0318");
+  EXPECT_EQ(reading.problems[0].message, "mode 'telepresence' commissions 85.5 W, the budget is 85 W");
+  EXPECT_GT(reading.problems[0].at.line, 1);
+  EXPECT_TRUE(mission_with("85", R"(configuration="COUPLED" state="PreOperational")").value);
 }
 
 TEST(MissionErrors, NamesAndIdsOfSubsystemsAreUnique) {

@@ -15,7 +15,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-struct CurrentValues {
+struct MovedValues {
   std::int32_t moving;
   std::array<double, 2> position;
   float temperature;
@@ -92,7 +92,7 @@ TEST(Dictionary, RejectsDeclarationsWithoutMeaning) {
 }
 
 TEST(Dictionary, PublishesWhatHasTheDeclaredLayout) {
-  EXPECT_EQ(publish_error<CurrentValues>(current_values()), "accepted");
+  EXPECT_EQ(publish_error<MovedValues>(current_values()), "accepted");
   EXPECT_EQ((publish_error<std::array<double, 2>>(goal())), "accepted");
   EXPECT_EQ(publish_error<std::uint8_t>(limit()), "accepted");
 }
@@ -165,7 +165,7 @@ class PublishedDictionary : public ::testing::Test {
     ASSERT_TRUE(dictionary_.publish("LIMIT", limit_));
   }
   Dictionary dictionary_ = made({current_values(), goal(), limit()});
-  Parameter<CurrentValues> current_;
+  Parameter<MovedValues> current_;
   Parameter<std::array<double, 2>> goal_{{9.0, 9.0}};
   Parameter<std::uint8_t> limit_;
 };
@@ -232,7 +232,7 @@ TEST_F(PublishedDictionary, DecodesAMemberAndLeavesTheOthers) {
   ASSERT_TRUE(dictionary_.decode_into(0, 1, octets));
   EXPECT_EQ(current_.load().position, (std::array{7.0, 8.0}));
   EXPECT_EQ(current_.load().moving, 1);
-  CurrentValues seen{};
+  MovedValues seen{};
   ASSERT_TRUE(current_.snapshot(seen));
   EXPECT_EQ(seen.position[1], 8.0);
 }

@@ -10,14 +10,14 @@
 namespace hirosco {
 namespace {
 
-struct Mixed {
+struct Stored {
   std::uint8_t a;
   double b;
   std::array<std::int16_t, 3> c;
 };
 
 TEST(Parameter, LoadsWhatWasStored) {
-  Parameter<Mixed> parameter;
+  Parameter<Stored> parameter;
   EXPECT_EQ(parameter.load().b, 0.0);
   parameter.store({7, -2.5, {1, -2, 3}});
   EXPECT_EQ(parameter.load().a, 7);
@@ -26,8 +26,8 @@ TEST(Parameter, LoadsWhatWasStored) {
 }
 
 TEST(Parameter, SnapshotIsTheStoredValue) {
-  Parameter<Mixed> parameter{{1, 1.5, {4, 5, 6}}};
-  Mixed seen{};
+  Parameter<Stored> parameter{{1, 1.5, {4, 5, 6}}};
+  Stored seen{};
   ASSERT_TRUE(parameter.snapshot(seen));
   EXPECT_EQ(seen.b, 1.5);
   EXPECT_EQ(seen.c[2], 6);
@@ -51,7 +51,7 @@ TEST(Parameter, OfASizeThatIsNoMultipleOfAWordIsWhole) {
 }
 
 TEST(ParameterCell, EncodesPackedAndBigEndian) {
-  Parameter<Mixed> parameter{{0x12, 1.0, {0x0102, -2, 3}}};
+  Parameter<Stored> parameter{{0x12, 1.0, {0x0102, -2, 3}}};
   const std::vector<std::uint8_t> expected{0x12, 0x3F, 0xF0, 0, 0, 0, 0, 0, 0, 0x01, 0x02, 0xFF, 0xFE, 0x00, 0x03};
   for (const bool live : {true, false}) {
     std::array<std::byte, 15> out{};
@@ -62,15 +62,15 @@ TEST(ParameterCell, EncodesPackedAndBigEndian) {
 }
 
 TEST(ParameterCell, RefusesToEncodeIntoTooSmallABuffer) {
-  Parameter<Mixed> parameter;
+  Parameter<Stored> parameter;
   std::array<std::byte, 14> out{};
   EXPECT_EQ(parameter.encode(parameter.fields(), out), 0u);
   EXPECT_EQ(parameter.snapshot_encode(parameter.fields(), out), 0u);
 }
 
 TEST(ParameterCell, DecodesWhatItEncodes) {
-  Parameter<Mixed> source{{9, 3.25, {-1, 2, -3}}};
-  Parameter<Mixed> target;
+  Parameter<Stored> source{{9, 3.25, {-1, 2, -3}}};
+  Parameter<Stored> target;
   std::array<std::byte, 15> octets{};
   ASSERT_EQ(source.encode(source.fields(), octets), octets.size());
   ASSERT_TRUE(target.stage_encoded(target.fields(), octets));

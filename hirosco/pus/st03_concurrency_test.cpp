@@ -32,7 +32,7 @@ struct Silent final : TelemetrySink {
   void report(std::uint8_t, std::uint8_t, std::uint16_t, Octets) override {}
 };
 
-void send(HousekeepingService& service, std::uint8_t subtype, Octets data) {
+void send_octets(HousekeepingService& service, std::uint8_t subtype, Octets data) {
   std::array<std::byte, 64> buffer;
   const auto packet = write_telecommand(buffer, {.apid = 10, .ack = 0, .service = 3, .subtype = subtype}, data);
   const auto view = TelecommandView::parse(packet.value());
@@ -43,7 +43,7 @@ void send(HousekeepingService& service, std::uint8_t subtype, Octets data) {
 void send_for(HousekeepingService& service, std::uint8_t subtype, std::uint16_t id) {
   std::array<std::byte, 3> data;
   OctetWriter{data}.put(std::uint8_t{1}).put(id);
-  send(service, subtype, data);
+  send_octets(service, subtype, data);
 }
 
 void create(HousekeepingService& service, std::uint16_t id) {
@@ -51,7 +51,7 @@ void create(HousekeepingService& service, std::uint16_t id) {
   OctetWriter writer{data};
   writer.put(id).put(std::uint32_t{1}).put(std::uint8_t{1});
   writer.put(ParameterId{2, Type::Uint8, static_cast<std::uint8_t>(id % 7)}.wire()).put(std::uint8_t{0});
-  send(service, HousekeepingService::create_structure, writer.written());
+  send_octets(service, HousekeepingService::create_structure, writer.written());
 }
 
 TEST(HousekeepingHandOver, KeepsEveryReportWholeWhileStructuresComeAndGo) {

@@ -10,7 +10,7 @@
 namespace hirosco::simulation {
 namespace {
 
-constexpr Duration cycle = std::chrono::microseconds{500};
+constexpr Duration period = std::chrono::microseconds{500};
 
 ArmParameters without_losses() {
   ArmParameters arm = ArmParameters{}.without_friction();
@@ -81,7 +81,7 @@ TEST(TwoJointArm, KeepsItsEnergyWhenNothingDissipatesIncludingBouncesOffTheRail)
   bool touched = false;
   double worst = 0;
   for (int k = 0; k < 20'000; ++k) {
-    arm.step({}, cycle);
+    arm.step({}, period);
     touched = touched || arm.contact().normal_force_n > 0;
     worst = std::max(worst, std::abs(arm.energy_j() - start) / start);
   }
@@ -96,7 +96,7 @@ TEST(TwoJointArm, LosesEnergyOnlyWithFrictionAndNeverGains) {
   arm.set_state(state);
   double before = arm.energy_j();
   for (int k = 0; k < 4'000; ++k) {
-    arm.step({}, cycle);
+    arm.step({}, period);
     ASSERT_LE(arm.energy_j(), before * (1 + 1e-9) + 1e-15) << k;
     before = arm.energy_j();
   }
@@ -104,8 +104,8 @@ TEST(TwoJointArm, LosesEnergyOnlyWithFrictionAndNeverGains) {
 
 TEST(TwoJointArm, LimitsTheMotorTorque) {
   TwoJointArm strong, limited;
-  strong.step({1000, -1000}, cycle);
-  limited.step({60, -60}, cycle);
+  strong.step({1000, -1000}, period);
+  limited.step({60, -60}, period);
   EXPECT_EQ(strong.state().motor_rad_s, limited.state().motor_rad_s);
 }
 
@@ -113,8 +113,8 @@ TEST(TwoJointArm, GivesTheSameBitsFromTheSameInputs) {
   TwoJointArm one, two;
   for (int k = 0; k < 2'000; ++k) {
     const Vec2 torque{std::sin(k * 0.01), -3.0};
-    one.step(torque, cycle);
-    two.step(torque, cycle);
+    one.step(torque, period);
+    two.step(torque, period);
   }
   EXPECT_EQ(one.state().link_rad, two.state().link_rad);
   EXPECT_EQ(one.state().motor_rad_s, two.state().motor_rad_s);

@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-std::vector<std::byte> telecommand(std::size_t data_octets = 0, std::uint16_t count = 0) {
+std::vector<std::byte> ping_of(std::size_t data_octets = 0, std::uint16_t count = 0) {
   std::vector<std::byte> buffer(pus::max_telecommand_octets);
   const std::vector<std::byte> data(data_octets, std::byte{0x5A});
   const auto packet =
@@ -42,8 +42,7 @@ struct Sink {
 };
 
 TEST(Deframer, CutsPacketsWhereverTheStreamIsDivided) {
-  const Packets sent{telecommand(), telecommand(100, 1), telecommand(pus::max_telecommand_octets - 13, 2),
-                     telecommand(1, 3)};
+  const Packets sent{ping_of(), ping_of(100, 1), ping_of(pus::max_telecommand_octets - 13, 2), ping_of(1, 3)};
   std::vector<std::byte> stream;
   for (const auto& packet : sent) append(stream, packet);
   for (const std::size_t piece : {std::size_t{1}, std::size_t{2}, std::size_t{5}, std::size_t{6}, std::size_t{7},
@@ -79,7 +78,7 @@ TEST(Deframer, EndsTheStreamAtAVersionOrTypeThatIsNoTelecommand) {
 }
 
 TEST(Deframer, HandsOnWhateverIsDamagedBehindAPlausibleHeader) {
-  const auto good = telecommand(20);
+  const auto good = ping_of(20);
   for (std::size_t bit = 0; bit < good.size() * 8; ++bit) {
     auto damaged = good;
     damaged[bit / 8] ^= static_cast<std::byte>(0x80 >> bit % 8);
@@ -97,16 +96,16 @@ TEST(Deframer, HandsOnWhateverIsDamagedBehindAPlausibleHeader) {
 
 TEST(Deframer, NeverFindsATelecommandInsideASpoiltStream) {
   auto stream = header(0x180B, 0xFFFF);
-  for (int i = 0; i < 1000; ++i) append(stream, telecommand());
+  for (int i = 0; i < 1000; ++i) append(stream, ping_of());
   Deframer deframer;
   Sink sink;
   EXPECT_TRUE(deframer.feed(stream, {}, sink));
-  EXPECT_EQ(deframer.feed(telecommand(), {}, sink), CloseReason::Length);
+  EXPECT_EQ(deframer.feed(ping_of(), {}, sink), CloseReason::Length);
   EXPECT_THAT(sink.packets, IsEmpty());
 }
 
 TEST(Deframer, GivesAPacketTwoSecondsFromItsFirstOctet) {
-  const auto packet = telecommand(10);
+  const auto packet = ping_of(10);
   Deframer deframer;
   Sink sink;
   const TimePoint begun{5s};
@@ -123,14 +122,14 @@ TEST(Deframer, GivesAPacketTwoSecondsFromItsFirstOctet) {
 TEST(Deframer, WaitsForEverBetweenPackets) {
   Deframer deframer;
   Sink sink;
-  ASSERT_FALSE(deframer.feed(telecommand(), {}, sink));
+  ASSERT_FALSE(deframer.feed(ping_of(), {}, sink));
   EXPECT_FALSE(deframer.check(TimePoint{1000h}));
 }
 
 TEST(Deframer, DropsIdlePacketsSilently) {
   auto stream = header(0x17FF, 0);
   stream.push_back(std::byte{0x55});
-  append(stream, telecommand());
+  append(stream, ping_of());
   Deframer deframer;
   Sink sink;
   EXPECT_FALSE(deframer.feed(stream, {}, sink));
@@ -162,13 +161,13 @@ TEST(GroundClients, GiveAllTelemetryToTelemetryClientsOnly) {
   GroundClients clients{{}};
   const ClientId first = admit(clients);
   const ClientId commander = admit(clients, GroundPort::TelecommandsOnly);
-  ASSERT_TRUE(clients.telemetry(telecommand(5)));
+  ASSERT_TRUE(clients.telemetry(ping_of(5)));
   const ClientId late = admit(clients);
-  ASSERT_TRUE(clients.telemetry(telecommand(6)));
-  auto both = telecommand(5);
-  append(both, telecommand(6));
+  ASSERT_TRUE(clients.telemetry(ping_of(6)));
+  auto both = ping_of(5);
+  append(both, ping_of(6));
   EXPECT_EQ(drain(clients, first), both);
-  EXPECT_EQ(drain(clients, late), telecommand(6));
+  EXPECT_EQ(drain(clients, late), ping_of(6));
   EXPECT_THAT(drain(clients, commander), IsEmpty());
 }
 
@@ -179,7 +178,7 @@ TEST(GroundClients, CutWhoDoesNotReadAndServeTheOthersWholly) {
   std::vector<std::byte> expected;
   std::vector<std::byte> got;
   for (std::uint16_t i = 0; i < 200; ++i) {
-    const auto packet = telecommand(i % 300U, i);
+    const auto packet = ping_of(i % 300U, i);
     append(expected, packet);
     ASSERT_TRUE(clients.telemetry(packet));
     append(got, drain(clients, quick, 77));
@@ -196,9 +195,9 @@ TEST(GroundClients, EvictTheOldestSilentClientNeverOneThatHasSpoken) {
   GroundClients clients{{.clients = 3}};
   Received traffic;
   const ClientId honest = admit(clients);
-  clients.received(honest, telecommand(), {}, traffic);
+  clients.received(honest, ping_of(), {}, traffic);
   const ClientId noisy = admit(clients);
-  auto damaged = telecommand();
+  auto damaged = ping_of();
   damaged.back() ^= std::byte{1};
   clients.received(noisy, damaged, {}, traffic);
   const ClientId silent = admit(clients);
@@ -211,7 +210,7 @@ TEST(GroundClients, EvictTheOldestSilentClientNeverOneThatHasSpoken) {
 TEST(GroundClients, RefuseANewcomerWhenEveryPlaceHasSpoken) {
   GroundClients clients{{.clients = 2}};
   Received traffic;
-  for (int i = 0; i < 2; ++i) clients.received(admit(clients), telecommand(), {}, traffic);
+  for (int i = 0; i < 2; ++i) clients.received(admit(clients), ping_of(), {}, traffic);
   EXPECT_EQ(admit(clients), 0);
   EXPECT_EQ(clients.counters().refused, 1U);
 }
@@ -223,7 +222,7 @@ TEST(GroundClients, NumberAPlaceAnewForEachClient) {
   const ClientId second = admit(clients);
   EXPECT_NE(first, second);
   Received traffic;
-  clients.received(first, telecommand(), {}, traffic);
+  clients.received(first, ping_of(), {}, traffic);
   EXPECT_THAT(traffic.all, IsEmpty());
   for (int i = 0; i < 1000; ++i) {
     const ClientId next = admit(clients);
@@ -236,8 +235,8 @@ TEST(GroundClients, CountByClientAndByReason) {
   GroundClients clients{{}};
   Received traffic;
   const ClientId good = admit(clients);
-  auto two = telecommand();
-  append(two, telecommand(3));
+  auto two = ping_of();
+  append(two, ping_of(3));
   two.back() ^= std::byte{1};
   clients.received(good, two, {}, traffic);
   EXPECT_THAT(traffic.all, ElementsAre(std::pair{good, 13U}, std::pair{good, 16U}));

@@ -30,17 +30,17 @@ std::vector<std::uint64_t> numbers(const std::vector<LogRecord>& records) {
   return all;
 }
 
-LogEntry telemetry(Octets packet = {}) { return {.kind = LogKind::Telemetry, .packet = packet}; }
-LogEntry telecommand() { return {.kind = LogKind::TelecommandReceived, .packet = {}}; }
+LogEntry queued_telemetry(Octets packet = {}) { return {.kind = LogKind::Telemetry, .packet = packet}; }
+LogEntry queued_telecommand() { return {.kind = LogKind::TelecommandReceived, .packet = {}}; }
 
 std::uint64_t push(LogQueue& queue, const LogEntry& entry) { return queue.push(entry, {}, {}); }
 
 TEST(LogQueue, GivesRecordsBackInTheOrderOfTheirNumbers) {
   LogQueue queue{{}, OnboardTime{5s}};
-  EXPECT_EQ(push(queue, telemetry()), 1U);
-  EXPECT_EQ(push(queue, telecommand()), 2U);
-  EXPECT_EQ(push(queue, telemetry()), 3U);
-  EXPECT_EQ(push(queue, telecommand()), 4U);
+  EXPECT_EQ(push(queue, queued_telemetry()), 1U);
+  EXPECT_EQ(push(queue, queued_telecommand()), 2U);
+  EXPECT_EQ(push(queue, queued_telemetry()), 3U);
+  EXPECT_EQ(push(queue, queued_telecommand()), 4U);
   const auto all = take_all(queue);
   EXPECT_THAT(numbers(all), ElementsAre(1, 2, 3, 4));
   EXPECT_EQ(all[0].run, OnboardTime{5s});
@@ -48,9 +48,9 @@ TEST(LogQueue, GivesRecordsBackInTheOrderOfTheirNumbers) {
 
 TEST(LogQueue, PushesOutTheOldestTelemetryAndSaysExactlyHowMuch) {
   LogQueue queue{{.telemetry_records = 2, .telemetry_octets = 100, .vital_records = 8, .vital_octets = 100}, {}};
-  push(queue, telecommand());
-  for (int i = 0; i < 5; ++i) push(queue, telemetry());  // 2..6
-  push(queue, telecommand());
+  push(queue, queued_telecommand());
+  for (int i = 0; i < 5; ++i) push(queue, queued_telemetry());  // 2..6
+  push(queue, queued_telecommand());
   const auto all = take_all(queue);
   EXPECT_THAT(numbers(all), ElementsAre(1, 2, 5, 6, 7));
   EXPECT_EQ(all[1].kind, LogKind::Gap);
@@ -61,9 +61,9 @@ TEST(LogQueue, PushesOutTheOldestTelemetryAndSaysExactlyHowMuch) {
 TEST(LogQueue, NeverPushesOutTelecommandsAndEventsOfSeverityMediumAndHigh) {
   LogQueue queue{{.telemetry_records = 4, .telemetry_octets = 100, .vital_records = 4, .vital_octets = 100}, {}};
   std::array<std::byte, 9> report{std::byte{0x08}, {}, {}, {}, {}, {}, {}, std::byte{5}, std::byte{3}};
-  ASSERT_NE(push(queue, telecommand()), 0U);
+  ASSERT_NE(push(queue, queued_telecommand()), 0U);
   ASSERT_NE(push(queue, {.kind = LogKind::Event, .packet = report}), 0U);
-  for (int i = 0; i < 1000; ++i) ASSERT_NE(push(queue, telemetry()), 0U);
+  for (int i = 0; i < 1000; ++i) ASSERT_NE(push(queue, queued_telemetry()), 0U);
   report[8] = std::byte{2};
   for (int i = 0; i < 1000; ++i) ASSERT_NE(push(queue, {.kind = LogKind::Event, .packet = report}), 0U);
   const auto all = take_all(queue);
@@ -74,8 +74,8 @@ TEST(LogQueue, NeverPushesOutTelecommandsAndEventsOfSeverityMediumAndHigh) {
 
 TEST(LogQueue, RefusesATelecommandWithoutRoomButStillTakesAnEvent) {
   LogQueue queue{{.telemetry_records = 4, .telemetry_octets = 100, .vital_records = 8, .vital_octets = 100}, {}};
-  for (int i = 0; i < 6; ++i) EXPECT_NE(push(queue, telecommand()), 0U);
-  EXPECT_EQ(push(queue, telecommand()), 0U);
+  for (int i = 0; i < 6; ++i) EXPECT_NE(push(queue, queued_telecommand()), 0U);
+  EXPECT_EQ(push(queue, queued_telecommand()), 0U);
   EXPECT_EQ(push(queue, {.kind = LogKind::Event, .packet = {}}), 8U);
   EXPECT_EQ(queue.refused(), 1U);
   const auto all = take_all(queue);
@@ -87,14 +87,14 @@ TEST(LogQueue, RefusesATelecommandWithoutRoomButStillTakesAnEvent) {
 TEST(LogQueue, RefusesAPacketThatCanNeverFit) {
   LogQueue queue{{.telemetry_records = 4, .telemetry_octets = 10, .vital_records = 8, .vital_octets = 10}, {}};
   const std::vector<std::byte> packet(11);
-  push(queue, telemetry());
-  EXPECT_EQ(push(queue, telemetry(packet)), 0U);
+  push(queue, queued_telemetry());
+  EXPECT_EQ(push(queue, queued_telemetry(packet)), 0U);
   EXPECT_EQ(queue.lost(), 0U);
 }
 
 TEST(LogQueue, TakesUpToANumberOnly) {
   LogQueue queue{{}, {}};
-  for (int i = 0; i < 5; ++i) push(queue, telecommand());
+  for (int i = 0; i < 5; ++i) push(queue, queued_telecommand());
   LogBatch batch{100};
   queue.take(batch, LogQueue::none, 3);
   EXPECT_EQ(batch.records().size(), 3U);
