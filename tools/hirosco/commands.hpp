@@ -108,6 +108,13 @@ int ground(const GroundOptions& options);
 /// The chain of causes of the last stop, from the ground station's archive.
 int why(const GroundOptions& options);
 
+struct ExportOptions {
+  std::string mission;
+  std::string to{"."};               ///< folder that gets the package
+};
+/// The mission's Python client.
+int export_python(const ExportOptions& options);
+
 // --- shared ------------------------------------------------------------------------------------------------------------
 /// "rokviss" or a path: the mission file; a name is looked for in missions/NAME/mission.xml from the working directory and
 /// from this program upwards. Empty: nowhere.

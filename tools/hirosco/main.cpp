@@ -138,6 +138,13 @@ int main(int argc, char** argv) {
   why_command->add_option("mission", ground_options.mission, "Name or path of the mission")->capture_default_str();
   why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");
   why_command->add_flag("--json", ground_options.json, "As JSON");
+  ExportOptions export_options;
+  auto* export_command = app.add_subcommand("export", "What other programs need of a mission");
+  export_command->require_subcommand(1);
+  auto* python_command = export_command->add_subcommand(
+      "python", "A Python client from the descriptors: a package without requirements, a class for each subsystem");
+  python_command->add_option("mission", export_options.mission, "Name or path of the mission")->required();
+  python_command->add_option("--to", export_options.to, "Folder that gets the package")->capture_default_str();
   // Values such as -0.8 are arguments, not options.
   tc_command->prefix_command(false);
 
@@ -155,6 +162,7 @@ int main(int argc, char** argv) {
   if (*run_command) return run(run_options);
   if (*ground_command) return ground(ground_options);
   if (*why_command) return why(ground_options);
+  if (*export_command) return export_python(export_options);
   if (*check_command) return check(check_options);
   if (*simulate_command) return simulate(simulate_options);
   if (*report_command) {
