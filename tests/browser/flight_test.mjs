@@ -4,37 +4,12 @@
 // The paper's story by mouse, on a real flight with its gateway: see it move, be refused, take the network down and bring another one up,
 // move the arm, unplug the joystick, read why, replay.
 import assert from 'node:assert/strict';
-import {spawn} from 'node:child_process';
-import {mkdtempSync, rmSync} from 'node:fs';
-import {tmpdir} from 'node:os';
-import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
 import {open_browser, open_page} from './browser.mjs';
+import {fly} from './flight.mjs';
 
 const wait = {timeout: 20000};
 const go = (page, view) => page.evaluate((to) => { location.hash = `#/${to}`; }, view);
-
-/// `hirosco run` in a folder of its own; the URL is in what it tells.
-async function fly() {
-  const folder = mkdtempSync(join(tmpdir(), 'hirosco-flight-'));
-  const flight = spawn(join(process.env.HIROSCO_BIN, 'hirosco'), ['run', join(process.env.HIROSCO_SOURCES, 'missions/rokviss/mission.xml')],
-    {cwd: folder, env: {...process.env, XDG_RUNTIME_DIR: folder, NO_COLOR: '1'}, stdio: ['ignore', 'pipe', 'inherit']});
-  let told = '';
-  const url = await new Promise((resolve, reject) => {
-    flight.stdout.on('data', (data) => {
-      told += data;
-      const found = /http:\/\/127\.0\.0\.1:\d+\/#token=\S+/.exec(told);
-      if (found) resolve(found[0]);
-    });
-    flight.once('exit', () => reject(new Error(`the flight ended: ${told.slice(-2000)}`)));
-  });
-  return {url, folder, story: () => told, async end() {
-    const gone = new Promise((resolve) => flight.once('exit', resolve));
-    flight.kill('SIGTERM');
-    await gone;
-    rmSync(folder, {recursive: true, force: true});
-  }};
-}
 
 describe('the page on a real flight', () => {
   let flight, browser, page, faults;

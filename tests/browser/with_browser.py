@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""with_browser.py TEST.mjs: runs a browser test with its packages (by the lock file, into the build folder). Exits 77 (skipped), with
-the reason, where something is missing that a machine without a ground station need not have."""
+"""with_browser.py NAME_test.mjs | PROGRAM.mjs [WORD...]: runs a browser test, or another program beside them, with its packages (by the
+lock file, into the build folder). Exits 77 (skipped), with the reason, where something is missing that a machine without a ground
+station need not have."""
 import hashlib
 import os
 import pathlib
@@ -49,7 +50,8 @@ def main():
     development = PAGE_WORK / "development"
     shutil.copytree(HERE.parents[1] / "ground/web/development", development, dirs_exist_ok=True)
     environment = {**os.environ, "HIROSCO_PAGE_SERVER": str(development / "server.mjs"), "HIROSCO_SOURCES": str(HERE.parents[1])}
-    sys.exit(subprocess.run(["node", "--test", "--test-reporter=spec", sys.argv[1]], cwd=WORK, env=environment).returncode)
+    runner = ["node", "--test", "--test-reporter=spec"] if sys.argv[1].endswith("_test.mjs") else ["node"]
+    sys.exit(subprocess.run([*runner, *sys.argv[1:]], cwd=WORK, env=environment).returncode)
 
 
 main()

@@ -213,7 +213,15 @@ async function fetch_past(until) {
   });
 }
 
-async function fetch_present() {
+let fetching = null;
+/// One at a time; who asks while one is under way gets the past once more, for what came meanwhile.
+function fetch_present() {
+  if (fetching) return fetching.then(() => fetch_past(replay.value?.at));
+  fetching = really_fetch_present().finally(() => { fetching = null; });
+  return fetching;
+}
+
+async function really_fetch_present() {
   try {
     // The gateway may be another one than before, with other descriptors.
     const found = await get('/api/mission');

@@ -11,14 +11,21 @@ import {fast, freshness, mission, operator, replay, slow, values} from '../store
 
 /// models/NAME/scene.json of the mission; null when there is none, undefined while it is not known.
 export const scene_of_mission = signal(undefined);
+const with_model = asset('models/index.json').then((answer) => answer.json());
+with_model.catch(() => {});
+const drawing_code = () => import('./scene.js');
 let looked_for = '';
 mission.subscribe((known) => {
   if (!known || looked_for === known.name) return;
   looked_for = known.name;
   const name = known.name.toLowerCase();
   const folder = `models/${encodeURIComponent(name)}`;
-  asset('models/index.json').then((answer) => answer.json())
-      .then((names) => names.includes(name) ? asset(`${folder}/scene.json`).then((answer) => answer.json()) : null)
+  with_model.then((names) => {
+    if (!names.includes(name)) return null;
+    // The code comes while its description does.
+    drawing_code().catch(() => {});
+    return asset(`${folder}/scene.json`).then((answer) => answer.json());
+  })
       .then((description) => { scene_of_mission.value = description && {folder, ...description}; })
       .catch(() => { scene_of_mission.value = null; });
 });
@@ -70,7 +77,7 @@ export function Robot() {
   useEffect(() => {
     if (!description) return;
     let over = false;
-    import('./scene.js').then(async ({RobotView}) => {
+    drawing_code().then(async ({RobotView}) => {
       if (over) return;
       view.current = new RobotView(node.current, description.folder, description);
       await view.current.load();

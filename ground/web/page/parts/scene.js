@@ -23,10 +23,10 @@ const calm_return_s = 0.8;
 
 const colour_ok = new Color(0x5b6880), colour_near = new Color(0xf2a93b), colour_at = new Color(0xf05d5e);
 
-async function load_urdf(folder, name) {
+function parsed_urdf(text) {
   const loader = new URDFLoader();
   loader.parseCollision = false;
-  return loader.parse(await (await asset(`${folder}/${name}`)).text());
+  return loader.parse(text);
 }
 
 function dress(robot, ghost) {
@@ -141,8 +141,9 @@ export class RobotView {
 
   async load() {
     const {description} = this;
-    for (const one of description.robots) {
-      const entry = {...one, body: await load_urdf(this.folder, one.urdf), rings: {}, last: {}};
+    const texts = await Promise.all(description.robots.map(async ({urdf}) => (await asset(`${this.folder}/${urdf}`)).text()));
+    for (const [i, one] of description.robots.entries()) {
+      const entry = {...one, body: parsed_urdf(texts[i]), rings: {}, last: {}};
       dress(entry.body, false);
       entry.rings = rings_of(entry.body);
       // Unseen until the first telemetry says how it stands.
@@ -150,7 +151,7 @@ export class RobotView {
       entry.body.position.fromArray(one.at_m ?? [0, 0, 0]);
       this.scene.add(entry.body);
       if (one.ghost) {
-        entry.shadow = await load_urdf(this.folder, one.urdf);
+        entry.shadow = parsed_urdf(texts[i]);
         dress(entry.shadow, true);
         entry.shadow.visible = false;
         entry.shadow.position.copy(entry.body.position);

@@ -22,6 +22,8 @@ function worth(name) {
 
 /// What a mission without a scene shows first: the first arrays and numbers of its housekeeping.
 export function first_plots() {
+  // Not known yet: plots that go again at once would ask the archive in vain.
+  if (scene_of_mission.value === undefined) return [];
   const described = scene_of_mission.value?.plots;
   if (described) return described.map((names) => names.filter((name) => columns.value.has(name))).filter((names) => names.length);
   const by_parameter = new Map();
@@ -62,6 +64,7 @@ function QuickCommand() {
 
 export function Overview() {
   const plots = first_plots();
+  const none = scene_of_mission.value === undefined ? '' : 'No housekeeping to plot.';
   const last = mission.value?.subsystems.at(-1);
   return html`<main class="overview">
     <${Panel} title="Subsystems" area="subsystems" href="#/subsystems">
@@ -74,7 +77,7 @@ export function Overview() {
     ${[0, 1].map((i) => plots[i] ? html`<${Panel} title=${plot_title(plots[i])} area=${`plot_${i}`} bare
       href=${`#/plots?p=${plots[i].map(encodeURIComponent).join('+')}`}>
       <${Legend} names=${plots[i]} brief /><${TimePlot} names=${plots[i]} window_s=${30} /></${Panel}>` :
-      html`<${Panel} title="plot" area=${`plot_${i}`} href="#/plots"><p class="empty">No housekeeping to plot.</p></${Panel}>`)}
+      html`<${Panel} title="plot" area=${`plot_${i}`} href="#/plots"><p class="empty">${none}</p></${Panel}>`)}
     <${Panel} title="Events" area="events" href="#/events"><${EventTable} list=${events.value} most=${40} /></${Panel}>
     <${Panel} title="Timeline" hint="click to replay from there" area="timeline" href="#/timeline"><${Lanes} window_s=${120} /></${Panel}>
   </main>`;

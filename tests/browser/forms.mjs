@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Every field of every telecommand form against the mission's own ranges: what the form and what the gateway take.
+const whole = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 2 ** 32 - 1], INT8: [-128, 127], INT16: [-32768, 32767], INT32: [-(2 ** 31), 2 ** 31 - 1],
+  UINT64: [0, 2 ** 53 - 1], INT64: [-(2 ** 53 - 1), 2 ** 53 - 1]};
+const never = ['NaN', 'Infinity', '-Infinity', 'left', '', '0x1', '1 2 3 4 5 6 7'];
+
+function cases_of(argument) {
+  const [low, high] = whole[argument.type] ?? [-Infinity, Infinity];
+  const least = Math.max(low, argument.min ?? -Infinity), most = Math.min(high, argument.max ?? Infinity);
+  const finite = [least, most].filter(Number.isFinite);
+  const good = finite.length ? finite : [0, 1, -1.5];
+  const bad = [least - 1, most + 1].filter((value) => Number.isFinite(value) && Number.isSafeInteger(Math.round(value)));
+  const repeated = (text) => new Array(argument.count ?? 1).fill(text).join(' ');
+  return {good: good.map((value) => repeated(String(value))), bad: [...bad.map((value) => repeated(String(value))), ...never]};
+}
+
+/// Fills every field of every form of `mission` in `page`: {fields, choices, cases, wrong: [what was judged amiss]}.
+export async function judge_forms(page, mission) {
+  const found = {fields: 0, choices: 0, cases: 0, wrong: []};
+  for (const subsystem of mission.subsystems) {
+    for (const action of subsystem.functions) {
+      if (!action.arguments.length) continue;
+      await page.evaluate((to) => { location.hash = to; }, `#/commands/${subsystem.name}/${action.name}`);
+      for (const argument of action.arguments) {
+        const where = `${subsystem.name} ${action.name} ${argument.name}`;
+        const field = page.locator(`[data-test=field-${argument.name}]`);
+        await field.waitFor();
+        ++found.fields;
+        if (await field.evaluate((node) => node.tagName === 'SELECT')) {
+          ++found.choices;
+          if (await field.locator('option').count() === 0) found.wrong.push(`${where}: nothing to choose`);
+          continue;
+        }
+        const {good, bad} = cases_of(argument);
+        const taken = () => field.evaluate((node) => node.value !== '' && node.getAttribute('aria-invalid') !== 'true');
+        for (const [texts, wanted] of [[bad, false], [good, true]]) {
+          for (const text of texts) {
+            ++found.cases;
+            await field.fill(text);
+            if (await taken() !== wanted) found.wrong.push(`${where}: ${wanted ? 'rejects' : 'takes'} "${text}"`);
+          }
+        }
+      }
+    }
+  }
+  return found;
+}
+
+/// The same values to the gateway, which must agree: {cases, wrong}.
+export async function judge_gateway(mission, ask) {
+  const found = {cases: 0, wrong: []};
+  for (const subsystem of mission.subsystems) {
+    for (const action of subsystem.functions) {
+      const value_of = (argument, text) => {
+        const one = (word) => Number.isFinite(Number(word)) && word !== '' ? Number(word) : word;
+        return (argument.count ?? 1) > 1 ? text.split(' ').map(one) : one(text);
+      };
+      const fine = Object.fromEntries(action.arguments.map((argument) =>
+        [argument.name, argument.enumeration?.length ? argument.enumeration[0].value : value_of(argument, cases_of(argument).good[0])]));
+      for (const argument of action.arguments) {
+        const {good, bad} = cases_of(argument);
+        const tries = argument.enumeration?.length ? argument.enumeration.map(({value}) => [value, true]) :
+          [...good.map((text) => [value_of(argument, text), true]), ...bad.filter((text) => text !== '0x1').map((text) => [value_of(argument, text), false])];
+        for (const [value, wanted] of tries) {
+          ++found.cases;
+          const status = await ask({subsystem: subsystem.name, function: action.name, arguments: {...fine, [argument.name]: value}});
+          if ((status === 200) !== wanted) found.wrong.push(`gateway: ${subsystem.name} ${action.name} ${argument.name} ${JSON.stringify(value)}: ${status}`);
+        }
+      }
+    }
+  }
+  return found;
+}
