@@ -53,12 +53,17 @@ class NoAnswer(HiroscoError, TimeoutError):
     """What was waited for did not come in time. It may still come, and the request may still be executed."""
 
 
+def code_text(code: int) -> str:
+    """As docs/failure-codes.md writes it."""
+    return str(code) if code < 0x100 else f"{code:#06x}"
+
+
 class CommandFailed(HiroscoError):
     """The spacecraft refused a request or did not complete it. `verification` is the report that says so."""
 
     def __init__(self, request: Request, verification: Verification) -> None:
         super().__init__(f"{request.subsystem}.{request.name} {verification.stage}: {verification.text} "
-                         f"(code {verification.code:#06x}){verification.detail}")
+                         f"(code {code_text(verification.code)}){verification.detail}")
         self.request, self.verification = request, verification
 
     @property
@@ -393,6 +398,7 @@ class Subsystem:
         self._parameters = {parameter.name: parameter for parameter in self._about.parameters}
         self._latest: Dict[int, Housekeeping] = {}
         self._recordings: List[Tuple[int, List[Housekeeping]]] = []
+        self._changed: Tuple[float, Optional[int]] = (-math.inf, None)  # state by its newest STATE_CHANGED, and when
 
     # Names here are taken: the exporter calls a function of the same name NAME_2.
     def latest(self, sid: int) -> Optional[Housekeeping]:
@@ -420,8 +426,8 @@ class Subsystem:
 
     @property
     def state(self) -> Optional[str]:
-        """By the supervisor's newest word; "Operational" and so on, None when it does not run or is not known."""
-        number = self._craft._told(self._about.apid, "STATE")
+        """"Operational" and so on, by its own or the supervisor's newest word; None when it does not run or is not known."""
+        number = self._craft._told(self._about.apid, "STATE", self._changed)
         return STATES[number] if number is not None and number < len(STATES) else None
 
     @property
@@ -489,6 +495,8 @@ class Subsystem:
             if offset + field.octets > len(packet.data):
                 break
             value = field.decode(packet.data, offset)
+            if (kind.name, field.name) == ("STATE_CHANGED", "STATE"):
+                self._changed = max(self._changed, (packet.time_s, value), key=lambda told: told[0])
             values[field.name] = field.text_of(value) or value if field.count == 1 else value
             offset += field.octets
         return Event(self._about.name, number, kind.name, SEVERITIES[packet.subtype], packet.time_s, values)
@@ -566,14 +574,14 @@ class Craft:
         """`watcher(event)` in the reading thread: it may not wait for anything of this object."""
         self._watchers = [*self._watchers, watcher]
 
-    def _told(self, apid: int, what: str) -> Optional[int]:
+    def _told(self, apid: int, what: str, newest: Tuple[float, Optional[int]] = (-math.inf, None)) -> Optional[int]:
+        """What the supervisor's housekeeping says of a subsystem, unless `newest` (time, value) is newer."""
         with self._arrived:
             for report in self._supervisor._latest.values():
                 apids, values = report.values.get("SUBSYSTEMS.APID", ()), report.values.get(f"SUBSYSTEMS.{what}", ())
-                for known, value in zip(apids, values):
-                    if known == apid:
-                        return value
-        return None
+                newest = max([newest, *((report.time_s, value) for known, value in zip(apids, values) if known == apid)],
+                             key=lambda told: told[0])
+        return newest[1]
 
     def _send(self, subsystem: Subsystem, name: str, service: int, subtype: int, data: bytes,
               wait: Optional[float]) -> Request:

@@ -118,8 +118,11 @@ class Fields(unittest.TestCase):
 class Arm(Subsystem):
     _about = SubsystemAbout("ARM", 10, functions=(Function("MOVE", arguments=(Field("Q", "UINT8"),)),),
                             parameters=(Parameter("KP", 0x0A0A03, (Field("KP", "DOUBLE"),)),),
-                            layouts=(Layout(7, 4, (Field("A", "UINT8", offset=2), Field("B", "INT8", offset=3))),),
-                            events=(EventKind(17, "BUMP", (Field("JOINT", "UINT8"), Field("FORCE", "FLOAT"))),))
+                            layouts=(Layout(7, 4, (Field("A", "UINT8", offset=2), Field("B", "INT8", offset=3))),
+                                     Layout(9, 8, (Field("SUBSYSTEMS.APID", "UINT16", count=2, offset=2),
+                                                   Field("SUBSYSTEMS.STATE", "UINT8", count=2, offset=6)))),
+                            events=(EventKind(17, "BUMP", (Field("JOINT", "UINT8"), Field("FORCE", "FLOAT"))),
+                                    EventKind(19, "STATE_CHANGED", (Field("STATE", "UINT8"),))))
 
     def move(self, q, *, wait=2.0):
         return self._call("MOVE", (q,), wait)
@@ -142,10 +145,10 @@ class Peer:
         data = self.socket.recv(6, socket.MSG_WAITALL)
         return data + self.socket.recv(1 + int.from_bytes(data[4:6], "big"), socket.MSG_WAITALL)
 
-    def tell(self, service, subtype, data, destination=0):
+    def tell(self, service, subtype, data, destination=0, time_s=0):
         self._count += 1
         packet = struct.pack(">HHHBBBHH", 0x080A, 0xC000 | self._count, len(data) + 15, 0x20, service, subtype, 0, destination)
-        packet += bytes(7) + data
+        packet += struct.pack(">I3x", time_s) + data
         self.socket.sendall(packet + struct.pack(">H", runtime.crc16(packet)))
 
     def verify(self, request, subtype, data=b""):
@@ -232,7 +235,7 @@ class Client(unittest.TestCase):
             self.craft.wait_until(lambda: self.craft.received == 4)
         self.assertEqual([report.values for report in reports], [{"A": 1, "B": -1}, {"A": 2, "B": -2}])
         self.assertEqual(self.craft.arm.latest(7)["B"], -2)
-        with self.assertRaisesRegex(ArgumentError, "has no report 8; it has 7"):
+        with self.assertRaisesRegex(ArgumentError, "has no report 8; it has 7, 9"):
             self.craft.arm.record(8).__enter__()
 
     def test_events_are_named_even_when_unknown_or_too_short(self):
@@ -241,6 +244,18 @@ class Client(unittest.TestCase):
         self.craft.wait_until(lambda: len(self.craft.events) == 3)
         self.assertEqual([(e.name, e.severity, e.values) for e in self.craft.events],
                          [("BUMP", "medium", {"JOINT": 2, "FORCE": 2.0}), ("18", "medium", {}), ("BUMP", "medium", {"JOINT": 2})])
+
+    def test_a_state_is_the_newest_that_was_told(self):
+        self.assertIsNone(self.craft.arm.state)
+        for time_s, state in ((10, 5), (12, 4), (11, 6)):
+            self.peer.tell(5, 1, b"\x00\x13" + bytes([state]), time_s=time_s)
+            overview = b"\x00\x09" + struct.pack(">HHBB", 1, 10, 9, 3)
+            self.peer.tell(3, 25, overview, time_s=time_s - 1)
+        self.craft.wait_until(lambda: self.craft.received == 6)
+        self.assertEqual(self.craft.arm.state, "SafeOperational")
+        self.peer.tell(3, 25, overview, time_s=13)
+        self.craft.wait_until(lambda: self.craft.received == 7)
+        self.assertEqual(self.craft.arm.state, "PreOperational")
 
     def test_damaged_packets_are_counted_and_the_next_is_read(self):
         self.peer.socket.sendall(bytes.fromhex("0800c000000f") + bytes(16))
