@@ -272,7 +272,8 @@ void Api::opened(const HttpRequest& request, Peer& peer) {
   static_cast<void>(session_.opened(peer, target && role_of(request, *target) == Role::Operator));
 }
 
-void Api::post(const HttpRequest& request, const Target& target, Role role, std::function<void(HttpResponse)> respond) {
+void Api::post(const HttpRequest& request, const Target& target, Role role,
+               const std::function<void(HttpResponse)>& respond) {
   if (role != Role::Operator) return respond(error(403, "observers do not command"));
   if (session_.in_replay(header(request, "x-client"))) return respond(error(409, "this page replays the past"));
   const json body = json::parse(request.body, nullptr, false);

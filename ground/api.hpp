@@ -61,7 +61,8 @@ class Api final : public Application {
   enum class Role { Nobody, Observer, Operator };
   [[nodiscard]] Role role_of(const HttpRequest& request, const Target& target) const;
   [[nodiscard]] bool from_here(const HttpRequest& request) const;
-  void post(const HttpRequest& request, const Target& target, Role role, std::function<void(HttpResponse)> respond);
+  void post(const HttpRequest& request, const Target& target, Role role,
+            const std::function<void(HttpResponse)>& respond);
   [[nodiscard]] HttpResponse get(const Target& target);
   [[nodiscard]] HttpResponse history(const Target& target);
   [[nodiscard]] HttpResponse csv(const Target& target);
