@@ -6,6 +6,7 @@
 #include <array>
 
 #include "hirosco/pus/st08_function.hpp"
+#include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervisor.hpp"
 
 /// Data handling of the supervisor (paper 4.3): permits or refuses, logs and routes every telecommand, routes and logs
@@ -57,9 +58,19 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
   pus::Request request = pus::request_of(*telecommand);
   if (forged(request, incoming.sender)) request = {request.id, 0, 0};
   const std::uint16_t apid = telecommand->apid();
+  const bool asks_only = apid == 1 && telecommand->service() == permission_query::service;
+  const auto copy_to_ground = [&] {
+    if (incoming.sender == Sender::Ground && !asks_only) send_telecommand_copy(engine_.telemetry(), incoming.packet);
+  };
+  observe_power();
   const auto decision = judge(*telecommand, incoming.sender);
-  if (!decision) return reject(incoming, request, decision.error());
-  if (apid == 1 && telecommand->service() == permission_query::service) return answer_query(incoming, *telecommand);
+  if (!decision) {
+    copy_to_ground();
+    if (decision.error().code() == pus::FailureCode::PowerShort) tell_shortage(apid, decision.error());
+    return reject(incoming, request, decision.error());
+  }
+  if (decision->reserves_w > 0) power_.reserve(apid, decision->reserves_w, request, now_ + own_request_limit);
+  if (asks_only) return answer_query(incoming, *telecommand);
   if (Member* addressee = member(apid); decision->releases_stop && addressee != nullptr) addressee->release_fence();
   const std::string text = telecommand_text(*telecommand);
   const LogEntry received{.kind = LogKind::TelecommandReceived,
@@ -69,9 +80,11 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
                           .note = std::string_view{text}};
   if (decision->essential) {
     forward({apid, incoming.packet, incoming.memory, request, 0, true});
+    copy_to_ground();
     static_cast<void>(parts_.log.append(received));
     return;
   }
+  copy_to_ground();
   const std::uint64_t number = parts_.log.append(received);
   if (number == 0 || waiting_.size() == most_waiting)
     return reject(incoming, request, pus::FailureNotice{pus::FailureCode::QueueFull});
@@ -180,7 +193,8 @@ void Supervisor::reject(const Incoming& incoming, const pus::Request& request, c
 }
 
 Situation Supervisor::situation_of(std::uint16_t apid) const {
-  Situation situation{.mission = mission_, .mode = *mode_, .links = links_.graph(), .state = std::nullopt};
+  Situation situation{
+      .mission = mission_, .mode = *mode_, .links = links_.graph(), .state = std::nullopt, .power = &power_};
   if (apid == 1) {
     situation.state = engine_.state();
     situation.configuration = static_cast<std::uint8_t>(own_vital_->configuration.load(std::memory_order_relaxed));
@@ -237,6 +251,12 @@ void Supervisor::count_rejection(pus::FailureCode code) {
 
 void Supervisor::interpret(std::uint16_t from, const pus::TelemetryView& report) {
   count_failure(report);
+  // A failure of any stage, or completion: the telecommand is over.
+  if (report.service() == 1 && (report.subtype() % 2 == 0 || report.subtype() == 7)) {
+    OctetReader reader{report.source_data()};
+    const auto id = reader.get<std::uint32_t>();
+    if (reader.good()) power_.ended({id, report.destination(), 0});
+  }
   if (report.service() == 1 && report.destination() == own_source) handle_verification(report);
   if (report.service() == 5 && report.subtype() >= 1 && report.subtype() <= 4) handle_event(from, report);
   if (report.service() == pus::st128::service_type) links_.handle(from, report);

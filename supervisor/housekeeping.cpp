@@ -23,6 +23,9 @@ Result<> Supervisor::show(const Cycle&) noexcept {
                           static_cast<std::uint32_t>(links_.graph().defined_count())});
   rejections_parameter_.store(rejections_);
   counts_parameter_.store(counts_);
+  constexpr float watts = 1e-3F;
+  power_parameter_.store(
+      {static_cast<float>(power_.budget_mw()) * watts, static_cast<float>(power_.reserved_mw()) * watts});
   show_members();
   show_links();
   return ok();

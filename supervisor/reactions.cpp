@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "supervisor/supervision/event_handling/recovery.hpp"
@@ -148,6 +151,67 @@ void Supervisor::watch_hangs() {
     react(subject, "HANG", Severity::High);
   }
 }
+
+// --- power -------------------------------------------------------------------------------------------------------------
+
+void Supervisor::observe_power() {
+  const auto demand_w = [](const descriptor::Subsystem& subject, std::uint8_t id) {
+    const auto* configuration = subject.find_configuration(id);
+    return configuration != nullptr ? configuration->power_w : 0;
+  };
+  const auto own = static_cast<std::uint8_t>(own_vital_->configuration.load(std::memory_order_relaxed));
+  power_.observe(1, engine_.state(), demand_w(mission_.supervisor, own), now_);
+  for (const Member& subject : members_)
+    power_.observe(subject.apid(), subject.alive() ? subject.state() : std::nullopt,
+                   demand_w(subject.descriptor(), subject.configuration()), now_);
+}
+
+void Supervisor::tell_shortage(std::uint16_t apid, const pus::FailureNotice& notice) {
+  OctetReader reader{notice.data()};
+  std::array<double, 4> told{static_cast<double>(apid)};
+  for (double& watts : std::span{told}.subspan(1)) watts = reader.get<std::uint32_t>() * 1e-3;
+  const auto [subject, budget_w, reserved_w, requested_w] = told;
+  tell(fmt::format("power short: {} asks for {} W, {} W of {} W are reserved", name_of(apid), requested_w, reserved_w,
+                   budget_w),
+       apid);
+  engine_.raise_in_service(106, told);
+}
+
+/// FC9 during use. Less than a tenth left: whoever draws stops acting. Less than is reserved: load is shed.
+void Supervisor::set_power_budget(double budget_w) {
+  constexpr double least_margin = 0.1;
+  power_.set_budget(budget_w);
+  observe_power();
+  const std::array watts{power_.budget_mw() * 1e-3, power_.reserved_mw() * 1e-3};
+  tell(fmt::format("power budget {} W, {} W are reserved", watts[0], watts[1]), 1);
+  if (power_.overdrawn()) return shed_load();
+  if (watts[1] <= (1 - least_margin) * watts[0]) return;
+  engine_.raise_in_service(107, watts);
+  for (Member& subject : members_)
+    if (power_.held_mw(subject.apid()) != 0 && subject.descriptor().name != mission_.ground.subsystem)
+      react(subject, "POWER_LOW", Severity::Medium);
+}
+
+/// The last of the mission first, each with its network, until the rest fits; the ground link never.
+void Supervisor::shed_load() {
+  if (!power_.overdrawn() || shutting_down_) return;
+  const auto stays_mw = [&] {
+    std::uint32_t sum_mw = power_.held_mw(1);
+    for (const Member& subject : members_)
+      if (!subject.going_down) sum_mw += power_.held_mw(subject.apid());
+    return sum_mw;
+  };
+  bool told = false;
+  for (auto subject = members_.rbegin(); subject != members_.rend() && stays_mw() > power_.budget_mw(); ++subject) {
+    const bool spared = subject->descriptor().name == mission_.ground.subsystem;
+    if (spared || subject->going_down || power_.held_mw(subject->apid()) == 0) continue;
+    if (!std::exchange(told, true))
+      engine_.raise_in_service(108, std::array{power_.budget_mw() * 1e-3, power_.reserved_mw() * 1e-3});
+    react(*subject, "LOAD_SHED", Severity::High);
+  }
+}
+
+// --- the end of a process ----------------------------------------------------------------------------------------------
 
 void Supervisor::member_died(Member& subject, const ProcessEnd& end) {
   const std::uint16_t apid = subject.apid();

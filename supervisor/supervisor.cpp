@@ -27,6 +27,7 @@ Supervisor::Supervisor(const Parts& parts)
       engine_{*this, mission_.supervisor, parts.world, own_channels_.subsystem_end(), *own_vital_, *own_permit_},
       links_{mission_, parts.world.memory, *this},
       sequence_{*this},
+      power_{mission_.power_budget_w},
       describer_{mission_},
       next_sequence_count_{parts.first_sequence_count} {
   members_.reserve(mission_.subsystems.size());
@@ -42,6 +43,7 @@ Result<Step> Supervisor::software_init() {
   publish("COUNTS", counts_parameter_);
   publish("SUBSYSTEMS", subsystems_parameter_);
   publish("LINK_STATUS", link_status_parameter_);
+  publish("POWER", power_parameter_);
   on_function("SET_MODE", [this](double mode) -> Outcome {
     const auto found = std::ranges::find(mission_.modes, static_cast<std::uint8_t>(mode), &descriptor::Mode::id);
     if (found == mission_.modes.end()) return refused(pus::FailureCode::UnknownIdentifier);
@@ -67,6 +69,10 @@ Result<Step> Supervisor::software_init() {
     if (!database) return refused(pus::FailureCode::ExecutionError);
     tell("log switched to " + std::string{database->strategy()});
     parts_.log.switch_to(std::move(database));
+    return ok();
+  });
+  on_function("SET_POWER_BUDGET", [this](double budget_w) -> Outcome {
+    set_power_budget(budget_w);
     return ok();
   });
   on_function("SAFE_ALL", [this]() -> Outcome {
@@ -199,6 +205,8 @@ TimePoint Supervisor::step(TimePoint now) {
     next_watch_ = now + watch_period;
     watch_ends(true);
     watch_hangs();
+    observe_power();
+    shed_load();
     links_.step(now);
     watch_log(now);
     expire_requests(now);

@@ -141,6 +141,12 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void watch_hangs();
   void member_died(Member& member, const ProcessEnd& end);
 
+  // power
+  void observe_power();
+  void tell_shortage(std::uint16_t apid, const pus::FailureNotice& notice);
+  void set_power_budget(double budget_w);
+  void shed_load();
+
   // modes and life
   void begin_commissioning();
   void begin_shutdown();
@@ -166,6 +172,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   bool own_cycle_running_{false};
   LinkHandling links_;
   Sequence sequence_;
+  PowerLedger power_;
   pus::PacketDescriber describer_;
 
   struct OwnRequest {
@@ -199,7 +206,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   bool finished_{false};
   bool failed_{false};
 
-  static constexpr std::size_t rejection_reasons = 16;
+  static constexpr std::size_t rejection_reasons = 17;
   Parameter<std::uint8_t> mode_parameter_;
   struct LinkCounts {
     std::uint32_t up{0};
@@ -215,6 +222,11 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   Parameter<Counts> counts_parameter_;
   std::array<std::uint32_t, rejection_reasons> rejections_{};
   Counts counts_{};
+  struct Power {
+    float budget_w{0};               ///< 0 = not limited
+    float reserved_w{0};
+  };
+  Parameter<Power> power_parameter_;
   /// What ground is told of everybody (housekeeping 4702); where a mission has more, only the first.
   static constexpr std::size_t told_members = 16;
   struct SubsystemsStatus {

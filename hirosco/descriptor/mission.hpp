@@ -93,6 +93,7 @@ struct Mission {
   Subsystem supervisor;
   DatabaseUse database;
   GroundAddresses ground;
+  std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
   std::vector<MissionSubsystem> subsystems;
   std::vector<SimulatedDevice> devices;
   std::vector<MissionLink> links;

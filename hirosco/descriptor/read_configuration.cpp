@@ -49,6 +49,7 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   configuration.priority = attributes.integer_or<int>("priority", 0, 98, 0);
   configuration.sampling =
       std::chrono::microseconds{attributes.required_integer<std::int64_t>("sampling_us", 1, max_sampling_us)};
+  configuration.power_w = attributes.watts("power_W").value_or(0);
   configuration.overruns = read_limit(attributes, "overruns", "overruns_reduced", configuration.overruns);
   configuration.provides = provides_;
   configuration.requires_ = requires_;

@@ -47,6 +47,7 @@ Mission MissionReader::read(const xml::Element& root) {
                  supervised = true;
                },
                1},
+              {"Power", [this](const auto& element) { read_power(element); }, 1},
               {"Subsystem", [this](const auto& element) { read_member(element); }, 255},
               {"SimulatedDevice", later(devices), 255},
               {"Links", later(links), 1},
@@ -138,6 +139,12 @@ void MissionReader::read_address(Attributes& attributes, std::string_view name, 
 }
 
 std::string MissionReader::executable(Attributes& attributes) { return attributes.name("executable", NameKind::Loose); }
+
+void MissionReader::read_power(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  if (attributes.required("budget_W") != nullptr) mission_.power_budget_w = attributes.watts("budget_W");
+}
 
 void MissionReader::read_member(const xml::Element& element) {
   Attributes attributes{element, problems_};

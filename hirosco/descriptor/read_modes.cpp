@@ -12,8 +12,8 @@ namespace {
 
 /// Built in: in every subsystem, and in the supervisor besides (decision 10).
 constexpr std::array<std::string_view, 2> common_functions{"SET_STATE", "CONFIGURE"};
-constexpr std::array<std::string_view, 6> supervisor_functions{"SET_MODE",     "LINK",     "UNLINK",
-                                                               "SET_DATABASE", "SAFE_ALL", "SHUTDOWN"};
+constexpr std::array<std::string_view, 7> supervisor_functions{
+    "SET_MODE", "LINK", "UNLINK", "SET_DATABASE", "SET_POWER_BUDGET", "SAFE_ALL", "SHUTDOWN"};
 
 constexpr bool is_steady(State state) noexcept {
   return state == State::Offline || state == State::PreOperational || state == State::SafeOperational ||
@@ -149,7 +149,24 @@ void MissionReader::read_mode(const xml::Element& element) {
   const std::size_t length = element.name.size() + 1;
   if (!mode.name.empty()) mode_names_.add(mode.name, mode.at, problems_, length);
   mode_ids_.add(std::to_string(mode.id), mode.at, problems_, length, "a mode without id has its number in the file");
+  check_power(element, mode);
   mission_.modes.push_back(std::move(mode));
+}
+
+void MissionReader::check_power(const xml::Element& element, const Mode& mode) {
+  if (!mission_.power_budget_w) return;
+  const auto& own = mission_.supervisor.configurations;
+  double sum_w = own.empty() ? 0 : own.front().power_w;
+  for (const CommissionStep& step : mode.commission) {
+    const auto* member = mission_.find_subsystem(step.subsystem);
+    const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
+    if (configuration != nullptr && step.state != State::PreOperational) sum_w += configuration->power_w;
+  }
+  if (sum_w <= *mission_.power_budget_w) return;
+  problems_.add(element, "E0318",
+                fmt::format("mode {} commissions {} W, the budget is {} W", in_quotes(mode.name), sum_w,
+                            *mission_.power_budget_w),
+                "the sum of power_W of its configurations and the supervisor's; Pre-Operational does not count");
 }
 
 State MissionReader::read_steady_state(Attributes& attributes, State fallback) {

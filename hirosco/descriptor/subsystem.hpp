@@ -209,6 +209,7 @@ struct Configuration {
   std::uint8_t id{};
   int priority{0};                   ///< SCHED_FIFO priority of the cycle; 0 = ordinary scheduling
   Duration sampling{};               ///< period of the cycle
+  double power_w{0};                 ///< most that it draws from Safe- to Post-Operational; 0 = not accounted
   CycleLimit overruns{3, 20};        ///< overruns in a row until the overrun event
   std::vector<HousekeepingStructure> housekeeping;
   std::vector<Provides> provides;

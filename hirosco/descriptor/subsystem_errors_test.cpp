@@ -83,6 +83,7 @@ constexpr Bad bad_values[] = {
     {"E0112", R"(<HKService id="1" interval="@-1"><SampledOnce><ParamRef name="GOAL"/></SampledOnce></HKService>)"},
     {"E0112", R"(<HKService id="1" interval="5"><SampledNREPTimes nrep="@0"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
     {"E0112", R"(<Configuration name="C" id="1" sampling_us="@0"/>)"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="1" power_W="@0"/>)"},
     {"E0112", R"(<Configuration name="C" id="1" sampling_us="1" priority="@99"/>)"},
     {"E0112", R"(<Configuration name="C" id="@0" sampling_us="1"/>)"},
     {"E0112", R"(<Resources><Pool block="@0" count="1"/></Resources>)"},

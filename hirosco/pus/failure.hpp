@@ -10,7 +10,7 @@
 
 namespace hirosco::pus {
 
-/// Failure codes of ST[01] notices (pus-c tailoring 5.5; 13 to 15 decision 26; documented in docs/failure-codes.md).
+/// Failure codes of ST[01] notices (pus-c tailoring 5.5; 13 to 15 decision 26, 16 paper 4.3; documented in docs/failure-codes.md).
 enum class FailureCode : std::uint16_t {
   UnknownApid = 1,
   IllegalLength = 2,
@@ -27,6 +27,7 @@ enum class FailureCode : std::uint16_t {
   WrongMode = 13,
   LinkAbsent = 14,
   SetpointOwnedByLink = 15,
+  PowerShort = 16,
   UnknownIdentifier = 0x0101,
   IdentifierExists = 0x0102,
   WrongStatus = 0x0103,
@@ -94,6 +95,7 @@ struct EnumTexts<pus::FailureCode> {
       {WrongMode, "not permitted in this mode"},
       {LinkAbsent, "required link absent"},
       {SetpointOwnedByLink, "setpoint owned by a link"},
+      {PowerShort, "power budget exceeded"},
       {UnknownIdentifier, "unknown identifier"},
       {IdentifierExists, "identifier already exists"},
       {WrongStatus, "wrong status"},

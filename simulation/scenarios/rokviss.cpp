@@ -28,7 +28,7 @@ constexpr std::array runs{
         "remote: 500 Hz, round trips of 20, 30 and 60 ms, the hand intends 22.6 mm in 3 s", fly_remote},
     Run{"RO8", "Torque limit", "coupled, the hand ramps at 40 mm/s to 65 mm", fly_torque_limit},
     Run{"RO9", "Unplugging", "each device unplugged in free motion and in contact", fly_unplugging},
-    Run{"FC", "Fault cases", "FC1 to FC7, each again and again in motion and in contact", fly_faults, false},
+    Run{"FC", "Fault cases", "FC1 to FC9 and FC13, each again and again in motion and in contact", fly_faults, false},
     Run{"RO10", "Endurance", "30 minutes coupled, the hand wanders", fly_endurance},
 };
 

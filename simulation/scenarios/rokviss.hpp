@@ -61,6 +61,8 @@ struct Run {
 [[nodiscard]] Findings fly_torque_limit(const RunSettings& settings);
 [[nodiscard]] Findings fly_unplugging(const RunSettings& settings);
 [[nodiscard]] Findings fly_faults(const RunSettings& settings);
+/// Part of fly_faults(): the cases that take more than one step.
+void fly_fault_procedures(const RunSettings& settings, Findings& findings);
 [[nodiscard]] Findings fly_endurance(const RunSettings& settings);
 
 }  // namespace hirosco::simulation

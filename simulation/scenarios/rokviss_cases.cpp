@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-// FC1 to FC7: every fault case again and again at instants that the seed chooses, in motion and in contact. Deadlines
+// FC1 to FC9 and FC13: every fault case again and again at instants that the seed chooses, in motion and in contact. Deadlines
 // are counted in cycles of the member that acts, from the fault on.
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@ namespace {
 enum class Rest : std::uint8_t { Robot, Hand };
 /// How it must end.
 /// A process that hangs cannot say Offline: its device has let go and its epoch is fenced.
-enum class End : std::uint8_t { GoesOn, RobotSafe, RobotOffline, NetworkOffline };
+enum class End : std::uint8_t { GoesOn, RobotSafe, BothSafe, RobotOffline, NetworkOffline };
 
 struct Case {
   std::string_view name;
@@ -28,6 +28,7 @@ struct Case {
   Rest rest;
   End end;
   void (*inject)(CoupledCraft&, Random&);
+  std::string_view begin{};  ///< of the line from which on cycles count; empty = from the injection on
 };
 
 void inject_fault(CoupledCraft& craft, std::string_view device, const std::string& line) {
@@ -71,6 +72,17 @@ constexpr std::array cases{
     Case{"6-hang", "JOYSTICK hangs", "MANIPULATOR", Rest::Robot, End::RobotOffline,
          [](CoupledCraft& craft, Random&) { craft.craft().stop("JOYSTICK", true); }},
     Case{"7-stale", "MANIPULATOR medium JOYSTICK_STATE_STALE", "MANIPULATOR", Rest::Robot, End::RobotSafe, make_stale},
+    // 105 W are reserved in telepresence: less than a tenth above that, then less than that.
+    Case{"9-low", "SUPERVISOR medium POWER_LOW", "MANIPULATOR", Rest::Robot, End::BothSafe,
+         [](CoupledCraft& craft, Random& random) {
+           craft.command("SUPERVISOR", "SET_POWER_BUDGET", {random.uniform(105.1, 116.6)});
+         },
+         "power budget "},
+    Case{"9-shed", "SUPERVISOR high LOAD_SHED", "MANIPULATOR", Rest::Robot, End::NetworkOffline,
+         [](CoupledCraft& craft, Random& random) {
+           craft.command("SUPERVISOR", "SET_POWER_BUDGET", {random.uniform(25, 104.9)});
+         },
+         "power budget "},
 };
 
 /// Cycles of the members since the fault, and when what happened in them; infinite for what never did.
@@ -106,6 +118,7 @@ bool ended(CoupledCraft& craft, End end) {
   switch (end) {
     case End::GoesOn: return robot == State::Operational && hand == State::Operational;
     case End::RobotSafe: return robot == State::SafeOperational && hand == State::Operational;
+    case End::BothSafe: return robot == State::SafeOperational && hand == State::SafeOperational;
     case End::RobotOffline: return robot == State::Offline && !craft.joystick().active();
     case End::NetworkOffline: return robot == State::Offline && hand == State::Offline;
   }
@@ -120,16 +133,20 @@ Seen suffer(const RunSettings& settings, const Case& what, std::uint64_t seed) {
   Seen seen;
   motion(craft, random, what.inject == nullptr);
   craft.flight().story().on_line = [&](std::string_view line) {
+    if (!what.begin.empty() && !seen.counting && line.starts_with(what.begin)) {
+      seen.counting = true;
+      seen.fault_s = craft.time_s();
+    }
     if (seen.counting && line.starts_with(what.event))
       seen.event = std::min(seen.event, what.teller == "MANIPULATOR" ? seen.robot_cycles : seen.hand_cycles);
   };
   craft.craft().on_cycle([&](std::string_view member, TimePoint) { watch(craft, what, member, seen); });
   seen.fault_s = craft.time_s();
-  seen.counting = what.inject != nullptr;
+  seen.counting = what.inject != nullptr && what.begin.empty();
   if (what.inject != nullptr) what.inject(craft, random);
   if (what.end == End::GoesOn) craft.run(0.3);
   if (craft.craft().run_until([&] { return ended(craft, what.end); }, 4s)) seen.end_s = craft.time_s() - seen.fault_s;
-  if (what.end == End::RobotSafe) {
+  if (what.end == End::RobotSafe || what.end == End::BothSafe) {
     craft.run(0.3);
     if (!ended(craft, what.end)) seen.end_s = never;  // and stays there
   }
@@ -165,8 +182,11 @@ void repeat(const RunSettings& settings, const Case& what, Findings& findings) {
 Findings fly_faults(const RunSettings& settings) {
   Findings findings;
   for (const Case& what : cases) repeat(settings, what, findings);
-  findings.notes.push_back(fmt::format("{} repetitions of each, seeds {} and up; cycles of 0.5 ms, of whoever acts.",
-                                       settings.repetitions, settings.seed * 1'000));
+  fly_fault_procedures(settings, findings);
+  findings.notes.push_back(
+      fmt::format("{} repetitions of each, seeds {} and up; cycles of whoever acts: 0.5 ms, on ground's way 2 ms, the "
+                  "supervisor's 10 ms.",
+                  settings.repetitions, settings.seed * 1'000));
   return findings;
 }
 

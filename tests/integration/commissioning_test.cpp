@@ -40,6 +40,16 @@ TEST(Commissioning, EverySubsystemPassesItsStatesInOrder) {
   }
 }
 
+TEST(Commissioning, AStartListThatThePowerDoesNotSufficeForStopsAtTheStepThatIsRefused) {
+  Flight flight{{.edit = [](descriptor::Mission& mission) { mission.power_budget_w = 100; }}};
+  EXPECT_FALSE(flight.commission());
+  EXPECT_EQ(flight.story().missing_in_order({"power short: JOYSTICK asks for 25 W, 80 W of 100 W are reserved",
+                                             "commissioning stopped: JOYSTICK SafeOperational: power budget exceeded"}),
+            "")
+      << flight.story().text();
+  EXPECT_EQ(flight.state("JOYSTICK"), State::PreOperational);
+}
+
 /// Subtypes of ST[01] reports on a request, in order of the log.
 std::vector<int> verification_of(const std::vector<LogRecord>& records, std::uint32_t request_id) {
   std::vector<int> subtypes;

@@ -12,6 +12,7 @@ using pus::FailureCode;
 
 constexpr std::uint16_t supervisor_apid = 1;
 constexpr std::uint16_t manipulator_apid = 10;
+constexpr std::uint16_t joystick_apid = 11;
 constexpr std::uint16_t first_count = 9000;  // far from those of Spacecraft::command
 
 class Telecommands : public ::testing::Test {
@@ -42,6 +43,15 @@ class Telecommands : public ::testing::Test {
     expect_done(flight.set_state("MANIPULATOR", State::SafeOperational));
     if (manipulator == State::Operational) expect_done(flight.set_state("MANIPULATOR", State::Operational));
     expect_done(flight.set_mode("standalone"));
+  }
+
+  /// Out of the network into Pre-Operational, to be commissioned alone.
+  void take_out(const char* name) {
+    expect_done(flight.set_mode("commissioning"));
+    if (flight.state(name) == State::Operational) expect_done(flight.set_state(name, State::SafeOperational));
+    for (const State state : {State::PostOperational, State::PreOperational})
+      expect_done(flight.set_state(name, state));
+    expect_done(flight.configure(name, "STANDALONE"));
   }
 
   Flight flight{{.edit = hand_rests}};
@@ -137,6 +147,41 @@ TEST_F(Telecommands, SafeOperationalIsRefusedWhileARequiredLinkIsAbsent) {
   expect_done(flight.configure("JOYSTICK", "COUPLED"));
   expect_refused(flight.set_state("JOYSTICK", State::SafeOperational), FailureCode::LinkAbsent, 2);
   EXPECT_EQ(flight.state("JOYSTICK"), State::PreOperational);
+}
+
+TEST_F(Telecommands, WhatThePowerBudgetDoesNotCarryIsRefusedWithTheNumbersUntilItDoes) {
+  take_out("MANIPULATOR");
+  // Supervisor 12 W, communication 8 W, joystick 25 W; the manipulator wants 60 W.
+  expect_done(flight.craft().command("SUPERVISOR", "SET_POWER_BUDGET", {104.9}));
+  expect_refused(flight.set_state("MANIPULATOR", State::SafeOperational), FailureCode::PowerShort, 2);
+  EXPECT_TRUE(flight.story().has("power short: MANIPULATOR asks for 60 W, 45 W of 104.9 W are reserved"));
+  flight.craft().run(50ms);
+  EXPECT_TRUE(flight.story().has("SUPERVISOR low POWER_REFUSED APID=10 BUDGET=104.9 W RESERVED=45 W REQUESTED=60 W"));
+  EXPECT_EQ(flight.state("MANIPULATOR"), State::PreOperational);
+  expect_done(flight.craft().command("SUPERVISOR", "SET_POWER_BUDGET", {105}));
+  expect_done(flight.set_state("MANIPULATOR", State::SafeOperational));
+  expect_done(flight.set_state("MANIPULATOR", State::Operational));
+}
+
+TEST_F(Telecommands, PowerIsFreeAgainOnceASubsystemIsBackInPreOperational) {
+  take_out("MANIPULATOR");
+  expect_done(flight.craft().command("SUPERVISOR", "SET_POWER_BUDGET", {81}));
+  expect_refused(flight.set_state("MANIPULATOR", State::SafeOperational), FailureCode::PowerShort, 2);
+  take_out("JOYSTICK");
+  expect_done(flight.set_state("MANIPULATOR", State::SafeOperational));
+  expect_refused(flight.set_state("JOYSTICK", State::SafeOperational), FailureCode::PowerShort, 2);
+}
+
+TEST_F(Telecommands, OfTwoThatAreAskedForAtOnceOnlyWhatFitsIsGranted) {
+  take_out("MANIPULATOR");
+  take_out("JOYSTICK");
+  expect_done(flight.craft().command("SUPERVISOR", "SET_POWER_BUDGET", {104}));
+  std::vector<std::byte> up = call_data("SET_STATE", {});
+  up.back() = std::byte{1};
+  for (const int octet : {1, static_cast<int>(State::SafeOperational)}) up.push_back(static_cast<std::byte>(octet));
+  flight.craft().ground().send(function_packet(manipulator_apid, first_count, up));
+  expect_verdict(flight.send(function_packet(joystick_apid, first_count + 1, up)), 2, 16, supervisor_apid);
+  EXPECT_TRUE(flight.run_until_state("MANIPULATOR", State::SafeOperational, 1s));
 }
 
 TEST_F(Telecommands, ANetworkIsTakenApartAndMadeAgainFromGround) {

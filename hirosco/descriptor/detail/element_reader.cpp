@@ -197,6 +197,14 @@ std::optional<double> Attributes::number(std::string_view name) {
   return value;
 }
 
+std::optional<double> Attributes::watts(std::string_view name) {
+  constexpr double least_w = 1e-3, most_w = 1e6;
+  const auto value = number(name);
+  if (!value || (*value >= least_w && *value <= most_w)) return value;
+  problems_.add(*optional(name), "E0112", fmt::format("{} {} is out of range", name, *value), "0.001 to 1000000 W");
+  return std::nullopt;
+}
+
 std::vector<double> Attributes::numbers(std::string_view name) {
   const auto* attribute = optional(name);
   if (attribute == nullptr) return {};

@@ -103,6 +103,8 @@ class Attributes {
     return required(name) == nullptr ? T{} : integer_or<T>(name, minimum, maximum, T{});
   }
   [[nodiscard]] std::optional<double> number(std::string_view name);
+  /// Electrical power, 1 mW to 1 MW.
+  [[nodiscard]] std::optional<double> watts(std::string_view name);
   /// Numbers between white space; empty when one of them is none.
   [[nodiscard]] std::vector<double> numbers(std::string_view name);
   [[nodiscard]] bool yes(std::string_view name, bool fallback);

@@ -27,6 +27,7 @@ class MissionReader {
   void read_database(const xml::Element& element);
   void read_ground(const xml::Element& element);
   void read_address(Attributes& attributes, std::string_view name, std::string& into);
+  void read_power(const xml::Element& element);
   void read_member(const xml::Element& element);
   void read_simulated_device(const xml::Element& element);
   /// The descriptor that the attribute names; reported when it cannot be taken.
@@ -43,6 +44,8 @@ class MissionReader {
                   const MissionLink& link);
   void read_modes(const xml::Element& element);
   void read_mode(const xml::Element& element);
+  /// What a mode commissions must fit the power budget together.
+  void check_power(const xml::Element& element, const Mode& mode);
   void read_commission(const xml::Element& element, Mode& mode, Unique& names);
   void read_establish(const xml::Element& element, Mode& mode, Unique& ids);
   void read_permit(const xml::Element& element, Mode& mode);

@@ -57,13 +57,27 @@ constexpr std::uint16_t supervisor_apid = 1;
   });
 }
 
-/// A required link of the configuration in force that is not up (paper 4.3).
-[[nodiscard]] bool lacks_link(const descriptor::Subsystem& subsystem, const Situation& situation) {
+/// A required link of the configuration in force that is not up (paper 4.3); 0 when the mission has none for the set.
+[[nodiscard]] std::optional<std::uint8_t> absent_link(const descriptor::Subsystem& subsystem,
+                                                      const Situation& situation) {
   const auto* configuration = subsystem.find_configuration(situation.configuration);
-  if (configuration == nullptr) return false;
-  return std::ranges::any_of(configuration->requires_, [&](const descriptor::Requires& wanted) {
-    return wanted.required && !situation.links.is_up(situation.links.link_into(subsystem.id, wanted.name));
-  });
+  if (configuration == nullptr) return std::nullopt;
+  for (const descriptor::Requires& wanted : configuration->requires_) {
+    const std::uint8_t link = situation.links.link_into(subsystem.id, wanted.name);
+    if (wanted.required && !situation.links.is_up(link)) return link;
+  }
+  return std::nullopt;
+}
+
+/// Most that the addressee's configuration in force draws.
+[[nodiscard]] double demand_w(const descriptor::Subsystem& subsystem, const Situation& situation) {
+  const auto* configuration = subsystem.find_configuration(situation.configuration);
+  return configuration != nullptr ? configuration->power_w : 0;
+}
+
+[[nodiscard]] FailureNotice notice_of(const PowerShortage& shortage) {
+  FailureNotice notice{FailureCode::PowerShort};
+  return notice.with(shortage.budget_mw).with(shortage.reserved_mw).with(shortage.requested_mw);
 }
 
 /// Towards safety: never delayed or refused by mode (decision 24).
@@ -118,9 +132,15 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
         goes_down || towards_safety(*call, situation.state) || (function != nullptr && function->essential);
     const bool up_to_safe = asks_for(State::SafeOperational) && situation.state == State::PreOperational;
     const bool up_to_operational = asks_for(State::Operational) && situation.state == State::SafeOperational;
-    if ((up_to_safe || up_to_operational) && lacks_link(*subsystem, situation))
-      return std::unexpected{FailureNotice{FailureCode::LinkAbsent}};
+    if (up_to_safe || up_to_operational)
+      if (const auto link = absent_link(*subsystem, situation))
+        return std::unexpected{FailureNotice{FailureCode::LinkAbsent}.with(*link)};
     permitted.releases_stop = up_to_operational;
+    if (up_to_safe && situation.power != nullptr) {
+      permitted.reserves_w = demand_w(*subsystem, situation);
+      if (const auto shortage = situation.power->shortage(subsystem->id, permitted.reserves_w))
+        return std::unexpected{notice_of(*shortage)};
+    }
     // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].
     if (function == nullptr && !built_in) return permitted;
   }

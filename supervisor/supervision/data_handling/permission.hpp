@@ -10,6 +10,7 @@
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/pus/failure.hpp"
 #include "hirosco/pus/packet.hpp"
+#include "supervisor/supervision/power/power_ledger.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 
 /// The one decision whether a telecommand may be executed (paper 4.3: by state and mode). Pure: what is asked before
@@ -27,14 +28,17 @@ struct Situation {
   std::optional<descriptor::State> state;
   /// Configuration in force at the addressee, 0 = none.
   std::uint8_t configuration{0};
+  /// Null: power is no matter here.
+  const PowerLedger* power{nullptr};
 };
 
 struct Permitted {
   bool essential{false};             ///< forwarded first, logged after (decision 24)
   bool releases_stop{false};         ///< SET_STATE(Operational): lifts the addressee's stop flag
+  double reserves_w{0};              ///< SET_STATE(SafeOperational): what the addressee may draw from now on
 };
 
-/// Acceptance checks 6, 8, 9 and 12 (pus-c tailoring 5.3) plus codes 13 and 14. A notice with code UnknownApid belongs
+/// Acceptance checks 6, 8, 9 and 12 (pus-c tailoring 5.3) plus codes 13, 14 and 16. A notice with code UnknownApid belongs
 /// into TM[1,10], every other into TM[1,2].
 [[nodiscard]] std::expected<Permitted, pus::FailureNotice> decide(const pus::TelecommandView& telecommand,
                                                                   Sender sender, const Situation& situation);
@@ -48,7 +52,7 @@ enum Subtype : std::uint8_t { question = 1, answer = 2 };
 
 /// The function of TC[8,1] and its first argument, as far as they can be read; for logs and decisions.
 struct CalledFunction {
-  std::string_view name;             ///< views the telecommand
+  std::string_view name;  ///< views the telecommand
   std::optional<std::uint8_t> first_argument;
 };
 [[nodiscard]] std::optional<CalledFunction> called_function(const pus::TelecommandView& telecommand);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "supervisor/supervision/testing/small_mission.hpp"
@@ -31,6 +32,7 @@ struct Case {
   std::optional<State> state{State::Operational};
   std::uint8_t configuration{0};
   bool link_up{false};               ///< of link 2, which the configuration 2 of the arm requires
+  double budget_w{60};               ///< what that configuration draws
 };
 
 std::string text_of(const std::expected<Permitted, pus::FailureNotice>& decision) {
@@ -42,6 +44,8 @@ std::string text_of(const std::expected<Permitted, pus::FailureNotice>& decision
   }
   std::string text{decision->essential ? "essential" : "ok"};
   if (decision->releases_stop) text.append(", lifts stop");
+  if (decision->reserves_w > 0)
+    text.append(", ").append(std::to_string(std::lround(decision->reserves_w))).append(" W");
   return text;
 }
 
@@ -97,20 +101,29 @@ const std::vector<Case> cases{
     {"to Offline by the supervisor", arm, 8, 1, set_state(State::Offline), "essential", Sender::Supervisor},
     {"to Offline by ground", arm, 8, 1, set_state(State::Offline), "ok"},
     // --- links ----------------------------------------------------------------------------------------------------
-    {"up to Safe-Operational without the required link", arm, 8, 1, set_state(State::SafeOperational), "14",
+    {"up to Safe-Operational without the required link", arm, 8, 1, set_state(State::SafeOperational), "14 2",
      Sender::Ground, open_mode, State::PreOperational, 2, false},
-    {"the supervisor waits for it, too", arm, 8, 1, set_state(State::SafeOperational), "14", Sender::Supervisor,
+    {"the supervisor waits for it, too", arm, 8, 1, set_state(State::SafeOperational), "14 2", Sender::Supervisor,
      open_mode, State::PreOperational, 2, false},
-    {"up to Safe-Operational with it", arm, 8, 1, set_state(State::SafeOperational), "ok", Sender::Ground, open_mode,
-     State::PreOperational, 2, true},
+    {"up to Safe-Operational with it", arm, 8, 1, set_state(State::SafeOperational), "ok, 60 W", Sender::Ground,
+     open_mode, State::PreOperational, 2, true},
     {"down to Safe-Operational needs no link", arm, 8, 1, set_state(State::SafeOperational), "essential",
      Sender::Ground, open_mode, State::Operational, 2, false},
-    {"to Operational after the link went", arm, 8, 1, set_state(State::Operational), "14", Sender::Ground, open_mode,
+    {"to Operational after the link went", arm, 8, 1, set_state(State::Operational), "14 2", Sender::Ground, open_mode,
      State::SafeOperational, 2, false},
     {"to Operational", arm, 8, 1, set_state(State::Operational), "ok, lifts stop", Sender::Ground, open_mode,
      State::SafeOperational, 2, true},
     {"to Operational from elsewhere lifts nothing", arm, 8, 1, set_state(State::Operational), "ok", Sender::Ground,
      open_mode, State::PreOperational},
+    // --- power: budget, reserved by others and requested, in mW ---------------------------------------------------
+    {"what the budget does not carry", arm, 8, 1, set_state(State::SafeOperational), "16 0 0 234 95 0 0 0 0 0 0 234 96",
+     Sender::Ground, open_mode, State::PreOperational, 2, true, 59.999},
+    {"the supervisor's own start list, too", arm, 8, 1, set_state(State::SafeOperational),
+     "16 0 0 234 95 0 0 0 0 0 0 234 96", Sender::Supervisor, open_mode, State::PreOperational, 2, true, 59.999},
+    {"whoever stops acting is not asked for power", arm, 8, 1, set_state(State::SafeOperational), "essential",
+     Sender::Ground, open_mode, State::Operational, 2, true, 1},
+    {"without a configuration there is nothing to draw", arm, 8, 1, set_state(State::SafeOperational), "ok",
+     Sender::Ground, open_mode, State::PreOperational, 0, true, 1},
     {"the handshake is the supervisor's", arm, 128, 1, {}, "ok", Sender::Supervisor},
     {"the handshake is not ground's", arm, 128, 1, {}, "13 1", Sender::Ground},
     {"the handshake is no subsystem's", arm, 128, 3, {}, "13 1", Sender::Subsystem},
@@ -123,7 +136,8 @@ TEST(Permission, IsDecidedAsTheTableSays) {
     links.set_up(2, c.link_up);
     const auto packet = testing::telecommand(c.apid, c.service, c.subtype, c.data);
     const auto view = pus::TelecommandView::parse(packet);
-    const Situation situation{mission, mission.modes[c.mode], links, c.state, c.configuration};
+    const PowerLedger power{c.budget_w};
+    const Situation situation{mission, mission.modes[c.mode], links, c.state, c.configuration, &power};
     EXPECT_EQ(text_of(decide(view.value(), c.sender, situation)), c.outcome) << c.says;
   }
 }

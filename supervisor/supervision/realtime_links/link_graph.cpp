@@ -49,9 +49,13 @@ std::vector<std::uint8_t> LinkGraph::links_of(std::uint16_t apid) const {
 }
 
 std::uint8_t LinkGraph::link_into(std::uint16_t consumer, std::string_view required_set) const noexcept {
-  for (const Edge& edge : edges_)
-    if (edge.to == consumer && edge.required_set == required_set) return edge.link;
-  return 0;
+  std::uint8_t first = 0;
+  for (const Edge& edge : edges_) {
+    if (edge.to != consumer || edge.required_set != required_set) continue;
+    if (edge.up) return edge.link;
+    if (first == 0) first = edge.link;
+  }
+  return first;
 }
 
 }  // namespace hirosco::supervisor

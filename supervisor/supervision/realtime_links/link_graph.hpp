@@ -24,7 +24,7 @@ class LinkGraph {
   [[nodiscard]] std::vector<std::uint16_t> network_of(std::uint16_t apid) const;
   /// Links that are up with this subsystem at either end.
   [[nodiscard]] std::vector<std::uint8_t> links_of(std::uint16_t apid) const;
-  /// The mission's link into a required set; 0 when there is none.
+  /// The mission's link into a required set: the one that is up, else the first; 0 when there is none.
   [[nodiscard]] std::uint8_t link_into(std::uint16_t consumer, std::string_view required_set) const noexcept;
 
  private:

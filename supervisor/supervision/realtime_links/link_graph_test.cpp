@@ -76,6 +76,14 @@ TEST_F(LinkGraphTest, ARequiredSetKnowsItsLink) {
   EXPECT_EQ(graph.link_into(99, "B"), 0);
 }
 
+TEST_F(LinkGraphTest, OfTwoLinksIntoOneSetTheOneThatIsUpCounts) {
+  mission.links.push_back({.id = 7, .from = "S13", .provides = "B", .to = "S11", .requires_ = "B", .at = {}});
+  LinkGraph both{mission};
+  EXPECT_EQ(both.link_into(11, "B"), 2);
+  both.set_up(7, true);
+  EXPECT_EQ(both.link_into(11, "B"), 7);
+}
+
 TEST_F(LinkGraphTest, UnknownLinksAreNeverUp) {
   graph.set_up(9, true);
   EXPECT_FALSE(graph.is_up(9));

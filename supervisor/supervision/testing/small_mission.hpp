@@ -49,6 +49,7 @@ inline descriptor::Mission small_mission() {
   coupled.name = "COUPLED";
   coupled.id = 2;
   coupled.sampling = std::chrono::milliseconds{1};
+  coupled.power_w = 60;
   descriptor::Requires wanted;
   wanted.name = "HAND_STATE";
   coupled.requires_ = {wanted};

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/pus/service.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// Electrical power (paper 4.3): a subsystem is refused what the budget does not carry, before it is commissioned.
+/// Books only: what is promised, to whom. A subsystem counts with the power_W of its configuration from the permission
+/// to go to Safe-Operational until it is back in Pre-Operational, Offline or dead. Amounts are in mW.
+namespace hirosco::supervisor {
+
+/// Why something does not fit.
+struct PowerShortage {
+  std::uint32_t budget_mw{};
+  std::uint32_t reserved_mw{};       ///< by all others
+  std::uint32_t requested_mw{};
+};
+
+/// Thread: the supervisor's.
+class PowerLedger {
+ public:
+  /// Empty: not limited.
+  explicit PowerLedger(std::optional<double> budget_w);
+  void set_budget(double budget_w) noexcept;
+
+  /// What `apid` already holds would be replaced, so it does not count.
+  [[nodiscard]] std::optional<PowerShortage> shortage(std::uint16_t apid, double demand_w) const noexcept;
+  /// For a permitted telecommand; held without a look at the state until it ended, or until `until` when nobody says.
+  void reserve(std::uint16_t apid, double demand_w, const pus::Request& request, TimePoint until);
+  /// It was completed, refused or failed: from now on the state decides.
+  void ended(const pus::Request& request) noexcept;
+  /// The state and its configuration's demand are what counts, whatever was asked for; without state it is not running.
+  void observe(std::uint16_t apid, std::optional<descriptor::State> state, double demand_w, TimePoint now);
+
+  [[nodiscard]] bool limited() const noexcept { return budget_mw_.has_value(); }
+  [[nodiscard]] std::uint32_t budget_mw() const noexcept { return budget_mw_.value_or(0); }
+  [[nodiscard]] std::uint32_t reserved_mw() const noexcept;
+  [[nodiscard]] std::uint32_t held_mw(std::uint16_t apid) const noexcept;
+  /// More is in use than the budget carries: it was lowered, or a configuration changed behind a permission.
+  [[nodiscard]] bool overdrawn() const noexcept { return limited() && reserved_mw() > budget_mw(); }
+
+ private:
+  struct Reservation {
+    std::uint16_t apid{};
+    std::uint32_t demand_mw{};
+    std::optional<pus::Request> pending;
+    TimePoint until{};
+  };
+  [[nodiscard]] Reservation& of(std::uint16_t apid);
+
+  std::optional<std::uint32_t> budget_mw_;
+  std::vector<Reservation> reservations_;
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/power/power_ledger.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace hirosco::supervisor {
+namespace {
+
+using descriptor::State;
+
+constexpr std::uint16_t arm = 10, hand = 11, camera = 12;
+constexpr pus::Request of_arm{.id = 0x180AC001, .source = 7}, of_hand{.id = 0x180BC001, .source = 7};
+constexpr TimePoint start{}, later = start + 10s;
+
+struct PowerLedgerTest : ::testing::Test {
+  PowerLedger ledger{100};
+  void uses(std::uint16_t apid, double demand_w) { ledger.observe(apid, State::Operational, demand_w, start); }
+};
+
+TEST_F(PowerLedgerTest, OfTwoThatFitAloneTheSecondIsRefusedWithTheNumbers) {
+  EXPECT_FALSE(ledger.shortage(arm, 60));
+  EXPECT_FALSE(ledger.shortage(hand, 60));
+  ledger.reserve(arm, 60, of_arm, later);
+  const auto shortage = ledger.shortage(hand, 60);
+  ASSERT_TRUE(shortage);
+  EXPECT_EQ(shortage->budget_mw, 100'000U);
+  EXPECT_EQ(shortage->reserved_mw, 60'000U);
+  EXPECT_EQ(shortage->requested_mw, 60'000U);
+  EXPECT_FALSE(ledger.shortage(hand, 40)) << "to the last milliwatt";
+  EXPECT_TRUE(ledger.shortage(hand, 40.001));
+}
+
+TEST_F(PowerLedgerTest, WithoutABudgetEverythingFits) {
+  PowerLedger unlimited{std::nullopt};
+  unlimited.observe(arm, State::Operational, 1e6, start);
+  EXPECT_FALSE(unlimited.shortage(hand, 1e6));
+  EXPECT_FALSE(unlimited.overdrawn());
+  EXPECT_EQ(unlimited.reserved_mw(), 1'000'000'000U) << "but it is told";
+}
+
+TEST_F(PowerLedgerTest, WhoAsksTwiceIsCountedOnce) {
+  ledger.reserve(arm, 60, of_arm, later);
+  EXPECT_FALSE(ledger.shortage(arm, 60));
+  ledger.reserve(arm, 60, of_arm, later);
+  EXPECT_EQ(ledger.reserved_mw(), 60'000U);
+}
+
+TEST_F(PowerLedgerTest, APermissionHoldsUntilItsTelecommandEnded) {
+  ledger.reserve(arm, 60, of_arm, later);
+  ledger.observe(arm, State::PreOperational, 60, start);
+  EXPECT_EQ(ledger.held_mw(arm), 60'000U) << "on its way";
+  ledger.ended(of_hand);
+  ledger.ended({.id = of_arm.id, .source = 8});
+  ledger.observe(arm, State::PreOperational, 60, start);
+  EXPECT_EQ(ledger.held_mw(arm), 60'000U) << "another telecommand ended";
+  ledger.ended(of_arm);
+  ledger.observe(arm, State::PreOperational, 60, start);
+  EXPECT_EQ(ledger.held_mw(arm), 0U) << "it failed";
+}
+
+TEST_F(PowerLedgerTest, APermissionThatNobodyUsedEndsInTime) {
+  ledger.reserve(arm, 60, of_arm, later);
+  ledger.observe(arm, State::PreOperational, 60, later);
+  EXPECT_EQ(ledger.held_mw(arm), 60'000U);
+  ledger.observe(arm, State::PreOperational, 60, later + 1ns);
+  EXPECT_EQ(ledger.held_mw(arm), 0U);
+}
+
+TEST_F(PowerLedgerTest, StatesDecideWhoDraws) {
+  for (int value = 0; value <= 9; ++value) {
+    const auto state = static_cast<State>(value);
+    ledger.observe(arm, State::Operational, 60, start);
+    ledger.observe(arm, state, 60, start);
+    const bool draws = value >= static_cast<int>(State::SafeOperational) && value <= static_cast<int>(State::PostOperational);
+    EXPECT_EQ(ledger.held_mw(arm), draws ? 60'000U : 0U) << to_text(state);
+  }
+}
+
+TEST_F(PowerLedgerTest, TheDeadDrawNothingWhateverWasOnItsWay) {
+  ledger.reserve(arm, 60, of_arm, later);
+  ledger.observe(arm, std::nullopt, 60, start);
+  EXPECT_EQ(ledger.reserved_mw(), 0U);
+}
+
+TEST_F(PowerLedgerTest, AConfigurationChangedBehindThePermissionShowsAsOverdrawn) {
+  uses(hand, 50);
+  ledger.reserve(arm, 50, of_arm, later);
+  EXPECT_FALSE(ledger.overdrawn());
+  uses(arm, 50.001);
+  EXPECT_TRUE(ledger.overdrawn());
+}
+
+TEST_F(PowerLedgerTest, ALoweredBudgetTakesNothingAwayButShows) {
+  uses(arm, 60);
+  uses(hand, 40);
+  EXPECT_FALSE(ledger.overdrawn());
+  ledger.set_budget(99);
+  EXPECT_TRUE(ledger.overdrawn());
+  EXPECT_EQ(ledger.reserved_mw(), 100'000U);
+  EXPECT_TRUE(ledger.shortage(camera, 1));
+}
+
+TEST(PowerLedgerProperties, WhatIsGrantedByAskingFirstNeverExceedsTheBudget) {
+  std::mt19937_64 random{1};
+  const auto any = [&](std::uint64_t below) { return random() % below; };
+  PowerLedger ledger{100};
+  for (int i = 0; i < 20'000; ++i) {
+    const auto apid = static_cast<std::uint16_t>(10 + any(5));
+    const double demand_w = static_cast<double>(1 + any(60'000)) * 1e-3;
+    if (any(3) == 0) ledger.observe(apid, State::PreOperational, demand_w, later + 1s);
+    else if (!ledger.shortage(apid, demand_w)) ledger.reserve(apid, demand_w, {.id = apid, .source = 7}, later);
+    ASSERT_LE(ledger.reserved_mw(), ledger.budget_mw());
+  }
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
