@@ -80,6 +80,8 @@ Heard Model::take(const pus::TelemetryView& packet) {
     answer.code = reader.get<std::uint16_t>();
     if (reader.good()) heard.answer = answer;
   }
+  if (packet.service() == 129 && packet.subtype() == 3 && packet.apid() == catalogue_.mission().supervisor.id)
+    heard.telecommand.assign(packet.source_data().begin(), packet.source_data().end());
   if (!heard.changes.empty()) status_revision_ = revision_;
   return heard;
 }

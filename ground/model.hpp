@@ -65,6 +65,7 @@ struct Heard {
   std::vector<StoredChange> changes;
   std::optional<Verdict> verdict;
   std::optional<PermissionAnswer> answer;
+  std::vector<std::byte> telecommand;  ///< copy of one that the supervisor has received from a ground; empty = none
   std::uint16_t sid{0};
 };
 

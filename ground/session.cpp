@@ -6,6 +6,7 @@
 #include <array>
 
 #include "ground/client.hpp"
+#include "ground/foreign_command.hpp"
 #include "ground/json.hpp"
 #include "hirosco/pus/failure.hpp"
 #include "hirosco/pus/st08_function.hpp"
@@ -140,6 +141,7 @@ void Session::take_packet(Octets octets) {
     message["type"] = "event";
     broadcast(message);
   }
+  if (!heard.telecommand.empty()) take_copy(heard.telecommand, packet->time());
   if (heard.verdict) take_verdict(*heard.verdict, packet->time());
   if (heard.answer) take_answer(*heard.answer);
 }
@@ -183,11 +185,23 @@ void Session::take_verdict(const Verdict& verdict, OnboardTime t) {
   }
 }
 
+void Session::take_copy(Octets packet, OnboardTime t) {
+  const auto telecommand = pus::TelecommandView::parse(packet);
+  if (!telecommand || telecommand->source() == parts_.source || open_commands_.size() >= most_open_commands) return;
+  StoredCommand command = command_of(parts_.catalogue, *telecommand);
+  command.t = t;
+  command.number = parts_.archive.add(command);
+  open_commands_[{telecommand->source(), telecommand->request_id()}] = {command.number, parts_.clock.now()};
+  json message = command_json(command);
+  message["type"] = "command";
+  broadcast(message);
+}
+
 Session::Open Session::add_foreign(const Verdict& verdict, OnboardTime t) {
   constexpr std::uint16_t apid_mask = 0x7FF;
   StoredCommand command;
   command.t = t;
-  command.sender = "another ground (" + std::to_string(verdict.destination) + ")";
+  command.sender = sender_of(verdict.destination);
   command.apid = static_cast<std::uint16_t>(verdict.request_id >> 16 & apid_mask);
   command.subsystem = parts_.catalogue.name_of(command.apid);
   command.function = "?";

@@ -117,7 +117,9 @@ class Session {
   void count_lost(const pus::TelemetryView& packet);
   void add_gap(OnboardTime from, OnboardTime to);
   void take_verdict(const Verdict& verdict, OnboardTime t);
-  /// A telecommand of another ground: all that is known of it is whom it went to and what became of it.
+  /// The copy of a telecommand of another ground, before the reports on it.
+  void take_copy(Octets packet, OnboardTime t);
+  /// A telecommand of another ground without a copy: known is whom it went to and what became of it.
   [[nodiscard]] Open add_foreign(const Verdict& verdict, OnboardTime t);
   void take_answer(const PermissionAnswer& answer);
   void expire(TimePoint now);

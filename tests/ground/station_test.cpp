@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "hirosco/pus/housekeeping_decoder.hpp"
+#include "hirosco/pus/st08_function.hpp"
 #include "tests/ground/station.hpp"
 
 namespace hirosco::testing {
@@ -163,19 +164,91 @@ TEST_F(GroundStation, EveryPageSeesEveryStageOfEverybodysTelecommands) {
   }
 }
 
-TEST_F(GroundStation, TelecommandsOfAnotherGroundShowWithWhatBecameOfThem) {
+/// What `send` makes of a telecommand of another ground in the history; the newest command.
+class AnotherGround : public GroundStation {
+ protected:
+  json send(std::uint16_t apid, std::uint8_t service, std::uint16_t source, Octets data) {
+    std::array<std::byte, pus::max_telecommand_octets> buffer;
+    const auto packet = pus::write_telecommand(buffer,
+                                               {.apid = apid,
+                                                .sequence_count = count++,
+                                                .ack = pus::ack_all,
+                                                .service = service,
+                                                .subtype = 1,
+                                                .source = source},
+                                               data);
+    EXPECT_TRUE(packet);
+    flight.craft().ground().send(*packet);
+    station.run(300ms);
+    return station.get("/api/commands?limit=1")["commands"][0];
+  }
+  json call(const char* subsystem, const char* function, std::vector<double> values, std::uint16_t source) {
+    const auto& descriptor = *station.catalogue().find(std::string_view{subsystem});
+    const auto functions = station.catalogue().functions_of(descriptor);
+    const auto found = std::ranges::find(functions, function, &descriptor::Function::name);
+    const auto data = pus::encode_call(*found, std::span<const double>{values});
+    EXPECT_TRUE(data);
+    return send(descriptor.id, 8, source, *data);
+  }
+  std::uint16_t count{7};
+};
+
+TEST_F(AnotherGround, ShowsItsTelecommandsWithFunctionArgumentsSenderAndWhatBecameOfThem) {
+  commission();
+  Page page;
+  station.session().opened(page, true);
+  const json scaled = call("JOYSTICK", "SET_FORCE_SCALE", {0.05}, 0x4001);
+  EXPECT_EQ(scaled["function"], "SET_FORCE_SCALE");
+  EXPECT_EQ(scaled["arguments"], (json{{"SCALE", 0.05}}));
+  EXPECT_EQ(scaled["sender"], "hirosco tc (16385)");
+  EXPECT_EQ(scaled["subsystem"], "JOYSTICK");
+  EXPECT_EQ(scaled["stage"], "completed");
+  std::string stages;
+  for (const json& message : page.of_type("command")) {
+    EXPECT_EQ(message["function"], "SET_FORCE_SCALE");
+    stages += message["stage"].get<std::string>() + " ";
+  }
+  EXPECT_EQ(stages, "sent accepted started completed ");
+  const json ping = send(11, 17, 777, {});
+  EXPECT_EQ(ping["function"], "PING");
+  EXPECT_EQ(ping["sender"], "another ground (777)");
+  const json state = call("MANIPULATOR", "SET_STATE", {4}, 0x8001);
+  EXPECT_EQ(state["arguments"], (json{{"STATE", "SafeOperational"}}));
+  EXPECT_EQ(state["sender"], "a Python client (32769)");
+  EXPECT_EQ(state["stage"], "completed");
+}
+
+TEST_F(AnotherGround, ShowsWhatWasRefusedAndWhatCannotBeRead) {
+  commission();
+  const json refused = call("MANIPULATOR", "MOVE_TO", {-0.8, 1.6, 2.0}, 0x2001);
+  EXPECT_EQ(refused["function"], "MOVE_TO");
+  EXPECT_EQ(refused["arguments"], (json{{"Q1", -0.8}, {"Q2", 1.6}, {"DURATION", 2}}));
+  EXPECT_EQ(refused["sender"], "another ground station (8193)");
+  EXPECT_EQ(refused["stage"], "failed");
+  EXPECT_EQ(refused["code"], static_cast<int>(pus::FailureCode::WrongMode));
+  const std::vector<std::byte> markup(40, std::byte{'<'});
+  const json garbled = send(10, 8, 777, markup);
+  EXPECT_EQ(garbled["function"], std::string(16, '<'));
+  EXPECT_EQ(garbled["arguments"], json::object());
+  EXPECT_EQ(send(10, 20, 777, markup)["function"], "TC[20,1]");
+  EXPECT_EQ(send(10, 8, 777, {})["function"], "?");
+  const std::vector<std::byte> longest(pus::max_telecommand_octets - pus::telecommand_overhead_octets, std::byte{'A'});
+  EXPECT_EQ(send(10, 8, 777, longest)["function"], "?");
+}
+
+TEST_F(AnotherGround, ItsQuestionsToTheSupervisorAreNoTelecommands) {
   commission();
   std::array<std::byte, 64> buffer;
-  const auto ping = pus::write_telecommand(
+  const auto asked = pus::write_telecommand(
       buffer, {.apid = 11, .sequence_count = 7, .ack = pus::ack_all, .service = 17, .subtype = 1, .source = 777}, {});
-  ASSERT_TRUE(ping);
-  flight.craft().ground().send(*ping);
+  ASSERT_TRUE(asked);
+  std::array<std::byte, 128> question;
+  const auto packet = pus::write_telecommand(
+      question, {.apid = 1, .sequence_count = 8, .ack = 0, .service = 129, .subtype = 1, .source = 777}, *asked);
+  ASSERT_TRUE(packet);
+  flight.craft().ground().send(*packet);
   station.run(300ms);
-  const json commands = station.get("/api/commands");
-  ASSERT_EQ(commands["commands"].size(), 1U);
-  EXPECT_EQ(commands["commands"][0]["sender"], "another ground (777)");
-  EXPECT_EQ(commands["commands"][0]["subsystem"], "JOYSTICK");
-  EXPECT_EQ(commands["commands"][0]["stage"], "completed");
+  EXPECT_EQ(station.get("/api/commands")["commands"].size(), 0U);
 }
 
 /// Asking before and sending must agree, for whatever function in whatever situation.
