@@ -57,9 +57,9 @@ export function start(folder, words, environment = {}) {
 }
 
 /// `hirosco run` or another command that flies: with the URL of its page, or without one once it says `wait_for`.
-export async function fly({mission = 'rokviss', command = 'run', more = [], wait_for = url_pattern} = {}) {
+export async function fly({mission = join(missions, 'rokviss'), command = 'run', more = [], wait_for = url_pattern} = {}) {
   const folder = new_folder();
-  const flight = start(folder, [command, join(missions, mission, 'mission.xml'), ...more]);
+  const flight = start(folder, [command, join(mission, 'mission.xml'), ...more]);
   const [url] = await flight.says(wait_for);
   return {url, folder, told: flight.told, gone: flight.gone, async end() {
     await flight.end();

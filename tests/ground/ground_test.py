@@ -270,5 +270,34 @@ class OnAStream(unittest.TestCase):
                 craft.close()
 
 
+class TakenPort(unittest.TestCase):
+    def test_the_page_goes_to_the_next_port_and_says_so(self):
+        with socket.socket() as other, tempfile.TemporaryDirectory() as folder:
+            other.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                other.bind(("127.0.0.1", 8080))
+                other.listen()
+            except OSError:
+                pass  # Somebody else has it: as good.
+            words = [str(flight.BINARIES / "hirosco"), "ground", str(flight.ROKVISS), "--json", "--archive", folder + "/ground.db"]
+            with subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as station:
+                url = json.loads(station.stdout.readline())["url"]
+                station.terminate()
+                said = station.stderr.read()
+        port = int(re.search(r":(\d+)/", url)[1])
+        self.assertTrue(8080 < port < 8100, url)
+        self.assertIn(f"port 8080 is taken, so the page is at {port}", said)
+
+    def test_a_port_that_was_asked_for_and_is_taken_is_refused(self):
+        with socket.socket() as other, tempfile.TemporaryDirectory() as folder:
+            other.bind(("127.0.0.1", 0))
+            other.listen()
+            port = other.getsockname()[1]
+            words = [str(flight.BINARIES / "hirosco"), "ground", str(flight.ROKVISS), "--port", str(port), "--archive", folder + "/ground.db"]
+            ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=30)
+        self.assertEqual(ended.returncode, 3)
+        self.assertIn(f"port {port}: the port is taken", ended.stderr)
+
+
 if __name__ == "__main__":
     flight.main()

@@ -81,19 +81,34 @@ using Options = std::map<std::string, std::string>;
   return tools::exit_ok;
 }
 
+constexpr std::uint16_t first_port = 8080;
+constexpr std::uint16_t tried_ports = 20;
+
+/// At the port that was asked for and no other; without a wish at the first free one, so that two flights have two pages.
+[[nodiscard]] Result<std::unique_ptr<HttpServer>> listen(HttpServer::Options options, const std::string& wish) {
+  options.port = wish.empty() ? first_port : static_cast<std::uint16_t>(std::atoi(wish.c_str()));
+  auto server = HttpServer::listen(options);
+  for (std::uint16_t tried = 1; wish.empty() && tried < tried_ports && !server; ++tried) {
+    if (server.error().code != ErrorCode::Unavailable) break;
+    options.port = static_cast<std::uint16_t>(first_port + tried);
+    server = HttpServer::listen(options);
+  }
+  if (!server)
+    fmt::print(stderr, "hirosco ground: port {}{}: {} (another one: --port N; none at all: hirosco run --no-ground)\n",
+               wish.empty() ? fmt::format("{} to ", first_port) : "", options.port, server.error().text);
+  else if (wish.empty() && options.port != first_port)
+    fmt::print(stderr, "hirosco ground: port {} is taken, so the page is at {}\n", first_port, options.port);
+  return server;
+}
+
 [[nodiscard]] int serve(const Options& options, const descriptor::Mission& mission, const Catalogue& catalogue,
                         Archive& archive) {
   const SystemClock clock;
   HttpServer::Options server_options;
-  server_options.port = static_cast<std::uint16_t>(std::atoi(option(options, "--port", "8080").c_str()));
   server_options.spacecraft = option(options, "--telemetry", mission.ground.telemetry);
   server_options.end_with_input = options.contains("--child");
-  auto server = HttpServer::listen(server_options);
-  if (!server) {
-    fmt::print(stderr, "hirosco ground: port {}: {} (another one: --port N; none at all: hirosco run --no-ground)\n",
-               server_options.port, server.error().text);
-    return tools::exit_environment;
-  }
+  const auto server = listen(server_options, option(options, "--port"));
+  if (!server) return tools::exit_environment;
   HttpServer& shell = **server;
   const fs::path devices = tools::runtime_folder(mission);
   Surroundings outside;
@@ -118,9 +133,11 @@ using Options = std::map<std::string, std::string>;
            .port = shell.port(),
            .page = option(options, "--page", page_folder().string()),
            .transitions = state_table()}};
-  const std::string url = fmt::format("http://127.0.0.1:{}/#token={}", shell.port(), token);
+  const bool tour = options.contains("--tour");
+  const std::string url = fmt::format("http://127.0.0.1:{}/#token={}{}", shell.port(), token, tour ? "&tour" : "");
   if (options.contains("--json")) fmt::print("{{\"url\":\"{}\"}}\n", url);
-  else if (!options.contains("--quiet")) fmt::print("ground station: {}\n", url);
+  else if (!options.contains("--quiet"))
+    fmt::print("{}: {}\n", tour ? "open this for the tour" : "ground station", url);
   std::fflush(stdout);
   shell.run(api);
   return tools::exit_ok;
@@ -130,7 +147,7 @@ using Options = std::map<std::string, std::string>;
 
 int main(int argc, char** argv) {
   Options options;
-  const std::set<std::string> flags{"--child", "--json", "--quiet", "--why"};
+  const std::set<std::string> flags{"--child", "--json", "--quiet", "--why", "--tour"};
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
     if (flags.contains(name)) options[name] = "";

@@ -27,6 +27,7 @@ struct RunOptions {
   bool quiet{false};
   bool json{false};
   bool ground{true};                 ///< the ground station too
+  bool tour{false};                  ///< its page opens with the guided tour
 };
 int run(const RunOptions& options);
 
@@ -94,9 +95,12 @@ struct FaultOptions {
 };
 int fault(const FaultOptions& options);
 
+/// Said where hirosco-ground is missing.
+inline constexpr const char* station_needs = "it is built where libboost-dev and nlohmann-json3-dev are installed";
+
 struct GroundOptions {
   std::string mission{"rokviss"};
-  std::uint16_t port{8080};
+  std::optional<std::uint16_t> port; ///< empty = 8080, or the next free one above
   std::string token;                 ///< empty = a new one
   std::string observer_token;        ///< empty = no observers
   std::string telemetry;             ///< HOST:PORT; empty = as the mission says

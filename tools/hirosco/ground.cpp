@@ -15,9 +15,7 @@ namespace {
 [[nodiscard]] int become_station(std::vector<std::string> arguments, const GroundOptions& options) {
   const auto program = supervisor::find_program("hirosco-ground");
   if (program.empty()) {
-    fmt::print(stderr,
-               "hirosco: no program hirosco-ground beside this one or in PATH: it is built where libboost-dev and "
-               "nlohmann-json3-dev are installed\n");
+    fmt::print(stderr, "hirosco: no program hirosco-ground beside this one or in PATH: {}\n", station_needs);
     return exit_environment;
   }
   arguments.insert(arguments.begin(), program.string());
@@ -37,7 +35,8 @@ namespace {
 }  // namespace
 
 int ground(const GroundOptions& options) {
-  std::vector<std::string> arguments{"--port", std::to_string(options.port)};
+  std::vector<std::string> arguments;
+  if (options.port) arguments = {"--port", std::to_string(*options.port)};
   if (!options.telemetry.empty()) arguments.insert(arguments.end(), {"--telemetry", options.telemetry});
   if (!options.page.empty()) arguments.insert(arguments.end(), {"--page", options.page});
   if (options.json) arguments.emplace_back("--json");

@@ -56,6 +56,11 @@ int main(int argc, char** argv) {
   run_command->add_flag("--no-ground", no_ground, "Without the ground station and its page");
   run_command->add_flag("--json", run_options.json, "One JSON object a line");
 
+  std::string tour_mission{"rokviss"};
+  auto* tour_command = app.add_subcommand("tour", "Fly a mission and be shown around by its page, in eight steps");
+  tour_command->add_option("mission", tour_mission, "Name or path of a mission")->capture_default_str();
+  tour_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
+
   CheckOptions check_options;
   auto* check_command = app.add_subcommand("check", "Check descriptors and missions, all problems at once");
   check_command->add_option("files", check_options.files, "Descriptor or mission files")->required();
@@ -125,7 +130,8 @@ int main(int argc, char** argv) {
   GroundOptions ground_options;
   auto* ground_command = app.add_subcommand("ground", "Serve the ground station's page and API for a flying mission");
   ground_command->add_option("mission", ground_options.mission, "Name or path of the mission")->capture_default_str();
-  ground_command->add_option("--port", ground_options.port, "Port on the loopback address")->capture_default_str();
+  ground_command->add_option("--port", ground_options.port,
+                             "Port on the loopback address; by default the first free one from 8080 on");
   ground_command->add_option("--token", ground_options.token,
                              "What the page must know; a new one each time by default");
   ground_command->add_option("--observer-token", ground_options.observer_token,
@@ -160,6 +166,11 @@ int main(int argc, char** argv) {
   }
   run_options.ground = !no_ground;
   if (*run_command) return run(run_options);
+  if (*tour_command) {
+    run_options.mission = tour_mission;
+    run_options.tour = true;
+    return run(run_options);
+  }
   if (*ground_command) return ground(ground_options);
   if (*why_command) return why(ground_options);
   if (*export_command) return export_python(export_options);

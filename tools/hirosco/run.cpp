@@ -72,13 +72,19 @@ int run(const RunOptions& options) {
     if (!start) return exit_environment;
     plan.devices.push_back(std::move(*start));
   }
-  // Not everybody builds it, and no flight needs it.
-  if (const auto station = supervisor::find_program("hirosco-ground"); options.ground && !station.empty()) {
+  // Not everybody builds it, and no flight needs it but the tour.
+  const auto station = supervisor::find_program("hirosco-ground");
+  if (options.tour && station.empty()) {
+    fmt::print(stderr, "hirosco tour: no program hirosco-ground beside this one or in PATH: {}\n", station_needs);
+    return exit_environment;
+  }
+  if (options.ground && !station.empty()) {
     ProcessStart start;
     start.executable = station.string();
     start.arguments = {"--child", "--mission", mission->file.string()};
     if (options.json) start.arguments.emplace_back("--json");
     if (options.quiet) start.arguments.emplace_back("--quiet");
+    if (options.tour) start.arguments.emplace_back("--tour");
     plan.devices.push_back(std::move(start));
   }
   const auto program = supervisor::find_program("hirosco-supervisor");

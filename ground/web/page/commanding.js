@@ -122,6 +122,28 @@ export function state_value(name) {
 /// The states to command next, steady ones only.
 export const legal_states = (from) => state_names.filter((to) => route(from, to));
 
+const wait_after_step_ms = 250;
+
+/// Sends what brings `mode` up, one after the other; the first refusal ends it. `told(steps)` hears of every change of a step's `stage`;
+/// `stopped()` true ends it before the next. Resolves with the steps.
+export async function bring_up(mode, told = () => {}, stopped = () => false) {
+  const steps = commissioning_steps(mode).map((step) => ({...step, stage: 'waiting'}));
+  for (const step of steps) {
+    if (stopped()) break;
+    step.stage = step.needed() ? 'sent' : 'not needed';
+    told(steps);
+    if (step.stage === 'not needed') continue;
+    const outcome = await send(step.subsystem, step.function, step.arguments).then(finished)
+        .catch((error) => ({stage: 'failed', reason: error.message}));
+    Object.assign(step, outcome);
+    told(steps);
+    if (step.stage === 'failed') break;
+    // The supervisor tells of everybody's states five times a second: the next step asks what is needed still.
+    await new Promise((resolve) => setTimeout(resolve, wait_after_step_ms));
+  }
+  return steps;
+}
+
 const is_on = (name, state) => state_name(status_of(name)?.state) === state;
 
 /// The steps that bring a network up, in the order of the supervisor's own commissioning: all to Pre-Operational, their

@@ -3,72 +3,99 @@
 //
 // Eight steps for the first quarter of an hour. A step knows by the telemetry when it is done; nothing is locked behind it.
 import {signal} from '@preact/signals';
-import {commissioning_steps, fault, finished, say, send, send_and_say} from './commanding.js';
+import {bring_up, fault, say, send_and_say, state_name} from './commanding.js';
 import {html} from './html.js';
-import {commands, events, mission, mode_of, outcome_of, status, subsystem_of, values} from './store.js';
+import {commands, events, injections, mission, mode_of, outcome_of, slow, status, status_of, subsystem_of, values} from './store.js';
 
-export const tour_at = signal(Number(sessionStorage.getItem('hirosco-tour') ?? -1));
+/// Kept beyond the tab: one step ends with a new flight, whose URL is another one.
+const kept = 'hirosco-tour', kept_mission = 'hirosco-tour-mission';
+export const tour_at = signal(Number(sessionStorage.getItem(kept) ?? -1));
 export function tour_to(step) {
   tour_at.value = step;
-  sessionStorage.setItem('hirosco-tour', String(step));
+  sessionStorage.setItem(kept, String(step));
+  localStorage.setItem(kept, String(step));
+  if (step === xml_step) localStorage.setItem(kept_mission, told_by_descriptors());
   if (steps[step]?.view) location.hash = steps[step].view;
 }
 
-async function bring_up(name) {
-  const mode = mission.value.modes.find((one) => one.name === name);
-  if (!mode?.commission) return say(`This mission has no mode ${name}.`, 'bad');
-  for (const step of commissioning_steps(mode)) {
-    if (!step.needed()) continue;
-    const outcome = await finished(await send(step.subsystem, step.function, step.arguments)).catch((error) => ({stage: 'failed', reason: error.message}));
-    if (outcome.stage === 'failed') return say(`${step.text}: ${outcome.reason ?? outcome.code}`, 'bad');
-  }
-  say(`${name} is up`, 'good');
+/// From the beginning, or where the last flight was ended for the sake of the tour.
+export function tour_from_url() {
+  const step = Number(localStorage.getItem(kept));
+  tour_at.value = step >= xml_step && step < steps.length ? step : 0;
+  sessionStorage.setItem(kept, String(tour_at.value));
+  location.hash = steps[tour_at.value].view;
 }
 
-const completed = (name) => commands.value.some((one) => one.function === name && outcome_of(one).stage === 'completed');
-const force_n = () => Math.hypot(values.get('MANIPULATOR.TIP_FORCE[0]')?.v ?? 0, values.get('MANIPULATOR.TIP_FORCE[1]')?.v ?? 0);
+const told_by_descriptors = () => mission.value ? JSON.stringify([mission.value.subsystems, mission.value.modes]) : '';
 
+async function couple(name) {
+  const mode = mission.value.modes.find((one) => one.name === name);
+  if (!mode?.commission) return say(`This mission has no mode ${name}.`, 'bad');
+  const failed = (await bring_up(mode)).find((step) => step.stage === 'failed');
+  return failed ? say(`${failed.text}: ${failed.reason ?? failed.code}`, 'bad') : say(`${name} is up`, 'good');
+}
+
+/// The wall of the next step is where the arm stands at home.
+async function home_and_couple() {
+  // Both where they begin: what the handle stands at when it is coupled becomes its middle.
+  await fault('joystick', 'hand hold 0 0', {quiet: true}).catch(() => {});
+  if (mode_of.value.name === 'standalone' && (await send_and_say('MANIPULATOR', 'HOME')).stage === 'failed') return;
+  await couple('telepresence');
+}
+
+async function plug_in_and_couple() {
+  await fault('joystick', 'plug', {quiet: true}).catch(() => {});
+  await couple('telepresence');
+}
+
+const sent = (name, stage) => commands.value.some((one) => one.function === name && outcome_of(one).stage === stage);
+const force_n = () => Math.hypot(values.get('MANIPULATOR.TIP_FORCE[0]')?.v ?? 0, values.get('MANIPULATOR.TIP_FORCE[1]')?.v ?? 0);
+const is_coupled = () => mode_of.value.name === 'telepresence' && (status.value?.links?.filter((one) => one.up).length ?? 0) >= 2;
+const has_fallen = () => events.value.some((one) => one.name === 'JOYSTICK_LOST') && state_name(status_of('MANIPULATOR')?.state) === 'Offline';
+
+const xml_step = 6;
 const steps = [
-  {title: 'Couple two machines', view: '#/overview',
-    text: 'A robot and a joystick, coupled at 2 kHz. The supervisor commissioned them in order: processes, configurations, links, states. The strip of ten lamps of each subsystem shows where it is.',
-    act: ['Bring telepresence up', () => bring_up('telepresence')],
-    done: () => mode_of.value.name === 'telepresence' && status.value?.links?.length > 0 && status.value.links.every((one) => one.up)},
-  {title: 'Move it with your hand', view: '#/overview',
-    text: 'Drag the blue handle of the joystick, or the fingertip of the robot, in the 3D view. Your mouse is the hand at the joystick; the robot follows it over the real-time link.',
-    act: ['Let the hand wander', () => fault('joystick', 'hand wander')], done: () => false},
+  {title: 'Move it', view: '#/overview',
+    text: 'Drag the blue handle of the joystick, or the fingertip of the robot, in the 3D view: your mouse is the hand at the joystick, and the robot follows. Solid is what is measured, the blue ghost what is commanded.',
+    act: ['Let the hand wander', () => fault('joystick', 'hand wander')],
+    done: () => injections.value.some((one) => one.line?.startsWith('hand'))},
+  {title: 'Couple two machines', view: '#/subsystems/MANIPULATOR',
+    text: 'Two processes at 2 kHz, joined by two real-time links. Take them apart, send the arm somewhere by telecommand, and couple them again: each step of the commissioning is a telecommand that the supervisor permits and logs.',
+    act: ['Take apart', () => couple('standalone')], act_2: ['MOVE_TO −1.0 1.9 in 2 s', () => send_and_say('MANIPULATOR', 'MOVE_TO', {Q1: -1.0, Q2: 1.9, DURATION: 2.0})],
+    act_3: ['Home, and couple', home_and_couple],
+    done: () => is_coupled() && sent('LINK', 'completed')},
   {title: 'Feel the wall', view: '#/overview',
-    text: 'Press the fingertip against the rail. The red arrow is the contact force; the torque plot shows what the joystick gives back to the hand.',
+    text: 'Press the fingertip against the rail, by mouse or by the button. The red arrow is the contact force; the torque plot shows what the joystick gives back to the hand.',
     act: ['Press with 43 N', () => fault('joystick', 'hand cartesian 0.0226 0 1')], done: () => force_n() > 10},
-  {title: 'A refused command, and why', view: '#/commands/MANIPULATOR/MOVE_TO',
-    text: 'Coupled, the robot belongs to the joystick. Fill in MOVE_TO: before you send it, the supervisor says whether it would permit it, and why not. Send it anyway and read the verdict.',
-    done: () => commands.value.some((one) => one.function === 'MOVE_TO' && outcome_of(one).stage === 'failed')},
   {title: 'Unplug the joystick', view: '#/overview',
-    text: 'The test of the paper: the joystick loses its cable. Both machines must stop by themselves, at once, in order, without the ground.',
-    act: ['Unplug the joystick', () => fault('joystick', 'unplug')],
-    done: () => events.value.some((one) => one.name === 'JOYSTICK_LOST' || one.name === 'ROBOT_STATE_STALE')},
+    text: 'The test of the paper: the joystick loses its cable. Both machines must stop by themselves, at once and in order, without the ground: watch the ten lamps of each.',
+    act: ['Unplug the joystick', () => fault('joystick', 'unplug')], done: has_fallen},
   {title: 'Read the story', view: '#/events',
-    text: '“Why did it stop?” tells the chain of causes with on-board times: who noticed first, which plan answered, what went down. `hirosco why` prints the same.',
-    done: () => false},
-  {title: 'Move it by telecommand', view: '#/subsystems/MANIPULATOR',
-    text: 'Plug the joystick in, bring the standalone network up by one button, and send MOVE_TO: the arm goes along a smooth path, reports half-way as progress, and completes.',
-    act: ['Plug in and bring standalone up', async () => { await fault('joystick', 'plug').catch(() => {}); await bring_up('standalone'); }],
-    act_2: ['MOVE_TO −1.0 1.9 in 2 s', () => send_and_say('MANIPULATOR', 'MOVE_TO', {Q1: -1.0, Q2: 1.9, DURATION: 2.0})],
-    done: () => completed('MOVE_TO')},
-  {title: 'Change one line of XML', view: '#/help',
-    text: 'Open subsystems/manipulator/manipulator.xml and change a range or add a parameter to a housekeeping structure, then run again: forms, plots and values follow, no code is touched. docs/guide/writing_a_subsystem.md writes a new subsystem in a quarter of an hour; missions/hello flies it.',
-    done: () => false},
+    text: '“Why did it stop?” tells the chain of causes with on-board times: who noticed first, which plan answered, what went down. `hirosco why` prints the same. In the timeline a click replays the moment before.',
+    done: () => has_fallen() && location.hash.startsWith('#/events')},
+  {title: 'A refused command, and why', view: '#/commands/MANIPULATOR/MOVE_TO',
+    text: 'Plug in and couple again. Coupled, the robot belongs to the joystick: fill in MOVE_TO, and before you send it the supervisor says that it would refuse, and why. Send it anyway and read the verdict.',
+    act: ['Plug in and couple', plug_in_and_couple],
+    done: () => sent('MOVE_TO', 'failed')},
+  {title: 'Change one line of XML', view: '#/commands/JOYSTICK/SET_FORCE_SCALE',
+    text: 'This form stands in subsystems/joystick/joystick.xml: look for SET_FORCE_SCALE, change its maximum, end the flight with Ctrl-C and start `hirosco tour` again. The form takes the new range, the supervisor refuses by it, no code was touched.',
+    done: () => { const before = localStorage.getItem(kept_mission); return Boolean(before) && before !== told_by_descriptors(); }},
+  {title: 'A new subsystem', view: '#/help',
+    text: 'docs/guide/writing_a_subsystem.md writes one in a quarter of an hour: a descriptor and a step function. missions/hello is the smallest that flies: end this flight and start `hirosco tour hello`. Its forms, values and plots are here without a word about it in the page.',
+    done: () => Boolean(mission.value) && !subsystem_of('MANIPULATOR')},
 ];
 export const tour_steps = steps;
 
 export function Tour() {
+  slow.value;
   const at = tour_at.value;
   const step = steps[at];
   if (!step || !mission.value) return null;
   const able = !step.act || subsystem_of('MANIPULATOR');
   return html`<aside class="tour" data-test="tour"><div class="row"><small>tour ${at + 1} of ${steps.length}</small>
       <button class="tiny" aria-label="end the tour" onClick=${() => tour_to(-1)}>×</button></div>
-    <h3>${step.title} ${step.done() ? html`<span class="tick">✓</span>` : null}</h3><p>${step.text}</p>
-    <div class="row">${[step.act, step.act_2].filter(Boolean).map(([text, act]) => html`<button class="quiet" disabled=${!able} onClick=${act}>${text}</button>`)}<span class="space" />
+    <h3>${step.title} ${step.done() ? html`<span class="tick" data-test="tour-done">✓</span>` : null}</h3><p>${step.text}</p>
+    <div class="row">${[step.act, step.act_2, step.act_3].filter(Boolean).map(([text, act]) => html`<button class="quiet" data-test="tour-act" disabled=${!able} onClick=${act}>${text}</button>`)}<span class="space" />
       <button class="quiet" disabled=${at === 0} onClick=${() => tour_to(at - 1)}>back</button>
       <button class="primary" data-test="tour-next" onClick=${() => tour_to(at + 1 < steps.length ? at + 1 : -1)}>${at + 1 < steps.length ? 'next' : 'done'}</button></div>
     <div class="dots">${steps.map((_, i) => html`<i class=${i === at ? 'on' : i < at ? 'past' : ''} />`)}</div></aside>`;

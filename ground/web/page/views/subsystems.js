@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 import {useRef, useState} from 'preact/hooks';
-import {commissioning_steps, finished, legal_states, route, send, send_and_say, state_name, state_value} from '../commanding.js';
+import {bring_up, legal_states, route, send_and_say, state_name, state_value} from '../commanding.js';
 import {age_text, duration_text, number_text, rate_text, state_text, unit_text, value_text} from '../format.js';
 import {html} from '../html.js';
 import {Panel} from '../parts/panel.js';
 import {StateDiagram} from '../parts/state_diagram.js';
 import {SubsystemCard, configuration_of, inhibited_text, state_look, waits_text} from '../parts/subsystem_card.js';
 import {columns, freshness, link, mission, mode_of, operator, replay, slow, status_of, subsystem_of, values} from '../store.js';
-
-const wait_after_step_ms = 250;
 
 /// "Bring telepresence up": every step with its verdict; the first refusal stops it.
 function Commissioning() {
@@ -21,29 +19,9 @@ function Commissioning() {
   const mode = able.find((one) => one.name === name) ?? able.find((one) => one.name === mission.value?.start_mode) ?? able[able.length - 1];
   if (!mode) return null;
   const run = async () => {
-    const list = commissioning_steps(mode).map((step) => ({...step, stage: 'waiting'}));
     stop.current = false;
     set_running(true);
-    const show = () => set_steps([...list]);
-    for (const step of list) {
-      if (stop.current) break;
-      if (!step.needed()) {
-        step.stage = 'not needed';
-        show();
-        continue;
-      }
-      step.stage = 'sent';
-      show();
-      try {
-        const outcome = await finished(await send(step.subsystem, step.function, step.arguments));
-        Object.assign(step, outcome);
-      } catch (error) {
-        Object.assign(step, {stage: 'failed', reason: error.message});
-      }
-      show();
-      if (step.stage === 'failed') break;
-      await new Promise((resolve) => setTimeout(resolve, wait_after_step_ms));
-    }
+    await bring_up(mode, (list) => set_steps([...list]), () => stop.current);
     set_running(false);
   };
   const failed = steps.find((step) => step.stage === 'failed');
