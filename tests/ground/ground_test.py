@@ -27,9 +27,9 @@ TOKEN = "0123456789abcdef"
 class Gateway:
     """`hirosco ground` on a port of its own; killed at the end."""
 
-    def __init__(self, folder, telemetry=None, mission=flight.ROKVISS):
+    def __init__(self, folder, telemetry=None, mission=flight.ROKVISS, archive="ground.db"):
         words = [str(flight.BINARIES / "hirosco"), "ground", str(mission), "--port", "0", "--json",
-                 "--archive", str(pathlib.Path(folder) / "ground.db")]
+                 "--archive", str(pathlib.Path(folder) / archive)]
         if telemetry:
             words += ["--telemetry", telemetry]
         self.started = time.monotonic()
@@ -193,8 +193,23 @@ class OnAFlight(unittest.TestCase):
                                f"greatest {max(delays):.1f} ms")
                 self.assertLess(sorted(delays)[10], 150.0)
                 self.assertEqual(one.count("command"), other.count("command"))
+                self.others_are_named(rokviss, gateway)
                 one.socket.close()
                 other.socket.close()
+
+    def others_are_named(self, rokviss, gateway):
+        """What `hirosco tc` and another gateway send stands in the history with function, arguments and sender."""
+        rokviss.tc("joystick", "SET_FORCE_SCALE", "0.05")
+        rokviss.tc("manipulator", "MOVE_TO", "0.1", "1.2", "2")
+        with Gateway(rokviss.folder, archive="second.db") as second:
+            second.until(lambda status: status["mode"] == "telepresence")
+            second.request("/api/commands", {"subsystem": "JOYSTICK", "function": "PING"})
+            gateway.until(lambda status: gateway.request("/api/commands?limit=1")["commands"][0]["subsystem"] == "JOYSTICK")
+            seen = gateway.request("/api/commands?limit=3")["commands"][::-1]
+        self.assertEqual([(one["function"], one["arguments"]) for one in seen],
+                         [("SET_FORCE_SCALE", {"SCALE": 0.05}), ("MOVE_TO", {"Q1": 0.1, "Q2": 1.2, "DURATION": 2}), ("PING", {})])
+        self.assertEqual([one["sender"].rsplit(" ", 1)[0] for one in seen], ["hirosco tc", "hirosco tc", "another ground station"])
+        self.assertEqual([one["stage"] for one in seen[:2]], ["completed", "failed"])
 
     def test_a_stalled_and_a_killed_browser_cost_the_others_nothing(self):
         with flight.Flight() as rokviss:
