@@ -50,6 +50,8 @@ TEST(MissionDescriptor, FillsTheWholeModel) {
   EXPECT_EQ(mission.find_link(2)->requires_, "JOYSTICK_STATE");
   EXPECT_EQ(mission.initial_mode, "commissioning");
   EXPECT_EQ(mission.start_mode, "telepresence");
+  EXPECT_EQ(mission.power_budget_w, 120);
+  EXPECT_EQ(mission.find_subsystem("MANIPULATOR")->subsystem.find_configuration("COUPLED")->power_w, 60.5);
 }
 
 TEST(MissionDescriptor, FillsModesAndPlans) {
@@ -124,10 +126,10 @@ constexpr Mistake mistakes[] = {
     {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@/etc/passwd")"},
     {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@../../../joystick.xml")"},
     {"E0315", R"(descriptor="joystick.xml")", R"(descriptor="@../joystick.xml.none")"},
-    {"E0105", R"(<Links>)", R"(@<Power/><Links>)"},
-    {"E0107", R"(<Links>)", R"(<Power budget_W="9"/>@<Power budget_W="9"/><Links>)"},
-    {"E0111", R"(<Links>)", R"(<Power budget_W="@much"/><Links>)"},
-    {"E0112", R"(<Links>)", R"(<Power budget_W="@-5"/><Links>)", "0.001 to 1000000 W"},
+    {"E0105", R"(<Power budget_W="120"/>)", R"(@<Power/>)"},
+    {"E0107", R"(<Power budget_W="120"/>)", R"(<Power budget_W="120"/>@<Power budget_W="120"/>)"},
+    {"E0111", R"(budget_W="120")", R"(budget_W="@much")"},
+    {"E0112", R"(budget_W="120")", R"(budget_W="@-5")", "0.001 to 1000000 W"},
     {"E0316", R"(configuration="COUPLED" state)", R"(configuration="@COUPLE" state)", "'COUPLED'"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
 };
@@ -182,26 +184,23 @@ TEST(MissionErrors, FieldsOfALinkMustMatch) {
 }
 
 TEST(MissionErrors, WhatAModeCommissionsMustFitThePowerBudget) {
-  const auto mission_with = [](const std::string& budget_w, const std::string& steps) {
-    const auto at = R"(configuration="COUPLED" state="SafeOperational")";
-    const std::string text = changed("<Links>", "<Power budget_W=\"" + budget_w + "\"/><Links>", good_mission());
-    const std::string robot = file_system()(data / "manipulator.xml").value();
-    const std::string joystick = file_system()(data / "joystick.xml").value();
-    const auto drawing = [](const std::string& descriptor, const char* watts) {
-      const std::string coupled = "<Configuration name=\"COUPLED\"";
-      return changed(coupled, coupled + " power_W=\"" + watts + "\"", descriptor);
-    };
-    return read_mission(data / "mission.xml", overlay({{"mission.xml", steps.empty() ? text : changed(at, steps, text)},
-                                                       {"manipulator.xml", drawing(robot, "60.5")},
-                                                       {"joystick.xml", drawing(joystick, "25")}}));
+  const std::string joystick =
+      changed(R"(<Configuration name="COUPLED")", R"(<Configuration power_W="25" name="COUPLED")",
+              file_system()(data / "joystick.xml").value());
+  const auto with = [&](const std::string& budget, const std::string& state) {
+    const std::string text = changed(R"(budget_W="120")", budget, good_mission());
+    const std::string robot = R"(configuration="COUPLED" state=")";
+    return read_mission(data / "mission.xml",
+                        overlay({{"mission.xml", changed(robot + "SafeOperational", robot + state, text)},
+                                 {"joystick.xml", joystick}}));
   };
-  EXPECT_TRUE(mission_with("85.5", "").value);
-  const auto reading = mission_with("85", "");
+  EXPECT_TRUE(with(R"(budget_W="85.5")", "SafeOperational").value);
+  EXPECT_TRUE(with(R"(budget_W="85")", "PreOperational").value);
+  const auto reading = with(R"(budget_W="85")", "SafeOperational");
   ASSERT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, file_system());
   EXPECT_EQ(reading.problems[0].code, "E0318");
   EXPECT_EQ(reading.problems[0].message, "mode 'telepresence' commissions 85.5 W, the budget is 85 W");
-  EXPECT_GT(reading.problems[0].at.line, 1);
-  EXPECT_TRUE(mission_with("85", R"(configuration="COUPLED" state="PreOperational")").value);
+  EXPECT_EQ(reading.problems[0].at.column, 5);
 }
 
 TEST(MissionErrors, NamesAndIdsOfSubsystemsAreUnique) {
