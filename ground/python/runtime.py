@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A spacecraft as a Python object: what every exported mission shares. Python 3.9 or later, standard library only.
 
-The mission's own module beside this file has the classes; they stand on these. One thread keeps reading; every method may
-be called from any thread. Octets follow docs/failure-codes.md and the PUS-C tailoring: CRC-16 over the whole packet, CUC
-4+3 time of TAI since 1958, numbers big-endian."""
+The mission's own module beside this file has the classes; they stand on these. One thread keeps reading; every method
+may be called from any thread. Octets follow docs/failure-codes.md and the PUS-C tailoring: CRC-16 of the whole packet,
+CUC 4+3 time of TAI since 1958, numbers big-endian."""
 from __future__ import annotations
 
 import binascii
@@ -21,11 +21,11 @@ import threading
 import time
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
-STATES = ("Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational", "ErrorOperational",
-          "PostOperational", "HardwareDeinit", "SoftwareDeinit")
+STATES = ("Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational",
+          "ErrorOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit")
 ACK_ALL = 15                      # acceptance, start, progress, completion
-FORMATS = {"UINT8": "B", "INT8": "b", "UINT16": "H", "INT16": "h", "UINT32": "I", "INT32": "i", "UINT64": "Q", "INT64": "q",
-           "FLOAT": "f", "DOUBLE": "d"}
+FORMATS = {"UINT8": "B", "INT8": "b", "UINT16": "H", "INT16": "h", "UINT32": "I", "INT32": "i", "UINT64": "Q",
+           "INT64": "q", "FLOAT": "f", "DOUBLE": "d"}
 LARGEST_PACKET = 4096
 FUNCTION_NAME_OCTETS = 16
 EXACT_INTEGERS = 2**53            # on board an argument travels as a double
@@ -35,7 +35,7 @@ TAI_MINUS_UTC_S = 37
 FIRST_SOURCE, LAST_SOURCE = 0x8000, 0xBFFF
 
 
-# --- what can go wrong ---------------------------------------------------------------------------------------------------
+# --- what can go wrong -----------------------------------------------------------------------------------------------
 
 class HiroscoError(Exception):
     """Whatever this client raises."""
@@ -79,7 +79,7 @@ class CommandFailed(HiroscoError):
         return self.verification.parameters
 
 
-# --- packets -------------------------------------------------------------------------------------------------------------
+# --- packets ---------------------------------------------------------------------------------------------------------
 
 def crc16(octets: bytes) -> int:
     """CCSDS error control: polynomial 0x1021, preset 0xFFFF. 0 over a whole undamaged packet."""
@@ -116,7 +116,8 @@ class Telemetry:
         if length + 7 != len(packet):
             return None
         service, subtype, _, destination = struct.unpack(">BBHH", packet[7:13])
-        return cls(first & 0x7FF, second & 0x3FFF, service, subtype, destination, cuc_seconds(packet[13:20]), packet[20:-2])
+        return cls(first & 0x7FF, second & 0x3FFF, service, subtype, destination, cuc_seconds(packet[13:20]),
+                   packet[20:-2])
 
 
 def cuc_seconds(octets: bytes) -> float:
@@ -124,7 +125,7 @@ def cuc_seconds(octets: bytes) -> float:
 
 
 def cut(stream: bytearray) -> List[bytes]:
-    """Takes the whole packets off the front of a stream. LinkLost: this is no telemetry, so no end of it can be found."""
+    """Takes the whole packets off the front of a stream. LinkLost: this is no telemetry, so nothing has an end."""
     packets = []
     while len(stream) >= 6:
         size = 7 + int.from_bytes(stream[4:6], "big")
@@ -137,7 +138,7 @@ def cut(stream: bytearray) -> List[bytes]:
     return packets
 
 
-# --- what the descriptors say --------------------------------------------------------------------------------------------
+# --- what the descriptors say ----------------------------------------------------------------------------------------
 
 @dataclasses.dataclass(frozen=True)
 class Field:
@@ -271,7 +272,7 @@ class MissionAbout:
     failures: Tuple[Tuple[int, str], ...]
 
 
-# --- what is heard -------------------------------------------------------------------------------------------------------
+# --- what is heard ---------------------------------------------------------------------------------------------------
 
 def utc_of(time_s: float) -> datetime.datetime:
     return EPOCH + datetime.timedelta(seconds=time_s - TAI_MINUS_UTC_S)
@@ -386,7 +387,7 @@ class Request:
         return self
 
 
-# --- the spacecraft ------------------------------------------------------------------------------------------------------
+# --- the spacecraft --------------------------------------------------------------------------------------------------
 
 class Subsystem:
     """Base of the mission's subsystems; the exported classes add a method for every function, parameter and report."""
@@ -426,7 +427,7 @@ class Subsystem:
 
     @property
     def state(self) -> Optional[str]:
-        """"Operational" and so on, by its own or the supervisor's newest word; None when it does not run or is not known."""
+        """"Operational" and so on, by its own or the supervisor's newest word; None: it does not run, or is unknown."""
         number = self._craft._told(self._about.apid, "STATE", self._changed)
         return STATES[number] if number is not None and number < len(STATES) else None
 
@@ -579,8 +580,8 @@ class Craft:
         with self._arrived:
             for report in self._supervisor._latest.values():
                 apids, values = report.values.get("SUBSYSTEMS.APID", ()), report.values.get(f"SUBSYSTEMS.{what}", ())
-                newest = max([newest, *((report.time_s, value) for known, value in zip(apids, values) if known == apid)],
-                             key=lambda told: told[0])
+                told = [(report.time_s, value) for known, value in zip(apids, values) if known == apid]
+                newest = max([newest, *told], key=lambda one: one[0])
         return newest[1]
 
     def _send(self, subsystem: Subsystem, name: str, service: int, subtype: int, data: bytes,
@@ -676,8 +677,8 @@ class Craft:
             code, rest = int.from_bytes(rest[:2], "big"), rest[2:]
         parameters = {} if code is None else self._named(request, code, failure_parameters(code, rest))
         text = "" if code is None else dict(self._about.failures).get(code, "not documented")
-        request.verifications.append(Verification(packet.subtype, time.monotonic() - request._sent, step, code, text, rest,
-                                                  parameters))
+        after_s = time.monotonic() - request._sent
+        request.verifications.append(Verification(packet.subtype, after_s, step, code, text, rest, parameters))
         if request.done and (request.reply is not None or not request.name.startswith("get ") or
                              request.verifications[-1].is_failure):
             del self._requests[int.from_bytes(packet.data[:4], "big")]

@@ -27,7 +27,8 @@ def vectors(group):
 class Packets(unittest.TestCase):
     def test_error_control_is_that_of_the_vectors(self):
         for vector in vectors("crc16"):
-            self.assertEqual(runtime.crc16(bytes.fromhex(vector["fields"]["input"])), int(vector["hex"], 16), vector["id"])
+            octets = bytes.fromhex(vector["fields"]["input"])
+            self.assertEqual(runtime.crc16(octets), int(vector["hex"], 16), vector["id"])
 
     def test_telecommands_are_those_of_the_vectors(self):
         checked = 0
@@ -36,7 +37,8 @@ class Packets(unittest.TestCase):
             if "ack" not in fields or "app_data" not in fields:
                 continue
             packet = runtime.telecommand(fields["apid"], fields["seq"], fields["service"], fields["subtype"],
-                                         fields["source"], bytes.fromhex(fields["app_data"]), int(fields["ack"].split()[0], 16))
+                                         fields["source"], bytes.fromhex(fields["app_data"]),
+                                         int(fields["ack"].split()[0], 16))
             self.assertEqual(packet.hex(), vector["hex"], vector["id"])
             checked += 1
         self.assertGreaterEqual(checked, 12)
@@ -147,7 +149,8 @@ class Peer:
 
     def tell(self, service, subtype, data, destination=0, time_s=0):
         self._count += 1
-        packet = struct.pack(">HHHBBBHH", 0x080A, 0xC000 | self._count, len(data) + 15, 0x20, service, subtype, 0, destination)
+        packet = struct.pack(">HHHBBBHH", 0x080A, 0xC000 | self._count, len(data) + 15, 0x20, service, subtype, 0,
+                             destination)
         packet += struct.pack(">I3x", time_s) + data
         self.socket.sendall(packet + struct.pack(">H", runtime.crc16(packet)))
 
@@ -243,7 +246,8 @@ class Client(unittest.TestCase):
             self.peer.tell(5, 3, octets)
         self.craft.wait_until(lambda: len(self.craft.events) == 3)
         self.assertEqual([(e.name, e.severity, e.values) for e in self.craft.events],
-                         [("BUMP", "medium", {"JOINT": 2, "FORCE": 2.0}), ("18", "medium", {}), ("BUMP", "medium", {"JOINT": 2})])
+                         [("BUMP", "medium", {"JOINT": 2, "FORCE": 2.0}), ("18", "medium", {}),
+                          ("BUMP", "medium", {"JOINT": 2})])
 
     def test_a_state_is_the_newest_that_was_told(self):
         self.assertIsNone(self.craft.arm.state)

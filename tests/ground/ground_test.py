@@ -204,11 +204,13 @@ class OnAFlight(unittest.TestCase):
         with Gateway(rokviss.folder, archive="second.db") as second:
             second.until(lambda status: status["mode"] == "telepresence")
             second.request("/api/commands", {"subsystem": "JOYSTICK", "function": "PING"})
-            gateway.until(lambda status: gateway.request("/api/commands?limit=1")["commands"][0]["subsystem"] == "JOYSTICK")
+            gateway.until(lambda status: gateway.request("/api/commands?limit=1")["commands"][0]["function"] == "PING")
             seen = gateway.request("/api/commands?limit=3")["commands"][::-1]
         self.assertEqual([(one["function"], one["arguments"]) for one in seen],
-                         [("SET_FORCE_SCALE", {"SCALE": 0.05}), ("MOVE_TO", {"Q1": 0.1, "Q2": 1.2, "DURATION": 2}), ("PING", {})])
-        self.assertEqual([one["sender"].rsplit(" ", 1)[0] for one in seen], ["hirosco tc", "hirosco tc", "another ground station"])
+                         [("SET_FORCE_SCALE", {"SCALE": 0.05}), ("MOVE_TO", {"Q1": 0.1, "Q2": 1.2, "DURATION": 2}),
+                          ("PING", {})])
+        self.assertEqual([one["sender"].rsplit(" ", 1)[0] for one in seen],
+                         ["hirosco tc", "hirosco tc", "another ground station"])
         self.assertEqual([one["stage"] for one in seen[:2]], ["completed", "failed"])
 
     def test_a_stalled_and_a_killed_browser_cost_the_others_nothing(self):

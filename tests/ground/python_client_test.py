@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The exported Python client on a real flight: the worked example moves the robot, and what the spacecraft refuses is told
-with its code and text. Python's standard library only."""
+"""The exported Python client on a real flight: the worked example moves the robot, and what the spacecraft refuses is
+told with its code and text. Python's standard library only."""
 import importlib
 import os
 import pathlib
@@ -44,8 +44,8 @@ class Export(unittest.TestCase):
                 (root / name).parent.mkdir(exist_ok=True)
                 (root / name).symlink_to(flight.REPOSITORY / name)
             for path, content in (("subsystems/hello/hello.xml", text.replace(
-                    "</FunctionService>", '<Function name="FLY_AWAY" states="Operational"><Argument name="HEIGHT" type="FLOAT" '
-                    'unit="m" minimum="0" maximum="9"/></Function></FunctionService>')),
+                    "</FunctionService>", '<Function name="FLY_AWAY" states="Operational"><Argument name="HEIGHT" '
+                    'type="FLOAT" unit="m" minimum="0" maximum="9"/></Function></FunctionService>')),
                                   ("missions/hello/mission.xml", flight.HELLO.read_text())):
                 (root / path).parent.mkdir(parents=True)
                 (root / path).write_text(content)
@@ -82,8 +82,8 @@ class OnAFlight(unittest.TestCase):
 
     def example(self, craft):
         plot = pathlib.Path(self.folder.name, "plot.svg")
-        done = subprocess.run([sys.executable, "-B", str(EXAMPLE), str(plot)], capture_output=True, text=True, timeout=40,
-                              env={**os.environ, "PYTHONPATH": self.folder.name}, check=False)
+        done = subprocess.run([sys.executable, "-B", str(EXAMPLE), str(plot)], capture_output=True, text=True,
+                              timeout=40, env={**os.environ, "PYTHONPATH": self.folder.name}, check=False)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("not sent: MOVE_TO: Q1: 5 rad is above its maximum 1 rad", done.stdout)
         self.assertIn("not permitted in this mode (code 13), mode standalone", done.stdout)

@@ -68,8 +68,8 @@ times = [report.time_s - reports[0].time_s for report in reports]
 measured = [report["CUR_VALUES.POSITION"] for report in reports]
 commanded = [report["DES_POSITION"] for report in reports]
 error = max(abs(m - c) for both in zip(measured, commanded) for m, c in zip(*both))
-print(f"{len(reports)} reports; at the end ({measured[-1][0]:.4f}, {measured[-1][1]:.4f}) rad for ({goal[0]}, {goal[1]}); "
-      f"never more than {error * 1e3:.1f} mrad from what was commanded")
+print(f"{len(reports)} reports; at the end ({measured[-1][0]:.4f}, {measured[-1][1]:.4f}) rad for "
+      f"({goal[0]}, {goal[1]}); never more than {error * 1e3:.1f} mrad from what was commanded")
 curves = [(f"joint {joint + 1} {what}", [one[joint] for one in angles], colour, line_width)
           for joint, colours in enumerate((("#9fc3ea", "#174a80"), ("#f0bd96", "#8f3f10")))
           for what, angles, colour, line_width in (("commanded", commanded, colours[0], 6),
@@ -100,7 +100,8 @@ def svg(times, curves, width=800, height=420, margin=56):
         points = " ".join(place(t, value) for t, value in zip(times, values))
         x, y = margin + 94 + 160 * column, margin - 20
         lines += [f'<g stroke="{colour}" stroke-width="{line_width}" fill="none"><polyline points="{points}"/>'
-                  f'<line x1="{x - 22}" x2="{x - 6}" y1="{y}" y2="{y}"/></g>', f'<text x="{x}" y="{y + 4}">{name}</text>']
+                  f'<line x1="{x - 22}" x2="{x - 6}" y1="{y}" y2="{y}"/></g>',
+                  f'<text x="{x}" y="{y + 4}">{name}</text>']
     return "\n".join([*lines, "</svg>\n"])
 
 
