@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 #
-# The build step of CMakeLists.txt: works in the build folder, so that the sources stay as they are. What fails is said in one line and
-# ends nothing: a spacecraft flies without its page.
+# The build step of CMakeLists.txt: works in the build folder, so that the sources stay as they are. What fails is said
+# and ends nothing, nor is it tried again by itself, which costs every offline build its time: a spacecraft flies without
+# its page.
 
 foreach(file IN ITEMS package.json package-lock.json .npmrc build.mjs)
   configure_file(${sources}/${file} ${work}/${file} COPYONLY)
@@ -17,7 +18,8 @@ if(NOT installed STREQUAL wanted)
     RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE why)
   if(failed)
     string(REGEX REPLACE "\n.*" "" why "${why}")
-    message(NOTICE "The ground station's page is left out: npm could not fetch its packages (${why}).")
+    message(NOTICE "The ground station's page is left out: npm could not fetch its packages (${why}).\n"
+      "To try again: rm ${stamp}, and build.")
     file(TOUCH ${stamp})
     return()
   endif()
