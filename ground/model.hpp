@@ -39,6 +39,8 @@ struct LinkView {
   std::optional<double> rate_hz;
   std::optional<double> age_cycles;  ///< in cycles of the consumer
   std::uint32_t samples{0};
+  std::optional<std::uint32_t> lost; ///< samples that the consumer missed, as its own housekeeping tells
+  OnboardTime up_at{};
 };
 
 /// A report of ST[01] in words.
@@ -96,6 +98,7 @@ class Model {
   void take_links(OnboardTime t, Duration since, Heard& heard);
   void take_event(const pus::TelemetryView& packet, Heard& heard);
   void take_state(std::size_t subsystem, std::optional<descriptor::State> state, OnboardTime t, Heard& heard);
+  void take_losses();
   [[nodiscard]] double told(const std::optional<std::size_t>& column, std::size_t i) const;
 
   const Catalogue& catalogue_;
@@ -114,6 +117,7 @@ class Model {
     std::optional<std::size_t> link, up, samples, age;
   };
   OverviewColumns overview_;
+  std::vector<std::optional<std::size_t>> loss_columns_;  ///< of the consumer of each link, in the order of the mission
 };
 
 }  // namespace hirosco::ground

@@ -511,7 +511,7 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
                      {"age_cycles", number(view.age_cycles)},
                      {"rate_hz", number(view.rate_hz)},
                      {"samples", view.known ? json(view.samples) : json(nullptr)},
-                     {"lost", nullptr}});
+                     {"lost", view.lost ? json(*view.lost) : json(nullptr)}});
   }
   return {{"t", json_time(now)},
           {"mode", model.mode().empty() ? json(nullptr) : json(model.mode())},

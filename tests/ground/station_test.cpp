@@ -130,6 +130,18 @@ TEST_F(GroundStation, ShowsModeStatesLinksAndValuesOfACommissionedSpacecraft) {
   EXPECT_LE(position["age_s"].get<double>(), 0.15);
 }
 
+TEST_F(GroundStation, TellsTheSamplesThatTheConsumerOfALinkHasLostWhileTheLinkIsUp) {
+  commission();
+  station.run(2s);
+  const auto links = station.get("/api/status")["links"];
+  EXPECT_EQ(links[0]["lost"], 0);
+  EXPECT_EQ(links[1]["lost"], 0);
+  EXPECT_TRUE(links[2]["lost"].is_null()) << "not up in this mode";
+  EXPECT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}})["answer"], "ok");
+  station.run(3s);
+  EXPECT_TRUE(station.get("/api/status")["links"][0]["lost"].is_null()) << "what is down loses nothing";
+}
+
 TEST_F(GroundStation, SaysWhatASubsystemWaitsForAndNothingWhenItIsReady) {
   commission();
   station.command("SUPERVISOR", "SET_MODE", {{"MODE", "commissioning"}});
