@@ -21,7 +21,10 @@ async function serve(recording) {
 }
 
 const views = ['overview', 'subsystems/MANIPULATOR', 'plots', 'commands/MANIPULATOR/MOVE_TO', 'links', 'events', 'timeline', 'help'];
-const go = (page, view) => page.evaluate((to) => { location.hash = `#/${to}`; }, view);
+async function go(page, view) {
+  await page.evaluate((to) => { location.hash = `#/${to}`; }, view);
+  await page.waitForFunction((to) => document.querySelector('nav a.on')?.getAttribute('href') === `#/${to}`, view.split('/')[0]);
+}
 
 let browser;
 before(async () => { browser = await open_browser(); });
@@ -189,9 +192,19 @@ describe('a flight that does not', () => {
     for (const view of views) {
       await go(page, view);
       await page.waitForSelector('main .panel');
+      // Nothing is pushed out of the window, SAFE ALL least of all.
+      const wide = await page.evaluate(() => [document.querySelector('header'), document.querySelector('main'), document.documentElement]
+          .filter((node) => node.scrollWidth > node.clientWidth).map((node) => node.tagName));
+      assert.deepEqual(wide, [], view);
     }
+    await page.click('[data-test=faults]');
+    await page.waitForFunction(() => document.querySelector('[data-test=faults-drawer]')?.textContent.includes('<img src=x'));
+    await page.keyboard.press('Escape');
+    await go(page, 'links');
+    await page.waitForFunction(() => document.querySelector('svg.links')?.textContent.includes('<img src=x'));
     await go(page, 'events');
     await page.waitForFunction(() => document.querySelector('[data-test=events]')?.textContent.includes('<img src=x'));
+    assert.ok(await page.evaluate(() => document.querySelector('[data-test=events]').textContent.includes('y'.repeat(1000))));
     assert.equal(await page.evaluate(() => window.hurt), undefined);
     assert.equal(await page.locator('img[src="x"]').count(), 0);
     assert.deepEqual(faults, []);

@@ -40,13 +40,13 @@ function mission(hostile) {
       subsystem(11, 'JOYSTICK', ['STANDALONE', 'COUPLED'], [{name: 'PASSIVITY', arguments: [argument('ON', 'UINT8', {min: 0, max: 1})]}],
         [...both('CUR_VALUES.POSITION', 'rad'), ...both('CUR_VALUES.TORQUE', 'N m')], hostile ? 'x'.repeat(65536) : 'Joystick'),
     ],
-    links: [{id: 1, from: 'MANIPULATOR', provides: 'ROBOT_STATE', to: 'JOYSTICK', requires: 'ROBOT_STATE', required: true, rate_hz: 2000, age_limit_cycles: 3},
+    links: [{id: 1, from: 'MANIPULATOR', provides: hostile ? markup : 'ROBOT_STATE', to: 'JOYSTICK', requires: 'ROBOT_STATE', required: true, rate_hz: 2000, age_limit_cycles: 3},
       {id: 2, from: 'JOYSTICK', provides: 'JOYSTICK_STATE', to: 'MANIPULATOR', requires: 'JOYSTICK_STATE', required: true, rate_hz: 2000, age_limit_cycles: 3}],
     modes: [{id: 0, name: 'commissioning', permits: [{subsystem: '*', functions: ['SET_STATE', 'CONFIGURE', 'SET_MODE', 'LINK'], services: []}], commission: [], establish: []},
       {id: 1, name: 'telepresence', permits: [{subsystem: '*', functions: ['SET_STATE', 'SET_MODE', 'HOLD', 'PASSIVITY'], services: []}],
         commission: [{subsystem: 'MANIPULATOR', configuration: 'COUPLED', state: 'Operational'}, {subsystem: 'JOYSTICK', configuration: 'COUPLED', state: 'Operational'}],
         establish: [1, 2]}],
-    devices: [{name: 'joystick', subsystem: 'JOYSTICK', device: 'JOYSTICK', faults: [{line: 'unplug', text: 'Unplugs it'}, {line: 'plug', text: 'Plugs it in'}]}],
+    devices: [{name: 'joystick', subsystem: 'JOYSTICK', device: 'JOYSTICK', faults: [{line: 'unplug', text: hostile ? markup : 'Unplugs it'}, {line: 'plug', text: 'Plugs it in'}]}],
     transitions: edges.map(([from, to, kind = 'commanded']) => ({from: states[from], to: states[to], kind}))};
 }
 

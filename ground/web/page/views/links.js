@@ -23,7 +23,7 @@ export function Links() {
           <td class="number">${rate_text(now.rate_hz ?? NaN)}</td><td class="number">${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles</td>
           <td class="number">${number_text(link.age_limit_cycles)} cycles</td><td class="number">${number_text(now.lost)}</td>
           <td>${[...network_of(link.from)].join(', ')}</td>
-          <td><button class="chip" disabled=${locked} onClick=${() => send_and_say('SUPERVISOR', up ? 'UNLINK' : 'LINK', {LINK: link.id})}>${up ? 'cut' : 'make'}</button></td></tr>`;
+          <td><button class="chip" disabled=${locked} data-test=${`link-${link.id}`} onClick=${() => send_and_say('SUPERVISOR', up ? 'UNLINK' : 'LINK', {LINK: link.id})}>${up ? 'cut' : 'make'}</button></td></tr>`;
       })}</tbody></table>
       ${mission.value?.links?.length ? null : html`<p class="empty">This mission has no real-time links.</p>`}
       <p class="about">Links join parameters of two subsystems cycle by cycle, without the ground and without the supervisor. Who misses a required one for longer than its limit stops its own actuators. A mode permits cutting and making links, commissioning for example.</p></${Panel}>

@@ -126,7 +126,7 @@ function Detail({name}) {
           title=${`passes ${route(state, to).map(state_text).join(', ')}`}>${state_text(to)}</button>`)}</div>
     </${Panel}>
     <${Panel} title="Now" area="facts"><${Facts} name=${name} />
-      <h3>Configuration</h3><div class="next">${subsystem.configurations.map((one) => html`<button disabled=${!may_configure}
+      <h3>Configuration</h3><div class="next">${subsystem.configurations.map((one) => html`<button disabled=${!may_configure} data-test=${`configure-${one.name}`}
         class=${`quiet ${configuration_of(name)?.name === one.name ? 'on' : ''}`} onClick=${() => send_and_say(name, 'CONFIGURE', {CONFIGURATION: one.id})}>
         ${one.name} <small>${rate_text(one.sampling_hz)}</small></button>`)}</div>
       ${may_configure ? null : html`<p class="about">Another configuration is taken in Pre-Operational only.</p>`}
