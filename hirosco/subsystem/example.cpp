@@ -21,6 +21,10 @@ constexpr const char* counter_xml = R"(<Subsystem name="COUNTER" id="9">
 </Subsystem>)";
 
 class Counter final : public Subsystem {
+ public:
+  std::uint32_t ticks() const { return ticks_.load(); }
+
+ private:
   Result<Step> software_init() override {
     publish("TICKS", ticks_);
     return done;
@@ -30,7 +34,6 @@ class Counter final : public Subsystem {
     return ok();
   }
 
- public:
   Parameter<std::uint32_t> ticks_;
 };
 
@@ -75,7 +78,7 @@ int main() {
   command(subsystem, channels, clock, configure, 1);
   command(subsystem, channels, clock, set_state, static_cast<double>(State::SafeOperational));
   command(subsystem, channels, clock, set_state, static_cast<double>(State::Operational));
-  std::printf("%s: %u ticks in %llu cycles\n", std::string{to_text(subsystem.state())}.c_str(), counter.ticks_.load(),
+  std::printf("%s: %u ticks in %llu cycles\n", std::string{to_text(subsystem.state())}.c_str(), counter.ticks(),
               static_cast<unsigned long long>(vital.cycles.load()));
-  return subsystem.state() == State::Operational && counter.ticks_.load() > 0 ? 0 : 1;
+  return subsystem.state() == State::Operational && counter.ticks() > 0 ? 0 : 1;
 }

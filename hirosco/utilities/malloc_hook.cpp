@@ -19,11 +19,13 @@ extern "C" bool hirosco_malloc_hook_present() noexcept { return false; }
 
 extern "C" {
 
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the C library's own names
 void* __libc_malloc(std::size_t octets);
 void* __libc_calloc(std::size_t count, std::size_t octets);
 void* __libc_realloc(void* place, std::size_t octets);
 void* __libc_memalign(std::size_t alignment, std::size_t octets);
 void __libc_free(void* place);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 bool hirosco_malloc_hook_present() noexcept { return true; }
 

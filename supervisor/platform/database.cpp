@@ -25,8 +25,9 @@ std::string party(std::uint16_t apid) { return apid == 0 ? "ground" : std::to_st
 std::optional<std::int64_t> take_digits(std::string_view& text, std::size_t digits, char after) {
   if (text.size() < digits + (after != '\0' ? 1 : 0)) return std::nullopt;
   std::int64_t number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + digits, number);
-  if (error != std::errc{} || end != text.data() + digits || number < 0) return std::nullopt;
+  const char* const first = text.data();
+  const auto [end, error] = std::from_chars(first, first + digits, number);
+  if (error != std::errc{} || end != first + digits || number < 0) return std::nullopt;
   text.remove_prefix(digits);
   if (after == '\0') return number;
   if (text.front() != after) return std::nullopt;

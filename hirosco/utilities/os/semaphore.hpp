@@ -15,7 +15,7 @@ namespace hirosco {
 class Semaphore {
  public:
   explicit Semaphore(std::uint32_t initial = 0) noexcept;
-  ~Semaphore();
+  ~Semaphore();  // NOLINT(performance-trivially-destructible): trivial in one of the backends only
   Semaphore(const Semaphore&) = delete;
   Semaphore& operator=(const Semaphore&) = delete;
 
