@@ -100,6 +100,8 @@ void Supervisor::start() {
     member.started(std::move(*launched));
     member.permit()->mode_epoch.store(mode_epoch_, std::memory_order_release);
     tell("started " + member.descriptor().name, member.apid());
+    for (const auto& changed : member.described().overrides)
+      tell(member.descriptor().name + " begins with " + to_string(changed), member.apid());
   }
   // Itself first: the functions of the others' commissioning are its own.
   const auto own = std::string{"SUPERVISOR"};

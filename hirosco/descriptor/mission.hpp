@@ -9,13 +9,25 @@
 #include <vector>
 
 #include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/utilities/result.hpp"
 
 /// The mission descriptor in memory: what is started, connected, permitted and recovered.
 namespace hirosco::descriptor {
 
+/// A parameter begins with other values than its subsystem's descriptor says.
+struct Override {
+  std::string parameter;
+  std::vector<double> values;
+};
+/// "NAME=1 2.5", as a launched subsystem is told.
+[[nodiscard]] std::string to_string(const Override& changed);
+/// The reverse, into `subsystem`. NotFound: no such parameter. OutOfRange: not as many numbers as it has values.
+[[nodiscard]] Result<> apply_override(Subsystem& subsystem, std::string_view text);
+
 struct MissionSubsystem {
   std::string executable;            ///< name of the program, looked up beside the running one and then in PATH
   Subsystem subsystem;               ///< with the overrides of the mission applied
+  std::vector<Override> overrides;
   Location at;
 };
 

@@ -50,7 +50,9 @@ TEST(MissionDescriptor, FillsTheWholeModel) {
   EXPECT_EQ(mission.find_link(2)->requires_, "JOYSTICK_STATE");
   EXPECT_EQ(mission.initial_mode, "commissioning");
   EXPECT_EQ(mission.start_mode, "telepresence");
-  EXPECT_EQ(mission.power_budget_w, 120);
+  EXPECT_EQ(mission.power_budget_w, 150);
+  EXPECT_EQ(mission.find_subsystem("MANIPULATOR")->subsystem.find_parameter("DES_POSITION")->init,
+            (std::vector{-0.7, 1.5}));
   EXPECT_EQ(mission.find_subsystem("MANIPULATOR")->subsystem.find_configuration("COUPLED")->power_w, 60.5);
 }
 
@@ -126,10 +128,18 @@ constexpr Mistake mistakes[] = {
     {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@/etc/passwd")"},
     {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@../../../joystick.xml")"},
     {"E0315", R"(descriptor="joystick.xml")", R"(descriptor="@../joystick.xml.none")"},
-    {"E0105", R"(<Power budget_W="120"/>)", R"(@<Power/>)"},
-    {"E0107", R"(<Power budget_W="120"/>)", R"(<Power budget_W="120"/>@<Power budget_W="120"/>)"},
-    {"E0111", R"(budget_W="120")", R"(budget_W="@much")"},
-    {"E0112", R"(budget_W="120")", R"(budget_W="@-5")", "0.001 to 1000000 W"},
+    {"E0105", R"(<Power budget_W="150"/>)", R"(@<Power/>)"},
+    {"E0107", R"(<Power budget_W="150"/>)", R"(<Power budget_W="150"/>@<Power budget_W="150"/>)"},
+    {"E0111", R"(budget_W="150")", R"(budget_W="@much")"},
+    {"E0112", R"(budget_W="150")", R"(budget_W="@-5")", "0.001 to 1000000 W"},
+    {"E0105", R"(<Set parameter="DES_POSITION" value="-0.7 1.5"/>)", R"(@<Set parameter="DES_POSITION"/>)"},
+    {"E0111", R"(value="-0.7 1.5")", R"(value="@here there")"},
+    {"E0201", R"(<Set )", R"(<Set parameter="DES_POSITION" value="0 0"/><Set )"},
+    {"E0204", R"("DES_POSITION" value)", R"("@DES_POSITIONS" value)", "'DES_POSITION'"},
+    {"E0204", R"("DES_POSITION" value)", R"("@CUR_VALUES" value)"},
+    {"E0207", R"(value="-0.7 1.5")", R"(value="@-0.7 2.7")", "-2 to 2.6"},
+    {"E0209", R"(value="-0.7 1.5")", R"(value="@-0.7")"},
+    {"E0319", R"("DES_POSITION" value="-0.7 1.5")", R"("@TORQUE_LIMIT" value="9")", "change it in the descriptor"},
     {"E0316", R"(configuration="COUPLED" state)", R"(configuration="@COUPLE" state)", "'COUPLED'"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
 };
@@ -183,12 +193,27 @@ TEST(MissionErrors, FieldsOfALinkMustMatch) {
   EXPECT_EQ(with("from=\"MANIPULATOR\"", "methods=\"tipc\""), "link 1 does not fit: no common method");
 }
 
+TEST(MissionOverrides, ReachALaunchedSubsystemAsTheyWereRead) {
+  const Mission mission = read_mission(data / "mission.xml", file_system()).value.value();
+  Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  ASSERT_EQ(mission.subsystems.at(1).overrides.size(), 1U);
+  EXPECT_EQ(to_string(mission.subsystems.at(1).overrides.at(0)), "DES_POSITION=-0.7 1.5");
+  for (const Override& changed : {Override{"TORQUE_LIMIT", {0.1}}, Override{"DES_POSITION", {-1.0 / 3, 1e-300}}}) {
+    ASSERT_TRUE(apply_override(robot, to_string(changed)));
+    EXPECT_EQ(robot.find_parameter(changed.parameter)->init, changed.values);
+  }
+  EXPECT_EQ(apply_override(robot, "NONE=1").error().code, ErrorCode::NotFound);
+  for (const char* wrong : {"DES_POSITION", "DES_POSITION=", "DES_POSITION=1", "DES_POSITION=1 2 3", "DES_POSITION=1 x",
+                            "DES_POSITION=1  2", "DES_POSITION=1 2 "})
+    EXPECT_EQ(apply_override(robot, wrong).error().code, ErrorCode::OutOfRange) << wrong;
+}
+
 TEST(MissionErrors, WhatAModeCommissionsMustFitThePowerBudget) {
   const std::string joystick =
       changed(R"(<Configuration name="COUPLED")", R"(<Configuration power_W="25" name="COUPLED")",
               file_system()(data / "joystick.xml").value());
   const auto with = [&](const std::string& budget, const std::string& state) {
-    const std::string text = changed(R"(budget_W="120")", budget, good_mission());
+    const std::string text = changed(R"(budget_W="150")", budget, good_mission());
     const std::string robot = R"(configuration="COUPLED" state=")";
     return read_mission(data / "mission.xml",
                         overlay({{"mission.xml", changed(robot + "SafeOperational", robot + state, text)},

@@ -165,7 +165,7 @@ void SubsystemReader::read_initial(const xml::Element& element, Configuration& c
                                                                         count, count == 1 ? "" : "s", values.size()));
                                      auto next = values.begin();
                                      for (const Field& field : fields) {
-                                       if (!check_values(*at, field, {next, next + field.count})) return;
+                                       if (!check_values(problems_, *at, field, {next, next + field.count})) return;
                                        next += field.count;
                                      }
                                      configuration.initial.push_back({std::move(*reference), std::move(values)});

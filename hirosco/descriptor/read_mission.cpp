@@ -148,19 +148,52 @@ void MissionReader::read_power(const xml::Element& element) {
 
 void MissionReader::read_member(const xml::Element& element) {
   Attributes attributes{element, problems_};
-  no_children(element, problems_);
   MissionSubsystem member;
   member.at = place(element.at);
   member.executable = executable(attributes);
   auto subsystem = read_descriptor(attributes);
-  if (!subsystem) return;
+  if (!subsystem) return;  // what is set in it cannot be judged
   const xml::Attribute& at = *element.find("descriptor");
   subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
   if (subsystem->id == supervisor_id)
     problems_.add(at, "E0303", fmt::format("id 1 of '{}' is the supervisor's", subsystem->name));
   else subsystem_ids_.add(std::to_string(subsystem->id), place(at.value_at), problems_, at.value.size());
   member.subsystem = std::move(*subsystem);
+  Unique names{"parameter", "E0201"};
+  each_child(element, problems_,
+             {{"Set", [&](const xml::Element& child) { read_override(child, member, names); }, 255}});
   mission_.subsystems.push_back(std::move(member));
+}
+
+void MissionReader::read_override(const xml::Element& element, MissionSubsystem& member, Unique& names) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const auto* name = attributes.required("parameter");
+  const auto* value = attributes.required("value");
+  if (name == nullptr || value == nullptr) return;
+  auto& parameters = member.subsystem.parameters;
+  const auto found = std::ranges::find_if(parameters, [&](const Parameter& p) { return p.field.name == name->value; });
+  if (found == parameters.end() || found->field.type == Type::Struct) {
+    std::vector<std::string_view> known;
+    for (const Parameter& parameter : parameters)
+      if (parameter.field.type != Type::Struct) known.push_back(parameter.field.name);
+    problems_.add(
+        *name, "E0204",
+        fmt::format("'{}' has no parameter {} with a value of its own", member.subsystem.name, in_quotes(name->value)),
+        did_you_mean(name->value, known));
+    return;
+  }
+  names.add(name->value, place(name->value_at), problems_, name->value.size());
+  for (const Configuration& configuration : member.subsystem.configurations)
+    for (const Configuration::Initial& initial : configuration.initial)
+      if (&parameters[initial.parameter.parameter] == &*found)
+        return problems_.add(*name, "E0319",
+                             fmt::format("configuration '{}' sets '{}' itself", configuration.name, name->value),
+                             "the value would not last: change it in the descriptor");
+  auto values = read_values(problems_, attributes, "value", found->field);
+  if (values.empty()) return;
+  found->init = values;
+  member.overrides.push_back({name->value, std::move(values)});
 }
 
 std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) {

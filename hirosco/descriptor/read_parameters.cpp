@@ -48,6 +48,41 @@ std::string range_text(const Field& field) {
 
 }  // namespace
 
+bool check_values(Problems& problems, const xml::Attribute& at, const Field& field, const std::vector<double>& values) {
+  const Range range = range_of(field.type);
+  for (const double value : values) {
+    if (is_integer(field.type) && std::trunc(value) != value) {
+      problems.add(at, "E0208",
+                   fmt::format("{} is not a whole number, '{}' is {}", value, field.name, to_text(field.type)));
+      return false;
+    }
+    if (value < range.low || value > range.high) {
+      problems.add(at, "E0208", fmt::format("{} does not fit {}", value, to_text(field.type)),
+                   fmt::format("{} to {}", range.low, range.high));
+      return false;
+    }
+    if ((field.minimum && value < *field.minimum) || (field.maximum && value > *field.maximum)) {
+      problems.add(at, "E0207", fmt::format("{} is outside the range of '{}'", value, field.name), range_text(field));
+      return false;
+    }
+  }
+  return true;
+}
+
+std::vector<double> read_values(Problems& problems, Attributes& attributes, std::string_view name, const Field& field) {
+  auto values = attributes.numbers(name);
+  if (values.empty()) return {};
+  const xml::Attribute& at = *attributes.element().find(name);
+  if (values.size() != field.count) {
+    problems.add(at, "E0209",
+                 fmt::format("'{}' has {} value{}, not {}", field.name, field.count, field.count == 1 ? "" : "s",
+                             values.size()));
+    return {};
+  }
+  if (!check_values(problems, at, field, values)) return {};
+  return values;
+}
+
 void SubsystemReader::read_enumeration(const xml::Element& element) {
   Attributes attributes{element, problems_};
   Enumeration enumeration{attributes.name(), {}};
@@ -110,7 +145,7 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   Parameter parameter;
   parameter.field = read_field(attributes, true);
   parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
-  parameter.init = read_values(attributes, "init", parameter.field);
+  parameter.init = read_values(problems_, attributes, "init", parameter.field);
   parameter.read_only = attributes.yes("read_only", false);
   parameter.persistent = attributes.yes("persistent", false);
   claim_parameter_id(attributes, parameter.field.type, parameter.id);
@@ -162,7 +197,7 @@ void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
   const auto limit = [&](std::string_view name) {
     const auto value = attributes.number(name);
     if (!value) return value;
-    const bool fits = check_values(*attributes.element().find(name), field, {*value});
+    const bool fits = check_values(problems_, *attributes.element().find(name), field, {*value});
     return fits ? value : std::nullopt;
   };
   const auto minimum = limit("minimum");
@@ -173,41 +208,6 @@ void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
   problems_.add(*attributes.element().find("minimum"), "E0206",
                 fmt::format("minimum {} is above maximum {}", *minimum, *maximum));
   field.minimum = field.maximum = std::nullopt;
-}
-
-bool SubsystemReader::check_values(const xml::Attribute& at, const Field& field, const std::vector<double>& values) {
-  const Range range = range_of(field.type);
-  for (const double value : values) {
-    if (is_integer(field.type) && std::trunc(value) != value) {
-      problems_.add(at, "E0208",
-                    fmt::format("{} is not a whole number, '{}' is {}", value, field.name, to_text(field.type)));
-      return false;
-    }
-    if (value < range.low || value > range.high) {
-      problems_.add(at, "E0208", fmt::format("{} does not fit {}", value, to_text(field.type)),
-                    fmt::format("{} to {}", range.low, range.high));
-      return false;
-    }
-    if ((field.minimum && value < *field.minimum) || (field.maximum && value > *field.maximum)) {
-      problems_.add(at, "E0207", fmt::format("{} is outside the range of '{}'", value, field.name), range_text(field));
-      return false;
-    }
-  }
-  return true;
-}
-
-std::vector<double> SubsystemReader::read_values(Attributes& attributes, std::string_view name, const Field& field) {
-  auto values = attributes.numbers(name);
-  if (values.empty()) return {};
-  const xml::Attribute& at = *attributes.element().find(name);
-  if (values.size() != field.count) {
-    problems_.add(at, "E0209",
-                  fmt::format("'{}' has {} value{}, not {}", field.name, field.count, field.count == 1 ? "" : "s",
-                              values.size()));
-    return {};
-  }
-  if (!check_values(at, field, values)) return {};
-  return values;
 }
 
 void SubsystemReader::read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names) {

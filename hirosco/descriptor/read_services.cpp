@@ -106,7 +106,7 @@ void SubsystemReader::read_argument(const xml::Element& element, Function& funct
   Function::Argument argument;
   argument.field = read_field(attributes, true);
   if (const auto fallback = attributes.number("default"))
-    if (check_values(*element.find("default"), argument.field, {*fallback})) argument.fallback = fallback;
+    if (check_values(problems_, *element.find("default"), argument.field, {*fallback})) argument.fallback = fallback;
   no_children(element, problems_);
   if (!argument.field.name.empty())
     names.add(argument.field.name, place(element.at), problems_, element.name.size() + 1);

@@ -152,7 +152,7 @@ void SubsystemReader::read_output(const xml::Element& element, Device& device, U
   Attributes attributes{element, problems_};
   Device::Output output;
   output.field = read_field(attributes, true);
-  output.safe = read_values(attributes, "safe", output.field);
+  output.safe = read_values(problems_, attributes, "safe", output.field);
   no_children(element, problems_);
   if (device.actuator && element.find("safe") == nullptr)
     problems_.add(element, "E0218", fmt::format("output '{}' of an actuator needs its safe value", output.field.name),

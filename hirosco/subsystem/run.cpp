@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "hirosco/data_transfer/flows/sealed_memory.hpp"
 #include "hirosco/data_transfer/flows/socket_channel.hpp"
@@ -32,6 +33,7 @@ constexpr int exit_environment = 3;
 
 struct Options {
   std::string descriptor;
+  std::vector<std::string> overrides;  ///< as the mission has them
   int channel{-1};
   int vital{-1};
   int permit{-1};
@@ -49,6 +51,7 @@ struct Options {
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string_view name{argv[i]};
     if (name == "--descriptor") options.descriptor = argv[i + 1];
+    else if (name == "--set") options.overrides.emplace_back(argv[i + 1]);
     else if (name == "--channel") options.channel = number_of(argv[i + 1]);
     else if (name == "--vital") options.vital = number_of(argv[i + 1]);
     else if (name == "--permit") options.permit = number_of(argv[i + 1]);
@@ -149,7 +152,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   if (!options.complete()) {
     fmt::print(stderr,
                "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
-               "  --descriptor FILE --channel FD --vital FD --permit FD\n",
+               "  --descriptor FILE --channel FD --vital FD --permit FD [--set PARAMETER=VALUES]\n",
                argv[0]);
     return exit_usage;
   }
@@ -157,6 +160,11 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   auto reading = descriptor::read_subsystem(options.descriptor, source);
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
   if (!reading.value) return exit_environment;
+  for (const std::string& text : options.overrides)
+    if (const auto applied = descriptor::apply_override(*reading.value, text); !applied) {
+      fmt::print(stderr, "{}: --set {}: {}\n", argv[0], text, applied.error().text);
+      return exit_environment;
+    }
 
   SystemClock clock;
   SealedMemory memory;

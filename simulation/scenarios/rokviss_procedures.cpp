@@ -113,7 +113,7 @@ Demand demand_of(const descriptor::Mission& mission) {
 struct Asked {
   bool refused{false};
   bool numbers{false};
-  double event_cycles{never};        ///< of the supervisor, from the refusal to the event
+  double event_cycles{never};  ///< of the supervisor, from the refusal to the event
   bool granted_later{false};
 };
 
@@ -131,8 +131,8 @@ Asked ask_for_the_robot(CoupledCraft& craft, Random& random) {
   const auto cycles = [&] { return craft.craft().supervisor().own_vital().cycles.load(); };
   std::uint64_t refused_at = 0;
   Asked asked;
-  const std::string numbers = fmt::format("BUDGET={:g} W RESERVED={:g} W REQUESTED={:g} W", told_w, demand.others_w,
-                                          demand.robot_w);
+  const std::string numbers =
+      fmt::format("BUDGET={:g} W RESERVED={:g} W REQUESTED={:g} W", told_w, demand.others_w, demand.robot_w);
   flight.story().on_line = [&](std::string_view line) {
     if (line.starts_with("power short: MANIPULATOR")) refused_at = cycles();
     if (!line.starts_with("SUPERVISOR low POWER_REFUSED")) return;

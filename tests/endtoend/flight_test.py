@@ -75,5 +75,23 @@ class Rokviss(unittest.TestCase):
             self.assertEqual(places, sorted(places), after)
 
 
+class MissionOverride(unittest.TestCase):
+    def test_a_value_that_the_mission_sets_is_the_one_that_the_subsystem_begins_with(self):
+        with flight.MissionCopy({}) as mission:
+            descriptor = 'descriptor="../../subsystems/manipulator/manipulator.xml"'
+            text = mission.read_text()
+            self.assertIn(descriptor + "/>", text)
+            mission.write_text(text.replace(descriptor + "/>",
+                                            f'{descriptor}><Set parameter="TORQUE_LIMIT" value="6"/></Subsystem>'))
+            with flight.Flight(mission) as rokviss:
+                rokviss.wait_told("MANIPULATOR begins with TORQUE_LIMIT=6")
+                rokviss.wait_commissioned()
+                begin = rokviss.count()
+                rokviss.fault("joystick", "hand", "cartesian", 0.0226, 0, 0.5)      # comes to 6.7 N m
+                told = rokviss.wait_told("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED", 3.0, begin).told
+                self.assertIn("LIMIT=6 N m", told)
+                self.assertEqual(rokviss.end(), 0, rokviss.errors)
+
+
 if __name__ == "__main__":
     flight.main()

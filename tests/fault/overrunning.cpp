@@ -32,8 +32,7 @@ class Overrunning final : public Subsystem {
     if (left_ == 0) return ok();
     --left_;
     const auto end = std::chrono::steady_clock::now() + 3 * cycle.period / 2;
-    while (std::chrono::steady_clock::now() < end) {
-    }
+    while (std::chrono::steady_clock::now() < end) {}
     return ok();
   }
 

@@ -191,4 +191,10 @@ class Unique {
 enum class Address { Loopback, Foreign, Malformed };
 [[nodiscard]] Address classify_address(std::string_view text) noexcept;
 
+/// True when every value fits the type and the range of `field`; reports the first that does not.
+bool check_values(Problems& problems, const xml::Attribute& at, const Field& field, const std::vector<double>& values);
+/// As many values as `field` has; empty when the attribute is absent or reported.
+[[nodiscard]] std::vector<double> read_values(Problems& problems, Attributes& attributes, std::string_view name,
+                                              const Field& field);
+
 }  // namespace hirosco::descriptor::detail

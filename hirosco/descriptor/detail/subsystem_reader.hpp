@@ -62,9 +62,6 @@ class SubsystemReader {
   [[nodiscard]] Field read_field(Attributes& attributes, bool ranged);
   void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names);
   void check_field_range(Attributes& attributes, Field& field);
-  /// True when every value fits the type and the range of `field`.
-  bool check_values(const xml::Attribute& at, const Field& field, const std::vector<double>& values);
-  [[nodiscard]] std::vector<double> read_values(Attributes& attributes, std::string_view name, const Field& field);
   /// The `name` attribute resolved against the parameters.
   [[nodiscard]] std::optional<ParameterRef> read_reference(Attributes& attributes, std::string_view user);
   void index_references();

@@ -10,7 +10,9 @@ namespace {
 
 using descriptor::State;
 
-[[nodiscard]] std::uint32_t milliwatts(double watts) noexcept { return static_cast<std::uint32_t>(std::lround(watts * 1e3)); }
+[[nodiscard]] std::uint32_t milliwatts(double watts) noexcept {
+  return static_cast<std::uint32_t>(std::lround(watts * 1e3));
+}
 
 /// Where a configuration is in use: devices are given back in Post-Operational, so that still counts.
 [[nodiscard]] bool in_use(State state) noexcept {

@@ -74,7 +74,8 @@ TEST_F(PowerLedgerTest, StatesDecideWhoDraws) {
     const auto state = static_cast<State>(value);
     ledger.observe(arm, State::Operational, 60, start);
     ledger.observe(arm, state, 60, start);
-    const bool draws = value >= static_cast<int>(State::SafeOperational) && value <= static_cast<int>(State::PostOperational);
+    const bool draws =
+        value >= static_cast<int>(State::SafeOperational) && value <= static_cast<int>(State::PostOperational);
     EXPECT_EQ(ledger.held_mw(arm), draws ? 60'000U : 0U) << to_text(state);
   }
 }
