@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 fs::path find_mission(const std::string& name_or_path) {
   std::error_code failed;
-  const fs::path given{name_or_path};
+  fs::path given{name_or_path};
   if (fs::is_regular_file(given, failed)) return given;
   if (fs::is_regular_file(given / "mission.xml", failed)) return given / "mission.xml";
   if (name_or_path.find('/') != std::string::npos) return {};

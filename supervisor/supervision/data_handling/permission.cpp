@@ -23,7 +23,7 @@ constexpr std::uint16_t supervisor_apid = 1;
       return std::ranges::find(requests, int{subtype}) != requests.end();
     }
     case 5: return subtype >= 5 && subtype <= 7;
-    case 8: return subtype == 1;
+    case 8:
     case 17: return subtype == 1;
     case 20: return subtype == 1 || subtype == 3;
     case 128: return subtype >= 1 && subtype <= 4;
