@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <ranges>
 
 #include "ground/json.hpp"
 
@@ -25,6 +26,7 @@ constexpr std::size_t fewest_points = 10, usual_points = 2000, most_points = 20'
 /// Beyond it an answer says so by its last time: one question must not hold up the live view for seconds.
 constexpr std::size_t most_samples = 1'000'000;
 constexpr std::size_t most_csv_octets = std::size_t{64} << 20;
+constexpr std::size_t most_csv_cells = 4'000'000;
 constexpr std::size_t most_file_octets = std::size_t{16} << 20;
 
 /// No script but ours, nothing from anywhere else, in nobody's frame.
@@ -144,6 +146,15 @@ the target hirosco_ground_page. The API works without it; see ground/api/README.
   for (const auto& row : EnumTexts<descriptor::Severity>::table)
     if (row.text == text) return static_cast<int>(row.value);
   return 0;
+}
+
+/// What is wrong with the parameters that are numbers or severities; empty: nothing. An empty one is as good as none.
+[[nodiscard]] std::string senseless(const Target& target) {
+  for (const char* name : {"from", "to", "last", "points", "limit"})
+    if (!target.text(name).value_or("").empty() && !target.number(name))
+      return std::string{name} + ": a number is wanted";
+  const std::string severity = target.text("severity").value_or("");
+  return severity.empty() || severity_of(severity) != 0 ? "" : "severity: info, low, medium or high is wanted";
 }
 
 /// Min and max of each of `points` equal parts of a span: long histories at the cost of short ones.
@@ -276,7 +287,7 @@ void Api::post(const HttpRequest& request, const Target& target, Role role,
                const std::function<void(HttpResponse)>& respond) {
   if (role != Role::Operator) return respond(error(403, "observers do not command"));
   if (session_.in_replay(header(request, "x-client"))) return respond(error(409, "this page replays the past"));
-  const json body = json::parse(request.body, nullptr, false);
+  const json body = parsed_request(request.body);
   if (!body.is_object()) return respond(error(400, "a JSON object is wanted"));
   if (target.path == "/api/commands") return respond(outcome(session_.command(body), 202));
   const auto later = [respond](const Answered<json>& result) { respond(outcome(result)); };
@@ -297,6 +308,7 @@ Span Api::span_of(const Target& target, double last_s) const {
 
 HttpResponse Api::get(const Target& target) {
   const std::string& path = target.path;
+  if (const std::string wrong = senseless(target); !wrong.empty()) return error(400, wrong);
   if (path == "/api/mission") return answer(mission_json(session_.catalogue(), options_.transitions));
   if (path == "/api/status") return answer(session_.status());
   if (path == "/api/history") return history(target);
@@ -328,7 +340,7 @@ HttpResponse Api::get(const Target& target) {
   return error(404, "nothing is there");
 }
 
-void samples(Session& session, std::size_t column, const Span& span,
+bool samples(Session& session, std::size_t column, const Span& span, std::size_t most,
              const std::function<void(OnboardTime, double)>& take) {
   const Catalogue& catalogue = session.catalogue();
   const std::uint16_t apid = catalogue.columns()[column].apid;
@@ -345,10 +357,11 @@ void samples(Session& session, std::size_t column, const Span& span,
       if (report == nullptr) return true;
       const auto place = std::ranges::find(report->places, column, &Place::column);
       if (place != report->places.end()) found.emplace_back(packet.t, catalogue.read(*place, view->source_data()));
-      return found.size() < most_samples;
+      return found.size() < most;
     });
   if (sids.size() > 1) std::ranges::stable_sort(found, {}, &std::pair<OnboardTime, double>::first);
   for (const auto& [t, value] : found) take(t, value);
+  return found.size() < most;
 }
 
 HttpResponse Api::history(const Target& target) {
@@ -360,9 +373,11 @@ HttpResponse Api::history(const Target& target) {
   const auto points = static_cast<std::size_t>(
       std::clamp(wanted, static_cast<double>(fewest_points), static_cast<double>(most_points)));
   std::vector<std::pair<double, double>> found;
-  samples(session_, *column, span, [&](OnboardTime t, double value) { found.emplace_back(json_time(t), value); });
+  const bool complete = samples(session_, *column, span, most_samples,
+                                [&](OnboardTime t, double value) { found.emplace_back(json_time(t), value); });
   json result{{"parameter", name},
               {"unit", session_.catalogue().columns()[*column].unit},
+              {"complete", complete},
               {"gaps", gaps_json(session_.archive().gaps(span))}};
   if (found.size() > points) {
     // From the first sample on: an open beginning must not put all of them into one bucket.
@@ -389,16 +404,22 @@ HttpResponse Api::csv(const Target& target) {
   if (names.empty() || names.size() > most_columns) return error(400, "parameter: 1 to 64 of them are wanted");
   const Span span = span_of(target, default_span_s);
   std::map<OnboardTime, std::vector<std::optional<double>>> rows;
+  std::size_t samples_left = most_samples;
   std::string body = "t";
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto column = session_.catalogue().find_column(names[i]);
     if (!column) return error(404, "no parameter '" + names[i] + "'");
     body += "," + names[i];
-    samples(session_, *column, span, [&](OnboardTime t, double value) {
+    bool fits = true;
+    const bool whole = samples(session_, *column, span, samples_left, [&](OnboardTime t, double value) {
+      --samples_left;
+      fits = fits && rows.size() * names.size() < most_csv_cells;
+      if (!fits) return;
       auto& row = rows[t];
       row.resize(names.size());
       row[i] = value;
     });
+    if (!whole || !fits) return error(413, "more than 1,000,000 samples: ask for a shorter span or fewer parameters");
   }
   body += "\n";
   for (const auto& [t, row] : rows) {
@@ -424,10 +445,12 @@ json Api::timeline(const Target& target) {
     if (change.kind == "link")
       links.push_back({{"t", t}, {"id", std::atoi(change.name.c_str())}, {"up", change.value == "up"}});
   }
-  const Archive::Filter filter{.span = span, .text = {}, .limit = most_rows, .newest_first = false};
+  // Of too many the newest, like of all else.
+  const Archive::Filter filter{.span = span, .text = {}, .limit = most_rows, .newest_first = true};
   json commands = json::array(), events = json::array(), faults = json::array();
-  for (const auto& command : session_.archive().commands(filter)) commands.push_back(command_json(command));
-  for (const auto& event : session_.archive().events(filter)) events.push_back(event_json(event));
+  for (const auto& command : session_.archive().commands(filter) | std::views::reverse)
+    commands.push_back(command_json(command));
+  for (const auto& event : session_.archive().events(filter) | std::views::reverse) events.push_back(event_json(event));
   for (const auto& fault : session_.archive().faults(span))
     faults.push_back(
         {{"t", json_time(fault.t)}, {"device", fault.device}, {"line", fault.line}, {"answer", fault.answer}});

@@ -78,8 +78,8 @@ class Api final : public Application {
 /// GET /api/mission.
 [[nodiscard]] nlohmann::json mission_json(const Catalogue& catalogue, std::span<const Transition> transitions);
 
-/// Samples of one column in a span, oldest first. Calls `take(t, value)`.
-void samples(Session& session, std::size_t column, const Span& span,
-             const std::function<void(OnboardTime, double)>& take);
+/// Samples of one column in a span, oldest first. Calls `take(t, value)`. False: there were `most` or more.
+[[nodiscard]] bool samples(Session& session, std::size_t column, const Span& span, std::size_t most,
+                           const std::function<void(OnboardTime, double)>& take);
 
 }  // namespace hirosco::ground

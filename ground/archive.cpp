@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 namespace hirosco::ground {
@@ -39,6 +40,7 @@ constexpr const char* schema = R"(
     answer TEXT NOT NULL);
 )";
 constexpr int busy_limit_ms = 2000;
+constexpr std::int64_t most_rows = 10'000;
 
 [[nodiscard]] std::int64_t ns(OnboardTime t) noexcept { return t.time_since_epoch().count(); }
 [[nodiscard]] OnboardTime time_of(std::int64_t value) noexcept { return OnboardTime{Duration{value}}; }
@@ -58,8 +60,8 @@ constexpr int busy_limit_ms = 2000;
 /// One prepared statement: values in, rows out.
 class Archive::Statement {
  public:
-  Statement(sqlite3* database, const char* sql) {
-    static_cast<void>(sqlite3_prepare_v2(database, sql, -1, &statement_, nullptr));
+  Statement(Archive& archive, const std::string& sql) : archive_{archive} {
+    static_cast<void>(sqlite3_prepare_v2(archive.database_, sql.c_str(), -1, &statement_, nullptr));
   }
   ~Statement() { sqlite3_finalize(statement_); }
   Statement(const Statement&) = delete;
@@ -82,7 +84,9 @@ class Archive::Statement {
   }
   [[nodiscard]] bool row() {
     read_ = 0;
-    return sqlite3_step(statement_) == SQLITE_ROW;
+    const int result = sqlite3_step(statement_);
+    if (result != SQLITE_ROW && result != SQLITE_DONE) ++archive_.failures_;
+    return result == SQLITE_ROW;
   }
   [[nodiscard]] bool run() { return sqlite3_step(statement_) == SQLITE_DONE; }
 
@@ -109,6 +113,7 @@ class Archive::Statement {
   }
 
  private:
+  Archive& archive_;
   sqlite3_stmt* statement_{nullptr};
   int bound_{0};
   int read_{0};
@@ -154,17 +159,29 @@ void Archive::commit() {
 
 void Archive::keep_within_limit() {
   commit();
-  const auto value = [this](const char* sql) {
-    Statement statement{database_, sql};
+  const auto value = [this](const std::string& sql) {
+    Statement statement{*this, sql};
     return statement.row() ? statement.integer() : 0;
   };
   const std::int64_t used = (value("PRAGMA page_count") - value("PRAGMA freelist_count")) * value("PRAGMA page_size");
   if (used < limit_octets_) return;
-  const std::int64_t oldest = value("SELECT min(id) FROM packets");
-  const std::int64_t newest = value("SELECT max(id) FROM packets");
-  Statement remove{database_, "DELETE FROM packets WHERE id <= ?"};
-  remove << oldest + (newest - oldest) / 10;
-  if (!remove.run()) ++failures_;
+  // Little at a time, since the live view waits; of every table the same share.
+  constexpr std::int64_t most_packets = 5000;
+  const auto size = [&](const std::string& table) {
+    const std::int64_t oldest = value("SELECT min(id) FROM " + table);
+    return std::pair{oldest, value("SELECT max(id) FROM " + table) - oldest + 1};
+  };
+  const std::int64_t packets = size("packets").second;
+  const std::int64_t removed = std::min(most_packets, packets / 10 + 1);
+  begin();
+  for (const char* table : {"packets", "events", "commands", "reports", "changes", "gaps", "faults"}) {
+    const auto [oldest, count] = size(table);
+    Statement remove{*this, "DELETE FROM " + std::string{table} + " WHERE id < ?"};
+    remove << oldest + static_cast<std::int64_t>(static_cast<double>(count) * static_cast<double>(removed) /
+                                                 static_cast<double>(packets));
+    if (!remove.run()) ++failures_;
+  }
+  commit();
 }
 
 void Archive::add(const StoredPacket& packet, Octets octets) {
@@ -182,7 +199,7 @@ void Archive::add(const StoredPacket& packet, Octets octets) {
 
 void Archive::add(const StoredEvent& event) {
   begin();
-  Statement add{database_,
+  Statement add{*this,
                 "INSERT INTO events(t, apid, subsystem, event, name, severity, text, vals) VALUES(?,?,?,?,?,?,?,?)"};
   add << event.t << event.apid << event.subsystem << event.id << event.name << event.severity << event.text
       << event.values;
@@ -191,48 +208,50 @@ void Archive::add(const StoredEvent& event) {
 
 std::int64_t Archive::add(const StoredCommand& command) {
   begin();
-  Statement add{database_,
+  Statement add{*this,
                 "INSERT INTO commands(t, sender, apid, subsystem, function, arguments, stage, code, reason) "
                 "VALUES(?,?,?,?,?,?,?,?,?)"};
   add << command.t << command.sender << command.apid << command.subsystem << command.function << command.arguments
       << command.stage << command.code << command.reason;
-  if (!add.run()) ++failures_;
-  return sqlite3_last_insert_rowid(database_);
+  if (add.run()) return sqlite3_last_insert_rowid(database_);
+  // The number of whatever was added last would give its reports to a stranger.
+  ++failures_;
+  return 0;
 }
 
 void Archive::add(std::int64_t command, const StoredReport& report) {
   begin();
-  Statement add{database_, "INSERT INTO reports(command, t, stage, code, reason) VALUES(?,?,?,?,?)"};
+  Statement add{*this, "INSERT INTO reports(command, t, stage, code, reason) VALUES(?,?,?,?,?)"};
   add << command << report.t << report.stage << report.code << report.reason;
-  Statement update{database_, "UPDATE commands SET stage=?, code=?, reason=? WHERE id=?"};
+  Statement update{*this, "UPDATE commands SET stage=?, code=?, reason=? WHERE id=?"};
   update << report.stage << report.code << report.reason << command;
   if (!add.run() || !update.run()) ++failures_;
 }
 
 void Archive::add(const StoredChange& change) {
   begin();
-  Statement add{database_, "INSERT INTO changes(t, kind, name, value) VALUES(?,?,?,?)"};
+  Statement add{*this, "INSERT INTO changes(t, kind, name, value) VALUES(?,?,?,?)"};
   add << change.t << change.kind << change.name << change.value;
   if (!add.run()) ++failures_;
 }
 
 void Archive::add(const StoredGap& gap) {
   begin();
-  Statement add{database_, "INSERT INTO gaps(t, until) VALUES(?,?)"};
+  Statement add{*this, "INSERT INTO gaps(t, until) VALUES(?,?)"};
   add << gap.from << gap.to;
   if (!add.run()) ++failures_;
 }
 
 void Archive::add(const StoredFault& fault) {
   begin();
-  Statement add{database_, "INSERT INTO faults(t, device, line, answer) VALUES(?,?,?,?)"};
+  Statement add{*this, "INSERT INTO faults(t, device, line, answer) VALUES(?,?,?,?)"};
   add << fault.t << fault.device << fault.line << fault.answer;
   if (!add.run()) ++failures_;
 }
 
 std::optional<Span> Archive::extent() {
-  Statement find{database_, "SELECT min(t), max(t), count(*) FROM (SELECT t FROM packets ORDER BY t LIMIT 1)"};
-  Statement last{database_, "SELECT max(t) FROM packets"};
+  Statement find{*this, "SELECT min(t), max(t), count(*) FROM (SELECT t FROM packets ORDER BY t LIMIT 1)"};
+  Statement last{*this, "SELECT max(t) FROM packets"};
   if (!find.row() || !last.row()) return std::nullopt;
   Span span;
   span.from = find.time();
@@ -243,7 +262,7 @@ std::optional<Span> Archive::extent() {
 }
 
 void Archive::packets(const Span& span, const std::function<bool(const StoredPacket&)>& take) {
-  Statement find{database_,
+  Statement find{*this,
                  "SELECT t, apid, service, subtype, sid, octets FROM packets WHERE t >= ? AND t <= ? ORDER BY t, id"};
   find << span.from << span.to;
   while (find.row()) {
@@ -259,7 +278,7 @@ void Archive::packets(const Span& span, const std::function<bool(const StoredPac
 
 void Archive::packets_of(std::uint16_t apid, std::uint16_t sid, const Span& span,
                          const std::function<bool(const StoredPacket&)>& take) {
-  Statement find{database_,
+  Statement find{*this,
                  "SELECT t, octets FROM packets WHERE apid = ? AND sid = ? AND sid != 0 AND t >= ? AND t <= ? "
                  "ORDER BY t"};
   find << apid << sid << span.from << span.to;
@@ -272,7 +291,7 @@ void Archive::packets_of(std::uint16_t apid, std::uint16_t sid, const Span& span
 }
 
 std::optional<StoredPacket> Archive::last_of(std::uint16_t apid, std::uint16_t sid, OnboardTime before) {
-  Statement find{database_,
+  Statement find{*this,
                  "SELECT t, octets FROM packets WHERE apid = ? AND sid = ? AND sid != 0 AND t <= ? "
                  "ORDER BY t DESC LIMIT 1"};
   find << apid << sid << before;
@@ -291,7 +310,7 @@ std::vector<StoredEvent> Archive::events(const Filter& filter) {
                         : "SELECT t, apid, subsystem, event, name, severity, text, vals FROM events WHERE t >= ? AND "
                           "t <= ? AND severity >= ? AND (subsystem || ' ' || name || ' ' || text) LIKE ? ESCAPE '\\' "
                           "ORDER BY t, id LIMIT ?";
-  Statement find{database_, sql};
+  Statement find{*this, sql};
   find << filter.span.from << filter.span.to << filter.severity << pattern_of(filter.text)
        << static_cast<std::int64_t>(filter.limit);
   std::vector<StoredEvent> events;
@@ -338,7 +357,7 @@ std::vector<StoredCommand> Archive::commands(const Filter& filter) {
                         : "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM "
                           "commands WHERE t >= ? AND t <= ? AND (subsystem || ' ' || function || ' ' || sender) LIKE ? "
                           "ESCAPE '\\' ORDER BY t, id LIMIT ?";
-  Statement find{database_, sql};
+  Statement find{*this, sql};
   find << filter.span.from << filter.span.to << pattern_of(filter.text) << static_cast<std::int64_t>(filter.limit);
   std::vector<StoredCommand> commands;
   while (find.row()) commands.push_back(command_of(find));
@@ -346,7 +365,7 @@ std::vector<StoredCommand> Archive::commands(const Filter& filter) {
 }
 
 std::optional<StoredCommand> Archive::command(std::int64_t number) {
-  Statement find{database_,
+  Statement find{*this,
                  "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM commands "
                  "WHERE id = ?"};
   find << number;
@@ -355,7 +374,7 @@ std::optional<StoredCommand> Archive::command(std::int64_t number) {
 }
 
 std::vector<StoredReport> Archive::reports(std::int64_t command) {
-  Statement find{database_, "SELECT t, stage, code, reason FROM reports WHERE command = ? ORDER BY id"};
+  Statement find{*this, "SELECT t, stage, code, reason FROM reports WHERE command = ? ORDER BY id"};
   find << command;
   std::vector<StoredReport> reports;
   while (find.row()) {
@@ -367,8 +386,7 @@ std::vector<StoredReport> Archive::reports(std::int64_t command) {
 }
 
 std::vector<std::pair<std::int64_t, StoredReport>> Archive::reports_in(const Span& span) {
-  Statement find{database_,
-                 "SELECT command, t, stage, code, reason FROM reports WHERE t >= ? AND t <= ? ORDER BY t, id"};
+  Statement find{*this, "SELECT command, t, stage, code, reason FROM reports WHERE t >= ? AND t <= ? ORDER BY t, id"};
   find << span.from << span.to;
   std::vector<std::pair<std::int64_t, StoredReport>> reports;
   while (find.row()) {
@@ -380,29 +398,37 @@ std::vector<std::pair<std::int64_t, StoredReport>> Archive::reports_in(const Spa
   return reports;
 }
 
-std::vector<StoredChange> Archive::changes(const Span& span) {
-  std::vector<StoredChange> changes;
-  const auto take = [&](Statement& find) {
+std::vector<StoredChange> Archive::changes(Span span) {
+  const auto rows = [](Statement& find) {
+    std::vector<StoredChange> changes;
     while (find.row()) {
       StoredChange change{.t = find.time(), .kind = find.text(), .name = find.text(), .value = {}};
       change.value = find.text();
       changes.push_back(std::move(change));
     }
+    return changes;
   };
+  Statement newest{*this,
+                   "SELECT t, kind, name, value FROM (SELECT id, t, kind, name, value FROM changes WHERE t >= ? AND "
+                   "t <= ? ORDER BY t DESC, id DESC LIMIT ?) ORDER BY t, id"};
+  newest << span.from << span.to << most_rows;
+  const auto within = rows(newest);
+  // Too many: the story begins later, with what held then.
+  if (std::ssize(within) == most_rows) span.from = within.front().t;
   // SQLite takes the other columns from the row that has the greatest time.
-  Statement before{database_, "SELECT max(t), kind, name, value FROM changes WHERE t < ? GROUP BY kind, name"};
+  Statement before{*this, "SELECT max(t), kind, name, value FROM changes WHERE t < ? GROUP BY kind, name"};
   before << span.from;
-  take(before);
+  auto changes = rows(before);
   for (StoredChange& change : changes) change.t = span.from;
-  Statement within{database_, "SELECT t, kind, name, value FROM changes WHERE t >= ? AND t <= ? ORDER BY t, id"};
-  within << span.from << span.to;
-  take(within);
+  changes.insert(changes.end(), within.begin(), within.end());
   return changes;
 }
 
 std::vector<StoredGap> Archive::gaps(const Span& span) {
-  Statement find{database_, "SELECT t, until FROM gaps WHERE until >= ? AND t <= ? ORDER BY t"};
-  find << span.from << span.to;
+  Statement find{*this,
+                 "SELECT t, until FROM (SELECT t, until FROM gaps WHERE until >= ? AND t <= ? ORDER BY t DESC LIMIT ?) "
+                 "ORDER BY t"};
+  find << span.from << span.to << most_rows;
   std::vector<StoredGap> gaps;
   while (find.row()) {
     StoredGap gap{.from = find.time()};
@@ -413,8 +439,10 @@ std::vector<StoredGap> Archive::gaps(const Span& span) {
 }
 
 std::vector<StoredFault> Archive::faults(const Span& span) {
-  Statement find{database_, "SELECT t, device, line, answer FROM faults WHERE t >= ? AND t <= ? ORDER BY t"};
-  find << span.from << span.to;
+  Statement find{*this,
+                 "SELECT t, device, line, answer FROM (SELECT t, device, line, answer FROM faults WHERE t >= ? AND "
+                 "t <= ? ORDER BY t DESC LIMIT ?) ORDER BY t"};
+  find << span.from << span.to << most_rows;
   std::vector<StoredFault> faults;
   while (find.row()) {
     StoredFault fault{.t = find.time(), .device = find.text(), .line = find.text(), .answer = {}};

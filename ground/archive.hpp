@@ -84,7 +84,7 @@ struct Span {
 /// Thread: one.
 class Archive {
  public:
-  /// ":memory:" for one that is forgotten. Old packets make room when the file would exceed `limit_octets`.
+  /// ":memory:" for one that is forgotten. What is oldest makes room when the file would exceed `limit_octets`.
   [[nodiscard]] static Result<std::unique_ptr<Archive>> open(const std::string& path,
                                                              std::int64_t limit_octets = std::int64_t{4} << 30);
   ~Archive();
@@ -93,13 +93,14 @@ class Archive {
 
   /// What was added since the last call is kept from now on.
   void commit();
-  /// Deletes the oldest tenth of the packets when the limit is reached. Call now and then.
+  /// Deletes some of the oldest packets when the limit is reached, and the same share of all else. Call once a second.
   void keep_within_limit();
-  /// Additions and commits that the disk refused.
+  /// Additions, commits and readings that the disk refused.
   [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
 
   void add(const StoredPacket& packet, Octets octets);
   void add(const StoredEvent& event);
+  /// Its number; 0 when the disk refused it.
   [[nodiscard]] std::int64_t add(const StoredCommand& command);
   void add(std::int64_t command, const StoredReport& report);
   void add(const StoredChange& change);
@@ -117,7 +118,7 @@ class Archive {
 
   struct Filter {
     Span span;
-    int severity{0};                 ///< the lowest
+    int severity{0};  ///< the lowest
     std::string text;
     std::size_t limit{200};
     bool newest_first{true};
@@ -128,8 +129,8 @@ class Archive {
   [[nodiscard]] std::vector<StoredReport> reports(std::int64_t command);
   /// Of all commands, in order of time: number of the command and its report.
   [[nodiscard]] std::vector<std::pair<std::int64_t, StoredReport>> reports_in(const Span& span);
-  /// Begins with what held at the beginning of the span.
-  [[nodiscard]] std::vector<StoredChange> changes(const Span& span);
+  /// The newest 10,000, as of gaps and faults. Begins with what held at the beginning of the span, or of these.
+  [[nodiscard]] std::vector<StoredChange> changes(Span span);
   [[nodiscard]] std::vector<StoredGap> gaps(const Span& span);
   [[nodiscard]] std::vector<StoredFault> faults(const Span& span);
 

@@ -15,6 +15,8 @@ constexpr Duration status_period = 1s;
 constexpr double greatest_speed = 100.0;
 /// A long pause of the server is not caught up in one leap.
 constexpr Duration longest_step = 500ms;
+/// Events in one step of a replay.
+constexpr std::size_t most_events = 1000;
 constexpr std::uint16_t try_again_later = 1013;
 constexpr const char* version = "0.1.0";
 
@@ -76,7 +78,7 @@ void Client::show(const Model& model, OnboardTime at, TimePoint now, bool replay
 }
 
 void Client::received(const std::string& text) {
-  const json message = json::parse(text, nullptr, false);
+  const json message = parsed_request(text);
   const auto number = [&](const char* name) {
     const auto found = message.find(name);
     return message.is_object() && found != message.end() && found->is_number() ? std::optional{found->get<double>()}
@@ -134,13 +136,19 @@ void Client::play(TimePoint now) {
   const OnboardTime before = replay_->at;
   const auto ahead = Duration{static_cast<std::int64_t>(static_cast<double>(step.count()) * replay_->speed)};
   if (!replay_->ended && ahead > Duration{0}) {
-    replay_->at = std::min(before + ahead, replay_->end);
+    replay_->at = step_end({before + Duration{1}, std::min(before + ahead, replay_->end)});
     replay_->ended = replay_->at == replay_->end;
     tell_past({before + Duration{1}, replay_->at});
   }
   const bool playing = replay_->speed > 0.0 && before != replay_->at;
   if (playing && (replay_->ended || now - replay_->announced >= status_period)) announce_replay(now);
   show(replay_->model, replay_->at, now, true);
+}
+
+OnboardTime Client::step_end(const Span& span) const {
+  const auto events =
+      session_.archive().events({.span = span, .text = {}, .limit = most_events, .newest_first = false});
+  return events.size() < most_events ? span.to : events.back().t;
 }
 
 void Client::tell_past(const Span& span) {
@@ -154,7 +162,8 @@ void Client::tell_past(const Span& span) {
     message["replay"] = true;
     send(message);
   };
-  const Archive::Filter all{.span = span, .text = {}, .limit = 1000, .newest_first = false};
+  constexpr std::size_t no_limit = 1'000'000;
+  const Archive::Filter all{.span = span, .text = {}, .limit = no_limit, .newest_first = false};
   for (const auto& event : archive.events(all)) past(event_json(event), "event");
   for (auto& command : archive.commands(all)) {
     command.stage = "sent";

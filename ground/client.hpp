@@ -44,6 +44,8 @@ class Client {
   void show(const Model& model, OnboardTime at, TimePoint now, bool replay);
   void begin_replay(double at, double speed);
   void play(TimePoint now);
+  /// Where a step of the replay ends: a burst takes several, so that no event is left out and none chokes the page.
+  [[nodiscard]] OnboardTime step_end(const Span& span) const;
   void tell_past(const Span& span);
   void announce_replay(TimePoint now);
 

@@ -56,6 +56,21 @@ class Server;
   return message;
 }
 
+[[nodiscard]] HttpResponse brief(unsigned status, const std::string& text) {
+  return {.status = status, .body = R"({"error":")" + text + R"("})", .headers = {}};
+}
+
+/// The answer to a request that cannot be read; empty: nobody waits for one.
+[[nodiscard]] std::optional<HttpResponse> unreadable(Failure failed) {
+  if (failed == http::error::body_limit) return brief(413, "more than 64 KiB");
+  if (failed == http::error::header_limit || failed == http::error::buffer_overflow)
+    return brief(431, "more than 16 KiB before the body");
+  if (failed == http::error::end_of_stream || failed == http::error::partial_message) return std::nullopt;
+  const Failure not_understood = http::error::bad_method;
+  if (failed.category() == not_understood.category()) return brief(400, "this is not HTTP");
+  return std::nullopt;
+}
+
 /// One WebSocket. Lives while the server lists it or a handler of it is pending.
 class SocketPeer final : public Peer, public std::enable_shared_from_this<SocketPeer> {
  public:
@@ -88,7 +103,9 @@ class Connection final : public std::enable_shared_from_this<Connection> {
   Connection(Server& server, tcp::socket socket) : server_{server}, stream_{std::move(socket)} {}
   ~Connection();
   void read();
-  void drop() { stream_.close(); }
+  void drop();
+  /// Since when the next request is waited for; empty: one is being answered, or the connection ends.
+  [[nodiscard]] const std::optional<std::chrono::steady_clock::time_point>& waits_since() const { return waits_since_; }
 
  private:
   void handle();
@@ -99,6 +116,7 @@ class Connection final : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer buffer_{most_header_octets + HttpServer::most_body_octets};
   std::optional<http::request_parser<http::string_body>> parser_;
   std::optional<http::response<http::string_body>> response_;
+  std::optional<std::chrono::steady_clock::time_point> waits_since_;
 };
 
 class Server final : public HttpServer {
@@ -121,6 +139,7 @@ class Server final : public HttpServer {
 
  private:
   void accept();
+  [[nodiscard]] bool displace();
   void tick();
   void shut();
   void watch_input();
@@ -233,20 +252,24 @@ void Connection::read() {
   parser_->header_limit(most_header_octets);
   parser_->body_limit(HttpServer::most_body_octets);
   stream_.expires_after(request_limit);
+  waits_since_ = std::chrono::steady_clock::now();
   http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Failure failed, std::size_t) {
-    if (failed == http::error::body_limit) {
-      HttpResponse response{.status = 413, .body = R"({"error":"more than 64 KiB"})", .headers = {}};
-      response.headers.emplace_back("Connection", "close");
-      return self->respond(response);
-    }
-    if (!failed) self->handle();
+    self->waits_since_.reset();
+    if (!failed) return self->handle();
+    if (const auto refusal = unreadable(failed)) self->respond(*refusal);
   });
+}
+
+void Connection::drop() {
+  waits_since_.reset();
+  stream_.close();
 }
 
 void Connection::handle() {
   const HttpRequest request = plain(parser_->get());
   if (websocket::is_upgrade(parser_->get())) {
     if (const auto refusal = server_.application().refuse_socket(request)) return respond(*refusal);
+    if (server_.peers.size() >= HttpServer::most_peers) return respond(brief(503, "too many pages are open"));
     return std::make_shared<SocketPeer>(server_, std::move(stream_))->accept(parser_->release());
   }
   // Whoever answers later keeps the connection alive until then.
@@ -255,7 +278,7 @@ void Connection::handle() {
 }
 
 void Connection::respond(const HttpResponse& response) {
-  const bool keep = parser_->is_done() && parser_->keep_alive() && response.status != 413;
+  const bool keep = parser_->is_done() && parser_->keep_alive();
   const unsigned version = parser_->is_header_done() ? parser_->get().version() : 11;
   response_ = boxed(response, version, keep);
   if (parser_->is_header_done() && parser_->get().method() == http::verb::head) response_->body().clear();
@@ -334,7 +357,8 @@ void Server::shut() {
 void Server::accept() {
   acceptor_.async_accept([this](Failure failed, tcp::socket socket) {
     if (ending_) return;
-    if (!failed && connections.size() + peers.size() < most_connections) {
+    const bool full = connections.size() + peers.size() >= most_connections;
+    if (!failed && (!full || displace())) {
       Failure ignored;
       socket.set_option(tcp::no_delay{true}, ignored);
       auto connection = std::make_shared<Connection>(*this, std::move(socket));
@@ -343,6 +367,15 @@ void Server::accept() {
     }
     accept();
   });
+}
+
+bool Server::displace() {
+  Connection* idle = nullptr;
+  for (Connection* connection : connections)
+    if (connection->waits_since() && (idle == nullptr || connection->waits_since() < idle->waits_since()))
+      idle = connection;
+  if (idle != nullptr) idle->drop();
+  return idle != nullptr;
 }
 
 void Server::tick() {

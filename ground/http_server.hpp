@@ -60,7 +60,10 @@ class HttpServer {
     /// End when standard input ends: the process that started us is gone.
     bool end_with_input{false};
   };
+  /// When all are taken, a newcomer has the place of the one that has asked nothing for the longest time.
   static constexpr std::size_t most_connections = 64;
+  /// WebSockets among them: pages that only look do not keep out a request.
+  static constexpr std::size_t most_peers = 48;
   static constexpr std::size_t most_body_octets = std::size_t{64} << 10;
 
   /// Unavailable: the port is taken.

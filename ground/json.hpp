@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "hirosco/utilities/time.hpp"
 
@@ -38,6 +39,18 @@ namespace hirosco::ground {
   if (!object.is_object()) return {};
   const auto found = object.find(name);
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string{};
+}
+
+/// What a client sent; discarded when it is no JSON or nests deeper than any request: every level of a copy takes stack.
+[[nodiscard]] inline nlohmann::json parsed_request(const std::string& text) {
+  constexpr int deepest = 16;
+  bool shallow = true;
+  const auto watch = [&shallow](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+    shallow = shallow && depth <= deepest;
+    return shallow;
+  };
+  auto request = nlohmann::json::parse(text, watch, false);
+  return shallow ? std::move(request) : nlohmann::json{nlohmann::json::value_t::discarded};
 }
 
 /// Octets that are no UTF-8 are replaced instead of thrown about.

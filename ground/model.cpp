@@ -15,6 +15,8 @@ namespace {
 /// As the supervisor's descriptor has them: places in its housekeeping of everybody.
 constexpr std::size_t told_places = 16;
 constexpr std::size_t longest_text = 2000;
+/// Packets of one flight come nearly in order of time. Further back, the on-board clock has been set or began again.
+constexpr Duration latest_packet = 5s;
 
 /// Stages of ST[01] by subtype.
 constexpr std::array<std::string_view, 11> stages{"",         "accepted",  "failed", "started", "failed", "progress",
@@ -72,6 +74,7 @@ Model::Model(const Catalogue& catalogue)
 Heard Model::take(const pus::TelemetryView& packet) {
   Heard heard;
   ++revision_;
+  if (newest_ - packet.time() > latest_packet) set_back(packet.time());
   newest_ = std::max(newest_, packet.time());
   if (packet.service() == 1) heard.verdict = verdict_of(packet);
   if (packet.service() == 3 && packet.subtype() == 25) take_housekeeping(packet, heard);
@@ -87,6 +90,25 @@ Heard Model::take(const pus::TelemetryView& packet) {
     heard.telecommand.assign(packet.source_data().begin(), packet.source_data().end());
   if (!heard.changes.empty()) status_revision_ = revision_;
   return heard;
+}
+
+void Model::set_back(OnboardTime t) {
+  const auto forget = [t](OnboardTime& told) {
+    if (told > t) told = {};
+  };
+  for (Value& value : values_) {
+    if (value.t <= t) continue;
+    value.t = {};
+    value.revision = revision_;
+  }
+  for (SubsystemView& view : subsystems_) {
+    forget(view.state_at);
+    forget(view.t);
+  }
+  for (LinkView& view : links_) forget(view.up_at);
+  forget(overview_at_);
+  newest_ = t;
+  status_revision_ = revision_;
 }
 
 void Model::take_housekeeping(const pus::TelemetryView& packet, Heard& heard) {

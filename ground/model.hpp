@@ -93,6 +93,8 @@ class Model {
   [[nodiscard]] std::string waits_for(std::size_t subsystem) const;
 
  private:
+  /// What was told at times that have not been yet is as old as can be, and everything newer than `t` counts again.
+  void set_back(OnboardTime t);
   void take_housekeeping(const pus::TelemetryView& packet, Heard& heard);
   void take_overview(OnboardTime t, Heard& heard);
   void take_links(OnboardTime t, Duration since, Heard& heard);

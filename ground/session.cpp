@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr Duration question_limit = 2s;
 /// No function of the shipped subsystems runs longer; what comes later is still in the archive as a packet.
 constexpr Duration command_limit = 600s;
-constexpr Duration housekeeping_period = 10s;
+constexpr Duration housekeeping_period = 1s;
 constexpr std::uint16_t count_modulo = 16'384;
 constexpr std::size_t longest_sender = 32;
 constexpr std::size_t most_open_commands = 10'000;
@@ -288,7 +288,9 @@ Answered<Session::Prepared> Session::prepare(const json& body) const {
   const auto functions = parts_.catalogue.functions_of(*subsystem);
   const auto function = std::ranges::find(functions, wanted, &descriptor::Function::name);
   if (function == functions.end()) return refuse(400, name + " has no function '" + wanted + "'");
-  const json given = body.value("arguments", json::object());
+  const json none = json::object();
+  const auto named = body.find("arguments");
+  const json& given = named != body.end() ? *named : none;
   if (!given.is_object()) return refuse(400, "arguments: an object {name: value} is wanted");
   for (const auto& [argument, unused] : given.items())
     if (std::ranges::none_of(function->arguments, [&](const auto& known) { return known.field.name == argument; }))
@@ -412,13 +414,15 @@ void Session::fault(const json& body, std::function<void(Answered<json>)> done) 
   constexpr std::size_t longest_line = 255;
   if (line.empty() || line.size() > longest_line || std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' '; }))
     return done(refuse(400, "line: one line of text is wanted"));
-  parts_.outside.ask_device(device, line, [this, device, line, done](std::optional<std::string> answer) {
-    if (!answer) return done(refuse(503, "the device does not answer"));
-    const StoredFault fault{now(), device, line, *answer};
-    parts_.archive.add(fault);
-    broadcast({{"type", "fault"}, {"t", json_time(fault.t)}, {"device", device}, {"line", line}, {"answer", *answer}});
-    done(json{{"answer", *answer}});
-  });
+  parts_.outside.ask_device(
+      device, line, [this, device, line, done = std::move(done)](std::optional<std::string> answer) {
+        if (!answer) return done(refuse(503, "the device does not answer"));
+        const StoredFault fault{now(), device, line, *answer};
+        parts_.archive.add(fault);
+        broadcast(
+            {{"type", "fault"}, {"t", json_time(fault.t)}, {"device", device}, {"line", line}, {"answer", *answer}});
+        done(json{{"answer", *answer}});
+      });
 }
 
 json Session::link_json() const {

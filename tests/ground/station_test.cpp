@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <fstream>
 
 #include "hirosco/pus/housekeeping_decoder.hpp"
 #include "hirosco/pus/st08_function.hpp"
@@ -497,9 +498,209 @@ TEST_F(GroundStation, AStalledPageLosesHousekeepingNotEventsAndTheOthersNothing)
   EXPECT_EQ(good.closed_with, 0);
 }
 
-TEST(GroundArchive, ARestartedGatewayStillKnowsAndShowsItsAbsenceAsAGap) {
+/// A packet of the spacecraft as its link would bring it, at a time and with data of our choice.
+[[nodiscard]] std::vector<std::byte> telemetry(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype,
+                                               OnboardTime t, Octets data) {
+  std::array<std::byte, pus::max_telemetry_octets> buffer;
+  const auto written =
+      pus::write_telemetry(buffer, {.apid = apid, .service = service, .subtype = subtype, .time = t}, data);
+  EXPECT_TRUE(written);
+  return {written->begin(), written->end()};
+}
+[[nodiscard]] std::vector<std::byte> joints(OnboardTime t, double first) {
+  std::array<std::byte, 256> buffer;
+  OctetWriter writer{buffer};
+  writer.put(std::uint16_t{4713});
+  for (int i = 0; i < 8; ++i) writer.put(i == 0 ? first : 0.0);
+  return telemetry(10, 3, 25, t, Octets{buffer}.first(writer.size()));
+}
+constexpr OnboardTime noon{std::chrono::seconds{2'145'916'900}};
+constexpr const char* first_joint = "MANIPULATOR.CUR_VALUES.POSITION[0]";
+
+TEST_F(GroundStation, ASpacecraftThatBeginsAgainWithAnEarlierClockIsShownAndWhatItHasNotToldAgainIsOld) {
+  ASSERT_TRUE(station.session().receive(joints(noon, 1.0)));
+  const std::vector<std::byte> event(2);
+  ASSERT_TRUE(station.session().receive(telemetry(11, 5, 1, noon - 1h, event)));
+  json status = station.get("/api/status");
+  EXPECT_NEAR(status["t"].get<double>(), 2'145'916'900.0 - 3600.0, 1.0);
+  EXPECT_EQ(status["values"][first_joint]["v"], 1);
+  EXPECT_GT(status["values"][first_joint]["age_s"].get<double>(), 1e6);
+  ASSERT_TRUE(station.session().receive(joints(noon - 1h, 2.0)));
+  status = station.get("/api/status");
+  EXPECT_EQ(status["values"][first_joint]["v"], 2);
+  EXPECT_NEAR(status["values"][first_joint]["age_s"].get<double>(), 0.0, 1.0);
+}
+
+TEST_F(GroundStation, PacketsThatOvertookEachOtherLeaveTheNewestValue) {
+  ASSERT_TRUE(station.session().receive(joints(noon, 1.0)));
+  ASSERT_TRUE(station.session().receive(joints(noon - 100ms, 2.0)));
+  EXPECT_EQ(station.get("/api/status")["values"][first_joint]["v"], 1);
+}
+
+TEST_F(GroundStation, AReplayLeavesOutNoEventOfABurst) {
+  const std::vector<std::byte> event(2);
+  constexpr std::size_t burst = 3500;
+  for (std::size_t i = 0; i < burst; ++i)
+    ASSERT_TRUE(station.session().receive(telemetry(11, 5, 1, noon + 1s + i * 10us, event)));
+  ASSERT_TRUE(station.session().receive(joints(noon + 3s, 1.0)));
+  ASSERT_TRUE(station.session().receive(joints(noon, 1.0)));
+  Page page;
+  station.session().opened(page, true);
+  page.messages.clear();
+  station.session().received(page, json{{"type", "replay"}, {"at", 2'145'916'900.0}, {"speed", 100}}.dump());
+  ASSERT_TRUE(station.run_until([&] { return page.last("replay")["state"] == "ended"; }));
+  EXPECT_EQ(page.of_type("event").size(), burst);
+}
+
+TEST_F(GroundStation, ATimelineWithTooManyEventsHasTheNewest) {
+  const std::vector<std::byte> event(2);
+  for (int i = 0; i < 10'500; ++i) ASSERT_TRUE(station.session().receive(telemetry(11, 5, 1, noon + i * 1ms, event)));
+  const json events = station.get("/api/timeline?from=2145916800&to=2145917000")["events"];
+  ASSERT_EQ(events.size(), 10'000U);
+  EXPECT_NEAR(events.front()["t"].get<double>(), 2'145'916'900.5, 0.001);
+  EXPECT_NEAR(events.back()["t"].get<double>(), 2'145'916'910.499, 0.001);
+}
+
+TEST_F(GroundStation, ARequestThatNestsDeeperThanAnyIsRefused) {
+  const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+  ground::Api api{station.session(), {.token = "t", .observer_token = {}, .page = {}, .transitions = {}}};
+  ground::HttpResponse answer;
+  const std::string body = R"({"subsystem":"JOYSTICK","function":"PING","arguments":)" + nested(32'000) + "}";
+  api.handle({"POST", "/api/commands", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer t"}}, body},
+             [&](ground::HttpResponse response) { answer = std::move(response); });
+  EXPECT_EQ(answer.status, 400U);
+  EXPECT_THAT(answer.body, HasSubstr("a JSON object is wanted"));
+}
+
+TEST_F(GroundStation, WhatIsNoNumberOrSeverityIsNamedInsteadOfIgnored) {
+  const auto error = [&](const char* target) {
+    const auto answer = station.ask("GET", target);
+    EXPECT_EQ(answer.status, 400U) << target;
+    return json::parse(answer.body)["error"].get<std::string>();
+  };
+  EXPECT_EQ(error("/api/history?parameter=MANIPULATOR.TIP_FORCE[0]&points=many"), "points: a number is wanted");
+  EXPECT_EQ(error("/api/timeline?from=nan"), "from: a number is wanted");
+  EXPECT_EQ(error("/api/events?severity=urgent"), "severity: info, low, medium or high is wanted");
+  EXPECT_EQ(station.ask("GET", "/api/events?from=&to=&severity=").status, 200U);
+}
+
+TEST_F(GroundStation, AnExportThatWouldHoldUpTheLiveViewIsRefused) {
+  // As many columns as a request may have: each of them is a reading of the whole span.
+  for (int i = 0; i < 20'000; ++i) ASSERT_TRUE(station.session().receive(joints(noon + i * 10ms, 1.0)));
+  std::string target = "/api/export.csv?from=2145916800&to=2145917200";
+  for (int i = 0; i < 64; ++i) target += "&parameter=" + std::string{first_joint};
+  EXPECT_EQ(station.ask("GET", target).status, 413U);
+  const auto one =
+      station.ask("GET", "/api/export.csv?from=2145916800&to=2145917200&parameter=" + std::string{first_joint});
+  EXPECT_EQ(one.status, 200U);
+  EXPECT_EQ(std::ranges::count(one.body, '\n'), 20'001);
+}
+
+class GroundArchive : public ::testing::Test {
+ protected:
+  GroundArchive() { std::remove(file.c_str()); }
+  ~GroundArchive() override { std::remove(file.c_str()); }
   const std::string file = ::testing::TempDir() + "ground-archive.db";
-  std::remove(file.c_str());
+};
+
+TEST_F(GroundArchive, AFloodOfEventsDoesNotGrowItBeyondItsLimit) {
+  constexpr std::int64_t limit = 1 << 20;
+  auto archive = ground::Archive::open(file, limit);
+  ASSERT_TRUE(archive);
+  const std::string text(200, 'x');
+  const std::vector<std::byte> octets(100);
+  for (int second = 0; second < 200; ++second) {
+    for (int i = 0; i < 100; ++i) {
+      const OnboardTime t = noon + second * 1s + i * 1ms;
+      (*archive)->add(ground::StoredPacket{.t = t, .apid = 11, .service = 5, .subtype = 1, .octets = {}}, octets);
+      (*archive)->add(ground::StoredEvent{.t = t, .subsystem = "A", .name = "B", .text = text, .values = "{}"});
+    }
+    (*archive)->keep_within_limit();
+  }
+  EXPECT_LT(std::filesystem::file_size(file), 2 * limit);
+  const auto newest = (*archive)->events({.span = {}, .text = {}, .limit = 1});
+  ASSERT_EQ(newest.size(), 1U);
+  EXPECT_EQ(newest[0].t, noon + 199s + 99ms);
+  const auto extent = (*archive)->extent();
+  ASSERT_TRUE(extent);
+  EXPECT_GT(extent->from, noon + 1s);
+  EXPECT_EQ(extent->to, noon + 199s + 99ms);
+  EXPECT_EQ((*archive)->failures(), 0U);
+}
+
+TEST_F(GroundArchive, ThatIsDamagedSaysSoAndAnswersWithWhatItHas) {
+  const std::vector<std::byte> octets(500);
+  {
+    auto archive = ground::Archive::open(file);
+    ASSERT_TRUE(archive);
+    for (int i = 0; i < 1000; ++i)
+      (*archive)->add(ground::StoredPacket{.t = noon + i * 1s, .apid = 10, .sid = 1, .octets = {}}, octets);
+  }
+  std::fstream disk{file, std::ios::in | std::ios::out | std::ios::binary};
+  const std::string junk(300'000, '\xA5');
+  disk.seekp(100'000);
+  disk << junk;
+  disk.close();
+  auto archive = ground::Archive::open(file);
+  ASSERT_TRUE(archive);
+  std::size_t read = 0;
+  (*archive)->packets({}, [&](const ground::StoredPacket&) { return ++read > 0; });
+  EXPECT_LT(read, 1000U);
+  EXPECT_GT((*archive)->failures(), 0U);
+}
+
+[[nodiscard]] json resolved(const json& document, const json& part) {
+  return part.contains("$ref") ? document.at(json::json_pointer{part["$ref"].get<std::string>().substr(1)}) : part;
+}
+
+/// Whatever is answered stands in the document, to the last field.
+void expect_described(const json& document, const json& part, const json& answer, const std::string& where) {
+  const json schema = resolved(document, part);
+  if (answer.is_array() && schema.contains("items"))
+    for (const json& one : answer) expect_described(document, schema["items"], one, where + "[]");
+  if (!answer.is_object() || schema.value("additionalProperties", json{}) == json(true)) return;
+  for (const auto& [name, value] : answer.items()) {
+    const json known = schema.value("properties", json::object());
+    const bool described = known.contains(name) || schema.contains("additionalProperties");
+    EXPECT_TRUE(described) << where << "." << name;
+    if (described)
+      expect_described(document, known.contains(name) ? known[name] : schema["additionalProperties"], value,
+                       where + "." + name);
+  }
+}
+
+/// Every operation of openapi.json is asked: it is there, wants the token, and answers as the document says.
+TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
+  commission();
+  std::ifstream file{std::filesystem::path{HIROSCO_SOURCE_DIR} / "ground/api/openapi.json"};
+  const json document = json::parse(file);
+  const std::string span = "?parameter=" + std::string{first_joint};
+  const json command{{"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"}};
+  for (const auto& [path, methods] : document["paths"].items())
+    for (const auto& [method, operation] : methods.items()) {
+      SCOPED_TRACE(method + " " + path);
+      const bool posts = method == "post";
+      const json& responses = operation["responses"];
+      const auto ask = [&](std::map<std::string, std::string> headers, const json& body) {
+        const auto answer = station.ask(posts ? "POST" : "GET", path + span, body, std::move(headers));
+        EXPECT_TRUE(responses.contains(std::to_string(answer.status))) << answer.status << answer.body.substr(0, 100);
+        return answer;
+      };
+      EXPECT_EQ(ask({{"authorization", ""}}, {}).status, 401U);
+      EXPECT_EQ(ask({{"host", "evil.example"}}, {}).status, 403U);
+      if (posts) {
+        EXPECT_EQ(ask({}, json::array()).status, 400U);
+      }
+      const auto answer = ask({}, posts ? command : json{});
+      EXPECT_EQ(answer.status / 100, 2U) << answer.body;
+      const json content = resolved(document, responses[std::to_string(answer.status)])["content"];
+      ASSERT_TRUE(content.contains(answer.type.substr(0, answer.type.find(';')))) << answer.type;
+      if (answer.type != "application/json") continue;
+      expect_described(document, content["application/json"]["schema"], json::parse(answer.body), path);
+    }
+}
+
+TEST_F(GroundArchive, ARestartedGatewayStillKnowsAndShowsItsAbsenceAsAGap) {
   Flight flight{rokviss()};
   std::size_t events = 0;
   {
@@ -516,7 +717,6 @@ TEST(GroundArchive, ARestartedGatewayStillKnowsAndShowsItsAbsenceAsAGap) {
   const json history = station.get("/api/history?parameter=MANIPULATOR.TIP_FORCE[0]&last=60");
   ASSERT_EQ(history["gaps"].size(), 1U);
   EXPECT_GE(history["t"].size(), 10U);
-  std::remove(file.c_str());
 }
 
 TEST_F(GroundStation, OnlyWhoKnowsTheTokenFromThisComputerMayAskAndObserversMayNotCommand) {

@@ -1,0 +1,123 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Hostile neighbours of a running ground station: clients that hold connections, send what is no request, or would command
+without being allowed to, and a spacecraft that sends anything in valid packets. Python's standard library only."""
+import json
+import os
+import random
+import socket
+import struct
+import tempfile
+import time
+import unittest
+import urllib.error
+import urllib.request
+
+import flight
+from ground_test import TOKEN, Gateway, Listener, WebSocket, crc16, event_packet
+
+OBSERVER = "an-observer-s-token"
+EPOCH_S = 378_691_237       # on-board time of 1970-01-01
+
+
+def anything(noise, count, now):
+    """A valid packet with whatever in it, of known and unknown subsystems, services, structures and events."""
+    service = noise.choice([1, 3, 3, 5, 5, 17, 129, 200])
+    subtype = {3: 25, 5: noise.randint(0, 5), 129: noise.randint(1, 3)}.get(service, noise.randint(0, 11))
+    data = noise.randbytes(noise.choice([0, 1, 2, 3, 8, 30, 66, 200, 900]))
+    if service in (3, 5):
+        data = struct.pack(">H", noise.choice([*range(1, 30), 1000, 1010, 4712, 4713, 65535])) + data
+    source = struct.pack(">BBBHH", 0x20, service, subtype, count & 0xFFFF, noise.choice([0, 1, 777, 0x2000])) + \
+        struct.pack(">I", noise.choice([0, now, now, 0xFFFFFFFF])) + noise.randbytes(3) + data
+    head = struct.pack(">HHH", 0x0800 | noise.choice([1, 10, 11, 12, 500]), 0xC000 | noise.getrandbits(14), len(source) + 1)
+    return head + source + struct.pack(">H", crc16(head + source))
+
+
+class Attack(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        os.environ["HIROSCO_GROUND_OBSERVER_TOKEN"] = OBSERVER
+        cls.folder = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.server = cls.enterClassContext(socket.create_server(("127.0.0.1", 0)))
+        cls.gateway = cls.enterClassContext(Gateway(cls.folder, telemetry=f"127.0.0.1:{cls.server.getsockname()[1]}"))
+        cls.craft = cls.enterClassContext(cls.server.accept()[0])
+
+    def answer_to(self, octets):
+        """The first line that comes back."""
+        with socket.create_connection(("127.0.0.1", self.gateway.port)) as client:
+            client.settimeout(10.0)
+            client.sendall(octets)
+            return client.recv(4096).split(b"\r\n")[0].decode()
+
+    def head(self, method, path, **headers):
+        headers = {"Host": f"127.0.0.1:{self.gateway.port}", "Authorization": f"Bearer {TOKEN}", **headers}
+        return "\r\n".join([f"{method} {path} HTTP/1.1", *(f"{name}: {text}" for name, text in headers.items()), "", ""]).encode()
+
+    def test_connections_that_ask_nothing_make_room_for_one_that_does(self):
+        idle = [socket.create_connection(("127.0.0.1", self.gateway.port)) for _ in range(100)]
+        for one in idle[::2]:
+            one.sendall(b"GET /api/sta")
+        for _ in range(5):
+            self.assertIn("link", self.gateway.request("/api/status"))
+        for one in idle:
+            one.close()
+
+    def test_pages_that_only_look_leave_room_for_a_telecommand(self):
+        pages = [WebSocket(self.gateway) for _ in range(48)]
+        upgrade = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+                   "Sec-WebSocket-Version": "13"}
+        self.assertIn(" 503 ", self.answer_to(self.head("GET", f"/ws?token={TOKEN}", **upgrade)))
+        self.assertIn("link", self.gateway.request("/api/status"))
+        for one in pages:
+            one.close()
+
+    def test_what_is_no_request_is_told_so(self):
+        self.assertIn(" 431 ", self.answer_to(self.head("GET", "/api/status", **{"X-Long": "a" * 20_000})))
+        self.assertIn(" 400 ", self.answer_to(b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"))
+        self.assertIn(" 413 ", self.answer_to(self.head("POST", "/api/commands", **{"Content-Length": "70000"})))
+        deep = b'{"subsystem":"JOYSTICK","function":"PING","arguments":' + b"[" * 32_000 + b"]" * 1000
+        self.assertIn(" 400 ", self.answer_to(self.head("POST", "/api/commands", **{"Content-Length": str(len(deep))}) + deep))
+
+    def test_who_may_not_command_does_not_by_any_door(self):
+        command = b'{"subsystem":"JOYSTICK","function":"PING"}'
+        for token, status in ((OBSERVER, 403), ("wrong", 401)):
+            for path in ("/api/commands", "/api/commands/preview", "/api/faults"):
+                request = urllib.request.Request(self.gateway.base + path, command, {"Authorization": f"Bearer {token}"})
+                with self.assertRaises(urllib.error.HTTPError) as refused:
+                    urllib.request.urlopen(request, timeout=10)
+                self.assertEqual(refused.exception.code, status)
+                refused.exception.close()
+        page = WebSocket(self.gateway)
+        text = json.dumps({"type": "command", "subsystem": "JOYSTICK", "function": "PING"}).encode()
+        mask = os.urandom(4)
+        page.socket.sendall(bytes([0x81, 0x80 | len(text)]) + mask + bytes(c ^ mask[i % 4] for i, c in enumerate(text)))
+        while (message := page.receive())["type"] != "error":
+            pass
+        self.assertIn("understood are", message["error"])
+        page.close()
+        self.assertEqual(self.gateway.request("/api/status")["link"]["tx"], 0)
+
+    def test_no_valid_packet_ends_it_or_the_pages(self):
+        noise, now = random.Random(7), int(time.time()) + EPOCH_S
+        page = Listener(self.gateway)
+        before = self.gateway.request("/api/status")["link"]["rx"]
+        packets = 5000
+        for count in range(packets):
+            self.craft.sendall(anything(noise, count, now))
+        self.craft.sendall(event_packet(10, 0, now, 1010, 2, struct.pack(">Bf", 1, 60.0)))
+        status = self.gateway.until(lambda status: status["link"]["rx"] == before + packets + 1)
+        self.assertAlmostEqual(status["t"], now, delta=60.0)
+        for path in ("timeline?from=0&to=9e9", "why", "events?limit=10000", "commands?limit=10000", "export.csv"):
+            with self.subTest(path):
+                try:
+                    self.gateway.request("/api/" + path)
+                except urllib.error.HTTPError as refused:
+                    self.assertEqual((path, refused.code), ("export.csv", 400))
+                    refused.close()
+        self.assertTrue(page.is_alive())
+        page.socket.socket.shutdown(socket.SHUT_RDWR)
+        page.join()
+
+
+if __name__ == "__main__":
+    flight.main()
