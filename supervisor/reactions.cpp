@@ -194,6 +194,9 @@ void Supervisor::set_power_budget(double budget_w) {
 
 /// The last of the mission first, each with its network, until the rest fits; the ground link never.
 void Supervisor::shed_load() {
+  // Told once: a mission may have a plan that does nothing about it.
+  if (power_.newly_overdrawn())
+    engine_.raise_in_service(108, std::array{power_.budget_mw() * 1e-3, power_.reserved_mw() * 1e-3});
   if (!power_.overdrawn() || shutting_down_) return;
   const auto stays_mw = [&] {
     std::uint32_t sum_mw = power_.held_mw(1);
@@ -201,12 +204,9 @@ void Supervisor::shed_load() {
       if (!subject.going_down) sum_mw += power_.held_mw(subject.apid());
     return sum_mw;
   };
-  bool told = false;
   for (auto subject = members_.rbegin(); subject != members_.rend() && stays_mw() > power_.budget_mw(); ++subject) {
     const bool spared = subject->descriptor().name == mission_.ground.subsystem;
     if (spared || subject->going_down || power_.held_mw(subject->apid()) == 0) continue;
-    if (!std::exchange(told, true))
-      engine_.raise_in_service(108, std::array{power_.budget_mw() * 1e-3, power_.reserved_mw() * 1e-3});
     react(*subject, "LOAD_SHED", Severity::High);
   }
 }

@@ -184,6 +184,19 @@ TEST_F(Telecommands, OfTwoThatAreAskedForAtOnceOnlyWhatFitsIsGranted) {
   EXPECT_TRUE(flight.run_until_state("MANIPULATOR", State::SafeOperational, 1s));
 }
 
+TEST(PowerShort, IsToldOnceWhereTheMissionDoesNothingAboutIt) {
+  Flight flight{{.edit = [](descriptor::Mission& mission) {
+    mission.plans.insert(
+        mission.plans.begin(),
+        {.name = "bear-it", .severities = {}, .subsystem = {}, .event = "LOAD_SHED", .mode = {}, .at = {}});
+  }}};
+  ASSERT_TRUE(flight.commission());
+  EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SET_POWER_BUDGET", {50}).completed);
+  flight.craft().run(1s);
+  EXPECT_EQ(flight.story().count("SUPERVISOR high LOAD_SHED BUDGET=50 W RESERVED=105 W"), 1U);
+  EXPECT_EQ(flight.state("MANIPULATOR"), State::Operational);
+}
+
 TEST_F(Telecommands, ANetworkIsTakenApartAndMadeAgainFromGround) {
   auto& robot = flight.device<simulation::RobotDevice>("robot");
   expect_done(flight.set_mode("commissioning"));

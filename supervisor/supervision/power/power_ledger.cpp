@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hirosco::supervisor {
 namespace {
@@ -72,6 +73,11 @@ std::uint32_t PowerLedger::reserved_mw() const noexcept {
 std::uint32_t PowerLedger::held_mw(std::uint16_t apid) const noexcept {
   const auto found = std::ranges::find(reservations_, apid, &Reservation::apid);
   return found == reservations_.end() ? 0 : found->demand_mw;
+}
+
+bool PowerLedger::newly_overdrawn() noexcept {
+  const bool told = std::exchange(overdraft_told_, overdrawn());
+  return overdraft_told_ && !told;
 }
 
 PowerLedger::Reservation& PowerLedger::of(std::uint16_t apid) {

@@ -44,6 +44,8 @@ class PowerLedger {
   [[nodiscard]] std::uint32_t held_mw(std::uint16_t apid) const noexcept;
   /// More is in use than the budget carries: it was lowered, or a configuration changed behind a permission.
   [[nodiscard]] bool overdrawn() const noexcept { return limited() && reserved_mw() > budget_mw(); }
+  /// True once from when it is overdrawn until it no longer is.
+  [[nodiscard]] bool newly_overdrawn() noexcept;
 
  private:
   struct Reservation {
@@ -56,6 +58,7 @@ class PowerLedger {
 
   std::optional<std::uint32_t> budget_mw_;
   std::vector<Reservation> reservations_;
+  bool overdraft_told_{false};
 };
 
 }  // namespace hirosco::supervisor

@@ -104,6 +104,17 @@ TEST_F(PowerLedgerTest, ALoweredBudgetTakesNothingAwayButShows) {
   EXPECT_TRUE(ledger.shortage(camera, 1));
 }
 
+TEST_F(PowerLedgerTest, AnOverdraftIsNewOnceUntilItIsOver) {
+  EXPECT_FALSE(ledger.newly_overdrawn());
+  uses(arm, 101);
+  EXPECT_TRUE(ledger.newly_overdrawn());
+  EXPECT_FALSE(ledger.newly_overdrawn());
+  uses(arm, 100);
+  EXPECT_FALSE(ledger.newly_overdrawn());
+  uses(arm, 101);
+  EXPECT_TRUE(ledger.newly_overdrawn());
+}
+
 TEST(PowerLedgerProperties, WhatIsGrantedByAskingFirstNeverExceedsTheBudget) {
   std::mt19937_64 random{1};
   const auto any = [&](std::uint64_t below) { return random() % below; };
