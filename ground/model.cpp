@@ -62,6 +62,7 @@ Model::Model(const Catalogue& catalogue)
   overview_.missed = column("SUBSYSTEMS.MISSED");
   overview_.latency = column("SUBSYSTEMS.LATENCY_MAX");
   overview_.execution = column("SUBSYSTEMS.EXECUTION_MEAN");
+  overview_.memory = column("SUBSYSTEMS.MEMORY");
   overview_.link = column("LINK_STATUS.LINK");
   overview_.up = column("LINK_STATUS.IS_UP");
   overview_.samples = column("LINK_STATUS.SAMPLES");
@@ -156,6 +157,7 @@ void Model::take_overview(OnboardTime t, Heard& heard) {
     view.missed = count(overview_.missed);
     view.latency_max_ns = count(overview_.latency);
     view.execution_mean_ns = count(overview_.execution);
+    view.memory_kb = count(overview_.memory);
     const auto state = static_cast<std::uint8_t>(count(overview_.state));
     const bool runs = state <= static_cast<std::uint8_t>(descriptor::State::SoftwareDeinit);
     take_state(place, runs ? std::optional{static_cast<descriptor::State>(state)} : std::nullopt, t, heard);

@@ -31,6 +31,7 @@ struct SubsystemView {
   std::uint8_t configuration{0};
   std::uint32_t inhibited{0};
   std::uint32_t cycles{0}, overruns{0}, missed{0}, latency_max_ns{0}, execution_mean_ns{0};
+  std::uint32_t memory_kb{0};        ///< 0 = not told
 };
 
 struct LinkView {
@@ -115,7 +116,7 @@ class Model {
   OnboardTime overview_at_{};
   struct OverviewColumns {
     std::optional<std::size_t> mode, apid, state, configuration, inhibited, cycles, overruns, missed, latency,
-        execution;
+        execution, memory;
     std::optional<std::size_t> link, up, samples, age;
   };
   OverviewColumns overview_;

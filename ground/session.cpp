@@ -502,6 +502,7 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
                           {"missed", told(view.missed)},
                           {"latency_max_ns", told(view.latency_max_ns)},
                           {"execution_mean_ns", told(view.execution_mean_ns)},
+                          {"memory_kb", view.memory_kb != 0 ? json(view.memory_kb) : json(nullptr)},
                           {"inhibited", std::move(inhibited)},
                           {"waits_for", model.waits_for(i)},
                           {"age_s", view.known ? json(seconds(now - view.t)) : json(nullptr)}});

@@ -34,9 +34,13 @@ Result<> Supervisor::show(const Cycle&) noexcept {
 void Supervisor::show_members() noexcept {
   SubsystemsStatus status;
   std::size_t place = 0;
-  const auto tell_of = [&](std::uint16_t apid, std::optional<State> state, const VitalPage* vital) {
+  const auto tell_of = [&](std::uint16_t apid, std::optional<State> state, const VitalPage* vital,
+                           std::uint32_t process) {
     if (place == told_members) return;
     const std::size_t i = place++;
+    if (vital == nullptr) memory_kb_[i] = 0;
+    else if (i == memory_turn_) memory_kb_[i] = parts_.launcher.resident_kb(process);
+    status.memory_kb[i] = memory_kb_[i];
     status.apid[i] = apid;
     status.state[i] = state ? static_cast<std::uint8_t>(*state) : not_running;
     if (vital == nullptr) return;
@@ -49,8 +53,9 @@ void Supervisor::show_members() noexcept {
     status.latency_max_ns[i] = read(vital->latency_max_ns);
     status.execution_mean_ns[i] = read(vital->execution_mean_ns);
   };
-  tell_of(mission_.supervisor.id, engine_.state(), own_vital_.get());
-  for (const Member& member : members_) tell_of(member.apid(), member.state(), member.vital());
+  tell_of(mission_.supervisor.id, engine_.state(), own_vital_.get(), 0);
+  for (const Member& member : members_) tell_of(member.apid(), member.state(), member.vital(), member.process());
+  memory_turn_ = (memory_turn_ + 1) % told_members;
   subsystems_parameter_.store(status);
 }
 

@@ -239,7 +239,10 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     std::array<std::uint32_t, told_members> missed{};
     std::array<std::uint32_t, told_members> latency_max_ns{};
     std::array<std::uint32_t, told_members> execution_mean_ns{};
+    std::array<std::uint32_t, told_members> memory_kb{};
   };
+  std::array<std::uint32_t, told_members> memory_kb_{};  ///< asked for one of them each cycle
+  std::size_t memory_turn_{0};
   Parameter<SubsystemsStatus> subsystems_parameter_;
   struct LinksStatus {
     std::array<std::uint8_t, told_members> link{};

@@ -36,6 +36,9 @@ class ProcessLauncher {
   /// Empty while it runs.
   [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
   virtual void kill(std::uint32_t process) = 0;
+  /// Memory that a process has in RAM, 0 = the supervisor's own; 0 where it has no process of its own or has ended.
+  /// Allocates nothing.
+  [[nodiscard]] virtual std::uint32_t resident_kb(std::uint32_t /*process*/) noexcept { return 0; }
 };
 
 }  // namespace hirosco::supervisor

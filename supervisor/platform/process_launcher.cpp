@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/process_launcher.hpp"
 
+#include <fcntl.h>
 #include <signal.h>
+#include <unistd.h>
 
+#include <array>
+#include <charconv>
 #include <cstdlib>
 #include <new>
 #include <string>
@@ -18,6 +22,10 @@ namespace {
 constexpr int channel_number = 3;
 constexpr int vital_number = 4;
 constexpr int permit_number = 5;
+
+[[nodiscard]] FileDescriptor open_statm(const std::string& process) {
+  return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
+}
 
 /// A page in memory of its own, constructed in place.
 template <class Page>
@@ -67,6 +75,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   launched.vital = std::move(vital.second);
   launched.permit = std::move(permit.second);
   launched.process = next_++;
+  memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
+  if (!memory_use_[0]) memory_use_[0] = open_statm("self");
   processes_.emplace(launched.process, std::move(process));
   return launched;
 }
@@ -78,12 +88,28 @@ std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
   if (!status || !*status) return std::nullopt;
   const ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
   processes_.erase(found);
+  memory_use_.erase(process);
   return end;
 }
 
 void SystemLauncher::kill(std::uint32_t process) {
   if (const auto found = processes_.find(process); found != processes_.end())
     static_cast<void>(found->second.send_signal(SIGKILL));
+}
+
+std::uint32_t SystemLauncher::resident_kb(std::uint32_t process) noexcept {
+  const auto found = memory_use_.find(process);
+  if (found == memory_use_.end()) return 0;
+  std::array<char, 128> text;
+  const auto octets = ::pread(found->second.get(), text.data(), text.size(), 0);
+  if (octets <= 0) return 0;
+  // "size resident shared ...", in pages.
+  const std::string_view line{text.data(), static_cast<std::size_t>(octets)};
+  const auto blank = line.find(' ');
+  std::uint64_t pages = 0;
+  if (blank != std::string_view::npos) std::from_chars(line.data() + blank + 1, line.data() + line.size(), pages);
+  static const auto page_octets = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return static_cast<std::uint32_t>(pages * page_octets / 1024);
 }
 
 void SystemLauncher::kill_all() {

@@ -22,6 +22,7 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
+  [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override;
   /// Ends what still runs: nobody would be left to do it.
   void kill_all();
   /// True while a process that was started still runs.
@@ -31,6 +32,7 @@ class SystemLauncher final : public ProcessLauncher {
 
  private:
   SealedMemory memory_;
+  std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
   std::map<std::uint32_t, Process> processes_;
   std::uint32_t next_{1};
 };

@@ -163,6 +163,9 @@ class OnAFlight(unittest.TestCase):
                 second.until(lambda status: status["link"]["rx"] > 50)
                 flight.measure(f"telemetry again {time.monotonic() - second.started:.2f} s after the restart")
                 after = second.request(history)
+                subsystems = second.request("/api/status")["subsystems"]
+                for one in subsystems:  # processes of their own: a few MB each, told by the supervisor
+                    self.assertTrue(1000 < one["memory_kb"] < 200000, one)
                 self.assertEqual(after["t"][:len(before)], before)
                 self.assertGreater(len(after["t"]), len(before))
                 self.assertEqual(len(after["gaps"]), 1)

@@ -3,7 +3,7 @@
 import {state_name, state_names} from '../commanding.js';
 import {duration_text, rate_text, state_text} from '../format.js';
 import {html} from '../html.js';
-import {link, replay, slow, status_of, subsystem_of, values} from '../store.js';
+import {link, replay, slow, status_of, subsystem_of} from '../store.js';
 
 export const state_look = (state) => ({Operational: 'good', SafeOperational: 'amber', PreOperational: 'amber',
   ErrorOperational: 'bad', PostOperational: 'amber', Offline: 'off'})[state] ?? 'busy';
@@ -35,7 +35,6 @@ export function SubsystemCard({name, chosen}) {
   const now = status_of(name) ?? {};
   const state = state_name(now.state);
   const configuration = configuration_of(name);
-  const memory = values.get(`${name}.MEMORY`)?.v;
   const waits = waits_text(now.waits_for);
   const facts = [
     configuration?.sampling_hz && rate_text(configuration.sampling_hz),
@@ -43,7 +42,7 @@ export function SubsystemCard({name, chosen}) {
     now.latency_max_ns ? `late ≤ ${duration_text(now.latency_max_ns)}` : null,
     now.overruns > 0 ? `${now.overruns} overruns` : null,
     now.missed ? `${now.missed} missed` : null,
-    memory && `mem ${memory} %`,
+    now.memory_kb ? `${(now.memory_kb / 1024).toFixed(1)} MB` : null,
   ].filter(Boolean);
   return html`<a class=${`card ${chosen ? 'chosen' : ''} ${is_known() ? '' : 'stale'}`} href=${`#/subsystems/${name}`}
     data-test=${`subsystem-${name}`}>

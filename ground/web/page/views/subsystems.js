@@ -55,6 +55,7 @@ function Facts({name}) {
     ['missed', number_text(now.missed)],
     ['latency, largest', duration_text(now.latency_max_ns ?? NaN)],
     ['execution, mean', duration_text(now.execution_mean_ns ?? NaN)],
+    ['memory', now.memory_kb ? `${(now.memory_kb / 1024).toFixed(1)} MB` : '–'],
     ['actuators', inhibited_text(now) ? `inhibited: ${inhibited_text(now)}` : 'free'],
     ['waits for', waits_text(now.waits_for) || 'nothing'],
   ];
