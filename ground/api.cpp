@@ -197,7 +197,7 @@ class Buckets {
 
 }  // namespace
 
-// --- targets -------------------------------------------------------------------------------------------------------------
+// --- targets ---------------------------------------------------------------------------------------------------------
 
 std::optional<Target> read_target(std::string_view target) {
   const auto question = target.find('?');
@@ -232,7 +232,7 @@ std::optional<double> Target::number(const std::string& name) const {
   return whole ? std::optional{value} : std::nullopt;
 }
 
-// --- who may ---------------------------------------------------------------------------------------------------------------
+// --- who may ---------------------------------------------------------------------------------------------------------
 
 bool Api::from_here(const HttpRequest& request) const {
   const std::array<std::string, 3> hosts{fmt::format("127.0.0.1:{}", options_.port),
@@ -296,7 +296,7 @@ void Api::post(const HttpRequest& request, const Target& target, Role role,
   respond(error(404, "nothing takes POSTs there"));
 }
 
-// --- reading ---------------------------------------------------------------------------------------------------------------
+// --- reading ---------------------------------------------------------------------------------------------------------
 
 Span Api::span_of(const Target& target, double last_s) const {
   Span span;

@@ -16,7 +16,7 @@
 #include "ground/http_server.hpp"
 #include "ground/session.hpp"
 
-/// ground/api/README.md as code: who may ask, what is asked, what is answered. Does no I/O but reading the page's files.
+/// ground/api/README.md as code: who may ask, what is asked, what is answered. No I/O but reading the page's files.
 namespace hirosco::ground {
 
 /// Path and decoded parameters of a request's target.

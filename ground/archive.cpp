@@ -24,8 +24,8 @@ constexpr const char* schema = R"(
     vals TEXT NOT NULL);
   CREATE INDEX IF NOT EXISTS events_by_time ON events(t);
   CREATE TABLE IF NOT EXISTS commands(id INTEGER PRIMARY KEY AUTOINCREMENT, t INTEGER NOT NULL, sender TEXT NOT NULL,
-    apid INTEGER NOT NULL, subsystem TEXT NOT NULL, function TEXT NOT NULL, arguments TEXT NOT NULL, stage TEXT NOT NULL,
-    code INTEGER, reason TEXT NOT NULL);
+    apid INTEGER NOT NULL, subsystem TEXT NOT NULL, function TEXT NOT NULL, arguments TEXT NOT NULL,
+    stage TEXT NOT NULL, code INTEGER, reason TEXT NOT NULL);
   CREATE INDEX IF NOT EXISTS commands_by_time ON commands(t);
   CREATE TABLE IF NOT EXISTS reports(id INTEGER PRIMARY KEY, command INTEGER NOT NULL, t INTEGER NOT NULL,
     stage TEXT NOT NULL, code INTEGER, reason TEXT NOT NULL);
@@ -36,8 +36,8 @@ constexpr const char* schema = R"(
   CREATE INDEX IF NOT EXISTS changes_by_time ON changes(t);
   CREATE INDEX IF NOT EXISTS changes_by_name ON changes(kind, name, t);
   CREATE TABLE IF NOT EXISTS gaps(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, until INTEGER NOT NULL);
-  CREATE TABLE IF NOT EXISTS faults(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, device TEXT NOT NULL, line TEXT NOT NULL,
-    answer TEXT NOT NULL);
+  CREATE TABLE IF NOT EXISTS faults(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, device TEXT NOT NULL,
+    line TEXT NOT NULL, answer TEXT NOT NULL);
 )";
 constexpr int busy_limit_ms = 2000;
 constexpr std::int64_t most_rows = 10'000;

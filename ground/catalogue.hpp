@@ -15,7 +15,7 @@
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/pus/packet.hpp"
 
-/// What the descriptors of a mission say, arranged as a ground station asks for it: every number of telemetry is a column
+/// What the descriptors of a mission say, arranged as a ground station asks: every number of telemetry is a column
 /// with a name and a place in its reports. Constant after construction.
 namespace hirosco::ground {
 

@@ -11,9 +11,9 @@
 
 namespace hirosco::ground {
 
-/// One page: what it has been told, and where it is in the past when it replays. Housekeeping goes out when the network has
-/// taken what went before, so that only the latest waits; all else is queued at once, and who lets too much of it pile up is
-/// disconnected.
+/// One page: what it has been told, and where it is in the past when it replays. Housekeeping goes out when the network
+/// has taken what went before, so that only the latest waits; all else is queued at once, and who lets too much of it
+/// pile up is disconnected.
 class Client {
  public:
   static constexpr std::size_t most_pending_octets = std::size_t{4} << 20;

@@ -14,7 +14,7 @@ namespace hirosco::ground {
 /// Who sends under a source id, as far as our programs keep to ranges of their own (ground/api/README.md).
 [[nodiscard]] std::string sender_of(std::uint16_t source);
 
-/// Function and arguments by the descriptors; "TC[20,3]" for other services, no arguments for those that cannot be read.
+/// Function and arguments by the descriptors; "TC[20,3]" for other services, no arguments where they cannot be read.
 [[nodiscard]] StoredCommand command_of(const Catalogue& catalogue, const pus::TelecommandView& telecommand);
 
 }  // namespace hirosco::ground

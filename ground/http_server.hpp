@@ -75,7 +75,7 @@ class HttpServer {
   virtual void run(Application& application) = 0;
   virtual void stop() = 0;
 
-  // --- for the application, from the thread of run() ------------------------------------------------------------------
+  // --- for the application, from the thread of run() -----------------------------------------------------------------
   /// To the spacecraft; false without a link, or when it takes nothing.
   [[nodiscard]] virtual bool send(Octets packet) = 0;
   /// One line to a UNIX stream socket and its answer, within 2 s; empty when nobody answers.

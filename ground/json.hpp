@@ -41,7 +41,7 @@ namespace hirosco::ground {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string{};
 }
 
-/// What a client sent; discarded when it is no JSON or nests deeper than any request: every level of a copy takes stack.
+/// What a client sent; discarded when it is no JSON or nests deeper than any request: each level of a copy takes stack.
 [[nodiscard]] inline nlohmann::json parsed_request(const std::string& text) {
   constexpr int deepest = 16;
   bool shallow = true;

@@ -204,7 +204,7 @@ void Model::take_losses() {
     std::size_t into_consumer = 0;
     for (std::size_t k = 0; k < links.size(); ++k) into_consumer += links_[k].up && links[k].to == links[i].to ? 1 : 0;
     const Value& told = values_[*loss_columns_[i]];
-    // A sum over several links says nothing of one of them; what was told before the link was up is of another flight of it.
+    // A sum over several links says nothing of one of them; what was told before the link was up is of another time.
     if (into_consumer == 1 && told.revision != 0 && told.t >= links_[i].up_at)
       links_[i].lost = static_cast<std::uint32_t>(told.number);
   }

@@ -83,7 +83,7 @@ OnboardTime Session::now() const {
   return model_.newest() + (parts_.clock.now() - newest_received_);
 }
 
-// --- the link ----------------------------------------------------------------------------------------------------------
+// --- the link --------------------------------------------------------------------------------------------------------
 
 void Session::link_up() {
   connected_ = true;
@@ -253,7 +253,7 @@ void Session::expire(TimePoint now) {
                        {"reason", "the supervisor did not answer"}});
 }
 
-// --- clients -----------------------------------------------------------------------------------------------------------
+// --- clients ---------------------------------------------------------------------------------------------------------
 
 std::string Session::opened(Peer& peer, bool is_operator) {
   std::string id = "c" + std::to_string(next_client_++);
@@ -278,7 +278,7 @@ void Session::broadcast(const json& message) {
   for (const auto& client : clients_) client->tell(message);
 }
 
-// --- requests ----------------------------------------------------------------------------------------------------------
+// --- requests --------------------------------------------------------------------------------------------------------
 
 Answered<Session::Prepared> Session::prepare(const json& body) const {
   const std::string name = text_of(body, "subsystem");
@@ -451,7 +451,7 @@ json Session::status() const {
   return status;
 }
 
-// --- shared ------------------------------------------------------------------------------------------------------------
+// --- shared ----------------------------------------------------------------------------------------------------------
 
 json event_json(const StoredEvent& event) {
   json values = json::parse(event.values, nullptr, false);

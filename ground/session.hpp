@@ -150,7 +150,7 @@ class Session {
   TimePoint next_housekeeping_{};
 };
 
-// --- shared with replay and the requests ---------------------------------------------------------------------------------
+// --- shared with replay and the requests -----------------------------------------------------------------------------
 [[nodiscard]] nlohmann::json event_json(const StoredEvent& event);
 [[nodiscard]] nlohmann::json command_json(const StoredCommand& command);
 [[nodiscard]] nlohmann::json report_json(const StoredReport& report);

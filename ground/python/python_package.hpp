@@ -9,7 +9,7 @@
 
 #include "ground/catalogue.hpp"
 
-/// A mission's Python client from its descriptors: a package with runtime.py as it stands beside this file, and a module
+/// A mission's Python client from its descriptors: a package with runtime.py as it stands here, and a module
 /// with a class for each subsystem. Whatever a descriptor says arrives as a string literal or a safe identifier.
 namespace hirosco::ground {
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// node build.mjs [FOLDER [SOURCES]]: bundles the page of SOURCES (default: here) into FOLDER (default: dist), with the packages that
-// stand beside this file. The same sources give the same octets. The 3D part is a chunk of its own, which the browser fetches
-// when a view needs it.
+// node build.mjs [FOLDER [SOURCES]]: bundles the page of SOURCES (default: here) into FOLDER (default: dist), with the
+// packages that stand beside this file. The same sources give the same octets. The 3D part is a chunk of its own, which the
+// browser fetches when a view needs it.
 import {build} from 'esbuild';
 import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {dirname, join, resolve} from 'node:path';
@@ -40,7 +40,8 @@ const notices = [];
 for (const name of Object.keys(JSON.parse(readFileSync(join(here, 'package.json'))).dependencies)) {
   const folder = join(here, 'node_modules', name);
   const file = readdirSync(folder).find((entry) => /^licen[cs]e/i.test(entry));
-  notices.push(`${name}\n${'='.repeat(name.length)}\n${file ? readFileSync(join(folder, file), 'utf8') : 'Apache-2.0'}`);
+  notices.push(
+        `${name}\n${'='.repeat(name.length)}\n${file ? readFileSync(join(folder, file), 'utf8') : 'Apache-2.0'}`);
 }
 writeFileSync(join(out, 'notices.txt'), notices.join('\n\n'));
 

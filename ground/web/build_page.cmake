@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The build step of CMakeLists.txt: works in the build folder, so that the sources stay as they are. What fails is said
-# and ends nothing, nor is it tried again by itself, which costs every offline build its time: a spacecraft flies without
+# and ends nothing, nor is it tried again by itself, which costs offline builds their time: a spacecraft flies without
 # its page.
 
 foreach(file IN ITEMS package.json package-lock.json .npmrc build.mjs)

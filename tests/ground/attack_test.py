@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""Hostile neighbours of a running ground station: clients that hold connections, send what is no request, or would command
-without being allowed to, and a spacecraft that sends anything in valid packets. Python's standard library only."""
+"""Hostile neighbours of a running ground station: clients that hold connections, send what is no request, or would
+command without being allowed to, and a spacecraft that sends anything in valid packets. Python's standard library only."""
 import json
 import os
 import random
@@ -29,7 +29,8 @@ def anything(noise, count, now):
         data = struct.pack(">H", noise.choice([*range(1, 30), 1000, 1010, 4712, 4713, 65535])) + data
     source = struct.pack(">BBBHH", 0x20, service, subtype, count & 0xFFFF, noise.choice([0, 1, 777, 0x2000])) + \
         struct.pack(">I", noise.choice([0, now, now, 0xFFFFFFFF])) + noise.randbytes(3) + data
-    head = struct.pack(">HHH", 0x0800 | noise.choice([1, 10, 11, 12, 500]), 0xC000 | noise.getrandbits(14), len(source) + 1)
+    apid = noise.choice([1, 10, 11, 12, 500])
+    head = struct.pack(">HHH", 0x0800 | apid, 0xC000 | noise.getrandbits(14), len(source) + 1)
     return head + source + struct.pack(">H", crc16(head + source))
 
 
@@ -51,7 +52,8 @@ class Attack(unittest.TestCase):
 
     def head(self, method, path, **headers):
         headers = {"Host": f"127.0.0.1:{self.gateway.port}", "Authorization": f"Bearer {TOKEN}", **headers}
-        return "\r\n".join([f"{method} {path} HTTP/1.1", *(f"{name}: {text}" for name, text in headers.items()), "", ""]).encode()
+        lines = [f"{method} {path} HTTP/1.1", *(f"{name}: {text}" for name, text in headers.items()), "", ""]
+        return "\r\n".join(lines).encode()
 
     def test_connections_that_ask_nothing_make_room_for_one_that_does(self):
         idle = [socket.create_connection(("127.0.0.1", self.gateway.port)) for _ in range(100)]
@@ -76,13 +78,15 @@ class Attack(unittest.TestCase):
         self.assertIn(" 400 ", self.answer_to(b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"))
         self.assertIn(" 413 ", self.answer_to(self.head("POST", "/api/commands", **{"Content-Length": "70000"})))
         deep = b'{"subsystem":"JOYSTICK","function":"PING","arguments":' + b"[" * 32_000 + b"]" * 1000
-        self.assertIn(" 400 ", self.answer_to(self.head("POST", "/api/commands", **{"Content-Length": str(len(deep))}) + deep))
+        head = self.head("POST", "/api/commands", **{"Content-Length": str(len(deep))})
+        self.assertIn(" 400 ", self.answer_to(head + deep))
 
     def test_who_may_not_command_does_not_by_any_door(self):
         command = b'{"subsystem":"JOYSTICK","function":"PING"}'
         for token, status in ((OBSERVER, 403), ("wrong", 401)):
             for path in ("/api/commands", "/api/commands/preview", "/api/faults"):
-                request = urllib.request.Request(self.gateway.base + path, command, {"Authorization": f"Bearer {token}"})
+                headers = {"Authorization": f"Bearer {token}"}
+                request = urllib.request.Request(self.gateway.base + path, command, headers)
                 with self.assertRaises(urllib.error.HTTPError) as refused:
                     urllib.request.urlopen(request, timeout=10)
                 self.assertEqual(refused.exception.code, status)

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 
@@ -647,6 +649,48 @@ TEST_F(GroundArchive, ThatIsDamagedSaysSoAndAnswersWithWhatItHas) {
   (*archive)->packets({}, [&](const ground::StoredPacket&) { return ++read > 0; });
   EXPECT_LT(read, 1000U);
   EXPECT_GT((*archive)->failures(), 0U);
+}
+
+/// Files grow no further than this while it lives.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t octets) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit full{octets, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &full);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(GroundArchive, CountsWhatAFullDiskRefusesAndGoesOnWhenThereIsRoomAgain) {
+  auto archive = ground::Archive::open(file);
+  ASSERT_TRUE(archive);
+  const auto tell = [&](OnboardTime t) {
+    (*archive)->add(ground::StoredEvent{.t = t, .subsystem = "A", .name = "B", .text = "C", .values = "{}"});
+    (*archive)->commit();
+  };
+  {
+    const FullDisk full{200'000};
+    for (int i = 0; i < 1000; ++i) tell(noon + i * 1s);
+    EXPECT_GT((*archive)->failures(), 0U);
+  }
+  tell(noon + 1h);
+  archive->reset();
+  archive = ground::Archive::open(file);
+  ASSERT_TRUE(archive);
+  const auto kept = (*archive)->events({.span = {}, .text = {}});
+  ASSERT_FALSE(kept.empty());
+  EXPECT_EQ(kept.front().t, noon + 1h);
+  EXPECT_EQ((*archive)->failures(), 0U);
 }
 
 [[nodiscard]] json resolved(const json& document, const json& part) {
