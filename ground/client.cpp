@@ -104,11 +104,14 @@ void Client::begin_replay(double at, double speed) {
   replay->end = extent->to;
   replay->speed = std::isfinite(speed) ? std::clamp(speed, 0.0, greatest_speed) : 1.0;
   replay->last = session_.parts_.clock.now();
-  for (const Report& report : session_.catalogue().reports()) {
-    const auto packet = session_.archive().last_of(report.apid, report.sid, replay->at);
-    const auto view = packet ? pus::TelemetryView::parse(packet->octets) : fail(ErrorCode::NotFound, "none");
-    if (view) static_cast<void>(replay->model.take(*view));
-  }
+  std::vector<StoredPacket> newest;
+  for (const Report& report : session_.catalogue().reports())
+    if (auto packet = session_.archive().last_of(report.apid, report.sid, replay->at))
+      newest.push_back(std::move(*packet));
+  // In order of time, or an old report would be taken for a clock that went back.
+  std::ranges::sort(newest, {}, &StoredPacket::t);
+  for (const StoredPacket& packet : newest)
+    if (const auto view = pus::TelemetryView::parse(packet.octets)) static_cast<void>(replay->model.take(*view));
   replay_ = std::move(replay);
   values_told_ = 0;
   status_due_ = true;

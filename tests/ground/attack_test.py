@@ -81,6 +81,17 @@ class Attack(unittest.TestCase):
         head = self.head("POST", "/api/commands", **{"Content-Length": str(len(deep))})
         self.assertIn(" 400 ", self.answer_to(head + deep))
 
+    def test_no_socket_is_opened_for_a_foreign_page(self):
+        upgrade = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+                   "Sec-WebSocket-Version": "13"}
+        right = f"/ws?token={TOKEN}"
+        for path, headers, status in ((right, {"Origin": "http://evil.example"}, 403), (right, {"Origin": "null"}, 403),
+                                      (right, {"Host": f"evil.example:{self.gateway.port}"}, 403),
+                                      (f"/other?token={TOKEN}", {}, 404), ("/ws", {"Authorization": "Bearer wrong"}, 401),
+                                      (right, {"Authorization": "Bearer wrong"}, 401)):
+            with self.subTest(path=path, **headers):
+                self.assertIn(f" {status} ", self.answer_to(self.head("GET", path, **upgrade, **headers)))
+
     def test_who_may_not_command_does_not_by_any_door(self):
         command = b'{"subsystem":"JOYSTICK","function":"PING"}'
         for token, status in ((OBSERVER, 403), ("wrong", 401)):

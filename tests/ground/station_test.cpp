@@ -539,6 +539,20 @@ TEST_F(GroundStation, PacketsThatOvertookEachOtherLeaveTheNewestValue) {
   EXPECT_EQ(station.get("/api/status")["values"][first_joint]["v"], 1);
 }
 
+TEST_F(GroundStation, AReplayBeginsWithTheNewestValuesHoweverOldThoseOfOthersAre) {
+  const ground::Report& other = station.catalogue().reports().back();
+  ASSERT_NE(other.apid, 10);
+  std::vector<std::byte> data(other.octets);
+  OctetWriter{data}.put(other.sid);
+  ASSERT_TRUE(station.session().receive(telemetry(other.apid, 3, 25, noon - 1h, data)));
+  ASSERT_TRUE(station.session().receive(joints(noon, 1.0)));
+  Page page;
+  station.session().opened(page, true);
+  station.session().received(page, json{{"type", "replay"}, {"at", 2'145'916'900.0}, {"speed", 0}}.dump());
+  EXPECT_EQ(page.last("values")["replay"], true);
+  EXPECT_EQ(page.last("values")["set"][first_joint][1], 2'145'916'900.0);
+}
+
 TEST_F(GroundStation, AReplayLeavesOutNoEventOfABurst) {
   const std::vector<std::byte> event(2);
   constexpr std::size_t burst = 3500;
