@@ -39,7 +39,7 @@ constexpr const char* schema = R"(
   CREATE TABLE IF NOT EXISTS faults(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, device TEXT NOT NULL,
     line TEXT NOT NULL, answer TEXT NOT NULL);
 )";
-constexpr int busy_limit_ms = 2000;
+constexpr int busy_limit_ms = 2000;  ///< while opening
 constexpr std::int64_t most_rows = 10'000;
 
 [[nodiscard]] std::int64_t ns(OnboardTime t) noexcept { return t.time_since_epoch().count(); }
@@ -133,6 +133,8 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, std::int
   if (!archive->execute(schema) ||
       sqlite3_prepare_v2(database, add_packet, -1, &archive->add_packet_, nullptr) != SQLITE_OK)
     return fail(ErrorCode::Malformed, "the archive is not one of ours", sqlite3_extended_errcode(database));
+  // From here on nobody else's business with the file holds up the live view: what it costs is counted.
+  sqlite3_busy_timeout(database, 0);
   return archive;
 }
 
@@ -220,6 +222,7 @@ std::int64_t Archive::add(const StoredCommand& command) {
 }
 
 void Archive::add(std::int64_t command, const StoredReport& report) {
+  if (command == 0) return;
   begin();
   Statement add{*this, "INSERT INTO reports(command, t, stage, code, reason) VALUES(?,?,?,?,?)"};
   add << command << report.t << report.stage << report.code << report.reason;

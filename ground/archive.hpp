@@ -102,6 +102,7 @@ class Archive {
   void add(const StoredEvent& event);
   /// Its number; 0 when the disk refused it.
   [[nodiscard]] std::int64_t add(const StoredCommand& command);
+  /// Nothing for command 0.
   void add(std::int64_t command, const StoredReport& report);
   void add(const StoredChange& change);
   void add(const StoredGap& gap);

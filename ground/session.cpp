@@ -174,15 +174,16 @@ void Session::take_verdict(const Verdict& verdict, OnboardTime t) {
     if (open_commands_.size() >= most_open_commands) return;
     found = open_commands_.emplace(key, add_foreign(verdict, t)).first;
   }
-  const std::int64_t number = found->second.number;
-  parts_.archive.add(number, StoredReport{t, verdict.stage, verdict.code, verdict.reason});
+  StoredCommand& command = found->second.command;
+  parts_.archive.add(command.number, StoredReport{t, verdict.stage, verdict.code, verdict.reason});
+  command.t = t;
+  command.stage = verdict.stage;
+  command.code = verdict.code;
+  command.reason = verdict.reason;
+  json message = command_json(command);
+  message["type"] = "command";
+  broadcast(message);
   if (verdict.last) open_commands_.erase(found);
-  if (auto command = parts_.archive.command(number)) {
-    command->t = t;
-    json message = command_json(*command);
-    message["type"] = "command";
-    broadcast(message);
-  }
 }
 
 void Session::take_copy(Octets packet, OnboardTime t) {
@@ -191,7 +192,7 @@ void Session::take_copy(Octets packet, OnboardTime t) {
   StoredCommand command = command_of(parts_.catalogue, *telecommand);
   command.t = t;
   command.number = parts_.archive.add(command);
-  open_commands_[{telecommand->source(), telecommand->request_id()}] = {command.number, parts_.clock.now()};
+  open_commands_[{telecommand->source(), telecommand->request_id()}] = {command, parts_.clock.now()};
   json message = command_json(command);
   message["type"] = "command";
   broadcast(message);
@@ -207,7 +208,8 @@ Session::Open Session::add_foreign(const Verdict& verdict, OnboardTime t) {
   command.function = "?";
   command.arguments = "{}";
   command.stage = "sent";
-  return {parts_.archive.add(command), parts_.clock.now()};
+  command.number = parts_.archive.add(command);
+  return {std::move(command), parts_.clock.now()};
 }
 
 void Session::take_answer(const PermissionAnswer& answer) {
@@ -374,7 +376,7 @@ Answered<json> Session::command(const json& body) {
   command.number = parts_.archive.add(command);
   parts_.archive.commit();
   const std::uint32_t request_id = pus::read_primary_header(*packet)->request_id;
-  open_commands_[{parts_.source, request_id}] = {command.number, parts_.clock.now()};
+  open_commands_[{parts_.source, request_id}] = {command, parts_.clock.now()};
   if (!parts_.outside.send(*packet)) {
     open_commands_.erase({parts_.source, request_id});
     parts_.archive.add(command.number, StoredReport{command.t, "failed", std::nullopt, "not sent: no link"});

@@ -99,7 +99,7 @@ class Session {
  private:
   friend class Client;
   struct Open {
-    std::int64_t number{};
+    StoredCommand command;  ///< as its last report left it: pages hear of it even when the disk is full
     TimePoint since{};
   };
   struct Prepared {

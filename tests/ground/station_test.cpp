@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 #include <sys/resource.h>
 
 #include <csignal>
@@ -756,6 +757,25 @@ TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
       if (answer.type != "application/json") continue;
       expect_described(document, content["application/json"]["schema"], json::parse(answer.body), path);
     }
+}
+
+TEST_F(GroundArchive, ThatSomebodyLocksKeepsNoPageFromHearingOfATelecommand) {
+  Flight flight{rokviss()};
+  Station station{flight, file};
+  ASSERT_TRUE(station.run_until([&] { return flight.craft().supervisor().commissioned(); }));
+  Page page;
+  station.session().opened(page, true);
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &other), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
+  station.post("/api/commands", {{"subsystem", "JOYSTICK"}, {"function", "PING"}});
+  station.run(1s);
+  std::string stages;
+  for (const json& message : page.of_type("command")) stages += message["stage"].get<std::string>() + " ";
+  EXPECT_EQ(stages, "sent accepted started completed ");
+  EXPECT_GT(station.get("/api/status")["link"]["archive_failures"], 0);
+  sqlite3_close(other);
+  EXPECT_EQ(station.command("JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.05}})["stage"], "completed");
 }
 
 TEST_F(GroundArchive, ARestartedGatewayStillKnowsAndShowsItsAbsenceAsAGap) {
