@@ -12,8 +12,10 @@ import {fast, freshness, mission, operator, replay, slow, values} from '../store
 /// models/NAME/scene.json of the mission; null when there is none, undefined while it is not known.
 export const scene_of_mission = signal(undefined);
 const with_model = asset('models/index.json').then((answer) => answer.json());
-with_model.catch(() => {});
 const drawing_code = () => import('./scene.js');
+// A page that opens with the robot in it asks for the code before it knows the mission.
+const opens_with_robot = !/^#\/(?!overview)/.test(location.hash);
+with_model.then((names) => opens_with_robot && names.length && drawing_code()).catch(() => {});
 let looked_for = '';
 mission.subscribe((known) => {
   if (!known || looked_for === known.name) return;
