@@ -9,7 +9,11 @@ const stored = 'hirosco-token';
 export function take_token() {
   const match = /[#&?]token=([^&]+)/.exec(location.hash);
   if (match) {
-    sessionStorage.setItem(stored, decodeURIComponent(match[1]));
+    try {
+      sessionStorage.setItem(stored, decodeURIComponent(match[1]));
+    } catch (error) {
+      if (!(error instanceof URIError)) throw error;  // no token of ours: asked for as if there were none
+    }
     history.replaceState(null, '', '#/overview');
   }
   return token();

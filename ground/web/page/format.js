@@ -48,6 +48,7 @@ export function age_text(age_s) {
   if (age_s < 0.95) return `${Math.max(0, age_s).toFixed(1)} s`;
   if (age_s < 100) return `${age_s.toFixed(0)} s`;
   if (age_s < 6000) return `${(age_s / 60).toFixed(0)} min`;
+  if (age_s > 1e8) return 'long ago';
   return `${(age_s / 3600).toFixed(0)} h`;
 }
 

@@ -8,6 +8,7 @@ import {get, introduce, token} from './api.js';
 
 const most_events = 10000;
 const most_commands = 500;
+const most_gaps = 1000;
 const slow_period_ms = 200;
 
 export const mission = signal(null);
@@ -90,7 +91,9 @@ export const link = computed(() => {
   if (!gateway.value.connected) return {state: 'gateway', age_s: (performance.now() - gateway.value.since_ms) / 1000};
   const reported = status.value?.link;
   if (!reported) return {state: 'waiting', age_s: Infinity};
-  return {state: reported.connected ? 'up' : 'down', age_s: reported.age_s ?? Infinity, rx: reported.rx, tx: reported.tx};
+  return {state: reported.connected ? 'up' : 'down', age_s: reported.age_s ?? Infinity,
+    rx: reported.rx, tx: reported.tx, lost: reported.lost ?? 0, damaged: reported.damaged ?? 0,
+    archive_failures: reported.archive_failures ?? 0};
 });
 
 function counted_since(from) {
@@ -175,7 +178,7 @@ function take(list) {
     } else if (message.type === 'command') {
       reports = with_report(reports, message);
     } else if (message.type === 'gap') {
-      gaps.value = [...gaps.value, {from: message.from, to: message.to}];
+      gaps.value = [...gaps.value.slice(1 - most_gaps), {from: message.from, to: message.to}];
     } else if (message.type === 'fault') {
       injections.value = [message, ...injections.value].slice(0, 50);
     } else if (message.type === 'replay' && message.state !== 'live') {

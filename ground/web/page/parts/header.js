@@ -14,13 +14,15 @@ const link_words = {
 };
 
 function LinkState() {
-  const {state, age_s, rx, tx} = link.value;
+  const {state, age_s, rx, tx, lost, damaged, archive_failures} = link.value;
   const replaying = replay.value !== null;
   const late = state === 'up' && age_s > 2;
-  const look = replaying ? 'amber' : state === 'up' && !late ? 'good' : 'bad';
-  const words = replaying ? 'ARCHIVE' : late ? 'LINK SILENT' : link_words[state];
-  return html`<span class=${`pill link ${look}`} title=${rx !== undefined ? `${rx} packets received, ${tx} sent` : words}
-    data-test="link"><i class="lamp" />${words}<small>${replaying ? 'not live' :
+  const unkept = archive_failures > 0;
+  const look = replaying ? 'amber' : state === 'up' && !late && !unkept ? 'good' : 'bad';
+  const words = replaying ? 'ARCHIVE' : late ? 'LINK SILENT' : unkept ? 'NOT ARCHIVED' : link_words[state];
+  const title = rx === undefined ? words : `${rx} packets received, ${lost} lost, ${damaged} damaged, ${tx} sent${
+      unkept ? `; the archive failed ${archive_failures} times: is the disk full or the file damaged?` : ''}`;
+  return html`<span class=${`pill link ${look}`} title=${title} data-test="link"><i class="lamp" />${words}<small>${replaying ? 'not live' :
       state === 'gateway' ? `for ${age_text(age_s)}` : `age ${age_text(age_s)}`}</small></span>`;
 }
 

@@ -65,7 +65,7 @@ function PlotPanel({names, window_s, range, xy, on_zoom, on_remove, on_xy, on_dr
   const fetch_whole = async () => {
     try {
       const answer = await fetch(whole, {headers: {Authorization: `Bearer ${token()}`}});
-      if (!answer.ok) throw new Error(`HTTP ${answer.status}`);
+      if (!answer.ok) throw new Error((await answer.json().catch(() => ({}))).error ?? `HTTP ${answer.status}`);
       save(`${names[0]}-archive.csv`, await answer.blob());
     } catch (error) {
       say(`archive: ${error.message}`, 'bad');
