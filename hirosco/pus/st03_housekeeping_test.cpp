@@ -293,7 +293,6 @@ TEST_F(Housekeeping, GivesAsManyOneShotsAsWereAskedFor) {
 TEST_F(Housekeeping, CreationIsRejectedWhole) {
   load(listing_2(1, 10, 1));
   const std::string state{state_member};
-  const std::string whole{cur_values};
   EXPECT_THAT(ask(1,
                   "0001"
                   "00000004"

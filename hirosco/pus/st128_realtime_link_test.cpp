@@ -16,16 +16,16 @@ using descriptor::ByteOrder;
 using descriptor::LinkKind;
 using descriptor::Method;
 
-constexpr auto Shm = Method::SharedMemory;
-constexpr auto Little = ByteOrder::Little;
-constexpr auto Big = ByteOrder::Big;
-constexpr auto Latest = LinkKind::Latest;
-constexpr auto Queued = LinkKind::Queued;
+constexpr auto shm = Method::SharedMemory;
+constexpr auto little = ByteOrder::Little;
+constexpr auto big = ByteOrder::Big;
+constexpr auto latest = LinkKind::Latest;
+constexpr auto queued = LinkKind::Queued;
 
 struct Side {
-  std::vector<Method> methods{Shm};
-  std::vector<ByteOrder> orders{Little};
-  std::vector<LinkKind> kinds{Latest};
+  std::vector<Method> methods{shm};
+  std::vector<ByteOrder> orders{little};
+  std::vector<LinkKind> kinds{latest};
   int period_us{1000};
   std::vector<OfferedField> fields{{"POSITION", Type::Double, 2}};
 };
@@ -57,25 +57,25 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
   const Case table[] = {
       // Methods: the first of the producer's list that the consumer has.
       {{}, {}, "shared_memory little latest 1000/1000"},
-      {{.methods = {Method::Udp, Shm}}, {.methods = {Shm, Method::Udp}}, "udp little latest 1000/1000"},
-      {{.methods = {Shm, Method::Udp}}, {.methods = {Method::Udp, Shm}}, "shared_memory little latest 1000/1000"},
-      {{.methods = {Method::Dds, Method::Tcp}}, {.methods = {Shm, Method::Tcp}}, "tcp little latest 1000/1000"},
+      {{.methods = {Method::Udp, shm}}, {.methods = {shm, Method::Udp}}, "udp little latest 1000/1000"},
+      {{.methods = {shm, Method::Udp}}, {.methods = {Method::Udp, shm}}, "shared_memory little latest 1000/1000"},
+      {{.methods = {Method::Dds, Method::Tcp}}, {.methods = {shm, Method::Tcp}}, "tcp little latest 1000/1000"},
       {{.methods = {Method::Tipc}}, {.methods = {Method::Unix, Method::Tipc}}, "tipc little latest 1000/1000"},
       {{.methods = {Method::Udp}}, {}, "0: method: consumer shared_memory, producer udp"},
       {{.methods = {Method::Udp, Method::Tcp}},
-       {.methods = {Shm, Method::Dds}},
+       {.methods = {shm, Method::Dds}},
        "0: method: consumer shared_memory, dds, producer udp, tcp"},
       {{.methods = {}}, {}, "0: method: consumer shared_memory, producer none"},
       // Byte orders.
-      {{.orders = {Big}}, {.orders = {Big}}, "shared_memory big latest 1000/1000"},
-      {{.orders = {Big, Little}}, {.orders = {Little, Big}}, "shared_memory big latest 1000/1000"},
-      {{.orders = {Big, Little}}, {.orders = {Little}}, "shared_memory little latest 1000/1000"},
-      {{.orders = {Little}}, {.orders = {Big}}, "1: byte order: consumer big, producer little"},
-      {{.orders = {Big}}, {.orders = {Little}}, "1: byte order: consumer little, producer big"},
+      {{.orders = {big}}, {.orders = {big}}, "shared_memory big latest 1000/1000"},
+      {{.orders = {big, little}}, {.orders = {little, big}}, "shared_memory big latest 1000/1000"},
+      {{.orders = {big, little}}, {.orders = {little}}, "shared_memory little latest 1000/1000"},
+      {{.orders = {little}}, {.orders = {big}}, "1: byte order: consumer big, producer little"},
+      {{.orders = {big}}, {.orders = {little}}, "1: byte order: consumer little, producer big"},
       // Kinds.
-      {{.kinds = {Queued, Latest}}, {.kinds = {Latest, Queued}}, "shared_memory little queued 1000/1000"},
-      {{.kinds = {Queued, Latest}}, {.kinds = {Latest}}, "shared_memory little latest 1000/1000"},
-      {{.kinds = {Latest}}, {.kinds = {Queued}}, "2: kind: consumer queued, producer latest"},
+      {{.kinds = {queued, latest}}, {.kinds = {latest, queued}}, "shared_memory little queued 1000/1000"},
+      {{.kinds = {queued, latest}}, {.kinds = {latest}}, "shared_memory little latest 1000/1000"},
+      {{.kinds = {latest}}, {.kinds = {queued}}, "2: kind: consumer queued, producer latest"},
       // Rates: an integer ratio either way.
       {{.period_us = 1000}, {.period_us = 5000}, "shared_memory little latest 1000/5000"},
       {{.period_us = 5000}, {.period_us = 1000}, "shared_memory little latest 5000/1000"},
@@ -108,10 +108,10 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
       {{.fields = {{"BIG", Type::Double, 8193}}}, {.fields = {}}, "4: payload of 65544 octets"},
       {{.fields = {{"BIG", Type::Double, 8192}}}, {.fields = {}}, "shared_memory little latest 1000/1000"},
       // Several reasons: the first in the order of the terms is told.
-      {{.methods = {Method::Udp}, .orders = {Big}, .period_us = 3000},
+      {{.methods = {Method::Udp}, .orders = {big}, .period_us = 3000},
        {.period_us = 2000},
        "0: method: consumer shared_memory, producer udp"},
-      {{.orders = {Big}, .period_us = 3000}, {.period_us = 2000}, "1: byte order: consumer little, producer big"},
+      {{.orders = {big}, .period_us = 3000}, {.period_us = 2000}, "1: byte order: consumer little, producer big"},
       {{.period_us = 3000, .fields = position},
        {.period_us = 2000, .fields = position_and_torque},
        "3: rate: consumer 2000000 ns, producer 3000000 ns"},
@@ -121,10 +121,10 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
 }
 
 Agreement agreement() {
-  return {Shm, Little, Latest, 1ms, 5ms, {{"POSITION", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}}};
+  return {shm, little, latest, 1ms, 5ms, {{"POSITION", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}}};
 }
 Offer full_offer() {
-  return {"JOINTS", 1ms, {{Shm, Method::Udp}, {Big, Little}, {Queued, Latest}}, agreement().fields};
+  return {"JOINTS", 1ms, {{shm, Method::Udp}, {big, little}, {queued, latest}}, agreement().fields};
 }
 
 TEST(LinkAgreement, HasThePayloadOfItsPackedFields) { EXPECT_EQ(agreement().payload_octets(), 17U); }
@@ -137,8 +137,8 @@ TEST(LinkAgreement, HasAHashThatAllOfItsLayoutChanges) {
     change(other);
     return other.layout_hash();
   };
-  EXPECT_NE(changed([](Agreement& a) { a.byte_order = Big; }), hash);
-  EXPECT_NE(changed([](Agreement& a) { a.kind = Queued; }), hash);
+  EXPECT_NE(changed([](Agreement& a) { a.byte_order = big; }), hash);
+  EXPECT_NE(changed([](Agreement& a) { a.kind = queued; }), hash);
   EXPECT_NE(changed([](Agreement& a) { a.fields[0].name = "POSITIOM"; }), hash);
   EXPECT_NE(changed([](Agreement& a) { a.fields[1].type = Type::Int8; }), hash);
   EXPECT_NE(changed([](Agreement& a) { a.fields[0].count = 3; }), hash);
@@ -149,7 +149,7 @@ TEST(LinkAgreement, HasAHashThatAllOfItsLayoutChanges) {
 
 TEST(LinkMessages, HaveTheOctetsWrittenHere) {
   Bytes buffer(256);
-  const Offer offer{"AB", 1ms, {{Shm, Method::Udp}, {Little}, {Latest}}, {{"P", Type::Double, 2}}};
+  const Offer offer{"AB", 1ms, {{shm, Method::Udp}, {little}, {latest}}, {{"P", Type::Double, 2}}};
   const auto used = write_terms_request(buffer, {7, "CD", offer});
   EXPECT_EQ(to_hex(Octets{buffer}.first(used.value())),
             "07"

@@ -234,6 +234,7 @@ TEST(BlockRow, FindsEveryBlockAndNothingElse) {
       else EXPECT_EQ(index, std::nullopt) << octets << " " << at;
     }
     EXPECT_FALSE(row.index_of(memory.data() + memory.size()));
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): pointer arithmetic may not leave the array
     EXPECT_FALSE(row.index_of(reinterpret_cast<std::byte*>(reinterpret_cast<std::uintptr_t>(memory.data()) - octets)));
   }
 }

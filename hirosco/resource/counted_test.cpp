@@ -23,10 +23,13 @@ struct Base {
   virtual ~Base() = default;
   [[nodiscard]] virtual int number() const { return 1; }
 };
-struct Derived final : Base {
+class Derived final : public Base {
+ public:
   explicit Derived(int& destroyed) : destroyed_{destroyed} {}
   ~Derived() override { ++destroyed_; }
   [[nodiscard]] int number() const override { return 2; }
+
+ private:
   int& destroyed_;
 };
 
@@ -34,7 +37,7 @@ TEST_F(CountedTest, LastOwnerDestroysTheObjectAndGivesTheBlockBack) {
   int destroyed = 0;
   Counted<Derived> first = *make_counted<Derived>(*pools_, destroyed);
   {
-    const Counted<Derived> second = first;
+    const Counted<Derived> second = first;  // NOLINT(performance-unnecessary-copy-initialization): a second owner
     EXPECT_EQ(first.owners(), 2U);
     EXPECT_EQ(second, first);
   }

@@ -51,7 +51,7 @@ class PoolAllocator {
     if (block == nullptr) throw OutOfMemory(count * sizeof(T));
     return static_cast<T*>(block);
   }
-  void deallocate(T* block, std::size_t /*count*/) noexcept { (void)pools_->deallocate(block); }
+  void deallocate(T* block, std::size_t /*count*/) noexcept { (void)pools_->deallocate(static_cast<void*>(block)); }
 
   [[nodiscard]] Pools& pools() const noexcept { return *pools_; }
   template <class U>

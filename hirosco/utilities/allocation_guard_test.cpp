@@ -35,7 +35,7 @@ TEST_F(AllocationGuard, CountsEveryHeapFunctionOfTheCLibrary) {
   const RealtimeScope scope;
   void* place = std::malloc(10);
   keep(place);
-  place = std::realloc(place, 2000);
+  place = std::realloc(place, 2000);  // NOLINT(bugprone-suspicious-realloc-usage)
   keep(place);
   std::free(place);
   place = std::calloc(3, 5);

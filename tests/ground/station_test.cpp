@@ -77,7 +77,7 @@ ground::HttpResponse Station::ask(const std::string& method, const std::string& 
 }
 
 json Station::command(const std::string& subsystem, const std::string& function, const json& arguments) {
-  const json sent = post("/api/commands", {{"subsystem", subsystem}, {"function", function}, {"arguments", arguments}});
+  json sent = post("/api/commands", {{"subsystem", subsystem}, {"function", function}, {"arguments", arguments}});
   if (!sent.contains("id")) return sent;
   json command;
   run_until([&] {
