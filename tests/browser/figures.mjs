@@ -56,10 +56,17 @@ const stops = [];
 async function couple_again(page, station) {
   if (await is_coupled(station)) return;
   stops.push((await causes(station)).split(';')[0]);
-  await go(page, 'subsystems/MANIPULATOR');
-  await page.selectOption('[data-test=commission-mode]', 'telepresence');
-  await page.click('[data-test=commission]');
-  await page.waitForSelector('[data-test=commissioned]', {timeout: 60000});
+  for (let tries = 0; tries < 3; ++tries) {
+    // What goes down ends in Offline first: a step sent meanwhile would be refused.
+    await sleep(3000);
+    await go(page, 'overview');
+    await go(page, 'subsystems/MANIPULATOR');
+    await page.selectOption('[data-test=commission-mode]', 'telepresence');
+    await page.click('[data-test=commission]');
+    await page.waitForSelector('[data-test=commissioned], .commissioning ~ .permission.no', {timeout: 60000});
+    if (await page.locator('[data-test=commissioned]').count()) break;
+    stops.push(await page.textContent('.commissioning ~ .permission.no'));
+  }
   await hand(station, 'hand sine 1 0.1 0.5');
 }
 
