@@ -157,7 +157,14 @@ export function commissioning_steps(mode) {
   const mode_argument = subsystem_of('SUPERVISOR')?.functions.find((one) => one.name === 'SET_MODE')?.arguments[0]?.name ?? 'MODE';
   const enter = (to) => add(`mode ${to.name}`, 'SUPERVISOR', 'SET_MODE', {[mode_argument]: to.id});
   enter(permissive);
-  const others = members.filter((member) => !is_on(member.subsystem, member.state) || !configured(member));
+  // Who gives its links back takes down those who need them: a network comes up as a whole.
+  const down = new Set(members.filter((member) => !is_on(member.subsystem, member.state) || !configured(member)).map((one) => one.subsystem));
+  const ties = mission.value.links.filter((one) => (mode.establish ?? []).includes(one.id));
+  for (let size = -1; size !== down.size;) {
+    size = down.size;
+    for (const {from, to} of ties) if (down.has(from) || down.has(to)) down.add(from).add(to);
+  }
+  const others = members.filter((member) => down.has(member.subsystem));
   for (const member of others) {
     const from = () => state_name(status_of(member.subsystem)?.state);
     add(`${member.subsystem} to Safe-Operational`, member.subsystem, 'SET_STATE', {STATE: state_value('SafeOperational')},
