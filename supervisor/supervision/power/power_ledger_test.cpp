@@ -11,7 +11,7 @@ namespace {
 
 using descriptor::State;
 
-constexpr std::uint16_t arm = 10, hand = 11, camera = 12;
+constexpr std::uint16_t robot = 10, handle = 11, camera = 12;
 constexpr pus::Request of_arm{.id = 0x180AC001, .source = 7}, of_hand{.id = 0x180BC001, .source = 7};
 constexpr TimePoint start{}, later = start + 10s;
 
@@ -21,82 +21,82 @@ struct PowerLedgerTest : ::testing::Test {
 };
 
 TEST_F(PowerLedgerTest, OfTwoThatFitAloneTheSecondIsRefusedWithTheNumbers) {
-  EXPECT_FALSE(ledger.shortage(arm, 60));
-  EXPECT_FALSE(ledger.shortage(hand, 60));
-  ledger.reserve(arm, 60, of_arm, later);
-  const auto shortage = ledger.shortage(hand, 60);
+  EXPECT_FALSE(ledger.shortage(robot, 60));
+  EXPECT_FALSE(ledger.shortage(handle, 60));
+  ledger.reserve(robot, 60, of_arm, later);
+  const auto shortage = ledger.shortage(handle, 60);
   ASSERT_TRUE(shortage);
   EXPECT_EQ(shortage->budget_mw, 100'000U);
   EXPECT_EQ(shortage->reserved_mw, 60'000U);
   EXPECT_EQ(shortage->requested_mw, 60'000U);
-  EXPECT_FALSE(ledger.shortage(hand, 40)) << "to the last milliwatt";
-  EXPECT_TRUE(ledger.shortage(hand, 40.001));
+  EXPECT_FALSE(ledger.shortage(handle, 40)) << "to the last milliwatt";
+  EXPECT_TRUE(ledger.shortage(handle, 40.001));
 }
 
 TEST_F(PowerLedgerTest, WithoutABudgetEverythingFits) {
   PowerLedger unlimited{std::nullopt};
-  unlimited.observe(arm, State::Operational, 1e6, start);
-  EXPECT_FALSE(unlimited.shortage(hand, 1e6));
+  unlimited.observe(robot, State::Operational, 1e6, start);
+  EXPECT_FALSE(unlimited.shortage(handle, 1e6));
   EXPECT_FALSE(unlimited.overdrawn());
   EXPECT_EQ(unlimited.reserved_mw(), 1'000'000'000U) << "but it is told";
 }
 
 TEST_F(PowerLedgerTest, WhoAsksTwiceIsCountedOnce) {
-  ledger.reserve(arm, 60, of_arm, later);
-  EXPECT_FALSE(ledger.shortage(arm, 60));
-  ledger.reserve(arm, 60, of_arm, later);
+  ledger.reserve(robot, 60, of_arm, later);
+  EXPECT_FALSE(ledger.shortage(robot, 60));
+  ledger.reserve(robot, 60, of_arm, later);
   EXPECT_EQ(ledger.reserved_mw(), 60'000U);
 }
 
 TEST_F(PowerLedgerTest, APermissionHoldsUntilItsTelecommandEnded) {
-  ledger.reserve(arm, 60, of_arm, later);
-  ledger.observe(arm, State::PreOperational, 60, start);
-  EXPECT_EQ(ledger.held_mw(arm), 60'000U) << "on its way";
+  ledger.reserve(robot, 60, of_arm, later);
+  ledger.observe(robot, State::PreOperational, 60, start);
+  EXPECT_EQ(ledger.held_mw(robot), 60'000U) << "on its way";
   ledger.ended(of_hand);
   ledger.ended({.id = of_arm.id, .source = 8});
-  ledger.observe(arm, State::PreOperational, 60, start);
-  EXPECT_EQ(ledger.held_mw(arm), 60'000U) << "another telecommand ended";
+  ledger.observe(robot, State::PreOperational, 60, start);
+  EXPECT_EQ(ledger.held_mw(robot), 60'000U) << "another telecommand ended";
   ledger.ended(of_arm);
-  ledger.observe(arm, State::PreOperational, 60, start);
-  EXPECT_EQ(ledger.held_mw(arm), 0U) << "it failed";
+  ledger.observe(robot, State::PreOperational, 60, start);
+  EXPECT_EQ(ledger.held_mw(robot), 0U) << "it failed";
 }
 
 TEST_F(PowerLedgerTest, APermissionThatNobodyUsedEndsInTime) {
-  ledger.reserve(arm, 60, of_arm, later);
-  ledger.observe(arm, State::PreOperational, 60, later);
-  EXPECT_EQ(ledger.held_mw(arm), 60'000U);
-  ledger.observe(arm, State::PreOperational, 60, later + 1ns);
-  EXPECT_EQ(ledger.held_mw(arm), 0U);
+  ledger.reserve(robot, 60, of_arm, later);
+  ledger.observe(robot, State::PreOperational, 60, later);
+  EXPECT_EQ(ledger.held_mw(robot), 60'000U);
+  ledger.observe(robot, State::PreOperational, 60, later + 1ns);
+  EXPECT_EQ(ledger.held_mw(robot), 0U);
 }
 
 TEST_F(PowerLedgerTest, StatesDecideWhoDraws) {
   for (int value = 0; value <= 9; ++value) {
     const auto state = static_cast<State>(value);
-    ledger.observe(arm, State::Operational, 60, start);
-    ledger.observe(arm, state, 60, start);
+    ledger.observe(robot, State::Operational, 60, start);
+    ledger.observe(robot, state, 60, start);
     const bool draws =
         value >= static_cast<int>(State::SafeOperational) && value <= static_cast<int>(State::PostOperational);
-    EXPECT_EQ(ledger.held_mw(arm), draws ? 60'000U : 0U) << to_text(state);
+    EXPECT_EQ(ledger.held_mw(robot), draws ? 60'000U : 0U) << to_text(state);
   }
 }
 
 TEST_F(PowerLedgerTest, TheDeadDrawNothingWhateverWasOnItsWay) {
-  ledger.reserve(arm, 60, of_arm, later);
-  ledger.observe(arm, std::nullopt, 60, start);
+  ledger.reserve(robot, 60, of_arm, later);
+  ledger.observe(robot, std::nullopt, 60, start);
   EXPECT_EQ(ledger.reserved_mw(), 0U);
 }
 
 TEST_F(PowerLedgerTest, AConfigurationChangedBehindThePermissionShowsAsOverdrawn) {
-  uses(hand, 50);
-  ledger.reserve(arm, 50, of_arm, later);
+  uses(handle, 50);
+  ledger.reserve(robot, 50, of_arm, later);
   EXPECT_FALSE(ledger.overdrawn());
-  uses(arm, 50.001);
+  uses(robot, 50.001);
   EXPECT_TRUE(ledger.overdrawn());
 }
 
 TEST_F(PowerLedgerTest, ALoweredBudgetTakesNothingAwayButShows) {
-  uses(arm, 60);
-  uses(hand, 40);
+  uses(robot, 60);
+  uses(handle, 40);
   EXPECT_FALSE(ledger.overdrawn());
   ledger.set_budget(99);
   EXPECT_TRUE(ledger.overdrawn());
@@ -106,12 +106,12 @@ TEST_F(PowerLedgerTest, ALoweredBudgetTakesNothingAwayButShows) {
 
 TEST_F(PowerLedgerTest, AnOverdraftIsNewOnceUntilItIsOver) {
   EXPECT_FALSE(ledger.newly_overdrawn());
-  uses(arm, 101);
+  uses(robot, 101);
   EXPECT_TRUE(ledger.newly_overdrawn());
   EXPECT_FALSE(ledger.newly_overdrawn());
-  uses(arm, 100);
+  uses(robot, 100);
   EXPECT_FALSE(ledger.newly_overdrawn());
-  uses(arm, 101);
+  uses(robot, 101);
   EXPECT_TRUE(ledger.newly_overdrawn());
 }
 
