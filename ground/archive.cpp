@@ -40,7 +40,7 @@ constexpr const char* schema = R"(
     line TEXT NOT NULL, answer TEXT NOT NULL);
 )";
 constexpr int busy_limit_ms = 2000;  ///< while opening
-constexpr std::int64_t most_rows = 10'000;
+constexpr std::int64_t most_listed = 10'000;
 
 [[nodiscard]] std::int64_t ns(OnboardTime t) noexcept { return t.time_since_epoch().count(); }
 [[nodiscard]] OnboardTime time_of(std::int64_t value) noexcept { return OnboardTime{Duration{value}}; }
@@ -414,10 +414,10 @@ std::vector<StoredChange> Archive::changes(Span span) {
   Statement newest{*this,
                    "SELECT t, kind, name, value FROM (SELECT id, t, kind, name, value FROM changes WHERE t >= ? AND "
                    "t <= ? ORDER BY t DESC, id DESC LIMIT ?) ORDER BY t, id"};
-  newest << span.from << span.to << most_rows;
+  newest << span.from << span.to << most_listed;
   const auto within = rows(newest);
   // Too many: the story begins later, with what held then.
-  if (std::ssize(within) == most_rows) span.from = within.front().t;
+  if (std::ssize(within) == most_listed) span.from = within.front().t;
   // SQLite takes the other columns from the row that has the greatest time.
   Statement before{*this, "SELECT max(t), kind, name, value FROM changes WHERE t < ? GROUP BY kind, name"};
   before << span.from;
@@ -431,7 +431,7 @@ std::vector<StoredGap> Archive::gaps(const Span& span) {
   Statement find{*this,
                  "SELECT t, until FROM (SELECT t, until FROM gaps WHERE until >= ? AND t <= ? ORDER BY t DESC LIMIT ?) "
                  "ORDER BY t"};
-  find << span.from << span.to << most_rows;
+  find << span.from << span.to << most_listed;
   std::vector<StoredGap> gaps;
   while (find.row()) {
     StoredGap gap{.from = find.time()};
@@ -445,7 +445,7 @@ std::vector<StoredFault> Archive::faults(const Span& span) {
   Statement find{*this,
                  "SELECT t, device, line, answer FROM (SELECT t, device, line, answer FROM faults WHERE t >= ? AND "
                  "t <= ? ORDER BY t DESC LIMIT ?) ORDER BY t"};
-  find << span.from << span.to << most_rows;
+  find << span.from << span.to << most_listed;
   std::vector<StoredFault> faults;
   while (find.row()) {
     StoredFault fault{.t = find.time(), .device = find.text(), .line = find.text(), .answer = {}};
