@@ -13,6 +13,7 @@ constexpr std::int64_t most_cycles_at_once = 40;          // of catching up afte
 constexpr std::size_t most_delayed_frames = 2048;         // 1 s at 2 kHz
 constexpr std::size_t most_injections = 10'000;           // then the record ends; the faults still work
 constexpr Duration longest_watchdog = std::chrono::seconds{1};
+constexpr Duration longest_starvation = std::chrono::milliseconds{50};
 
 Duration milliseconds_of(double ms) noexcept { return Duration{std::llround(ms * 1e6)}; }
 
@@ -113,6 +114,7 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
   epoch_ = command.epoch;
   sequence_ = command.sequence;
   mode_ = command.mode;
+  starved_ = {};
   const Duration wanted = std::chrono::microseconds{command.watchdog_us};
   watchdog_at_ = now + (command.watchdog_us == 0 ? settings_.watchdog : std::min(wanted, longest_watchdog));
   return true;
@@ -120,12 +122,19 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
 
 /// A pause of this very program (a stopped virtual machine, a debugger) is no time that the device had: real hardware
 /// would have run on, so neither its world nor its watchdog may jump. While it runs it wakes after a cycle by its own
-/// clock, after two while it is driven by exchanges; what is longer was a pause.
+/// clock, after two while it is driven by exchanges; what is longer was a pause. Woken late by more than half a cycle the
+/// machine starves, and whom it starves first is the subsystem, which waits for this program: the watchdog does not count
+/// such a step at all, for a while.
 void SimulatedDevice::forgive_pause(TimePoint now) noexcept {
-  const Duration pause = now - now_ - settings_.cycle * (by_own_clock_ ? 1 : 2);
+  const Duration expected = settings_.cycle * (by_own_clock_ ? 1 : 2);
+  const Duration pause = now - now_ - expected;
   if (pause <= Duration{0}) return;
   world_time_ += pause;
-  if (mode_ != DeviceMode::Off) watchdog_at_ += pause;
+  if (mode_ == DeviceMode::Off) return;
+  watchdog_at_ += pause;
+  if (pause <= settings_.cycle / 2 || starved_ >= longest_starvation) return;
+  starved_ += expected;
+  watchdog_at_ += expected;
 }
 
 void SimulatedDevice::watch(TimePoint now) noexcept {

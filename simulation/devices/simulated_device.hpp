@@ -143,6 +143,7 @@ class SimulatedDevice {
   std::uint32_t sequence_{0};
   std::uint16_t flags_{0};
   TimePoint watchdog_at_{TimePoint::max()};
+  Duration starved_{};  ///< steps since the last command that the watchdog does not count
 
   TimePoint silent_until_{};
   TimePoint frozen_until_{};

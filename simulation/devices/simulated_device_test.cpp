@@ -204,6 +204,18 @@ TEST(Watchdog, CountsOnlyTheTimeInWhichTheDeviceItselfRan) {
   EXPECT_TRUE(bench.device.watchdog_tripped());
 }
 
+TEST(Watchdog, DoesNotCountForAWhileWhatAStarvingMachineGivesTheDeviceBeforeItsSubsystem) {
+  constexpr Duration late = std::chrono::microseconds{1700};
+  RobotBench bench;
+  bench.active(5);
+  for (int k = 0; k < 100; ++k) {
+    bench.device.step(bench.now += late);
+    ASSERT_FALSE(bench.device.watchdog_tripped()) << k;
+  }
+  for (int k = 0; k < 20; ++k) bench.device.step(bench.now += late);
+  EXPECT_TRUE(bench.device.watchdog_tripped());
+}
+
 TEST(Fence, RefusesAnOldEpochAndItDoesNotFeedTheWatchdog) {
   RobotBench bench;
   bench.active(5, 7);
