@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The cycle threads of a coupled flight never use the heap; one that does is found out."""
 import re
+import sys
 import time
 import unittest
 
 import flight
 
-CYCLES = 100_000
+CYCLES = 30_000
 ROKVISS_HZ = 2000
 
 
@@ -65,4 +66,6 @@ class Allocations(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        CYCLES = int(sys.argv.pop(1))
     flight.main()
