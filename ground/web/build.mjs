@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // node build.mjs [FOLDER [SOURCES]]: bundles the page of SOURCES (default: here) into FOLDER (default: dist), with the
-// packages that stand beside this file. The same sources give the same octets. The 3D part is a chunk of its own, which the
-// browser fetches when a view needs it.
+// packages that stand beside this file. The same sources give the same octets. The 3D part is a chunk of its own.
 import {build} from 'esbuild';
 import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {dirname, join, resolve} from 'node:path';
@@ -29,7 +28,10 @@ await build({
   legalComments: 'linked',
   logLevel: 'warning',
 });
-cpSync(join(sources, 'page/index.html'), join(out, 'index.html'));
+// The 3D part comes while the rest starts: most visits begin with the robot, and its code is most of the octets.
+const drawing = readdirSync(out).find((name) => /^scene-.*\.js$/.test(name));
+writeFileSync(join(out, 'index.html'), readFileSync(join(sources, 'page/index.html'), 'utf8')
+    .replace('</head>', `  <link rel="modulepreload" href="${drawing}">\n</head>`));
 cpSync(join(sources, 'page/icon.svg'), join(out, 'icon.svg'));
 cpSync(join(sources, 'page/models'), join(out, 'models'), {recursive: true});
 // Which missions have a model: a page that tried would leave an error in the console for each that has none.
