@@ -211,11 +211,14 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   count_links();
 
   const descriptor::CycleLimit& limit = plan_.configuration->overruns;
-  // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007).
+  // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007). Work that
+  // takes long after a start more than a period late tells of the machine: it neither lengthens the row nor breaks it.
   const bool overrun = execution > plan_.configuration->sampling;
-  overruns_in_a_row_ = overrun ? overruns_in_a_row_ + 1 : 0;
+  const bool starved = started - planned > plan_.configuration->sampling;
   if (overrun) ++overruns_;
-  if (overruns_in_a_row_ == (parts_.realtime ? limit.realtime : limit.reduced)) {
+  if (!overrun) overruns_in_a_row_ = 0;
+  else if (!starved) ++overruns_in_a_row_;
+  if (overrun && !starved && overruns_in_a_row_ == (parts_.realtime ? limit.realtime : limit.reduced)) {
     const double row = overruns_in_a_row_;
     raise(plan_.overrun_event, {&row, 1});
   }

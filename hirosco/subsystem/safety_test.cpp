@@ -539,6 +539,28 @@ TEST(Overruns, ThreeInARowAreReportedOnceAndMissedCyclesAreSkipped) {
   EXPECT_EQ(rig.vital.execution_max_ns.load(), 2'500'000u);
 }
 
+TEST(Overruns, LateStartsOfAStarvingMachineNeitherLengthenTheRowNorBreakIt) {
+  Slow slow;
+  Rig rig{slow, probe_descriptor};
+  rig.bring_to(State::PreOperational, 2);
+  slow.clock = &rig.clock;
+  slow.takes = 2500us;
+  TimePoint planned = rig.clock.now();
+  const auto overrun = [&](Duration late) {
+    rig.clock.set(planned + late);
+    planned = rig.subsystem.cycle_step(planned);
+  };
+  overrun(0us);
+  overrun(0us);
+  for (int i = 0; i < 10; ++i) overrun(1001us);
+  rig.service();
+  EXPECT_THAT(rig.reports(5, 3), testing::IsEmpty());
+  overrun(1000us);
+  rig.service();
+  EXPECT_THAT(rig.reports(5, 3), ElementsAre("000600000003"));
+  EXPECT_EQ(rig.vital.overruns.load(), 13u);
+}
+
 TEST(Overruns, LatencyIsTheDelayBehindThePlannedTime) {
   Probe probe;
   Rig rig{probe, probe_descriptor};
