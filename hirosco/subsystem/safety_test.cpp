@@ -554,7 +554,7 @@ TEST(Overruns, LateStartsOfAStarvingMachineNeitherLengthenTheRowNorBreakIt) {
   overrun(0us);
   for (int i = 0; i < 10; ++i) overrun(1001us);
   rig.service();
-  EXPECT_THAT(rig.reports(5, 3), testing::IsEmpty());
+  EXPECT_THAT(rig.reports(5, 3), ::testing::IsEmpty());
   overrun(1000us);
   rig.service();
   EXPECT_THAT(rig.reports(5, 3), ElementsAre("000600000003"));
