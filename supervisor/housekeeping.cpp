@@ -34,12 +34,9 @@ Result<> Supervisor::show(const Cycle&) noexcept {
 void Supervisor::show_members() noexcept {
   SubsystemsStatus status;
   std::size_t place = 0;
-  const auto tell_of = [&](std::uint16_t apid, std::optional<State> state, const VitalPage* vital,
-                           std::uint32_t process) {
+  const auto tell_of = [&](std::uint16_t apid, std::optional<State> state, const VitalPage* vital) {
     if (place == told_members) return;
     const std::size_t i = place++;
-    if (vital == nullptr) memory_kb_[i] = 0;
-    else if (i == memory_turn_) memory_kb_[i] = parts_.launcher.resident_kb(process);
     status.memory_kb[i] = memory_kb_[i];
     status.apid[i] = apid;
     status.state[i] = state ? static_cast<std::uint8_t>(*state) : not_running;
@@ -53,10 +50,21 @@ void Supervisor::show_members() noexcept {
     status.latency_max_ns[i] = read(vital->latency_max_ns);
     status.execution_mean_ns[i] = read(vital->execution_mean_ns);
   };
-  tell_of(mission_.supervisor.id, engine_.state(), own_vital_.get(), 0);
-  for (const Member& member : members_) tell_of(member.apid(), member.state(), member.vital(), member.process());
-  memory_turn_ = (memory_turn_ + 1) % told_members;
+  tell_of(mission_.supervisor.id, engine_.state(), own_vital_.get());
+  for (const Member& member : members_) tell_of(member.apid(), member.state(), member.vital());
   subsystems_parameter_.store(status);
+}
+
+/// Asks the operating system, which no cycle does; each member in its turn.
+void Supervisor::watch_memory() {
+  memory_turn_ = (memory_turn_ + 1) % std::min(told_members, members_.size() + 1);
+  std::uint32_t& memory_kb = memory_kb_[memory_turn_];
+  if (memory_turn_ == 0) {
+    memory_kb = parts_.launcher.resident_kb(0);
+    return;
+  }
+  const Member& subject = members_[memory_turn_ - 1];
+  memory_kb = subject.alive() ? parts_.launcher.resident_kb(subject.process()) : 0;
 }
 
 void Supervisor::show_links() noexcept {

@@ -207,6 +207,7 @@ TimePoint Supervisor::step(TimePoint now) {
     next_watch_ = now + watch_period;
     watch_ends(true);
     watch_hangs();
+    watch_memory();
     observe_power();
     shed_load();
     links_.step(now);
@@ -236,6 +237,8 @@ void Supervisor::receive_from(Member& member) {
     const auto header = pus::read_primary_header(message.packet);
     if (!header) continue;
     if (!header->telecommand) {
+      // Before an answer, what was said before it: the copy of the telecommand that it answers.
+      receive_from_self();
       handle_telemetry(member.apid(), message.packet);
     } else if (message.kind == MessageKind::GroundTelecommand &&
                member.descriptor().name == mission_.ground.subsystem) {

@@ -86,6 +86,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   Result<> show(const Cycle& cycle) noexcept;
   void show_members() noexcept;
   void show_links() noexcept;
+  void watch_memory();
   // LinkOperator
   void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) override;
   void link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) override;
@@ -241,7 +242,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     std::array<std::uint32_t, told_members> execution_mean_ns{};
     std::array<std::uint32_t, told_members> memory_kb{};
   };
-  std::array<std::uint32_t, told_members> memory_kb_{};  ///< asked for one of them each cycle
+  std::array<std::uint32_t, told_members> memory_kb_{};  ///< in the order of subsystems_parameter_
   std::size_t memory_turn_{0};
   Parameter<SubsystemsStatus> subsystems_parameter_;
   struct LinksStatus {

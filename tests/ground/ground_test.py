@@ -127,8 +127,11 @@ class Listener(threading.Thread):
         except (OSError, EOFError):
             self.socket.close()
 
-    def count(self, kind, since=0.0):
-        return sum(message["type"] == kind and at >= since for message, at in zip(list(self.messages), list(self.times)))
+    def times_of(self, kind, since=0.0):
+        return [at for message, at in zip(list(self.messages), list(self.times)) if message["type"] == kind and at >= since]
+
+    def count(self, kind):
+        return len(self.times_of(kind))
 
 
 def crc16(octets):
@@ -195,7 +198,7 @@ class OnAFlight(unittest.TestCase):
                 flight.measure(f"from the click to its last report on another page: median {sorted(delays)[10]:.1f} ms, "
                                f"greatest {max(delays):.1f} ms")
                 self.assertLess(sorted(delays)[10], 150.0)
-                self.assertEqual(one.count("command"), other.count("command"))
+                gateway.until(lambda status: one.count("command") == other.count("command"))
                 self.others_are_named(rokviss, gateway)
                 one.socket.close()
                 other.socket.close()
@@ -206,15 +209,20 @@ class OnAFlight(unittest.TestCase):
         rokviss.tc("manipulator", "MOVE_TO", "0.1", "1.2", "2")
         with Gateway(rokviss.folder, archive="second.db") as second:
             second.until(lambda status: status["mode"] == "telepresence")
-            second.request("/api/commands", {"subsystem": "JOYSTICK", "function": "PING"})
-            gateway.until(lambda status: gateway.request("/api/commands?limit=1")["commands"][0]["function"] == "PING")
-            seen = gateway.request("/api/commands?limit=3")["commands"][::-1]
-        self.assertEqual([(one["function"], one["arguments"]) for one in seen],
-                         [("SET_FORCE_SCALE", {"SCALE": 0.05}), ("MOVE_TO", {"Q1": 0.1, "Q2": 1.2, "DURATION": 2}),
-                          ("PING", {})])
+            pings = [second.request("/api/commands", {"subsystem": name, "function": "PING"})
+                     for name in ["COMMUNICATION", "JOYSTICK", "MANIPULATOR"] * 10]
+            wanted = [("SET_FORCE_SCALE", {"SCALE": 0.05}), ("MOVE_TO", {"Q1": 0.1, "Q2": 1.2, "DURATION": 2})] + \
+                     [("PING", {})] * len(pings)
+
+            def newest():
+                return gateway.request(f"/api/commands?limit={len(wanted)}")["commands"][::-1]
+            gateway.until(lambda status: newest()[0]["function"] == "SET_FORCE_SCALE" and
+                          all(one["stage"] in ("completed", "failed") for one in newest()))
+            seen = newest()
+        self.assertEqual([(one["function"], one["arguments"]) for one in seen], wanted)
         self.assertEqual([one["sender"].rsplit(" ", 1)[0] for one in seen],
-                         ["hirosco tc", "hirosco tc", "another ground station"])
-        self.assertEqual([one["stage"] for one in seen[:2]], ["completed", "failed"])
+                         ["hirosco tc"] * 2 + ["another ground station"] * len(pings))
+        self.assertEqual([one["stage"] for one in seen], ["completed", "failed"] + ["completed"] * len(pings))
 
     def test_a_stalled_and_a_killed_browser_cost_the_others_nothing(self):
         with flight.Flight() as rokviss:
@@ -224,17 +232,22 @@ class OnAFlight(unittest.TestCase):
                 good = Listener(gateway)
                 time.sleep(1.0)
 
-                def rate(seconds):
-                    since = time.monotonic()
-                    time.sleep(seconds)
-                    return good.count("values", since) / seconds
+                def rate():
+                    """The best of three windows: a cost is in each of them, a moment without processor in one."""
+                    best = 0.0
+                    for _ in range(3):
+                        since = time.monotonic()
+                        time.sleep(2.0)
+                        times = good.times_of("values", since)
+                        best = max(best, (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0)
+                    return best
 
-                alone = rate(4.0)
+                alone = rate()
                 stalled = [WebSocket(gateway, receive_octets=4096) for _ in range(5)]    # never read
                 killed = WebSocket(gateway)
                 killed.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
                 killed.close()
-                beside = rate(4.0)
+                beside = rate()
                 flight.measure(f"batches a second: {alone:.2f} alone, {beside:.2f} beside 5 stalled and 1 killed browser")
                 self.assertGreater(beside, alone * 0.95)
                 self.assertGreater(alone, 15.0)
