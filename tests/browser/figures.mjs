@@ -5,18 +5,16 @@
 // Exits 1 when a figure is short. Started by bench/ground, on a machine that does nothing else.
 import {spawn} from 'node:child_process';
 import {mkdtempSync, readFileSync, readdirSync, rmSync} from 'node:fs';
-import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {setTimeout as sleep} from 'node:timers/promises';
 import {gzipSync} from 'node:zlib';
 import {chromium} from 'playwright-core';
-import {executable, flags, open_browser, open_page} from './browser.mjs';
+import {executable, flags, go, open_browser, open_page, serious_findings, until, views} from './browser.mjs';
 import {fly, free_port, ground, missions} from './flight.mjs';
 import {judge_forms, judge_gateway} from './forms.mjs';
 
 const minutes = Number(process.argv[process.argv.indexOf('--minutes') + 1]) || 1;
-const views = ['overview', 'subsystems/MANIPULATOR', 'plots', 'commands/MANIPULATOR/MOVE_TO', 'links', 'events', 'timeline', 'help'];
 const token = 'figures';
 const wait = {timeout: 30000};
 const rate_window_s = 40;  // one message more or less at an end must stay far below the 1 % that is judged
@@ -39,7 +37,6 @@ function print_table() {
   for (const one of [head, ...rows]) console.log(one.map((text, i) => text.padEnd(widths[i])).join('  ').trimEnd());
 }
 
-const go = (page, view) => page.evaluate((to) => { location.hash = `#/${to}`; }, view);
 const api = (station, path, body) => fetch(`${station.origin}${path}`, {headers: {Authorization: `Bearer ${station.token}`,
   ...(body ? {'Content-Type': 'application/json'} : {})}, ...(body ? {method: 'POST', body: JSON.stringify(body)} : {})});
 async function is_coupled(station) {
@@ -115,16 +112,7 @@ async function measure_frames(page, seconds) {
 }
 
 async function measure_accessibility(page) {
-  const source = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-  const found = [];
-  for (const view of views) {
-    await go(page, view);
-    await page.waitForSelector('main .panel');
-    await page.evaluate(source);
-    const {violations} = await page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
-    found.push(...violations.filter(({impact}) => ['serious', 'critical'].includes(impact))
-        .map(({id, nodes}) => `${view}: ${id} ${nodes[0].html.slice(0, 100)}`));
-  }
+  const found = await serious_findings(page);
   row('serious findings of axe-core', ['=', 0, ''], found.length, found.slice(0, 3).join('; ') || `${views.length} views`);
 }
 
@@ -292,7 +280,7 @@ async function measure() {
   let station = await ground(flight.folder, 'rokviss', port, token);
   const browser = await open_browser();
   try {
-    while (!await is_coupled(station)) await sleep(100);
+    await until('coupled', () => is_coupled(station), 60);
     await hand(station, 'hand sine 1 0.1 0.5');
     await sleep(2000);
     await measure_opening(station);

@@ -5,11 +5,10 @@
 // move the arm, unplug the joystick, read why, replay.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {open_browser, open_page} from './browser.mjs';
+import {go, open_browser, open_page} from './browser.mjs';
 import {fly} from './flight.mjs';
 
 const wait = {timeout: 20000};
-const go = (page, view) => page.evaluate((to) => { location.hash = `#/${to}`; }, view);
 
 describe('the page on a real flight', () => {
   let flight, browser, page, faults;

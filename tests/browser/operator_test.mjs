@@ -5,7 +5,7 @@
 // passivity, the store of the log, SAFE ALL, shutdown.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {open_browser, open_page} from './browser.mjs';
+import {go, open_browser, open_page} from './browser.mjs';
 import {fly} from './flight.mjs';
 
 const wait = {timeout: 30000};
@@ -25,18 +25,14 @@ describe('an operator with nothing but the page', () => {
     await flight?.end();
   });
 
-  const go = async (view) => {
-    await page.evaluate((to) => { location.hash = `#/${to}`; }, view);
-    await page.waitForFunction((to) => location.hash === `#/${to}`, view, wait);
-  };
   const mode_is = (name) => page.waitForFunction((wanted) => document.querySelector('[data-test=mode] b')?.textContent === wanted, name, wait);
   const state_is = (name, state) => page.waitForFunction(([one, wanted]) =>
     document.querySelector(`[data-test=subsystem-${one}] .state`)?.textContent === wanted, [name, state], wait);
 
   /// Fills the form in, waits for "permitted", sends, waits for the verdict.
   async function command(subsystem, action, values = {}, limit = wait) {
-    await go('overview');
-    await go(`commands/${subsystem}/${action}`);
+    await go(page, 'overview');
+    await go(page, `commands/${subsystem}/${action}`);
     await page.waitForSelector(`[data-test=send]:has-text("${action}"), [data-test=send]:has-text("to fill in")`, wait);
     for (const [name, value] of Object.entries(values)) {
       const field = page.locator(`[data-test=field-${name}]`);
@@ -54,7 +50,7 @@ describe('an operator with nothing but the page', () => {
   }
 
   async function to_state(name, state, told = state) {
-    await go(`subsystems/${name}`);
+    await go(page, `subsystems/${name}`);
     await page.click(`[data-test=go-${state}]`, wait);
     await state_is(name, told);
   }
@@ -77,11 +73,11 @@ describe('an operator with nothing but the page', () => {
     for (const name of both) await to_state(name, 'Offline');
     for (const name of both) await to_state(name, 'PreOperational', 'Pre-Operational');
     for (const name of both) {
-      await go(`subsystems/${name}`);
+      await go(page, `subsystems/${name}`);
       await page.click('[data-test=configure-COUPLED]', wait);
       await page.waitForFunction(() => document.querySelector('[data-test=configure-COUPLED]').classList.contains('on'), null, wait);
     }
-    await go('links');
+    await go(page, 'links');
     for (const link of [1, 2]) {
       await page.click(`[data-test=link-${link}]:has-text("make")`, wait);
       await page.waitForSelector(`[data-test=link-${link}]:has-text("cut")`, wait);
@@ -93,7 +89,7 @@ describe('an operator with nothing but the page', () => {
   });
 
   async function bring_up(mode) {
-    await go('subsystems/MANIPULATOR');
+    await go(page, 'subsystems/MANIPULATOR');
     await page.selectOption('[data-test=commission-mode]', mode);
     await page.click('[data-test=commission]');
     await page.waitForSelector('[data-test=commissioned]', {timeout: 60000});
@@ -121,10 +117,10 @@ describe('an operator with nothing but the page', () => {
   it('changes the store of the log, makes all safe and shuts down', async () => {
     await command('SUPERVISOR', 'SET_DATABASE', {STRATEGY: 1});
     await command('SUPERVISOR', 'SAFE_ALL');
-    await go('subsystems/MANIPULATOR');
+    await go(page, 'subsystems/MANIPULATOR');
     await page.waitForFunction(() => /inhibited/.test(document.querySelector('[data-test=subsystem-MANIPULATOR]').textContent), null, wait);
     await command('SUPERVISOR', 'SET_MODE', {MODE: 'safe'});
-    await go('commands/SUPERVISOR/SHUTDOWN');
+    await go(page, 'commands/SUPERVISOR/SHUTDOWN');
     await page.waitForSelector('[data-test=permission].yes', wait);
     await page.click('[data-test=send]');
     assert.equal(await flight.gone, 0);

@@ -296,6 +296,7 @@ export class RobotView {
       event.stopImmediatePropagation();
       this.dragging = grip;
       this.controls.enabled = false;
+      canvas.style.cursor = 'grabbing';
       canvas.setPointerCapture(event.pointerId);
     };
     canvas.addEventListener('pointerdown', start, {capture: true});
@@ -306,6 +307,7 @@ export class RobotView {
     const end = () => {
       if (!this.dragging) return;
       this.dragging = null;
+      canvas.style.cursor = '';
       this.controls.enabled = true;
       this.hand([0, 0], true);
     };
