@@ -29,6 +29,14 @@ CraftOptions options(const RunSettings& settings, std::uint64_t seed, const char
   return made;
 }
 
+/// Puts into `cycles` how many cycles of `member` after this moment a line that begins with `what` is told; `never` before.
+void measure_until(Flight& flight, std::string_view member, std::string_view what, double& cycles) {
+  cycles = never;
+  flight.story().on_line = [&flight, &cycles, member, what, since = flight.cycles(member)](std::string_view line) {
+    if (line.starts_with(what)) cycles = static_cast<double>(flight.cycles(member) - since);
+  };
+}
+
 // --- FC6 ---------------------------------------------------------------------------------------------------------------
 
 /// Stopped for longer than a hang takes, then continued: it must find itself fenced.
@@ -72,12 +80,8 @@ void lose_the_ground_link(const RunSettings& settings, Findings& findings) {
     craft.hand("sine 1 0.1 0.5");
     craft.run(random.uniform(0.5, 1.5));
     craft.command("COMMUNICATION", "SET_DELAY", {20, 1});
-    const std::uint64_t lost_at = flight.cycles("COMMUNICATION");
     double event = never;
-    flight.story().on_line = [&](std::string_view line) {
-      if (line.starts_with("COMMUNICATION medium GROUND_LINK_LOST"))
-        event = static_cast<double>(flight.cycles("COMMUNICATION") - lost_at);
-    };
+    measure_until(flight, "COMMUNICATION", "COMMUNICATION medium GROUND_LINK_LOST", event);
     craft.run(1.0);
     const Vec2 q = craft.arm().state().link_rad;
     craft.run(1.5);
@@ -177,12 +181,8 @@ void ask_for_a_distant_spring(const RunSettings& settings, Findings& findings) {
     Flight& flight = craft.flight();
     craft.hand("cartesian 0.0226 0 0.5");
     craft.run(random.uniform(0.7, 1.7));
-    const std::uint64_t asked_at = flight.cycles("MANIPULATOR");
     double event = never;
-    flight.story().on_line = [&](std::string_view line) {
-      if (line.starts_with("MANIPULATOR low SPRING_OUT_OF_REACH"))
-        event = static_cast<double>(flight.cycles("MANIPULATOR") - asked_at);
-    };
+    measure_until(flight, "MANIPULATOR", "MANIPULATOR low SPRING_OUT_OF_REACH", event);
     static_cast<void>(craft.craft().command("MANIPULATOR", "HOOK_SPRING", {1}));
     craft.run(0.3);
     event_cycles = std::max(event_cycles, event);

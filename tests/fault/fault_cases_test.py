@@ -44,6 +44,15 @@ class FaultCases(unittest.TestCase):
         for name in names:
             craft.wait_told(f"{name} is Offline", seconds, begin)
 
+    def assert_robot_to_safe(self, craft, case, cause, begin):
+        """The reaction of severity medium, and no more than it."""
+        event = craft.wait_told(f"MANIPULATOR medium {cause}", 2.0, begin)
+        safe = craft.wait_told("MANIPULATOR info STATE_CHANGED STATE=SafeOperational", 2.0, begin)
+        flight.measure(f"{case}: {event.told}; SafeOperational {1e3 * (safe.at_s - event.at_s):.1f} ms later")
+        self.assert_limp(craft, "robot")
+        self.assert_states(craft, MANIPULATOR="SafeOperational", JOYSTICK="Operational")
+        self.assertEqual(self.plans_since(craft, begin), [f"plan to-safe: MANIPULATOR to SafeOperational because of {cause}"])
+
     def plans_since(self, craft, begin):
         return [line.told for line in craft.told(begin) if line.told.startswith("plan ")]
 
@@ -59,13 +68,7 @@ class FaultCases(unittest.TestCase):
             self.assertEqual(self.plans_since(rokviss, begin), [])
 
             rokviss.fault("robot", "temperature", 2, 72)
-            hot = rokviss.wait_told("MANIPULATOR medium TEMPERATURE_CRITICAL", 2.0, begin)
-            safe = rokviss.wait_told("MANIPULATOR info STATE_CHANGED STATE=SafeOperational", 2.0, begin)
-            flight.measure(f"FC2 critical: SafeOperational {1e3 * (safe.at_s - hot.at_s):.1f} ms after the event")
-            self.assert_limp(rokviss, "robot")
-            self.assert_states(rokviss, MANIPULATOR="SafeOperational", JOYSTICK="Operational")
-            self.assertEqual(self.plans_since(rokviss, begin),
-                             ["plan to-safe: MANIPULATOR to SafeOperational because of TEMPERATURE_CRITICAL"])
+            self.assert_robot_to_safe(rokviss, "FC2 critical", "TEMPERATURE_CRITICAL", begin)
 
             rokviss.fault("robot", "temperature", 2, 81)
             rokviss.wait_told("MANIPULATOR high TEMPERATURE_MAXIMUM", 2.0, begin)
@@ -95,13 +98,7 @@ class FaultCases(unittest.TestCase):
         os.kill(joystick, signal.SIGCONT)
         if time.monotonic() - before > watchdog_s - 0.002:
             return False
-        stale = rokviss.wait_told("MANIPULATOR medium JOYSTICK_STATE_STALE", 2.0, begin)
-        safe = rokviss.wait_told("MANIPULATOR info STATE_CHANGED STATE=SafeOperational", 2.0, begin)
-        flight.measure(f"FC7: {stale.told}; SafeOperational {1e3 * (safe.at_s - stale.at_s):.1f} ms later")
-        self.assert_limp(rokviss, "robot")
-        self.assert_states(rokviss, MANIPULATOR="SafeOperational", JOYSTICK="Operational")
-        self.assertEqual(self.plans_since(rokviss, begin),
-                         ["plan to-safe: MANIPULATOR to SafeOperational because of JOYSTICK_STATE_STALE"])
+        self.assert_robot_to_safe(rokviss, "FC7", "JOYSTICK_STATE_STALE", begin)
         self.assertEqual(rokviss.end(), 0, rokviss.errors)
         return True
 

@@ -2,31 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
 #include <chrono>
-#include <memory>
 
-#include "hirosco/subsystem/run.hpp"
-#include "hirosco/subsystem/subsystem.hpp"
+#include "tests/stand_in.hpp"
 
-/// Takes the place of HELLO; MOVE_TO makes that many cycles work for longer than their period.
+/// MOVE_TO makes that many cycles work for longer than their period.
 namespace {
 
 using namespace hirosco;
 
-class Overrunning final : public Subsystem {
-  struct CurrentValues {  // CUR_VALUES in hello.xml: same members, same order
-    std::int32_t moving;
-    double position_rad;
-  };
-
-  Result<Step> software_init() override {
-    publish("CUR_VALUES", current_);
-    publish("DES_POSITION", goal_rad_);
-    on_function("MOVE_TO", [this](double cycles) -> Result<> {
-      left_ = static_cast<int>(cycles);
-      return ok();
-    });
-    return done;
-  }
+class Overrunning final : public StandIn {
+  void asked(double cycles) override { left_ = static_cast<int>(cycles); }
 
   Result<> operational(const Cycle& cycle) noexcept override {
     if (left_ == 0) return ok();
@@ -36,13 +21,9 @@ class Overrunning final : public Subsystem {
     return ok();
   }
 
-  Parameter<CurrentValues> current_;
-  Parameter<double> goal_rad_;
   std::atomic<int> left_{0};
 };
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return hirosco::run_subsystem(argc, argv, [] { return std::make_unique<Overrunning>(); });
-}
+int main(int argc, char** argv) { return hirosco::run_stand_in<Overrunning>(argc, argv); }
