@@ -11,7 +11,6 @@ namespace hirosco {
 namespace {
 
 using ::testing::ElementsAre;
-using testing::ManualClock;
 using testing::Probe;
 using testing::probe_descriptor;
 using testing::Rig;
