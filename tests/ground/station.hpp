@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +16,7 @@
 #include "ground/archive.hpp"
 #include "ground/catalogue.hpp"
 #include "ground/session.hpp"
+#include "hirosco/pus/packet.hpp"
 #include "simulation/scenarios/flight.hpp"
 
 /// The ground station beside the whole spacecraft on virtual time: everything but the sockets.
@@ -91,5 +97,50 @@ class Station {
   std::unique_ptr<ground::Api> api_;
   bool linked_{false};
 };
+
+[[nodiscard]] inline simulation::Plan rokviss(const char* start_mode = "telepresence") {
+  simulation::Plan plan;
+  plan.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/rokviss/mission.xml";
+  plan.edit = [start_mode](auto& mission) {
+    simulation::hand_rests(mission);
+    mission.start_mode = start_mode;
+  };
+  return plan;
+}
+
+[[nodiscard]] inline json subsystem_of(const json& status, const std::string& name) {
+  for (const json& one : status["subsystems"])
+    if (one["name"] == name) return one;
+  return {};
+}
+
+class GroundStation : public ::testing::Test {
+ protected:
+  void commission() {
+    ASSERT_TRUE(station.run_until([&] { return flight.craft().supervisor().commissioned(); }));
+    station.run(1s);
+  }
+  simulation::Flight flight{rokviss()};
+  Station station{flight};
+};
+
+/// A packet of the spacecraft as its link would bring it, at a time and with data of our choice.
+[[nodiscard]] inline std::vector<std::byte> telemetry(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype,
+                                                      OnboardTime t, Octets data) {
+  std::array<std::byte, pus::max_telemetry_octets> buffer;
+  const auto written =
+      pus::write_telemetry(buffer, {.apid = apid, .service = service, .subtype = subtype, .time = t}, data);
+  EXPECT_TRUE(written);
+  return {written->begin(), written->end()};
+}
+[[nodiscard]] inline std::vector<std::byte> joints(OnboardTime t, double first) {
+  std::array<std::byte, 256> buffer;
+  OctetWriter writer{buffer};
+  writer.put(std::uint16_t{4713});
+  for (int i = 0; i < 8; ++i) writer.put(i == 0 ? first : 0.0);
+  return telemetry(10, 3, 25, t, Octets{buffer}.first(writer.size()));
+}
+inline constexpr OnboardTime noon{std::chrono::seconds{2'145'916'900}};
+inline constexpr const char* first_joint = "MANIPULATOR.CUR_VALUES.POSITION[0]";
 
 }  // namespace hirosco::testing

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/ground/station.hpp"
+
+/// The API as such: its document, who may ask, and input that means ill.
+namespace hirosco::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST_F(GroundStation, ARequestThatNestsDeeperThanAnyIsRefused) {
+  const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+  ground::Api api{station.session(), {.token = "t", .observer_token = {}, .page = {}, .transitions = {}}};
+  ground::HttpResponse answer;
+  const std::string body = R"({"subsystem":"JOYSTICK","function":"PING","arguments":)" + nested(32'000) + "}";
+  api.handle({"POST", "/api/commands", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer t"}}, body},
+             [&](ground::HttpResponse response) { answer = std::move(response); });
+  EXPECT_EQ(answer.status, 400U);
+  EXPECT_THAT(answer.body, HasSubstr("a JSON object is wanted"));
+}
+
+TEST_F(GroundStation, WhatIsNoNumberOrSeverityIsNamedInsteadOfIgnored) {
+  const auto error = [&](const char* target) {
+    const auto answer = station.ask("GET", target);
+    EXPECT_EQ(answer.status, 400U) << target;
+    return json::parse(answer.body)["error"].get<std::string>();
+  };
+  EXPECT_EQ(error("/api/history?parameter=MANIPULATOR.TIP_FORCE[0]&points=many"), "points: a number is wanted");
+  EXPECT_EQ(error("/api/timeline?from=nan"), "from: a number is wanted");
+  EXPECT_EQ(error("/api/events?severity=urgent"), "severity: info, low, medium or high is wanted");
+  EXPECT_EQ(station.ask("GET", "/api/events?from=&to=&severity=").status, 200U);
+}
+
+[[nodiscard]] json resolved(const json& document, const json& part) {
+  return part.contains("$ref") ? document.at(json::json_pointer{part["$ref"].get<std::string>().substr(1)}) : part;
+}
+
+/// Whatever is answered stands in the document, to the last field.
+void expect_described(const json& document, const json& part, const json& answer, const std::string& where) {
+  const json schema = resolved(document, part);
+  if (answer.is_array() && schema.contains("items"))
+    for (const json& one : answer) expect_described(document, schema["items"], one, where + "[]");
+  if (!answer.is_object() || schema.value("additionalProperties", json{}) == json(true)) return;
+  for (const auto& [name, value] : answer.items()) {
+    const json known = schema.value("properties", json::object());
+    const bool described = known.contains(name) || schema.contains("additionalProperties");
+    EXPECT_TRUE(described) << where << "." << name;
+    if (described)
+      expect_described(document, known.contains(name) ? known[name] : schema["additionalProperties"], value,
+                       where + "." + name);
+  }
+}
+
+/// Every operation of openapi.json is asked: it is there, wants the token, and answers as the document says.
+TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
+  commission();
+  std::ifstream file{std::filesystem::path{HIROSCO_SOURCE_DIR} / "ground/api/openapi.json"};
+  const json document = json::parse(file);
+  const std::string span = "?parameter=" + std::string{first_joint};
+  const json command{{"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"}};
+  for (const auto& [path, methods] : document["paths"].items())
+    for (const auto& [method, operation] : methods.items()) {
+      SCOPED_TRACE(method + " " + path);
+      const bool posts = method == "post";
+      const json& responses = operation["responses"];
+      const auto ask = [&](std::map<std::string, std::string> headers, const json& body) {
+        const auto answer = station.ask(posts ? "POST" : "GET", path + span, body, std::move(headers));
+        EXPECT_TRUE(responses.contains(std::to_string(answer.status))) << answer.status << answer.body.substr(0, 100);
+        return answer;
+      };
+      EXPECT_EQ(ask({{"authorization", ""}}, {}).status, 401U);
+      EXPECT_EQ(ask({{"host", "evil.example"}}, {}).status, 403U);
+      if (posts) {
+        EXPECT_EQ(ask({}, json::array()).status, 400U);
+      }
+      const auto answer = ask({}, posts ? command : json{});
+      EXPECT_EQ(answer.status / 100, 2U) << answer.body;
+      const json content = resolved(document, responses[std::to_string(answer.status)])["content"];
+      ASSERT_TRUE(content.contains(answer.type.substr(0, answer.type.find(';')))) << answer.type;
+      if (answer.type != "application/json") continue;
+      expect_described(document, content["application/json"]["schema"], json::parse(answer.body), path);
+    }
+}
+
+TEST_F(GroundStation, OnlyWhoKnowsTheTokenFromThisComputerMayAskAndObserversMayNotCommand) {
+  const auto status = [&](const std::string& method, const std::string& target,
+                          std::map<std::string, std::string> headers, const json& body = {}) {
+    return station.ask(method, target, body, std::move(headers)).status;
+  };
+  EXPECT_EQ(status("GET", "/api/status", {}), 200U);
+  EXPECT_EQ(status("GET", "/api/status?token=right", {{"authorization", ""}}), 200U);
+  EXPECT_EQ(status("GET", "/api/status", {{"authorization", "Bearer wrong"}}), 401U);
+  EXPECT_EQ(status("GET", "/api/status", {{"authorization", ""}}), 401U);
+  EXPECT_EQ(status("GET", "/api/status?token=", {{"authorization", ""}}), 401U);
+  EXPECT_EQ(status("GET", "/api/status", {{"host", "evil.example:8080"}}), 403U);
+  EXPECT_EQ(status("GET", "/", {{"host", "evil.example:8080"}}), 403U);
+  EXPECT_EQ(status("GET", "/api/status", {{"origin", "http://evil.example"}}), 403U);
+  EXPECT_EQ(status("GET", "/api/status", {{"origin", "http://127.0.0.1:8080"}}), 200U);
+  EXPECT_EQ(status("GET", "/api/status", {{"authorization", "Bearer looker"}}), 200U);
+  const json ping{{"subsystem", "JOYSTICK"}, {"function", "PING"}};
+  EXPECT_EQ(status("POST", "/api/commands", {{"authorization", "Bearer looker"}}, ping), 403U);
+  EXPECT_EQ(status("POST", "/api/commands", {{"authorization", ""}}, ping), 401U);
+  EXPECT_EQ(status("DELETE", "/api/status", {}), 405U);
+  EXPECT_EQ(status("GET", "/api/nothing", {}), 404U);
+  for (const char* path : {"/../main.cpp", "/%2e%2e/main.cpp", "/.git/config", "//etc/passwd", "/a\\b", "/%00", "/%zz"})
+    EXPECT_GE(status("GET", path, {}), 400U) << path;
+  const auto page = station.ask("GET", "/", {}, {{"authorization", ""}});
+  EXPECT_EQ(page.status, 200U);
+  EXPECT_THAT(page.body, HasSubstr("hirosco_ground_page"));
+  bool strict = false;
+  for (const auto& [name, value] : page.headers)
+    strict = strict || (name == "Content-Security-Policy" && value.find("script-src 'self';") != std::string::npos);
+  EXPECT_TRUE(strict);
+}
+
+TEST_F(GroundStation, HostileInputIsTextOrRefused) {
+  commission();
+  const std::string evil = "<script>alert(1)</script>'; DROP TABLE events;--%s%n";
+  const std::string sender = evil + std::string(70'000, 'x');
+  const json sent =
+      station.post("/api/commands", {{"subsystem", "JOYSTICK"}, {"function", "PING"}, {"sender", sender}});
+  EXPECT_TRUE(sent.contains("id"));
+  EXPECT_EQ(station.get("/api/commands")["commands"][0]["sender"], sender.substr(0, 32));
+  EXPECT_EQ(station.get("/api/events?text=%25%27%3B--")["events"].size(), 0U);
+  EXPECT_GT(station.get("/api/events?limit=1e300&from=-1e300&to=1e300")["events"].size(), 0U);
+  EXPECT_EQ(station.get("/api/events?limit=-5")["events"].size(), 0U);
+  EXPECT_EQ(station.ask("GET", "/api/history?parameter=" + std::string(60'000, 'A')).status, 404U);
+  for (const char* body : {"", "[]", "{", "null", "\"\xff\xfe\"", "{\"subsystem\":7}"}) {
+    ground::HttpResponse answer;
+    ground::Api api{station.session(), {.token = "t", .observer_token = {}, .page = {}, .transitions = {}}};
+    api.handle({"POST", "/api/commands", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer t"}}, body},
+               [&](ground::HttpResponse response) { answer = std::move(response); });
+    EXPECT_EQ(answer.status, 400U) << body;
+  }
+  Page page;
+  station.session().opened(page, true);
+  for (const char* text : {"", "{", "[1]", "7", R"({"type":"replay","at":"x"})", R"({"type":{}})", "\xff"})
+    station.session().received(page, text);
+  EXPECT_EQ(page.of_type("error").size(), 7U);
+  const auto answer = station.ask("POST", "/api/faults", {{"device", "../../etc"}, {"line", "x"}});
+  EXPECT_EQ(answer.status, 404U);
+  EXPECT_EQ(station.ask("POST", "/api/faults", {{"device", "robot"}, {"line", "a\nb"}}).status, 400U);
+  // Whatever is no telemetry ends the connection; the session goes on.
+  const std::vector<std::byte> garbage(100, std::byte{0xFF});
+  EXPECT_FALSE(station.session().receive(garbage));
+  station.session().link_up();
+  station.run(200ms);
+  EXPECT_EQ(station.get("/api/status")["mode"], "telepresence");
+}
+
+TEST_F(GroundStation, NumbersThatJsonDoesNotHaveAreTextsThatJavaScriptUnderstands) {
+  std::array<std::byte, 256> buffer;
+  OctetWriter writer{buffer};
+  writer.put(std::uint16_t{4713});
+  for (int i = 0; i < 8; ++i)
+    writer.put(i == 0   ? std::numeric_limits<double>::quiet_NaN()
+               : i == 1 ? std::numeric_limits<double>::infinity()
+               : i == 2 ? -std::numeric_limits<double>::infinity()
+                        : 0.0);
+  std::array<std::byte, 512> packet;
+  const auto written = pus::write_telemetry(
+      packet, {.apid = 10, .service = 3, .subtype = 25, .time = OnboardTime{std::chrono::seconds{2'145'916'900}}},
+      Octets{buffer}.first(writer.size()));
+  ASSERT_TRUE(written && station.session().receive(*written));
+  const json values = station.get("/api/status")["values"];
+  EXPECT_EQ(values["MANIPULATOR.CUR_VALUES.POSITION[0]"]["v"], "NaN");
+  EXPECT_EQ(values["MANIPULATOR.CUR_VALUES.POSITION[1]"]["v"], "Infinity");
+  EXPECT_EQ(values["MANIPULATOR.CUR_VALUES.TORQUE[0]"]["v"], "-Infinity");
+}
+
+TEST_F(GroundStation, TheMissionIsWholeForAPageThatKnowsNothing) {
+  const json mission = station.get("/api/mission");
+  EXPECT_EQ(mission["name"], "ROKVISS");
+  EXPECT_EQ(mission["subsystems"][0]["name"], "SUPERVISOR");
+  for (const json& subsystem : mission["subsystems"]) {
+    EXPECT_EQ(subsystem["states"].size(), 10U);
+    for (const json& report : subsystem["housekeeping"]) EXPECT_GT(report["period_s"].get<double>(), 0.0);
+  }
+  const json commanding = mission["subsystems"][0]["functions"];
+  const auto set_mode = std::ranges::find_if(commanding, [](const json& f) { return f["name"] == "SET_MODE"; });
+  ASSERT_NE(set_mode, commanding.end());
+  EXPECT_EQ((*set_mode)["arguments"][0]["enumeration"].size(), mission["modes"].size());
+}
+
+}  // namespace
+}  // namespace hirosco::testing
