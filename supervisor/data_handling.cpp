@@ -150,7 +150,7 @@ void Supervisor::watch_log(TimePoint now) {
   if (failing != log_failing_) {
     log_failing_ = failing;
     tell(failing ? "log storage fails: telecommands that must be durable are held back" : "log storage works", 1);
-    if (failing) engine_.raise_in_service(103, std::span<const double>{});
+    if (failing) engine_.announce("LOG_STORE");
   }
   while (!waiting_.empty() && now - waiting_.front().since >= durable_limit) {
     const Waiting late = std::move(waiting_.front());

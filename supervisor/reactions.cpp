@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "supervisor/supervision/event_handling/recovery.hpp"
@@ -145,8 +144,7 @@ void Supervisor::watch_ends(bool all) {
 void Supervisor::watch_hangs() {
   for (Member& subject : members_) {
     if (!subject.alive() || !subject.hang_detected()) continue;
-    const double apid = subject.apid();
-    engine_.raise_in_service(102, {&apid, 1});
+    engine_.announce("HANG", {static_cast<double>(subject.apid())});
     tell(subject.descriptor().name + " hangs: its cycle stands still", subject.apid());
     react(subject, "HANG", Severity::High);
   }
@@ -168,13 +166,12 @@ void Supervisor::observe_power() {
 
 void Supervisor::tell_shortage(std::uint16_t apid, const pus::FailureNotice& notice) {
   OctetReader reader{notice.data()};
-  std::array<double, 4> told{static_cast<double>(apid)};
-  for (double& watts : std::span{told}.subspan(1)) watts = reader.get<std::uint32_t>() * 1e-3;
-  const auto [subject, budget_w, reserved_w, requested_w] = told;
+  const auto watts = [&] { return reader.get<std::uint32_t>() * 1e-3; };
+  const double budget_w = watts(), reserved_w = watts(), requested_w = watts();
   tell(fmt::format("power short: {} asks for {} W, {} W of {} W are reserved", name_of(apid), requested_w, reserved_w,
                    budget_w),
        apid);
-  engine_.raise_in_service(106, told);
+  engine_.announce("POWER_REFUSED", {static_cast<double>(apid), budget_w, reserved_w, requested_w});
 }
 
 /// FC9 during use. Less than a tenth left: whoever draws stops acting. Less than is reserved: load is shed.
@@ -182,11 +179,11 @@ void Supervisor::set_power_budget(double budget_w) {
   constexpr double least_margin = 0.1;
   power_.set_budget(budget_w);
   observe_power();
-  const std::array watts{power_.budget_mw() * 1e-3, power_.reserved_mw() * 1e-3};
-  tell(fmt::format("power budget {} W, {} W are reserved", watts[0], watts[1]), 1);
+  const double limit_w = power_.budget_mw() * 1e-3, reserved_w = power_.reserved_mw() * 1e-3;
+  tell(fmt::format("power budget {} W, {} W are reserved", limit_w, reserved_w), 1);
   if (power_.overdrawn()) return shed_load();
-  if (watts[1] <= (1 - least_margin) * watts[0]) return;
-  engine_.raise_in_service(107, watts);
+  if (reserved_w <= (1 - least_margin) * limit_w) return;
+  engine_.announce("POWER_LOW", {limit_w, reserved_w});
   for (Member& subject : members_)
     if (power_.held_mw(subject.apid()) != 0 && subject.descriptor().name != mission_.ground.subsystem)
       react(subject, "POWER_LOW", Severity::Medium);
@@ -195,8 +192,7 @@ void Supervisor::set_power_budget(double budget_w) {
 /// The last of the mission first, each with its network, until the rest fits; the ground link never.
 void Supervisor::shed_load() {
   // Told once: a mission may have a plan that does nothing about it.
-  if (power_.newly_overdrawn())
-    engine_.raise_in_service(108, std::array{power_.budget_mw() * 1e-3, power_.reserved_mw() * 1e-3});
+  if (power_.newly_overdrawn()) engine_.announce("LOAD_SHED", {power_.budget_mw() * 1e-3, power_.reserved_mw() * 1e-3});
   if (!power_.overdrawn() || shutting_down_) return;
   const auto stays_mw = [&] {
     std::uint32_t sum_mw = power_.held_mw(1);
@@ -221,8 +217,7 @@ void Supervisor::member_died(Member& subject, const ProcessEnd& end) {
   }
   const std::string how = (end.by_signal ? "signal " : "exit code ") + std::to_string(end.value);
   tell(subject.descriptor().name + " died: " + how, apid);
-  const double number = apid;
-  engine_.raise_in_service(101, {&number, 1});
+  engine_.announce("PROCESS_DIED", {static_cast<double>(apid)});
   // The network is what it was before the death: the others are told while the graph still has the links.
   // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();

@@ -88,6 +88,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   [[nodiscard]] pus::TelemetrySink& telemetry() noexcept { return *this; }
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
   void raise_in_service(std::uint16_t event, std::span<const double> arguments);
+  /// An event by its name; nothing when the descriptor declares none.
+  void announce(std::string_view event_name, std::initializer_list<double> arguments = {});
 
  private:
   // TelemetrySink
@@ -126,7 +128,6 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Result<Step> leave_cycle();
   [[nodiscard]] std::string apply_configuration(const descriptor::Configuration& configuration);
   void release_configuration();
-  void announce(std::string_view event_name, std::initializer_list<double> arguments);
   bool push(const CycleCommand& command);
   bool close_call(const pus::Request& request);
   bool withdraw(std::uint8_t link);
