@@ -67,9 +67,9 @@ Model::Model(const Catalogue& catalogue)
   overview_.up = column("LINK_STATUS.IS_UP");
   overview_.samples = column("LINK_STATUS.SAMPLES");
   overview_.age = column("LINK_STATUS.AGE");
-  // Every subsystem whose descriptor has it tells the sum over its incoming links under this name.
-  for (const auto& link : catalogue.mission().links)
-    loss_columns_.push_back(catalogue.find_column(link.to + ".LINK_STATS.LOST"));
+  overview_.lost = column("LINK_STATUS.LOST");
+  overview_.link_latency_mean = column("LINK_STATUS.LATENCY_MEAN");
+  overview_.link_latency_max = column("LINK_STATUS.LATENCY_MAX");
 }
 
 Heard Model::take(const pus::TelemetryView& packet) {
@@ -106,7 +106,6 @@ void Model::set_back(OnboardTime t) {
     forget(view.state_at);
     forget(view.t);
   }
-  for (LinkView& view : links_) forget(view.up_at);
   forget(overview_at_);
   newest_ = t;
   status_revision_ = revision_;
@@ -188,25 +187,12 @@ void Model::take_links(OnboardTime t, Duration since, Heard& heard) {
                             : nullptr;
     if (up && samples != 0 && configuration != nullptr && configuration->sampling > Duration{0})
       view.age_cycles = told(overview_.age, i) * 1e-6 / seconds(configuration->sampling);
-    if (up && !view.up) view.up_at = t;
+    view.lost = static_cast<std::uint32_t>(told(overview_.lost, i));
+    view.latency_mean_ns = told(overview_.link_latency_mean, i);
+    view.latency_max_ns = told(overview_.link_latency_max, i);
     view.known = true;
     view.up = up;
     view.samples = samples;
-  }
-  take_losses();
-}
-
-void Model::take_losses() {
-  const auto& links = catalogue_.mission().links;
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    links_[i].lost.reset();
-    if (!links_[i].up || !loss_columns_[i]) continue;
-    std::size_t into_consumer = 0;
-    for (std::size_t k = 0; k < links.size(); ++k) into_consumer += links_[k].up && links[k].to == links[i].to ? 1 : 0;
-    const Value& told = values_[*loss_columns_[i]];
-    // A sum over several links says nothing of one of them; what was told before the link was up is of another time.
-    if (into_consumer == 1 && told.revision != 0 && told.t >= links_[i].up_at)
-      links_[i].lost = static_cast<std::uint32_t>(told.number);
   }
 }
 

@@ -40,8 +40,9 @@ struct LinkView {
   std::optional<double> rate_hz;
   std::optional<double> age_cycles;  ///< in cycles of the consumer
   std::uint32_t samples{0};
-  std::optional<std::uint32_t> lost; ///< samples that the consumer missed, as its own housekeeping tells
-  OnboardTime up_at{};
+  // As the consumer tells while the link is up.
+  std::uint32_t lost{0};             ///< samples that it never saw
+  double latency_mean_ns{0}, latency_max_ns{0};  ///< from the instant of a sample to its first use
 };
 
 /// A report of ST[01] in words.
@@ -101,7 +102,6 @@ class Model {
   void take_links(OnboardTime t, Duration since, Heard& heard);
   void take_event(const pus::TelemetryView& packet, Heard& heard);
   void take_state(std::size_t subsystem, std::optional<descriptor::State> state, OnboardTime t, Heard& heard);
-  void take_losses();
   [[nodiscard]] double told(const std::optional<std::size_t>& column, std::size_t i) const;
 
   const Catalogue& catalogue_;
@@ -117,10 +117,9 @@ class Model {
   struct OverviewColumns {
     std::optional<std::size_t> mode, apid, state, configuration, inhibited, cycles, overruns, missed, latency,
         execution, memory;
-    std::optional<std::size_t> link, up, samples, age;
+    std::optional<std::size_t> link, up, samples, age, lost, link_latency_mean, link_latency_max;
   };
   OverviewColumns overview_;
-  std::vector<std::optional<std::size_t>> loss_columns_;  ///< of the consumer of each link, in the order of the mission
 };
 
 }  // namespace hirosco::ground

@@ -518,7 +518,9 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
                      {"age_cycles", number(view.age_cycles)},
                      {"rate_hz", number(view.rate_hz)},
                      {"samples", view.known ? json(view.samples) : json(nullptr)},
-                     {"lost", view.lost ? json(*view.lost) : json(nullptr)}});
+                     {"lost", view.up ? json(view.lost) : json(nullptr)},
+                     {"latency_mean_ns", view.up ? json(view.latency_mean_ns) : json(nullptr)},
+                     {"latency_max_ns", view.up ? json(view.latency_max_ns) : json(nullptr)}});
   }
   return {{"t", json_time(now)},
           {"mode", model.mode().empty() ? json(nullptr) : json(model.mode())},

@@ -67,6 +67,20 @@ void Supervisor::watch_memory() {
   memory_kb = subject.alive() ? parts_.launcher.resident_kb(subject.process()) : 0;
 }
 
+/// What the consumer of a link tells of it; nullptr when it has no such link.
+const IncomingLink* Supervisor::consumer_of(const descriptor::MissionLink& link) const noexcept {
+  for (const Member& member : members_) {
+    if (member.descriptor().name != link.to) continue;
+    const VitalPage* vital = member.vital();
+    if (vital == nullptr) return nullptr;
+    const auto found = std::ranges::find_if(vital->incoming, [&](const IncomingLink& incoming) {
+      return incoming.link.load(std::memory_order_relaxed) == link.id;
+    });
+    return found != vital->incoming.end() ? &*found : nullptr;
+  }
+  return nullptr;
+}
+
 void Supervisor::show_links() noexcept {
   LinksStatus status;
   const std::size_t told = std::min(mission_.links.size(), told_members);
@@ -74,6 +88,11 @@ void Supervisor::show_links() noexcept {
     const std::uint8_t link = mission_.links[i].id;
     status.link[i] = link;
     status.up[i] = links_.graph().is_up(link) ? 1 : 0;
+    if (const IncomingLink* seen = consumer_of(mission_.links[i])) {
+      status.lost[i] = seen->lost.load(std::memory_order_relaxed);
+      status.latency_mean_ns[i] = seen->latency_mean_ns.load(std::memory_order_relaxed);
+      status.latency_max_ns[i] = seen->latency_max_ns.load(std::memory_order_relaxed);
+    }
     const auto watched = watched_links_.find(link);
     if (watched == watched_links_.end()) continue;
     const auto glance = glance_at_link(watched->second.octets);

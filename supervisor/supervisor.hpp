@@ -86,6 +86,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   Result<> show(const Cycle& cycle) noexcept;
   void show_members() noexcept;
   void show_links() noexcept;
+  [[nodiscard]] const IncomingLink* consumer_of(const descriptor::MissionLink& link) const noexcept;
   void watch_memory();
   // LinkOperator
   void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) override;
@@ -250,6 +251,9 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     std::array<std::uint8_t, told_members> up{};
     std::array<std::uint32_t, told_members> samples{};
     std::array<std::uint32_t, told_members> age_us{};
+    std::array<std::uint32_t, told_members> lost{};
+    std::array<std::uint32_t, told_members> latency_mean_ns{};
+    std::array<std::uint32_t, told_members> latency_max_ns{};
   };
   Parameter<LinksStatus> link_status_parameter_;
   std::map<std::uint8_t, Mapping> watched_links_;  ///< memory of the links that are up

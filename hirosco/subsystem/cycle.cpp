@@ -12,11 +12,6 @@
 namespace hirosco {
 namespace {
 
-[[nodiscard]] std::uint32_t clamped_ns(Duration span) noexcept {
-  return static_cast<std::uint32_t>(
-      std::clamp<std::int64_t>(span.count(), 0, std::numeric_limits<std::uint32_t>::max()));
-}
-
 [[nodiscard]] Octets octets_of_report(const CycleReport& report) noexcept {
   return std::as_bytes(std::span{&report, 1});
 }
@@ -48,6 +43,7 @@ void CycleLoop::prepare(CyclePlan plan) {
   statistics_.store({});
   times_parameter_.store({});
   link_statistics_.store({});
+  for (IncomingLink& page : parts_.vital.incoming) page.link.store(0, std::memory_order_relaxed);
 }
 
 void CycleLoop::release() { plan_ = {}; }
@@ -56,7 +52,7 @@ TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const TimePoint started = parts_.clock.now();
   check_permit();
   take_commands();
-  read_inputs();
+  read_inputs(started);
   run_node(planned);
   write_outputs(planned);
   if (plan_.sampler != nullptr) plan_.sampler->tick(*this, *this);
@@ -132,10 +128,10 @@ void CycleLoop::enter(State state) noexcept {
   report(ReportKind::StateEntered, static_cast<std::uint16_t>(state), {});
 }
 
-void CycleLoop::read_inputs() noexcept {
+void CycleLoop::read_inputs(TimePoint started) noexcept {
   for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
     LinkInputSlot& input = plan_.inputs[i];
-    input.read();
+    input.read(started);
     const bool stale = controlling() && input.stale() && (input.attached() || input.terms().required);
     if (stale && input.terms().missing == descriptor::MissingPolicy::Inhibit) inhibit(inhibited_by_link);
     if (stale && !input.ended() && input_was_stale_[i] == 0) {
@@ -190,7 +186,9 @@ void CycleLoop::write_outputs(TimePoint planned) noexcept {
 
 void CycleLoop::count_links() noexcept {
   LinkStatistics sum;
-  for (const LinkInputSlot& input : plan_.inputs) {
+  for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
+    const LinkInputSlot& input = plan_.inputs[i];
+    if (i < told_incoming_links) input.tell(parts_.vital.incoming[i]);
     sum.received += static_cast<std::uint32_t>(input.port()->received());
     sum.lost += static_cast<std::uint32_t>(input.port()->lost());
   }

@@ -106,7 +106,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void run_function(const CycleCommand& command) noexcept;
   void enter(State state) noexcept;
   void check_permit() noexcept;
-  void read_inputs() noexcept;
+  void read_inputs(TimePoint started) noexcept;
   void run_node(TimePoint planned) noexcept;
   void write_outputs(TimePoint planned) noexcept;
   void account(TimePoint planned, TimePoint started) noexcept;

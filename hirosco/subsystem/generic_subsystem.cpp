@@ -399,6 +399,7 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
   auto link = std::make_unique<AttachedLink>();
   HIROSCO_TRY(world_.memory.verify(memory, octets, !producer));
   HIROSCO_TRY_LET(link->mapping, world_.memory.map(memory, producer ? Access::ReadWrite : Access::ReadOnly));
+  link->id = request.link;
   link->agreement = agreement;
   link->order = agreement.byte_order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
   link->payload.resize(layout.payload_octets);

@@ -80,6 +80,31 @@ TEST_F(Links, ASampleThatComesAndGoesBetweenTwoCyclesCountsAsLost) {
   EXPECT_EQ(seen.lost, 2u);
 }
 
+TEST_F(Links, TheVitalPageTellsLossAndLatencyOfEachLink) {
+  const IncomingLink& told = rig.vital.incoming[0];
+  rig.cycle();
+  EXPECT_EQ(told.link.load(), 0u);
+  couple();
+  sample(0.5);
+  rig.cycle();
+  EXPECT_EQ(told.link.load(), 1u);
+  EXPECT_EQ(told.latency_mean_ns.load(), 1'000'000u);
+  sample(0.5);
+  rig.advance(500us);
+  rig.cycle();
+  EXPECT_EQ(told.latency_mean_ns.load(), 1'250'000u);
+  rig.cycle();  // the same sample again is no news
+  EXPECT_EQ(told.latency_max_ns.load(), 1'500'000u);
+  EXPECT_EQ(told.lost.load(), 0u);
+  for (int i = 0; i < 3; ++i) sample(0.5);
+  rig.cycle();
+  EXPECT_EQ(told.lost.load(), 2u);
+  rig.detach(1);
+  rig.service();
+  rig.cycle();
+  EXPECT_EQ(told.link.load(), 0u);
+}
+
 TEST_F(Links, FieldsAreMatchedByNameWhereverTheProducerPutsThem) {
   hand = rig.attach(1, Role::Consumer, "HAND",
                     {{"MORE", Type::Int32, 2}, {"ENABLE", Type::Uint8, 1}, {"ANGLE", Type::Double, 1}});

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <type_traits>
@@ -13,7 +14,7 @@
 namespace hirosco {
 
 inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
-inline constexpr std::uint32_t page_version = 1;
+inline constexpr std::uint32_t page_version = 2;
 
 /// Why the framework inhibits the actuators of a subsystem; bits of VitalPage::inhibited.
 enum Inhibition : std::uint32_t {
@@ -25,37 +26,49 @@ enum Inhibition : std::uint32_t {
   inhibited_by_supervisor = 32,  ///< the supervisor is gone
 };
 
+/// A real-time link as its consumer sees it.
+struct IncomingLink {
+  std::atomic<std::uint32_t> link{0};            ///< id, 0 = none
+  std::atomic<std::uint32_t> lost{0};  ///< samples that came and went between two cycles, since the link was made
+  /// From the instant that a sample is of (its producer's planned cycle) to the start of the cycle that uses it first.
+  std::atomic<std::uint32_t> latency_mean_ns{0};  ///< over about the last 1,000 samples
+  std::atomic<std::uint32_t> latency_max_ns{0};  ///< since the link was made
+};
+/// A configuration may require more sets; those beyond are not told.
+inline constexpr std::size_t told_incoming_links = 8;
+
 /// Written by the subsystem, read by the supervisor.
 struct VitalPage {
   std::uint32_t magic{page_magic};
   std::uint32_t version{page_version};
-  std::atomic<std::uint32_t> state{0};           ///< State
-  std::atomic<std::uint32_t> configuration{0};   ///< id, 0 = none
-  std::atomic<std::uint32_t> inhibited{0};       ///< bits of Inhibition
-  std::atomic<std::uint32_t> seen_epoch{0};      ///< epoch of the permit page at the last cycle
-  std::atomic<std::uint32_t> realtime{0};        ///< 1: SCHED_FIFO granted, 0: the reduced promise holds
-  std::atomic<std::uint32_t> cycling{0};         ///< 1 while the cycle is to run
+  std::atomic<std::uint32_t> state{0};  ///< State
+  std::atomic<std::uint32_t> configuration{0};  ///< id, 0 = none
+  std::atomic<std::uint32_t> inhibited{0};  ///< bits of Inhibition
+  std::atomic<std::uint32_t> seen_epoch{0};  ///< epoch of the permit page at the last cycle
+  std::atomic<std::uint32_t> realtime{0};  ///< 1: SCHED_FIFO granted, 0: the reduced promise holds
+  std::atomic<std::uint32_t> cycling{0};  ///< 1 while the cycle is to run
   std::atomic<std::uint64_t> period_ns{0};
-  std::atomic<std::uint64_t> cycles{0};          ///< advances while the cycle runs: hang detection
-  std::atomic<std::uint64_t> service_steps{0};   ///< advances while the service loop runs
-  std::atomic<std::uint64_t> overruns{0};        ///< cycles whose own work took longer than the period
-  std::atomic<std::uint64_t> missed{0};          ///< cycles skipped because they were due before the last had ended
+  std::atomic<std::uint64_t> cycles{0};  ///< advances while the cycle runs: hang detection
+  std::atomic<std::uint64_t> service_steps{0};  ///< advances while the service loop runs
+  std::atomic<std::uint64_t> overruns{0};  ///< cycles whose own work took longer than the period
+  std::atomic<std::uint64_t> missed{0};  ///< cycles skipped because they were due before the last had ended
   std::atomic<std::uint32_t> latency_max_ns{0};  ///< wake-up after its planned time, largest since configuration
   std::atomic<std::uint32_t> execution_max_ns{0};
   std::atomic<std::uint32_t> execution_mean_ns{0};  ///< over about the last 1,000 cycles
-  std::atomic<std::uint32_t> lost_reports{0};    ///< cycle-side reports that found no room
+  std::atomic<std::uint32_t> lost_reports{0};  ///< cycle-side reports that found no room
   std::atomic<std::uint64_t> inhibited_at_cycle{0};  ///< `cycles` in which the actuators were inhibited last
-  pus::CounterBlock counters;                    ///< outlive the process (decision 8b)
+  std::array<IncomingLink, told_incoming_links> incoming;  ///< in the order of the configuration's <Requires>
+  pus::CounterBlock counters;  ///< outlive the process (decision 8b)
 };
 
 /// Written by the supervisor, read by the subsystem every cycle.
 struct PermitPage {
   std::uint32_t magic{page_magic};
   std::uint32_t version{page_version};
-  std::atomic<std::uint32_t> epoch{1};           ///< rises with every fence; device frames carry it
-  std::atomic<std::uint32_t> stop{0};            ///< 1: actuators inhibited at the next cycle
-  std::atomic<std::uint32_t> mode_epoch{0};      ///< rises with every mode change
-  std::atomic<std::uint64_t> heartbeat{0};       ///< advances with every step of the supervisor
+  std::atomic<std::uint32_t> epoch{1};  ///< rises with every fence; device frames carry it
+  std::atomic<std::uint32_t> stop{0};  ///< 1: actuators inhibited at the next cycle
+  std::atomic<std::uint32_t> mode_epoch{0};  ///< rises with every mode change
+  std::atomic<std::uint64_t> heartbeat{0};  ///< advances with every step of the supervisor
   std::atomic<std::uint64_t> stopped_at_cycle{0};  ///< VitalPage::cycles that the supervisor read when it set `stop`
 };
 

@@ -89,6 +89,8 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   port_->received_ = 0;
   port_->lost_ = 0;
   port_->status_ = LinkStatus::None;
+  latency_mean_ns_ = 0.0;
+  latency_max_ns_ = 0;
 }
 
 AttachedLink* LinkInputSlot::detach() noexcept {
@@ -97,7 +99,7 @@ AttachedLink* LinkInputSlot::detach() noexcept {
   return std::exchange(link_, nullptr);
 }
 
-void LinkInputSlot::read() noexcept {
+void LinkInputSlot::read(TimePoint now) noexcept {
   if (link_ == nullptr) {
     port_->valid_ = false;
     return;
@@ -114,6 +116,11 @@ void LinkInputSlot::read() noexcept {
     port_->count_ = sample.count;
     ++port_->received_;
     port_->lost_ += sample.lost;
+    const std::uint32_t latency_ns = clamped_ns(now - sample.sampled_at);
+    latency_max_ns_ = std::max(latency_max_ns_, latency_ns);
+    // The first samples weigh as much as they are, so that the mean needs no time to arrive.
+    const double weight = std::max(1.0 / static_cast<double>(port_->received_), 1e-3);
+    latency_mean_ns_ += weight * (static_cast<double>(latency_ns) - latency_mean_ns_);
   } else if (port_->age_cycles_ < longest_silence) {
     ++port_->age_cycles_;
   }
@@ -121,6 +128,14 @@ void LinkInputSlot::read() noexcept {
   const bool fresh = port_->age_cycles_ <= age_limit_ * link_->producer_cycles_per_sample;
   port_->valid_ =
       port_->count_ != 0 && fresh && sample.status != LinkStatus::Fault && sample.status != LinkStatus::Stopping;
+}
+
+void LinkInputSlot::tell(IncomingLink& page) const noexcept {
+  constexpr auto relaxed = std::memory_order_relaxed;
+  page.link.store(link_ != nullptr ? link_->id : 0, relaxed);
+  page.lost.store(static_cast<std::uint32_t>(port_->lost_), relaxed);
+  page.latency_mean_ns.store(static_cast<std::uint32_t>(latency_mean_ns_), relaxed);
+  page.latency_max_ns.store(latency_max_ns_, relaxed);
 }
 
 // --- LinkOutputSlot --------------------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/pus/st128_realtime_link.hpp"
+#include "hirosco/subsystem/pages.hpp"
 #include "hirosco/subsystem/ports.hpp"
 
 /// What the cycle moves between the author's ports and the outside: one slot per required set, provided set and device
@@ -26,6 +27,7 @@ namespace hirosco {
 /// One end of an established link: made by the service loop, used by the cycle, freed by the service loop.
 struct AttachedLink {
   Mapping mapping;
+  std::uint8_t id{0};                    ///< in the mission
   pus::st128::Agreement agreement;
   LinkWriter writer;
   LinkReader reader;
@@ -47,8 +49,10 @@ class LinkInputSlot {
   [[nodiscard]] Result<> plan(AttachedLink& link) const;
   void attach(AttachedLink* link) noexcept;
   AttachedLink* detach() noexcept;
-  /// Reads the link into the port.
-  void read() noexcept;
+  /// Reads the link into the port, in the cycle that started at `now`.
+  void read(TimePoint now) noexcept;
+  /// Tells how the link does.
+  void tell(IncomingLink& page) const noexcept;
   /// Too old, reported faulty or absent: what a required set must not be while actuators move.
   [[nodiscard]] bool stale() const noexcept { return !port_->valid_; }
   /// Its producer or the supervisor has ended it in order: no reason for an alarm.
@@ -59,6 +63,8 @@ class LinkInputSlot {
   LinkInputPort* port_;
   std::uint32_t age_limit_;
   AttachedLink* link_{nullptr};
+  double latency_mean_ns_{0.0};
+  std::uint32_t latency_max_ns_{0};
 };
 
 /// A provided set of real-time data. A set may have several consumers: one link each.

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 
 namespace hirosco {
 
@@ -36,6 +38,12 @@ using OnboardTime = OnboardTag::time_point;
 inline constexpr std::int64_t onboard_epoch_to_unix_s = 378'691'200;
 
 [[nodiscard]] constexpr double seconds(Duration span) noexcept { return std::chrono::duration<double>(span).count(); }
+
+/// A span for a word of 32 bits: 0 to about 4.3 s, what lies beyond is that.
+[[nodiscard]] constexpr std::uint32_t clamped_ns(Duration span) noexcept {
+  return static_cast<std::uint32_t>(
+      std::clamp<std::int64_t>(span.count(), 0, std::numeric_limits<std::uint32_t>::max()));
+}
 
 /// Where time comes from. The real one reads the operating system, the simulated one a counter.
 /// Realtime: wait-free. Thread: any.

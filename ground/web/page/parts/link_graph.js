@@ -4,7 +4,7 @@
 // Subsystems and the real-time links between them. Few nodes: a layered layout of our own does.
 import {signal} from '@preact/signals';
 import {state_name} from '../commanding.js';
-import {rate_text, state_text} from '../format.js';
+import {duration_text, number_text, rate_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {mission, mode_of, slow, status, status_of} from '../store.js';
 import {is_known, state_look} from './subsystem_card.js';
@@ -75,16 +75,18 @@ function Edge({link, places, beside, node_width}) {
   const cut = Math.min((node_width / 2 + 4) / Math.abs(ux), (node_height / 2 + 4) / Math.abs(uy));
   const a = [x1 + ux * cut + nx * off, y1 + uy * cut + ny * off], b = [x2 - ux * cut + nx * off, y2 - uy * cut + ny * off];
   const middle = [(a[0] + b[0]) / 2 + nx * bend, (a[1] + b[1]) / 2 + ny * bend];
-  // Two lines of words outside of the curve.
-  const label = [(a[0] + b[0]) / 2 + nx * bend / 2, (a[1] + b[1]) / 2 + ny * bend / 2 + (ny >= 0 ? 14 : -19)];
+  // Three lines of words outside of the curve.
+  const label = [(a[0] + b[0]) / 2 + nx * bend / 2, (a[1] + b[1]) / 2 + ny * bend / 2 + (ny >= 0 ? 14 : -32)];
   const up = now.up === true;
   const look = !is_known() ? 'stale' : up ? 'good' : is_wanted(link) ? 'bad' : 'off';
   const lit = hovered.value && network_of(hovered.value).has(link.from);
-  const words = up ? `${rate_text(now.rate_hz ?? link.rate_hz)} · age ${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'}` : is_wanted(link) ? 'required, down' : 'not in this mode';
+  const words = up ? `${rate_text(now.rate_hz ?? link.rate_hz)} · age ${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles` : is_wanted(link) ? 'required, down' : 'not in this mode';
+  const more = up ? `latency ${duration_text(now.latency_mean_ns ?? NaN)} · lost ${number_text(now.lost)}` : '';
   return html`<g class=${`edge ${look} ${lit ? 'lit' : ''}`}>
     <path d=${`M${a} Q${middle} ${b}`} marker-end=${`url(#to_${look})`} />
     <text x=${label[0]} y=${label[1]}>${link.provides ?? link.name ?? `link ${link.id}`}</text>
     <text class="facts" x=${label[0]} y=${label[1] + 13}>${words}</text>
+    <text class="facts" x=${label[0]} y=${label[1] + 26}>${more}</text>
   </g>`;
 }
 
