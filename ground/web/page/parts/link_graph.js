@@ -10,6 +10,7 @@ import {mission, mode_of, slow, status, status_of} from '../store.js';
 import {is_known, state_look} from './subsystem_card.js';
 
 const node_height = 46;
+const line_height = 13;
 /// The subsystem under the pointer: its network, which would fall with it, is lit.
 export const hovered = signal(null);
 
@@ -64,7 +65,15 @@ export function is_wanted(link) {
 
 export const live_link = (id) => status.value?.links?.find((one) => one.id === id) ?? {};
 
-function Edge({link, places, beside, node_width}) {
+/// How the link does, in lines: one in the small graph.
+function facts_of(link, now, brief) {
+  if (now.up !== true) return is_wanted(link) ? ['required, down'] : brief ? [] : ['idle'];
+  const rate = rate_text(now.rate_hz ?? link.rate_hz), latency = duration_text(now.latency_mean_ns ?? NaN), lost = `lost ${number_text(now.lost)}`;
+  if (brief) return [`${rate} · ${latency} · ${lost}`];
+  return [`${rate} · age ${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles`, `latency ${latency} · ${lost}`];
+}
+
+function Edge({link, places, beside, node_width, brief}) {
   const now = live_link(link.id);
   const [x1, y1] = places.get(link.from), [x2, y2] = places.get(link.to);
   const length = Math.hypot(x2 - x1, y2 - y1) || 1;
@@ -75,18 +84,16 @@ function Edge({link, places, beside, node_width}) {
   const cut = Math.min((node_width / 2 + 4) / Math.abs(ux), (node_height / 2 + 4) / Math.abs(uy));
   const a = [x1 + ux * cut + nx * off, y1 + uy * cut + ny * off], b = [x2 - ux * cut + nx * off, y2 - uy * cut + ny * off];
   const middle = [(a[0] + b[0]) / 2 + nx * bend, (a[1] + b[1]) / 2 + ny * bend];
-  // Three lines of words outside of the curve.
-  const label = [(a[0] + b[0]) / 2 + nx * bend / 2, (a[1] + b[1]) / 2 + ny * bend / 2 + (ny >= 0 ? 14 : -32)];
+  const facts = facts_of(link, now, brief);
+  // The words outside of the curve.
+  const label = [(a[0] + b[0]) / 2 + nx * bend / 2, (a[1] + b[1]) / 2 + ny * bend / 2 + (ny >= 0 ? 14 : -6 - facts.length * line_height)];
   const up = now.up === true;
   const look = !is_known() ? 'stale' : up ? 'good' : is_wanted(link) ? 'bad' : 'off';
   const lit = hovered.value && network_of(hovered.value).has(link.from);
-  const words = up ? `${rate_text(now.rate_hz ?? link.rate_hz)} · age ${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles` : is_wanted(link) ? 'required, down' : 'not in this mode';
-  const more = up ? `latency ${duration_text(now.latency_mean_ns ?? NaN)} · lost ${number_text(now.lost)}` : '';
   return html`<g class=${`edge ${look} ${lit ? 'lit' : ''}`}>
     <path d=${`M${a} Q${middle} ${b}`} marker-end=${`url(#to_${look})`} />
     <text x=${label[0]} y=${label[1]}>${link.provides ?? link.name ?? `link ${link.id}`}</text>
-    <text class="facts" x=${label[0]} y=${label[1] + 13}>${words}</text>
-    <text class="facts" x=${label[0]} y=${label[1] + 26}>${more}</text>
+    ${facts.map((line, i) => html`<text class="facts" x=${label[0]} y=${label[1] + (i + 1) * line_height}>${line}</text>`)}
   </g>`;
 }
 
@@ -106,7 +113,7 @@ export function LinkGraph({width = 420, height = 230, box: node_width = 150, all
     <defs>${['good', 'bad', 'off', 'stale'].map((look) => html`<marker id=${`to_${look}`} class=${look} viewBox="0 0 8 8" refX="7" refY="4"
       markerWidth="7" markerHeight="7" orient="auto"><path d="M0 0L8 4L0 8z" /></marker>`)}</defs>
     ${links.map((link) => html`<${Edge} key=${link.id} link=${link} places=${places} node_width=${node_width}
-      beside=${beside(link, links)} />`)}
+      beside=${beside(link, links)} brief=${!all} />`)}
     ${names.map((name) => {
       const [x, y] = places.get(name);
       const state = state_name(status_of(name)?.state);

@@ -21,7 +21,7 @@ export function Links() {
           <td>${link.to}${link.requires ? html` <small>${link.requires}</small>` : null}</td>
           <td><b class=${`state ${up ? 'good' : is_wanted(link) ? 'bad' : 'off'}`}>${up ? 'up' : is_wanted(link) ? 'down, required' : 'not in this mode'}</b></td>
           <td class="number">${rate_text(now.rate_hz ?? NaN)}</td><td class="number">${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles</td>
-          <td class="number">${number_text(link.age_limit_cycles)} cycles</td><td class="number" data-test=${`latency-${link.id}`}>${duration_text(now.latency_mean_ns ?? NaN)} <small>≤ ${duration_text(now.latency_max_ns ?? NaN)}</small></td><td class="number">${number_text(now.lost)}</td>
+          <td class="number">${number_text(link.age_limit_cycles)} cycles</td><td class="number" data-test=${`latency-${link.id}`}>${duration_text(now.latency_mean_ns ?? NaN)}${up ? html` <small>≤ ${duration_text(now.latency_max_ns)}</small>` : null}</td><td class="number">${number_text(now.lost)}</td>
           <td>${[...network_of(link.from)].join(', ')}</td>
           <td><button class="chip" disabled=${locked} data-test=${`link-${link.id}`} onClick=${() => send_and_say('SUPERVISOR', up ? 'UNLINK' : 'LINK', {LINK: link.id})}>${up ? 'cut' : 'make'}</button></td></tr>`;
       })}</tbody></table>
