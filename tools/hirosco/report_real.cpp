@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <map>
 #include <numeric>
@@ -12,7 +13,9 @@
 
 #include "hirosco/pus/packet.hpp"
 #include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/process.hpp"
+#include "hirosco/utilities/os/thread.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 
 namespace hirosco::tools {
@@ -28,9 +31,46 @@ struct Member {
   std::uint16_t structure;
   Bins execution{}, latency{};
   std::uint32_t received{0}, lost{0};
-  // Of the first and the newest report: cycles over time tell of those that never ran.
+  // Of the first and the newest report, beside those of the bare loop: how many never ran.
   double first_cycles{0}, cycles{0};
-  std::chrono::steady_clock::time_point first_at{}, at{};
+  double first_bare{0}, bare{0};
+};
+
+/// What this machine lets through: a loop that only sleeps, with the period, priority and processor of the cycles beside
+/// it. A host that takes the processor away costs both the same.
+class BareLoop {
+ public:
+  BareLoop() {
+    if (auto started = Thread::start("bare-loop", [this] { run(); })) thread_ = std::move(*started);
+  }
+  BareLoop(const BareLoop&) = delete;
+  BareLoop& operator=(const BareLoop&) = delete;
+  ~BareLoop() { ends_.store(true, std::memory_order_relaxed); }  // Thread joins
+  [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_.load(std::memory_order_relaxed); }
+  [[nodiscard]] double cycles_per_s() const noexcept {
+    return static_cast<double>(cycles()) / seconds(SystemClock{}.now() - started_);
+  }
+
+ private:
+  static constexpr Duration period = 500us;
+  static constexpr int priority = 80;
+  void run() {
+    static_cast<void>(set_fifo_priority(priority) ? pin_to_cycle_cpu() : ask_for_short_slices());
+    const SystemClock clock;
+    TimePoint planned = clock.now();
+    while (!ends_.load(std::memory_order_relaxed)) {
+      planned += period;
+      sleep_until(planned);
+      cycles_.fetch_add(1, std::memory_order_relaxed);
+      // As the cycles do: what was missed is skipped.
+      if (const Duration late = clock.now() - planned; late > period) planned += late / period * period;
+    }
+  }
+
+  const TimePoint started_ = SystemClock{}.now();
+  std::atomic<bool> ends_{false};
+  std::atomic<std::uint64_t> cycles_{0};
+  Thread thread_;
 };
 
 [[nodiscard]] double sum(const Bins& counts) { return std::accumulate(counts.begin(), counts.end(), 0.0); }
@@ -39,6 +79,7 @@ struct Heard {
   std::array<Member, 2> members{{{"MANIPULATOR", 10, 4714}, {"JOYSTICK", 11, 4723}}};
   int reactions{0};  ///< events of medium or high severity
   std::size_t packets{0};
+  BareLoop machine;
 };
 
 void take(Octets octets, Heard& heard) {
@@ -56,10 +97,10 @@ void take(Octets octets, Heard& heard) {
     member.received = reader.get<std::uint32_t>();
     member.lost = reader.get<std::uint32_t>();
     member.cycles = sum(member.execution);
-    member.at = std::chrono::steady_clock::now();
+    member.bare = static_cast<double>(heard.machine.cycles());
     if (member.first_cycles > 0) continue;
     member.first_cycles = member.cycles;
-    member.first_at = member.at;
+    member.first_bare = member.bare;
   }
 }
 
@@ -108,15 +149,14 @@ void judge(const Heard& heard, simulation::Findings& findings) {
   constexpr std::size_t first_bin_beyond = 10;  // 512 us and above: longer than the period
   for (const Member& member : heard.members) {
     const std::string prefix = fmt::format("REAL-{}-", member.name);
-    if (member.at == member.first_at) {
+    if (member.cycles == member.first_cycles) {
       findings.problems.push_back(fmt::format("{} told of its cycles less than twice", member.name));
       continue;
     }
     const double cycles = member.cycles;
-    const double span_s = std::chrono::duration<double>(member.at - member.first_at).count();
     const double beyond =
         std::accumulate(member.execution.begin() + first_bin_beyond, member.execution.end(), 0.0) / cycles;
-    findings.figures[prefix + "cycles"] = (cycles - member.first_cycles) / span_s;
+    findings.figures[prefix + "cycles"] = (cycles - member.first_cycles) / (member.bare - member.first_bare);
     findings.figures[prefix + "beyond"] = beyond;
     findings.figures[prefix + "received"] = member.received / cycles;
     findings.notes.push_back(line_of(member.name, "own work", member.execution));
@@ -128,6 +168,8 @@ void judge(const Heard& heard, simulation::Findings& findings) {
         plot_of(member.name, "latency", "start of a cycle after its planned instant", member.latency));
   }
   findings.figures["REAL-reactions"] = heard.reactions;
+  findings.notes.push_back(
+      fmt::format("A bare loop of 0.5 ms beside them ran {:.0f} times a second.", heard.machine.cycles_per_s()));
 }
 
 }  // namespace
