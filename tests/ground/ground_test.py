@@ -164,7 +164,8 @@ class OnAFlight(unittest.TestCase):
             time.sleep(1.0)
             with Gateway(rokviss.folder) as second:
                 second.until(lambda status: status["link"]["rx"] > 50)
-                flight.measure(f"telemetry again {time.monotonic() - second.started:.2f} s after the restart")
+                again = time.monotonic()
+                flight.measure(f"telemetry again {again - second.started:.2f} s after the restart")
                 after = second.request(history)
                 subsystems = second.request("/api/status")["subsystems"]
                 for one in subsystems:  # processes of their own: a few MB each, told by the supervisor
@@ -172,9 +173,10 @@ class OnAFlight(unittest.TestCase):
                 self.assertEqual(after["t"][:len(before)], before)
                 self.assertGreater(len(after["t"]), len(before))
                 self.assertEqual(len(after["gaps"]), 1)
-                gap = after["gaps"][0]["to"] - after["gaps"][0]["from"]
-                self.assertAlmostEqual(gap, second.started - killed + 0.2, delta=0.7)
-                self.assertGreaterEqual(after["gaps"][0]["from"], before[-1])
+                gap = after["gaps"][0]
+                self.assertTrue(second.started - killed < gap["to"] - gap["from"] < again - killed + 0.5, gap)
+                self.assertGreaterEqual(gap["from"], before[-1])
+                self.assertLessEqual(gap["to"], after["t"][len(before)])
 
     def test_a_command_returns_its_report_and_pages_hear_of_each_other(self):
         with flight.Flight() as rokviss:
