@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "hirosco/data_transfer/data_flow.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 
@@ -17,8 +18,9 @@ namespace hirosco {
 inline constexpr std::uint16_t device_frame_magic = 0x4844;  ///< "DH" in memory, 'HD' as a number
 inline constexpr std::size_t device_frame_header_octets = 20;
 inline constexpr std::size_t device_frame_overhead_octets = device_frame_header_octets + 2;
-inline constexpr std::size_t max_device_payload_octets = 1024;
-inline constexpr std::size_t max_device_frame_octets = device_frame_overhead_octets + max_device_payload_octets;
+/// What every data flow carries.
+inline constexpr std::size_t max_device_frame_octets = max_frame_octets;
+inline constexpr std::size_t max_device_payload_octets = max_device_frame_octets - device_frame_overhead_octets;
 
 enum class DeviceMode : std::uint8_t {
   Off = 0,  ///< the device applies its own safe output and ignores the payload

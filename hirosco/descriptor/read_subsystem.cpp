@@ -142,10 +142,22 @@ void SubsystemReader::read_device(const xml::Element& element) {
                1}});
   if (device.input.empty() && device.output.empty())
     problems_.add(element, "E0106", "<Device> needs a <Field> of <Input> or <Output>");
+  check_octets(element, device);
   if (device.actuator && device.output.empty())
     problems_.add(element, "E0106", "an actuator needs an <Output> with at least one <Field>");
   if (!device.name.empty()) device_names_.add(device.name, device.at, problems_, element.name.size() + 1);
   subsystem_.devices.push_back(std::move(device));
+}
+
+void SubsystemReader::check_octets(const xml::Element& element, const Device& device) {
+  std::size_t input = 0, output = 0;
+  for (const Field& field : device.input) input += field.octets();
+  for (const Device::Output& out : device.output) output += out.field.octets();
+  for (const auto& [direction, octets] : {std::pair{"input", input}, {"output", output}})
+    if (octets > max_device_octets)
+      problems_.add(element, "E0215",
+                    fmt::format("the {} of device '{}' takes {} octets", direction, device.name, octets),
+                    fmt::format("at most {}", max_device_octets));
 }
 
 void SubsystemReader::read_output(const xml::Element& element, Device& device, Unique& names) {

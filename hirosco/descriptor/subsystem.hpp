@@ -193,6 +193,9 @@ struct Device {
   Location at;
 };
 
+/// Most that the fields of a device take in each direction, as a frame is carried by every data flow.
+inline constexpr std::size_t max_device_octets = 1002;
+
 /// Settings and endnode of a device in one configuration.
 struct DeviceUse {
   std::uint16_t device{};            ///< index into Subsystem::devices

@@ -138,6 +138,7 @@ constexpr Bad bad_meaning[] = {
     {"E0214", R"(<HKService id="1" interval="500"><SampledNREPTimes nrep="@3"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
     {"E0214", R"(<HKService id="1" interval="5"><SampledNREPTimes nrep="@10"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
     {"E0215", R"(@<HKService id="1" interval="510"><SampledNREPTimes nrep="510"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)", "4072"},
+    {"E0215", R"(@<Device name="X"><Input><Field name="A" type="UINT8" count="1003"/></Input><Output><Field name="B" type="UINT8" count="1002"/></Output></Device>)", "1002"},
     {"E0216", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="@ROBOTS"><Endnode transfer="unix" address="x"/></Device></Configuration>)", "'ROBOT'"},
     {"E0106", R"(<Configuration name="C" id="1" sampling_us="1">@<Device name="ROBOT"/></Configuration>)"},
     {"E0106", R"(<Configuration name="C" id="1" sampling_us="1"><RealTimeLinkService>@<Requires name="R"/></RealTimeLinkService></Configuration>)"},

@@ -10,6 +10,8 @@
 namespace hirosco {
 namespace {
 
+static_assert(descriptor::max_device_octets == max_device_payload_octets);
+
 /// Cycles without news are counted up to here, so that a counter never wraps back to "fresh".
 constexpr std::uint32_t longest_silence = 1'000'000'000;
 

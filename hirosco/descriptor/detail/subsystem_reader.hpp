@@ -42,6 +42,7 @@ class SubsystemReader {
   void read_memory(const xml::Element& element);
   void read_hang(const xml::Element& element);
   void read_device(const xml::Element& element);
+  void check_octets(const xml::Element& element, const Device& device);
   void read_output(const xml::Element& element, Device& device, Unique& names);
 
   // read_configuration.cpp
