@@ -59,7 +59,13 @@ void Supervisor::react(Member& origin, std::string_view event, Severity severity
     tell("plan failed (" + why + "): escalating", apid);
     react(*subject, "RECOVERY_FAILED", Severity::High);
   };
-  command(apid, "SET_STATE", static_cast<double>(reaction.state), done);
+  recover_to(apid, reaction.state, done);
+}
+
+/// One step of a plan: ground is told of it, whatever becomes of it.
+void Supervisor::recover_to(std::uint16_t apid, State state, CommandDone done) {
+  command(apid, "SET_STATE", static_cast<double>(state), std::move(done));
+  engine_.announce("RECOVERY_STEP", {static_cast<double>(apid), static_cast<double>(state)});
 }
 
 /// The end of a recovery. One of lower severity that something worse has overridden does not end that.
@@ -96,7 +102,7 @@ void Supervisor::bring_down(Member& subject) {
   const auto to_offline = [this, apid](bool, const std::string&) {
     Member* again = member(apid);
     if (again == nullptr || !again->alive() || again->state() == State::Offline) return recovered(apid, Severity::High);
-    command(apid, "SET_STATE", static_cast<double>(State::Offline), [this, apid](bool success, const std::string& why) {
+    recover_to(apid, State::Offline, [this, apid](bool success, const std::string& why) {
       recovered(apid, Severity::High);
       tell(name_of(apid) + (success ? " is Offline" : " did not reach Offline: " + why), apid);
     });
@@ -105,7 +111,7 @@ void Supervisor::bring_down(Member& subject) {
   const bool can_stop =
       state == State::PreOperational || state == State::SafeOperational || state == State::Operational;
   if (!can_stop) return to_offline(true, {});
-  command(apid, "SET_STATE", static_cast<double>(State::ErrorOperational), to_offline);
+  recover_to(apid, State::ErrorOperational, to_offline);
 }
 
 void Supervisor::safe_all() {

@@ -136,6 +136,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void react(Member& origin, std::string_view event, descriptor::Severity severity);
   void shut_down_network(Member& origin, std::string_view plan);
   void bring_down(Member& member);
+  void recover_to(std::uint16_t apid, State state, CommandDone done);
   void recovered(std::uint16_t apid, descriptor::Severity severity);
 
   // subsystem handling
