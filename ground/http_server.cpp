@@ -153,6 +153,7 @@ class Server final : public HttpServer {
   tcp::acceptor acceptor_{io_};
   asio::steady_timer ticker_{io_};
   asio::steady_timer pause_{io_};
+  asio::steady_timer accept_pause_{io_};
   asio::signal_set signals_{io_, SIGINT, SIGTERM};
   asio::posix::stream_descriptor input_{io_};
   std::array<char, 64> input_buffer_{};
@@ -346,6 +347,7 @@ void Server::shut() {
   signals_.cancel(ignored);
   ticker_.cancel();
   pause_.cancel();
+  accept_pause_.cancel();
   link_.close(ignored);
   if (input_.is_open()) static_cast<void>(input_.release());
   for (const auto& peer : std::set{peers}) peer->drop();
@@ -357,8 +359,15 @@ void Server::shut() {
 void Server::accept() {
   acceptor_.async_accept([this](Failure failed, tcp::socket socket) {
     if (ending_) return;
+    // Out of descriptors, say: asking again at once would take a processor.
+    if (failed) {
+      accept_pause_.expires_after(reconnect_pause);
+      return accept_pause_.async_wait([this](Failure) {
+        if (!ending_) accept();
+      });
+    }
     const bool full = connections.size() + peers.size() >= most_connections;
-    if (!failed && (!full || displace())) {
+    if (!full || displace()) {
       Failure ignored;
       socket.set_option(tcp::no_delay{true}, ignored);
       auto connection = std::make_shared<Connection>(*this, std::move(socket));

@@ -124,20 +124,27 @@ constexpr std::uint16_t tried_ports = 20;
                    .source = static_cast<std::uint16_t>(0x2000U | (process & 0x1FFFU)),
                    .first_count = static_cast<std::uint16_t>(std::random_device{}() & 0x3FFFU)}};
   // Not in the arguments, which everybody on this computer can read.
-  const char* given = std::getenv("HIROSCO_GROUND_TOKEN");
-  const char* observer = std::getenv("HIROSCO_GROUND_OBSERVER_TOKEN");
-  const std::string token = given != nullptr && *given != '\0' ? given : new_token();
+  const auto token_of = [](const char* variable) {
+    const char* given = std::getenv(variable);
+    return given != nullptr && *given != '\0' ? std::string{given} : new_token();
+  };
+  const std::string token = token_of("HIROSCO_GROUND_TOKEN");
+  const std::string observer = token_of("HIROSCO_GROUND_OBSERVER_TOKEN");
   Api api{session,
           {.token = token,
-           .observer_token = observer != nullptr ? observer : "",
+           .observer_token = observer,
            .port = shell.port(),
            .page = option(options, "--page", page_folder().string()),
            .transitions = state_table()}};
   const bool tour = options.contains("--tour");
-  const std::string url = fmt::format("http://127.0.0.1:{}/#token={}{}", shell.port(), token, tour ? "&tour" : "");
-  if (options.contains("--json")) fmt::print("{{\"url\":\"{}\"}}\n", url);
-  else if (!options.contains("--quiet"))
+  const std::string page = fmt::format("http://127.0.0.1:{}/#token=", shell.port());
+  const std::string url = page + token + (tour ? "&tour" : "");
+  if (options.contains("--json")) {
+    fmt::print("{{\"url\":\"{}\",\"observer_url\":\"{}{}\"}}\n", url, page, observer);
+  } else if (!options.contains("--quiet")) {
     fmt::print("{}: {}\n", tour ? "open this for the tour" : "ground station", url);
+    if (!tour) fmt::print("  to look only: {}{}\n", page, observer);
+  }
   std::fflush(stdout);
   shell.run(api);
   return tools::exit_ok;

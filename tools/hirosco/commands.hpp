@@ -102,7 +102,7 @@ struct GroundOptions {
   std::string mission{"rokviss"};
   std::optional<std::uint16_t> port; ///< empty = 8080, or the next free one above
   std::string token;                 ///< empty = a new one
-  std::string observer_token;        ///< empty = no observers
+  std::string observer_token;        ///< empty = a new one
   std::string telemetry;             ///< HOST:PORT; empty = as the mission says
   std::string archive;               ///< empty = beside the mission's log
   std::string page;                  ///< folder; empty = the one that was built
