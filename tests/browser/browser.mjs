@@ -20,7 +20,8 @@ export async function open_browser() {
     viewport: {width: 1600, height: 900}, acceptDownloads: true});
   return {context, async close() {
     await context.close();
-    rmSync(folder, {recursive: true, force: true});
+    // A helper of the browser may still write for a moment.
+    rmSync(folder, {recursive: true, force: true, maxRetries: 20, retryDelay: 100});
   }};
 }
 
@@ -46,7 +47,7 @@ export const views = ['overview', 'subsystems/MANIPULATOR', 'plots', 'commands/M
 /// To a view, as following its address does.
 export async function go(page, view) {
   await page.evaluate((to) => { location.hash = `#/${to}`; }, view);
-  await page.waitForFunction((to) => document.querySelector('nav a.on')?.getAttribute('href') === `#/${to}`, view.split('/')[0]);
+  await page.waitForFunction((to) => document.querySelector('nav a.on')?.getAttribute('href') === `#/${to}`, view.split(/[/?]/)[0]);
 }
 
 /// Waits until `holds` answers true; a wait that leads nowhere says what for.

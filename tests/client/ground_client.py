@@ -53,9 +53,10 @@ class Checks:
         request = link.send(link.telecommand(MANIPULATOR, 17, 1, ack=ack))
         alive = link.wait(lambda r: r.kind == (17, 2) and r.packet.apid == MANIPULATOR and
                           r.destination == link.source, 2.0)
-        time.sleep(0.3)
         found = []
-        while report := link.wait(lambda r: r.kind[0] == 1 and verification_of(r).request == request, 0.0):
+        # Those that are expected, however long they take, then no other.
+        while report := link.wait(lambda r: r.kind[0] == 1 and verification_of(r).request == request,
+                                  5.0 if len(found) < len(expected) else 0.3):
             found.append(verification_of(report))
         self.table.row(alive is not None and [r.subtype for r in found] == expected,
                        f"TC[17,1] with acknowledgement flags {ack:04b}", text(found))

@@ -14,13 +14,16 @@ class TorqueLimit(unittest.TestCase):
             rokviss.fault("joystick", "hand", "hold", 0, 0)
             time.sleep(2.0)
             begin = rokviss.count()
+            before, stolen = time.monotonic(), flight.stolen_s()
             rokviss.fault("joystick", "hand", "ramp", 0.065, 0, 0.04)
             asked = time.monotonic()
             event = rokviss.wait_told("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED", 5.0, begin)
             safe = rokviss.wait_told("MANIPULATOR info STATE_CHANGED STATE=SafeOperational", 2.0, begin)
             flight.measure(f"RO8: {event.told} {event.received - asked:.3f} s after the ramp (0.740 expected), "
                            f"SafeOperational {1e3 * (safe.at_s - event.at_s):.1f} ms later")
-            self.assertAlmostEqual(event.received - asked, 0.740, delta=0.1)
+            # The ramp began between the two; its world stands still while a host keeps the processor.
+            self.assertGreater(event.received - before, 0.740 - 0.1)
+            self.assertLess(event.received - asked, 0.740 + 0.1 + flight.stolen_s() - stolen)
             value = float(event.told.split("VALUE=")[1].split()[0])
             self.assertGreater(abs(value), 12.0)
             self.assertLess(abs(value), 12.5)

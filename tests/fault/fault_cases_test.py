@@ -153,13 +153,14 @@ class FaultCases(unittest.TestCase):
             self.assertEqual(rokviss.tc("communication", "SET_DELAY", 20, 1)[0], 0)
             time.sleep(0.5)
             held = rokviss.truth("robot")
+            # Once for the samples, once for the client that sent the telecommand and went away.
             lost = rokviss.wait_told("COMMUNICATION medium GROUND_LINK_LOST", 4.0, begin)
+            rokviss.wait_line(lambda line: line is not lost and line.told == lost.told, 4.0, begin)
             time.sleep(0.5)
             now = rokviss.truth("robot")
             way_m = math.dist([held["tip_x"], held["tip_y"]], [now["tip_x"], now["tip_y"]])
             flight.measure(f"FC8: {lost.told}; the tip moved {1e3 * way_m:.3f} mm meanwhile")
             self.assertLess(way_m, 1e-3)
-            # Once for the samples, once for the client that sent the telecommand and went away.
             self.assertEqual([line.told for line in rokviss.told(begin)].count(lost.told), 2)
             self.assert_states(rokviss, MANIPULATOR="Operational", JOYSTICK="Operational", COMMUNICATION="Operational")
             self.assertEqual(self.plans_since(rokviss, begin), [])

@@ -158,6 +158,7 @@ class OnAFlight(unittest.TestCase):
             first = Gateway(rokviss.folder)
             first.until(lambda status: status["link"]["rx"] > 100)
             history = "/api/history?parameter=MANIPULATOR.TIP_FORCE[0]&last=600"
+            asked = time.monotonic()
             before = first.request(history)["t"]
             first.end(signal.SIGKILL)
             killed = time.monotonic()
@@ -174,9 +175,10 @@ class OnAFlight(unittest.TestCase):
                 self.assertGreater(len(after["t"]), len(before))
                 self.assertEqual(len(after["gaps"]), 1)
                 gap = after["gaps"][0]
-                self.assertTrue(second.started - killed < gap["to"] - gap["from"] < again - killed + 0.5, gap)
+                self.assertTrue(second.started - killed < gap["to"] - gap["from"] < again - asked + 0.5, gap)
                 self.assertGreaterEqual(gap["from"], before[-1])
-                self.assertLessEqual(gap["to"], after["t"][len(before)])
+                # Packets of several subsystems may overtake each other a little.
+                self.assertFalse([t for t in after["t"] if gap["from"] + 0.2 < t < gap["to"] - 0.2])
 
     def test_a_command_returns_its_report_and_pages_hear_of_each_other(self):
         with flight.Flight() as rokviss:
@@ -235,14 +237,16 @@ class OnAFlight(unittest.TestCase):
                 time.sleep(1.0)
 
                 def rate():
-                    """The best of three windows: a cost is in each of them, a moment without processor in one."""
+                    """The best of three windows: a cost is in each of them, a moment without processor in one. Batches that
+                    a moment has piled up come faster than they are made, which says nothing."""
+                    made = 20.0
                     best = 0.0
                     for _ in range(3):
                         since = time.monotonic()
                         time.sleep(2.0)
                         times = good.times_of("values", since)
                         best = max(best, (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0)
-                    return best
+                    return min(best, made)
 
                 alone = rate()
                 stalled = [WebSocket(gateway, receive_octets=4096) for _ in range(5)]    # never read

@@ -53,11 +53,23 @@ def ordinary_user():
 
 class WithoutRights(unittest.TestCase):
     def test_a_busy_computer_provokes_no_reaction(self):
+        # A host that takes a processor away is no busy computer: such a flight shows nothing, unless it holds.
+        for _ in range(1 if SECONDS > 60 else 3):
+            stolen = flight.stolen_s()
+            reaction = self.first_reaction()
+            if reaction is None:
+                return
+            if flight.stolen_s() - stolen < 0.02:
+                break
+        self.fail(reaction.told)
+
+    def first_reaction(self):
         with ordinary_user() as arguments, busy_processors(), flight.Flight(**arguments) as rokviss:
             rokviss.wait_told("no real-time scheduling", 5.0)
             rokviss.wait_commissioned(40.0)
             begin = rokviss.count()
-            self.assertIsNone(rokviss.wait_line(lambda line: line.told.startswith("plan "), SECONDS, begin))
+            if reaction := rokviss.wait_line(lambda line: line.told.startswith("plan "), SECONDS, begin):
+                return reaction
             told = [line.told for line in rokviss.told(begin)]
             self.assertEqual([text for text in told if " info " not in text], [])
             status = rokviss.wait_status(lambda s: True, 10.0)
@@ -67,6 +79,7 @@ class WithoutRights(unittest.TestCase):
                                          ("name", "cycles", "missed", "overruns", "latency_max_ns", "execution_mean_ns")
                                          if name in member))
             self.assertEqual(rokviss.end(seconds=30.0), 0, rokviss.errors)
+            return None
 
 
 if __name__ == "__main__":
