@@ -13,6 +13,7 @@
 #include <ranges>
 
 #include "ground/json.hpp"
+#include "ground/log_search.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -150,7 +151,7 @@ the target hirosco_ground_page. The API works without it; see ground/api/README.
 
 /// What is wrong with the parameters that are numbers or severities; empty: nothing. An empty one is as good as none.
 [[nodiscard]] std::string senseless(const Target& target) {
-  for (const char* name : {"from", "to", "last", "points", "limit"})
+  for (const char* name : {"from", "to", "last", "points", "limit", "before", "housekeeping"})
     if (!target.text(name).value_or("").empty() && !target.number(name))
       return std::string{name} + ": a number is wanted";
   const std::string severity = target.text("severity").value_or("");
@@ -315,6 +316,7 @@ HttpResponse Api::get(const Target& target) {
   if (path == "/api/export.csv") return csv(target);
   if (path == "/api/timeline") return answer(timeline(target));
   if (path == "/api/why") return answer(why());
+  if (path == "/api/log") return answer(log(target));
   constexpr double usual_limit = 200;
   Archive::Filter filter{.span = {}, .text = target.text("text").value_or(""), .newest_first = true};
   if (const auto from = target.number("from")) filter.span.from = onboard_time(*from);
@@ -461,6 +463,16 @@ json Api::timeline(const Target& target) {
           {"events", std::move(events)},
           {"faults", std::move(faults)},
           {"gaps", gaps_json(session_.archive().gaps(span))}};
+}
+
+json Api::log(const Target& target) {
+  constexpr double usual_lines = 200, most_lines = 2000, most_number = 9e15;
+  LogQuery query{.text = target.text("text").value_or("")};
+  if (const auto to = target.number("to")) query.to = onboard_time(*to);
+  query.before = static_cast<std::int64_t>(std::clamp(target.number("before").value_or(0.0), 0.0, most_number));
+  if (target.number("housekeeping").value_or(0.0) != 0.0) query.housekeeping = Archive::Housekeeping::Included;
+  query.limit = static_cast<std::size_t>(std::clamp(target.number("limit").value_or(usual_lines), 1.0, most_lines));
+  return search_log(session_.catalogue(), session_.archive(), query);
 }
 
 /// The last group of events of medium and high severity, with what happened around it: injected faults, state changes,

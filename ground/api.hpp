@@ -68,6 +68,7 @@ class Api final : public Application {
   [[nodiscard]] HttpResponse csv(const Target& target);
   [[nodiscard]] nlohmann::json timeline(const Target& target);
   [[nodiscard]] nlohmann::json why();
+  [[nodiscard]] nlohmann::json log(const Target& target);
   [[nodiscard]] Span span_of(const Target& target, double last_s) const;
   [[nodiscard]] HttpResponse page_file(const HttpRequest& request, const std::string& path) const;
 

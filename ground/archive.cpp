@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <string_view>
 
 namespace hirosco::ground {
@@ -18,6 +19,7 @@ constexpr const char* schema = R"(
   CREATE TABLE IF NOT EXISTS packets(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, apid INTEGER NOT NULL,
     service INTEGER NOT NULL, subtype INTEGER NOT NULL, sid INTEGER NOT NULL, octets BLOB NOT NULL);
   CREATE INDEX IF NOT EXISTS packets_by_time ON packets(t);
+  CREATE INDEX IF NOT EXISTS packets_but_housekeeping ON packets(t) WHERE sid = 0;
   CREATE INDEX IF NOT EXISTS packets_by_structure ON packets(apid, sid, t) WHERE sid != 0;
   CREATE TABLE IF NOT EXISTS events(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, apid INTEGER NOT NULL,
     subsystem TEXT NOT NULL, event INTEGER NOT NULL, name TEXT NOT NULL, severity INTEGER NOT NULL, text TEXT NOT NULL,
@@ -274,6 +276,31 @@ void Archive::packets(const Span& span, const std::function<bool(const StoredPac
     packet.service = find.number<std::uint8_t>();
     packet.subtype = find.number<std::uint8_t>();
     packet.sid = find.number<std::uint16_t>();
+    packet.octets = find.octets();
+    if (!take(packet)) return;
+  }
+}
+
+void Archive::packets_back(OnboardTime to, std::int64_t before, Housekeeping housekeeping,
+                           const std::function<bool(const StoredPacket&)>& take) {
+  OnboardTime from = to;
+  std::int64_t number = std::numeric_limits<std::int64_t>::max();
+  if (before != 0) {
+    Statement find{*this, "SELECT t FROM packets WHERE id = ?"};
+    find << before;
+    if (!find.row()) return;
+    from = find.time();
+    number = before;
+  }
+  const std::string which = housekeeping == Housekeeping::LeftOut ? "sid = 0 AND " : "";
+  Statement find{*this, "SELECT id, t, apid, service, subtype, octets FROM packets WHERE " + which +
+                            "t <= ? AND (t, id) < (?, ?) ORDER BY t DESC, id DESC"};
+  find << from << from << number;
+  while (find.row()) {
+    StoredPacket packet{.number = find.integer(), .t = find.time(), .octets = {}};
+    packet.apid = find.number<std::uint16_t>();
+    packet.service = find.number<std::uint8_t>();
+    packet.subtype = find.number<std::uint8_t>();
     packet.octets = find.octets();
     if (!take(packet)) return;
   }

@@ -22,6 +22,7 @@ struct sqlite3_stmt;
 namespace hirosco::ground {
 
 struct StoredPacket {
+  std::int64_t number{};             ///< in the archive; set by packets_back()
   OnboardTime t{};
   std::uint16_t apid{};
   std::uint8_t service{};
@@ -112,6 +113,10 @@ class Archive {
   [[nodiscard]] std::optional<Span> extent();
   /// In order of time; `take` says whether to go on.
   void packets(const Span& span, const std::function<bool(const StoredPacket&)>& take);
+  enum class Housekeeping : std::uint8_t { LeftOut, Included };
+  /// Newest first, from before packet number `before` on, 0: from `to` on. `take` says whether to go on.
+  void packets_back(OnboardTime to, std::int64_t before, Housekeeping housekeeping,
+                    const std::function<bool(const StoredPacket&)>& take);
   void packets_of(std::uint16_t apid, std::uint16_t sid, const Span& span,
                   const std::function<bool(const StoredPacket&)>& take);
   /// The newest one before a time.

@@ -121,6 +121,9 @@ std::string PacketDescriber::describe_telemetry(const TelemetryView& telemetry) 
     text.append(" ").append(describe_event(telemetry.apid(), telemetry.source_data()));
   } else if (telemetry.service() == 3 && telemetry.subtype() == 25) {
     text.append(" housekeeping ").append(std::to_string(reader.get<std::uint16_t>()));
+  } else if (const auto copied = TelecommandView::parse(telemetry.source_data());
+             telemetry.service() == 129 && telemetry.subtype() == 3 && copied) {
+    text.append(" copy of ").append(describe_telecommand(*copied));
   }
   return text;
 }

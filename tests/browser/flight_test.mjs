@@ -96,6 +96,9 @@ describe('the page on a real flight', () => {
     await page.click('[data-test=fault-joystick-unplug]');
     await page.waitForFunction(() => document.querySelector('[data-test=events]').textContent.includes('JOYSTICK_LOST'), null, wait);
     await page.waitForSelector('[data-test=why] li', wait);
+    await page.fill('[data-test=log-text]', 'tm[5 joystick_lost');
+    await page.press('[data-test=log-text]', 'Enter');
+    await page.waitForFunction(() => /TM\[5,4\] JOYSTICK high JOYSTICK_LOST/.test(document.querySelector('[data-test=log]')?.textContent), null, wait);
     await page.keyboard.press('Escape');
     await go(page, 'overview');
     await state_is('JOYSTICK', 'Offline');

@@ -197,6 +197,8 @@ describe('a flight that does not', () => {
     await go(page, 'events');
     await page.waitForFunction(() => document.querySelector('[data-test=events]')?.textContent.includes('<img src=x'));
     assert.ok(await page.evaluate(() => document.querySelector('[data-test=events]').textContent.includes('y'.repeat(1000))));
+    await page.click('[data-test=log-search]');
+    await page.waitForFunction(() => document.querySelector('[data-test=log]')?.textContent.includes('<img src=x'));
     assert.equal(await page.evaluate(() => window.hurt), undefined);
     assert.equal(await page.locator('img[src="x"]').count(), 0);
     assert.deepEqual(faults, []);

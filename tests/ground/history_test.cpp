@@ -10,6 +10,8 @@
 namespace hirosco::testing {
 namespace {
 
+using ::testing::HasSubstr;
+
 TEST_F(GroundStation, HistoryIsWhatTheLiveViewShowedAndLongOnesKeepTheirExtremes) {
   commission();
   Page page;
@@ -170,6 +172,41 @@ TEST_F(GroundStation, ATimelineWithTooManyEventsHasTheNewest) {
   ASSERT_EQ(events.size(), 10'000U);
   EXPECT_NEAR(events.front()["t"].get<double>(), 2'145'916'900.5, 0.001);
   EXPECT_NEAR(events.back()["t"].get<double>(), 2'145'916'910.499, 0.001);
+}
+
+TEST_F(GroundStation, TheLogTellsEveryPacketInWordsNewestFirst) {
+  commission();
+  EXPECT_EQ(station.command("JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.05}})["stage"], "completed");
+  const auto lines = [&](const std::string& query) {
+    std::vector<std::string> texts;
+    const json answer = station.get("/api/log?" + query);
+    for (const json& packet : answer["packets"]) texts.push_back(packet["text"]);
+    return texts;
+  };
+  const auto found = lines("text=Set_Force+joystick");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_THAT(found.front(), HasSubstr("TM[129,3] SUPERVISOR copy of TC[8,1] JOYSTICK"));
+  EXPECT_THAT(found.front(), HasSubstr("SET_FORCE_SCALE SCALE=0.05"));
+  EXPECT_THAT(lines("text=completed&limit=1").front(), HasSubstr("TM[1,7] JOYSTICK completed JOYSTICK"));
+  EXPECT_TRUE(lines("text=housekeeping").empty());
+  EXPECT_FALSE(lines("text=housekeeping&housekeeping=1").empty());
+  EXPECT_TRUE(lines("text=no+such+words").empty());
+  EXPECT_TRUE(lines("to=1").empty());
+}
+
+TEST_F(GroundStation, TheLogGoesOnWhereAnAnswerEnded) {
+  commission();
+  const json whole = station.get("/api/log?limit=2000");
+  EXPECT_TRUE(whole["before"].is_null());
+  json pages = json::array();
+  std::string before;
+  for (json page; page.empty() || !page["before"].is_null();) {
+    page = station.get("/api/log?limit=7" + before);
+    before = "&before=" + page["before"].dump();
+    for (const json& packet : page["packets"]) pages.push_back(packet);
+    ASSERT_LE(pages.size(), whole["packets"].size());
+  }
+  EXPECT_EQ(pages, whole["packets"]);
 }
 
 TEST_F(GroundStation, AnExportThatWouldHoldUpTheLiveViewIsRefused) {

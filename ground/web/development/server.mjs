@@ -144,6 +144,12 @@ const server = createServer(async (request, response) => {
     '/api/commands/preview': () => ({octets: '180ae796001929080100014d4f56455f544f0000000000000000',
       permitted: body.function !== 'MOVE_TO', code: body.function === 'MOVE_TO' ? 15 : null, reason: body.function === 'MOVE_TO' ? 'setpoint owned by a link' : null}),
     '/api/timeline': () => timeline(query),
+    '/api/log': () => {
+      const lines = archive.filter((one) => one.type === 'event').reverse().map((one, i) => ({number: archive.length - i, t: one.t, apid: one.apid,
+        subsystem: one.subsystem, service: 5, subtype: 1, text: `TM[5,1] ${one.subsystem} ${one.name} ${one.text}`}));
+      const words = (query.get('text') ?? '').toLowerCase().split(/\s+/).filter(Boolean);
+      return {packets: lines.filter((one) => words.every((word) => one.text.toLowerCase().includes(word))).slice(0, +(query.get('limit') ?? 200)), before: null};
+    },
     '/api/why': () => ({causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one) => ({t: one.t, text: `${one.subsystem} reports ${one.name}`}))}),
     '/api/faults': () => {
       if (body.line === 'burst') for (let i = 0; i < burst_events; ++i) tell({...list.find((one) => one.type === 'event'), t: now, id: 3, text: `burst ${i}`});

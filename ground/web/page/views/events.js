@@ -6,6 +6,7 @@ import {clock_text} from '../format.js';
 import {html} from '../html.js';
 import {EventTable, event_text} from '../parts/event_list.js';
 import {Severity} from '../parts/icons.js';
+import {LogSearch} from '../parts/log_search.js';
 import {Panel} from '../parts/panel.js';
 import {counts, events, gateway, mission, replay} from '../store.js';
 
@@ -20,7 +21,7 @@ export function Why() {
     get('/api/why').then((found) => over || set_answer(found.causes ?? []), () => over || set_answer([]));
     return () => { over = true; };
   }, [reason, gateway.value.connected]);
-  return html`<${Panel} title="Why did it stop?" hint="hirosco why">
+  return html`<${Panel} title="Why did it stop?" area="why" hint="hirosco why">
     ${answer?.length ? html`<ol class="why" data-test="why">${answer.map((cause) => html`<li><span class="time">${clock_text(cause.t, 3)}</span>${cause.text}</li>`)}</ol>` :
       html`<p class="empty">${answer ? 'Nothing has stopped.' : '…'}</p>`}</${Panel}>`;
 }
@@ -42,7 +43,7 @@ export function Events({query}) {
     set_archive((found.events ?? found).map((event, i) => ({...event, key: i})));
   };
   return html`<main class="event_view">
-    <${Panel} title="Events" hint=${archive ? `archive, ${list.length} found` : `${list.length} of ${events.value.length}`}>
+    <${Panel} title="Events" area="events" hint=${archive ? `archive, ${list.length} found` : `${list.length} of ${events.value.length}`}>
       <div class="toolbar">
         ${severities.map((one) => html`<button class=${`chip ${wanted.includes(one) ? 'on' : ''}`} aria-pressed=${wanted.includes(one)}
           onClick=${() => set_shown(wanted.includes(one) ? wanted.filter((other) => other !== one) : [...wanted, one])}>
@@ -54,5 +55,6 @@ export function Events({query}) {
       </div>
       <${EventTable} list=${list} wide most=${400} /></${Panel}>
     <${Why} />
+    <${LogSearch} />
   </main>`;
 }
