@@ -13,6 +13,7 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 
+option(HIROSCO_TESTS_IN_PIECES "Compile four files of a test at a time; off for tools that want a command for each" ON)
 set(HIROSCO_SANITIZE "" CACHE STRING "Sanitizers to build with, for example 'address,undefined' or 'thread'")
 
 add_library(hirosco_options INTERFACE)
@@ -27,8 +28,7 @@ if(HIROSCO_SANITIZE)
   target_compile_options(hirosco_options INTERFACE
     -fsanitize=${HIROSCO_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(hirosco_options INTERFACE -fsanitize=${HIROSCO_SANITIZE})
-  # A few large pieces: half the time to build. Types of one file may then use its anonymous namespace, and names of the
-  # files of one target must differ.
+  # A few large pieces, as of tests (below): half the time to build.
   set(CMAKE_UNITY_BUILD ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
   target_compile_options(hirosco_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
@@ -45,10 +45,14 @@ if(HIROSCO_SANITIZE MATCHES undefined)
   target_compile_options(hirosco_test_options INTERFACE -fno-sanitize=vptr,null,alignment,object-size)
 endif()
 
-# The headers that every test includes, compiled once, and tests themselves compiled for speed of building: together
-# this halves the build of the tests. What is under test keeps its own options.
+# The headers that every test includes, compiled once, and tests themselves compiled for speed of building, four files in one
+# piece: together this is a third of the time. What is under test keeps its own options. In a piece types of one file may use
+# its anonymous namespace, and names of the files of one target must differ.
 function(hirosco_compile_as_test name)
-  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 4)
+  if(HIROSCO_TESTS_IN_PIECES)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+    target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
   # g++ 12 sees overlong string concatenations where there are none.
   target_compile_options(${name} PRIVATE
     $<$<CONFIG:Release>:-O1>
