@@ -268,7 +268,7 @@ void Api::handle(const HttpRequest& request, std::function<void(HttpResponse)> r
   if (role == Role::Nobody) return respond(error(401, "the token is missing or wrong"));
   if (reading) return respond(get(*target));
   if (request.method != "POST") return respond(error(405, "only GET and POST"));
-  post(request, *target, role, std::move(respond));
+  post(request, *target, role, respond);
 }
 
 std::optional<HttpResponse> Api::refuse_socket(const HttpRequest& request) {
