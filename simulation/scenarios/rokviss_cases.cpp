@@ -43,6 +43,12 @@ void make_stale(CoupledCraft& craft, Random& random) {
   craft.craft().stop("JOYSTICK", false);
 }
 
+/// Works for longer than its period of 0.5 ms, for a while.
+void make_overrun(CoupledCraft& craft, Random& random) {
+  constexpr int cycles = 20;
+  craft.craft().strain("MANIPULATOR", cycles, std::chrono::microseconds{static_cast<int>(random.uniform(550, 950))});
+}
+
 constexpr std::array cases{
     Case{"1-limit", "MANIPULATOR medium TORQUE_LIMIT_EXCEEDED", "MANIPULATOR", Rest::Robot, End::RobotSafe, nullptr},
     Case{"2-warning", "MANIPULATOR low TEMPERATURE_WARNING", "MANIPULATOR", Rest::Robot, End::GoesOn,
@@ -71,6 +77,7 @@ constexpr std::array cases{
          [](CoupledCraft& craft, Random&) { craft.craft().kill("MANIPULATOR"); }},
     Case{"6-hang", "JOYSTICK hangs", "MANIPULATOR", Rest::Robot, End::RobotOffline,
          [](CoupledCraft& craft, Random&) { craft.craft().stop("JOYSTICK", true); }},
+    Case{"6-overruns", "MANIPULATOR medium CYCLE_OVERRUNS", "MANIPULATOR", Rest::Robot, End::RobotSafe, make_overrun},
     Case{"7-stale", "MANIPULATOR medium JOYSTICK_STATE_STALE", "MANIPULATOR", Rest::Robot, End::RobotSafe, make_stale},
     // 105 W are reserved in telepresence: less than a tenth above that, then less than that.
     Case{"9-low", "SUPERVISOR medium POWER_LOW", "MANIPULATOR", Rest::Robot, End::BothSafe,

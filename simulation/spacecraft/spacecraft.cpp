@@ -33,18 +33,45 @@ class BorrowedDatabase final : public supervisor::Database {
 
 }  // namespace
 
+/// The craft's time as a subsystem reads it: in a cycle that takes long, all readings but the first are later by that.
+class MemberClock final : public Clock {
+ public:
+  explicit MemberClock(const Clock& craft) : craft_{craft} {}
+  void begin(Duration takes) noexcept {
+    takes_ = takes;
+    read_ = false;
+  }
+  void end() noexcept { takes_ = Duration{0}; }
+
+ private:
+  [[nodiscard]] TimePoint do_now() const noexcept override { return craft_.now() + passed(); }
+  [[nodiscard]] OnboardTime do_onboard() const noexcept override { return craft_.onboard() + passed(); }
+  [[nodiscard]] Duration passed() const noexcept { return std::exchange(read_, true) ? takes_ : Duration{0}; }
+
+  const Clock& craft_;
+  Duration takes_{0};
+  mutable bool read_{false};
+};
+
 /// One subsystem as an object: what a process would hold.
 struct Spacecraft::Member {
-  Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, const World& world)
+  Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, World world)
       : described{&what},
         author{std::move(make)},
+        clock{world.clock},
         vital{std::make_shared<VitalPage>()},
         permit{std::make_shared<PermitPage>()} {
-    engine.emplace(*author, what.subsystem, world, channels.subsystem_end(), *vital, *permit);
+    const World own{.clock = clock,
+                    .memory = world.memory,
+                    .flows = world.flows,
+                    .realtime = world.realtime,
+                    .explain = std::move(world.explain)};
+    engine.emplace(*author, what.subsystem, own, channels.subsystem_end(), *vital, *permit);
   }
 
   const descriptor::MissionSubsystem* described;
   std::unique_ptr<Subsystem> author;
+  MemberClock clock;
   ChannelPair channels;
   std::shared_ptr<VitalPage> vital;
   std::shared_ptr<PermitPage> permit;
@@ -53,6 +80,8 @@ struct Spacecraft::Member {
   TimePoint cycle_wake{never};
   bool cycling{false};
   bool stopped{false};
+  int strained_cycles{0};
+  Duration cycle_takes{0};
   std::optional<supervisor::ProcessEnd> end;
 };
 
@@ -161,6 +190,13 @@ void Spacecraft::stop(std::string_view name, bool stopped) {
   else if (Member* member = find(name)) member->stopped = stopped;
 }
 
+void Spacecraft::strain(std::string_view name, int cycles, Duration takes) {
+  Member* member = find(name);
+  if (member == nullptr) return;
+  member->strained_cycles = cycles;
+  member->cycle_takes = takes;
+}
+
 // --- virtual time ------------------------------------------------------------------------------------------------------
 
 void Spacecraft::run(Duration span) {
@@ -211,7 +247,12 @@ void Spacecraft::step_cycle(Member& member) {
     member.cycle_wake = never;
     return;
   }
+  if (member.strained_cycles > 0) {
+    --member.strained_cycles;
+    member.clock.begin(member.cycle_takes);
+  }
   member.cycle_wake = member.engine->cycle_step(member.cycle_wake);
+  member.clock.end();
   // The device answers the exchange at once: its status is there for the next cycle (decision 29).
   for (std::size_t i = 0; i < devices_.size(); ++i)
     if (devices_[i].described->subsystem == member.described->subsystem.name) step_device(i);

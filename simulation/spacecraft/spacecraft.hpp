@@ -71,6 +71,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   void kill(std::string_view name);
   /// The process stands still, as by SIGSTOP, and goes on; the supervisor by its own name.
   void stop(std::string_view name, bool stopped);
+  /// The next cycles of a subsystem take that long; otherwise a cycle takes no time.
+  void strain(std::string_view name, int cycles, Duration takes);
   /// Called after every cycle of the fastest subsystem, for traces and checks at cycle rate.
   void on_cycle(std::function<void(std::string_view subsystem, TimePoint)> watch) { watch_ = std::move(watch); }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The log: every packet that the archive has, in words, searched by words.
-import {useRef, useState} from 'preact/hooks';
+import {useEffect, useRef, useState} from 'preact/hooks';
 import {get} from '../api.js';
 import {clock_text} from '../format.js';
 import {html} from '../html.js';
@@ -28,6 +28,7 @@ export function LogSearch() {
       set_problem(error.message);
     }
   }
+  useEffect(() => { search(); }, []);
   const submit = (event) => {
     event.preventDefault();
     search();
