@@ -3,12 +3,12 @@
 #include "ground/log_search.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <sstream>
 #include <vector>
 
 #include "ground/json.hpp"
 #include "hirosco/pus/describe.hpp"
+#include "hirosco/utilities/lower_case.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -18,13 +18,8 @@ using nlohmann::json;
 /// One question must not hold up the live view.
 constexpr std::size_t most_searched = 20'000;
 
-[[nodiscard]] std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 [[nodiscard]] std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream{lower(text)};
+  std::istringstream stream{lower_case(text)};
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
   return words;
@@ -40,7 +35,7 @@ json search_log(const Catalogue& catalogue, Archive& archive, const LogQuery& qu
   std::size_t searched = 0;
   archive.packets_back(query.to, query.before, query.housekeeping, [&](const StoredPacket& packet) {
     const std::string text = describer.describe(packet.octets);
-    const std::string letters = lower(text);
+    const std::string letters = lower_case(text);
     if (std::ranges::all_of(words, [&](const std::string& word) { return letters.find(word) != letters.npos; }))
       packets.push_back({{"number", packet.number},
                          {"t", json_time(packet.t)},

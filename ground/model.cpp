@@ -8,6 +8,7 @@
 
 #include "ground/json.hpp"
 #include "hirosco/parameter/number.hpp"
+#include "hirosco/pus/st129_supervision.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -80,14 +81,16 @@ Heard Model::take(const pus::TelemetryView& packet) {
   if (packet.service() == 1) heard.verdict = verdict_of(packet);
   if (packet.service() == 3 && packet.subtype() == 25) take_housekeeping(packet, heard);
   if (packet.service() == 5 && packet.subtype() >= 1 && packet.subtype() <= 4) take_event(packet, heard);
-  if (packet.service() == 129 && packet.subtype() == 2 && packet.apid() == catalogue_.mission().supervisor.id) {
+  const bool supervision =
+      packet.service() == pus::st129::service_type && packet.apid() == catalogue_.mission().supervisor.id;
+  if (supervision && packet.subtype() == pus::st129::permission_answer) {
     OctetReader reader{packet.source_data()};
     PermissionAnswer answer{.destination = packet.destination(), .request_id = reader.get<std::uint32_t>()};
     answer.permitted = reader.get<std::uint8_t>() == 1;
     answer.code = reader.get<std::uint16_t>();
     if (reader.good()) heard.answer = answer;
   }
-  if (packet.service() == 129 && packet.subtype() == 3 && packet.apid() == catalogue_.mission().supervisor.id)
+  if (supervision && packet.subtype() == pus::st129::telecommand_copy)
     heard.telecommand.assign(packet.source_data().begin(), packet.source_data().end());
   if (!heard.changes.empty()) status_revision_ = revision_;
   return heard;

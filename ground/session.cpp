@@ -10,6 +10,8 @@
 #include "ground/json.hpp"
 #include "hirosco/pus/failure.hpp"
 #include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st129_supervision.hpp"
+#include "hirosco/utilities/lower_case.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -40,11 +42,6 @@ constexpr std::uint16_t supervisor_source = 1;
   return std::unexpected{Refusal{status, std::move(text)}};
 }
 
-[[nodiscard]] std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 [[nodiscard]] std::string number_text(double number) { return to_string(json_number(number)); }
 
 /// One value of an argument: a number, or the name of an entry of its enumeration.
@@ -54,7 +51,7 @@ constexpr std::uint16_t supervisor_source = 1;
   if (given.is_boolean()) return given.get<bool>() ? 1.0 : 0.0;
   if (given.is_string())
     for (const auto& entry : texts)
-      if (lower(entry.text) == lower(given.get<std::string>())) return static_cast<double>(entry.value);
+      if (lower_case(entry.text) == lower_case(given.get<std::string>())) return static_cast<double>(entry.value);
   return refuse(400, argument + ": neither a number nor a name that it knows");
 }
 
@@ -396,7 +393,8 @@ void Session::preview(const json& body, std::function<void(Answered<json>)> done
   if (!asked) return done(std::unexpected{asked.error()});
   const std::string octets = hex_of(*asked);
   // No reports but the answer itself.
-  const auto query = packet_of(parts_.catalogue.mission().supervisor.id, 129, 1, 0, *asked, next_count());
+  const auto query = packet_of(parts_.catalogue.mission().supervisor.id, pus::st129::service_type,
+                               pus::st129::permission_question, 0, *asked, next_count());
   const bool sent = connected_ && query && parts_.outside.send(*query);
   if (!sent)
     return done(

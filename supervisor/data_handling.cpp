@@ -6,6 +6,7 @@
 #include <array>
 
 #include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st129_supervision.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervisor.hpp"
 
@@ -58,7 +59,7 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
   pus::Request request = pus::request_of(*telecommand);
   if (forged(request, incoming.sender)) request = {request.id, 0, 0};
   const std::uint16_t apid = telecommand->apid();
-  const bool asks_only = apid == 1 && telecommand->service() == permission_query::service;
+  const bool asks_only = apid == 1 && telecommand->service() == pus::st129::service_type;
   const auto copy_to_ground = [&] {
     if (incoming.sender == Sender::Ground && !asks_only) send_telecommand_copy(engine_.telemetry(), incoming.packet);
   };
@@ -130,7 +131,7 @@ void Supervisor::answer_query(const Incoming& incoming, const pus::TelecommandVi
   writer.put(header->request_id);
   writer.put(static_cast<std::uint8_t>(decision ? 1 : 0));
   writer.put(static_cast<std::uint16_t>(decision ? 0 : static_cast<std::uint16_t>(decision.error().code())));
-  engine_.telemetry().report(permission_query::service, permission_query::answer, request.source, data);
+  engine_.telemetry().report(pus::st129::service_type, pus::st129::permission_answer, request.source, data);
   engine_.verification().completed(request);
 }
 

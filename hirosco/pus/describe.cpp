@@ -8,6 +8,7 @@
 
 #include "hirosco/parameter/number.hpp"
 #include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st129_supervision.hpp"
 
 namespace hirosco::pus {
 namespace {
@@ -121,9 +122,9 @@ std::string PacketDescriber::describe_telemetry(const TelemetryView& telemetry) 
     text.append(" ").append(describe_event(telemetry.apid(), telemetry.source_data()));
   } else if (telemetry.service() == 3 && telemetry.subtype() == 25) {
     text.append(" housekeeping ").append(std::to_string(reader.get<std::uint16_t>()));
-  } else if (const auto copied = TelecommandView::parse(telemetry.source_data());
-             telemetry.service() == 129 && telemetry.subtype() == 3 && copied) {
-    text.append(" copy of ").append(describe_telecommand(*copied));
+  } else if (telemetry.service() == st129::service_type && telemetry.subtype() == st129::telecommand_copy) {
+    const auto telecommand = TelecommandView::parse(telemetry.source_data());
+    text.append(" copy of ").append(telecommand ? describe_telecommand(*telecommand) : "a damaged telecommand");
   }
   return text;
 }

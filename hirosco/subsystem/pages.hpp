@@ -26,13 +26,13 @@ enum Inhibition : std::uint32_t {
   inhibited_by_supervisor = 32,  ///< the supervisor is gone
 };
 
-/// A real-time link as its consumer sees it.
+/// A real-time link as its consumer sees it, since the link was made.
 struct IncomingLink {
   std::atomic<std::uint32_t> link{0};            ///< id, 0 = none
-  std::atomic<std::uint32_t> lost{0};  ///< samples that came and went between two cycles, since the link was made
+  std::atomic<std::uint32_t> lost{0};            ///< samples that came and went between two cycles
   /// From the instant that a sample is of (its producer's planned cycle) to the start of the cycle that uses it first.
   std::atomic<std::uint32_t> latency_mean_ns{0};  ///< over about the last 1,000 samples
-  std::atomic<std::uint32_t> latency_max_ns{0};  ///< since the link was made
+  std::atomic<std::uint32_t> latency_max_ns{0};
 };
 /// A configuration may require more sets; those beyond are not told.
 inline constexpr std::size_t told_incoming_links = 8;
@@ -57,7 +57,7 @@ struct VitalPage {
   std::atomic<std::uint32_t> execution_mean_ns{0};  ///< over about the last 1,000 cycles
   std::atomic<std::uint32_t> lost_reports{0};  ///< cycle-side reports that found no room
   std::atomic<std::uint64_t> inhibited_at_cycle{0};  ///< `cycles` in which the actuators were inhibited last
-  std::array<IncomingLink, told_incoming_links> incoming;  ///< in the order of the configuration's <Requires>
+  std::array<IncomingLink, told_incoming_links> incoming;  ///< in the order of <Requires>
   pus::CounterBlock counters;  ///< outlive the process (decision 8b)
 };
 

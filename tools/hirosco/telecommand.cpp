@@ -10,17 +10,12 @@
 
 #include "hirosco/pus/packet.hpp"
 #include "hirosco/pus/st08_function.hpp"
+#include "hirosco/utilities/lower_case.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 
 namespace hirosco::tools {
 namespace {
-
-[[nodiscard]] std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
-}
 
 /// A number, a state, mode or configuration by name, or an enumeration text.
 [[nodiscard]] std::optional<double> value_of(const std::string& text, const std::string& function,
@@ -29,16 +24,16 @@ namespace {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc{} && end == text.data() + text.size()) return number;
-  const std::string wanted = lower(text);
+  const std::string wanted = lower_case(text);
   if (function == "SET_STATE")
     for (const auto& row : EnumTexts<descriptor::State>::table)
-      if (lower(std::string{row.text}) == wanted) return static_cast<double>(row.value);
+      if (lower_case(std::string{row.text}) == wanted) return static_cast<double>(row.value);
   if (function == "CONFIGURE")
     for (const auto& configuration : subsystem.configurations)
-      if (lower(configuration.name) == wanted) return configuration.id;
+      if (lower_case(configuration.name) == wanted) return configuration.id;
   if (function == "SET_MODE")
     for (const auto& mode : mission.modes)
-      if (lower(mode.name) == wanted) return mode.id;
+      if (lower_case(mode.name) == wanted) return mode.id;
   if (function == "SET_DATABASE")
     return wanted == "sqlite" ? std::optional{0.0} : wanted == "ascii" ? std::optional{1.0} : std::nullopt;
   if (wanted == "on") return 1.0;
@@ -47,10 +42,10 @@ namespace {
 }
 
 [[nodiscard]] const descriptor::Subsystem* find_subsystem(const descriptor::Mission& mission, const std::string& name) {
-  const std::string wanted = lower(name);
-  if (wanted == lower(mission.supervisor.name)) return &mission.supervisor;
+  const std::string wanted = lower_case(name);
+  if (wanted == lower_case(mission.supervisor.name)) return &mission.supervisor;
   for (const auto& member : mission.subsystems)
-    if (lower(member.subsystem.name) == wanted) return &member.subsystem;
+    if (lower_case(member.subsystem.name) == wanted) return &member.subsystem;
   fmt::print(stderr, "hirosco tc: no subsystem '{}'; the mission has {}", name, mission.supervisor.name);
   for (const auto& member : mission.subsystems) fmt::print(stderr, ", {}", member.subsystem.name);
   fmt::print(stderr, "\n");
@@ -73,8 +68,8 @@ void print_usage(const descriptor::Function& function) {
                                                            const descriptor::Subsystem& subsystem) {
   std::vector<descriptor::Function> functions = pus::common_functions();
   functions.insert(functions.end(), subsystem.functions.begin(), subsystem.functions.end());
-  const auto function =
-      std::ranges::find_if(functions, [&](const auto& f) { return lower(f.name) == lower(options.function); });
+  const auto function = std::ranges::find_if(
+      functions, [&](const auto& f) { return lower_case(f.name) == lower_case(options.function); });
   if (function == functions.end()) {
     fmt::print(stderr, "hirosco tc: {} has no function '{}'; it has\n", subsystem.name, options.function);
     for (const auto& known : functions) print_usage(known);
@@ -86,8 +81,9 @@ void print_usage(const descriptor::Function& function) {
     const auto equals = word.find('=');
     std::size_t index = next;
     if (equals != std::string::npos) {
-      const auto named = std::ranges::find_if(
-          function->arguments, [&](const auto& a) { return lower(a.field.name) == lower(word.substr(0, equals)); });
+      const auto named = std::ranges::find_if(function->arguments, [&](const auto& a) {
+        return lower_case(a.field.name) == lower_case(word.substr(0, equals));
+      });
       index = static_cast<std::size_t>(named - function->arguments.begin());
     } else {
       ++next;
@@ -138,7 +134,7 @@ int telecommand(const TelecommandOptions& options) {
   if (!mission) return exit_finding;
   const auto* subsystem = find_subsystem(*mission, options.subsystem);
   if (subsystem == nullptr) return exit_usage;
-  const bool ping = lower(options.function) == "ping";
+  const bool ping = lower_case(options.function) == "ping";
   std::vector<std::byte> data;
   if (!ping) {
     auto encoded = encode(options, *mission, *subsystem);

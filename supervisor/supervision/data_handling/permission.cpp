@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "hirosco/pus/st129_supervision.hpp"
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -27,13 +29,13 @@ constexpr std::uint16_t supervisor_apid = 1;
     case 17: return subtype == 1;
     case 20: return subtype == 1 || subtype == 3;
     case 128: return subtype >= 1 && subtype <= 4;
-    case permission_query::service: return subtype == permission_query::question;
+    case pus::st129::service_type: return subtype == pus::st129::permission_question;
     default: return false;
   }
 }
 
 [[nodiscard]] bool known_service(std::uint8_t service, std::uint16_t apid) {
-  if (service == permission_query::service) return apid == supervisor_apid;
+  if (service == pus::st129::service_type) return apid == supervisor_apid;
   constexpr std::array services{3, 5, 8, 17, 20, 128};
   return std::ranges::find(services, int{service}) != services.end();
 }
@@ -116,7 +118,7 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   // The handshake of links is the supervisor's alone (decision 10).
   if (service == 128 && sender != Sender::Supervisor)
     return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
-  if (service == 17 || service == permission_query::service) return Permitted{.essential = true};
+  if (service == 17 || service == pus::st129::service_type) return Permitted{.essential = true};
 
   const auto call = called_function(telecommand);
   const descriptor::Function* function = call ? subsystem->find_function(call->name) : nullptr;

@@ -43,13 +43,6 @@ struct Permitted {
 [[nodiscard]] std::expected<Permitted, pus::FailureNotice> decide(const pus::TelecommandView& telecommand,
                                                                   Sender sender, const Situation& situation);
 
-/// Service 129 of the supervisor: would a telecommand be permitted now? TC[129,1] carries the whole telecommand packet
-/// asked about, TM[129,2] its request id (u32), 1 or 0 (u8) and the failure code of the refusal (u16, 0 = none).
-namespace permission_query {
-inline constexpr std::uint8_t service = 129;
-enum Subtype : std::uint8_t { question = 1, answer = 2 };
-}  // namespace permission_query
-
 /// The function of TC[8,1] and its first argument, as far as they can be read; for logs and decisions.
 struct CalledFunction {
   std::string_view name;  ///< views the telecommand

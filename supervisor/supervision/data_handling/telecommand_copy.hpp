@@ -2,23 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-
 #include "hirosco/pus/packet.hpp"
 #include "hirosco/pus/service.hpp"
+#include "hirosco/pus/st129_supervision.hpp"
 
 /// TM[129,3] of the supervisor: a telecommand that it has received from a ground, the whole packet, to every ground.
 /// Operators so see each other's telecommands by name and arguments; reports of service 1 carry a request id alone. It
 /// comes before the first report on the telecommand, and for refused ones too.
 namespace hirosco::supervisor {
 
-inline constexpr std::uint8_t telecommand_copy_service = 129;
-inline constexpr std::uint8_t telecommand_copy_subtype = 3;
-
 /// One that is too long for a telemetry packet is not told.
 inline void send_telecommand_copy(pus::TelemetrySink& sink, Octets packet) {
   if (packet.size() > pus::max_telemetry_octets - pus::telemetry_overhead_octets) return;
-  sink.report(telecommand_copy_service, telecommand_copy_subtype, 0, packet);
+  sink.report(pus::st129::service_type, pus::st129::telecommand_copy, 0, packet);
 }
 
 }  // namespace hirosco::supervisor
