@@ -17,7 +17,7 @@ class Overrunning final : public StandIn {
   Result<> operational(const Cycle& cycle) noexcept override {
     if (left_ == 0) return ok();
     const TimePoint start = clock_.now();
-    if (start - cycle.planned <= cycle.period / 2) --left_;
+    if (start - cycle.planned <= cycle.period) --left_;
     while (clock_.now() < start + 3 * cycle.period / 2) {}
     return ok();
   }
