@@ -43,6 +43,13 @@ const MissionLink* Mission::find_link(std::uint8_t link) const noexcept {
   return find_in(links, link, &MissionLink::id);
 }
 
+std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem) {
+  std::vector<std::string_view> names;
+  for (const Device& device : subsystem.devices)
+    if (device.actuator && !device.enable) names.push_back(device.name);
+  return names;
+}
+
 std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference) {
   const Parameter& parameter = subsystem.parameters.at(reference.parameter);
   if (reference.member) return {parameter.members.at(*reference.member).field};

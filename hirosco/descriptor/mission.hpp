@@ -49,11 +49,12 @@ struct MissionLink {
   Location at;
 };
 
-/// What a mode lets through: functions and services of one subsystem, or of all ("*").
+/// What a mode lets through: functions, services and parameters of one subsystem, or of all ("*").
 struct Permit {
   std::string subsystem;
   std::vector<std::string> functions;  ///< "*" = all
   std::vector<std::uint8_t> services;
+  std::vector<std::string> parameters; ///< that TC[20,3] may set, besides service 20; "*" = all writable ones
   Location at;
 };
 

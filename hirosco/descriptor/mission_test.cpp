@@ -65,6 +65,7 @@ TEST(MissionDescriptor, FillsModesAndPlans) {
   EXPECT_EQ(mode.commission.at(1).state, State::Operational);
   EXPECT_EQ(mode.establish, (std::vector<std::uint8_t>{1, 2}));
   EXPECT_EQ(mode.permits.at(1).functions.at(0), "*");
+  EXPECT_EQ(mode.permits.at(1).parameters, std::vector<std::string>{"DES_POSITION"});
   EXPECT_EQ(mission.find_mode("commissioning")->permits.at(2).services, (std::vector<std::uint8_t>{3, 17, 20}));
   EXPECT_EQ(mission.plans.at(0).action, Action::ShutDownNetwork);
   EXPECT_EQ(mission.plans.at(1).state, State::SafeOperational);
@@ -141,6 +142,10 @@ constexpr Mistake mistakes[] = {
     {"E0209", R"(value="-0.7 1.5")", R"(value="@-0.7")"},
     {"E0319", R"("DES_POSITION" value="-0.7 1.5")", R"("@TORQUE_LIMIT" value="9")", "change it in the descriptor"},
     {"E0316", R"(configuration="COUPLED" state)", R"(configuration="@COUPLE" state)", "'COUPLED'"},
+    {"E0320", R"(parameters="DES_POSITION")", R"(parameters="@DES_POSITIONS")", "'DES_POSITION'"},
+    {"E0320", R"(parameters="DES_POSITION")", R"(parameters="@TORQUE_LIMIT")", "writable"},
+    {"E0109", R"(parameters="DES_POSITION")", R"(parameters="@ ")"},
+    {"E0105", R"( functions="*" services="3 20" parameters="DES_POSITION")", ""},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
 };
 // clang-format on
@@ -252,6 +257,17 @@ TEST(MissionErrors, EndnodesStayOnThisComputer) {
   ASSERT_EQ(reading.problems.size(), 1U);
   EXPECT_EQ(reading.problems[0].code, "E0313");
   EXPECT_EQ(reading.problems[0].file, data / "manipulator.xml");
+}
+
+TEST(MissionErrors, AnAddressBelongsToOneSubsystem) {
+  const std::string joystick = file_system()(data / "joystick.xml").value();
+  for (const char* robots : {"rokviss-robot", "rokviss-robot-enable"}) {
+    const auto reading =
+        read_mission(data / "mission.xml", overlay({{"joystick.xml", changed("rokviss-stick", robots, joystick)}}));
+    ASSERT_EQ(reading.problems.size(), 1U) << robots;
+    EXPECT_EQ(reading.problems[0].code, "E0313");
+    EXPECT_EQ(reading.problems[0].message, "'" + std::string{robots} + "' is a device's of 'MANIPULATOR'");
+  }
 }
 
 TEST(MissionErrors, EveryTruncationIsRefused) {

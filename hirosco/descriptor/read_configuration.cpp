@@ -125,9 +125,16 @@ void SubsystemReader::read_setting(const xml::Element& element, DeviceUse& use, 
 
 Endnode SubsystemReader::read_endnode(const xml::Element& element) {
   Attributes attributes{element, problems_};
-  Endnode endnode;
-  endnode.at = place(element.at);
   no_children(element, problems_);
+  Endnode endnode = read_address(attributes);
+  if (const auto* order = attributes.optional("byte_order"); order != nullptr && order->value != "native")
+    endnode.byte_order = attributes.one_of("byte_order", ByteOrder::Little);
+  return endnode;
+}
+
+Endnode SubsystemReader::read_address(Attributes& attributes) {
+  Endnode endnode;
+  endnode.at = place(attributes.element().at);
   if (const auto* transfer = attributes.required("transfer"); transfer != nullptr) {
     const auto known = attributes.word<Transfer>(*transfer, transfer->value);
     if (known) endnode.transfer = *known;
@@ -142,9 +149,26 @@ Endnode SubsystemReader::read_endnode(const xml::Element& element) {
     }
   }
   static_cast<void>(attributes.required("address"));
-  if (const auto* order = attributes.optional("byte_order"); order != nullptr && order->value != "native")
-    endnode.byte_order = attributes.one_of("byte_order", ByteOrder::Little);
   return endnode;
+}
+
+void SubsystemReader::check_addresses() {
+  std::map<std::pair<Transfer, std::string>, std::pair<std::string, Location>> taken;
+  const auto take = [&](const Endnode& endnode, const std::string& user) {
+    if (endnode.address.empty()) return;
+    const auto [before, first] = taken.try_emplace({endnode.transfer, endnode.address}, user, endnode.at);
+    if (first || before->second.first == user) return;
+    problems_.add(
+        endnode.at, "E0222",
+        fmt::format("address {} of {} belongs to {}", in_quotes(endnode.address), user, before->second.first),
+        fmt::format("see {}:{}; each needs its own", before->second.second.line, before->second.second.column));
+  };
+  for (const Device& device : subsystem_.devices)
+    if (device.enable) take(*device.enable, fmt::format("the enable endnode of device '{}'", device.name));
+  for (const Configuration& configuration : subsystem_.configurations)
+    for (const DeviceUse& use : configuration.devices)
+      if (use.device < subsystem_.devices.size())
+        take(use.endnode, fmt::format("device '{}'", subsystem_.devices[use.device].name));
 }
 
 void SubsystemReader::read_initial(const xml::Element& element, Configuration& configuration) {

@@ -219,14 +219,23 @@ std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) 
 
 void MissionReader::check_endnodes(const Subsystem& subsystem) {
   Problems problems{subsystem.file};
+  for (const Device& device : subsystem.devices)
+    if (device.enable) check_endnode(*device.enable, subsystem.name, problems);
   for (const Configuration& configuration : subsystem.configurations)
-    for (const DeviceUse& use : configuration.devices) {
-      const bool network = use.endnode.transfer == Transfer::Udp || use.endnode.transfer == Transfer::Tcp;
-      if (network && classify_address(use.endnode.address) == Address::Foreign)
-        problems.add(use.endnode.at, "E0313", in_quotes(use.endnode.address) + " leaves this computer",
-                     "only loopback addresses are allowed: 127.0.0.1", 8);
-    }
+    for (const DeviceUse& use : configuration.devices) check_endnode(use.endnode, subsystem.name, problems);
   if (problems.count() != 0) subsystem_problems_.push_back(problems.take());
+}
+
+void MissionReader::check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems) {
+  const bool network = endnode.transfer == Transfer::Udp || endnode.transfer == Transfer::Tcp;
+  if (network && classify_address(endnode.address) == Address::Foreign)
+    problems.add(endnode.at, "E0313", in_quotes(endnode.address) + " leaves this computer",
+                 "only loopback addresses are allowed: 127.0.0.1", 8);
+  const auto taken = addresses_.try_emplace({endnode.transfer, endnode.address}, subsystem).first;
+  if (taken->second != subsystem)
+    problems.add(endnode.at, "E0313",
+                 fmt::format("{} is a device's of '{}'", in_quotes(endnode.address), taken->second),
+                 "each device needs an address of its own", 8);
 }
 
 void MissionReader::read_simulated_device(const xml::Element& element) {

@@ -226,8 +226,9 @@ void MissionReader::read_permit(const xml::Element& element, Mode& mode) {
   const auto* subsystem = attributes.required("subsystem");
   const auto* functions = attributes.optional("functions");
   const auto* services = attributes.optional("services");
-  if (functions == nullptr && services == nullptr)
-    problems_.add(element, "E0105", "<Permit> needs the attribute 'functions' or 'services'");
+  const auto* parameters = attributes.optional("parameters");
+  if (functions == nullptr && services == nullptr && parameters == nullptr)
+    problems_.add(element, "E0105", "<Permit> needs the attribute 'functions', 'services' or 'parameters'");
   if (functions != nullptr) {
     for (const auto function : words(functions->value)) permit.functions.emplace_back(function);
     if (permit.functions.empty()) problems_.add(*functions, "E0109", "attribute 'functions' is empty");
@@ -242,10 +243,15 @@ void MissionReader::read_permit(const xml::Element& element, Mode& mode) {
     }
     if (words(services->value).empty()) problems_.add(*services, "E0109", "attribute 'services' is empty");
   }
+  if (parameters != nullptr) {
+    for (const auto parameter : words(parameters->value)) permit.parameters.emplace_back(parameter);
+    if (permit.parameters.empty()) problems_.add(*parameters, "E0109", "attribute 'parameters' is empty");
+  }
   if (subsystem == nullptr) return;
   permit.subsystem = subsystem->value;
   const bool known = permit.subsystem == "*" || find(*subsystem, permit.subsystem, true) != nullptr;
   if (known && functions != nullptr) check_functions(*functions, permit);
+  if (known && parameters != nullptr) check_parameters(*parameters, permit);
   mode.permits.push_back(std::move(permit));
 }
 
@@ -268,6 +274,28 @@ void MissionReader::check_functions(const xml::Attribute& at, const Permit& perm
                         ? fmt::format("no subsystem has a function {}", in_quotes(function))
                         : fmt::format("'{}' has no function {}", permit.subsystem, in_quotes(function)),
                     did_you_mean(function, known));
+}
+
+void MissionReader::check_parameters(const xml::Attribute& at, const Permit& permit) {
+  if (!whole()) return;
+  std::vector<std::string_view> known{"*"}, fixed;
+  const auto add = [&](const Subsystem& subsystem) {
+    if (permit.subsystem != "*" && permit.subsystem != subsystem.name) return;
+    for (const Parameter& parameter : subsystem.parameters)
+      (parameter.writable() ? known : fixed).push_back(parameter.field.name);
+  };
+  add(mission_.supervisor);
+  for (const MissionSubsystem& member : mission_.subsystems) add(member.subsystem);
+  const std::string whose = permit.subsystem == "*" ? "no subsystem has" : in_quotes(permit.subsystem) + " has no";
+  for (const std::string& parameter : permit.parameters) {
+    if (std::ranges::find(known, parameter) != known.end()) continue;
+    const bool exists = std::ranges::find(fixed, parameter) != fixed.end();
+    problems_.add(
+        at, "E0320",
+        exists ? fmt::format("parameter {} is never writable", in_quotes(parameter))
+               : fmt::format("{} parameter {}", whose, in_quotes(parameter)),
+        exists ? "its descriptor says in which states it is: writable=\"...\"" : did_you_mean(parameter, known));
+  }
 }
 
 void MissionReader::read_recovery(const xml::Element& element) {

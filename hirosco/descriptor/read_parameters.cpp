@@ -113,8 +113,7 @@ void SubsystemReader::read_structure(const xml::Element& element) {
   if (const auto* type = attributes.optional("type"); type != nullptr && type->value != "STRUCT")
     problems_.add(*type, "E0104", "the type of a <StructRef> is 'STRUCT', not " + in_quotes(type->value));
   parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
-  parameter.read_only = attributes.yes("read_only", false);
-  parameter.persistent = attributes.yes("persistent", false);
+  read_access(attributes, parameter);
   claim_parameter_id(attributes, Type::Struct, parameter.id);
   if (!parameter.field.name.empty())
     parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
@@ -146,8 +145,7 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   parameter.field = read_field(attributes, true);
   parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
   parameter.init = read_values(problems_, attributes, "init", parameter.field);
-  parameter.read_only = attributes.yes("read_only", false);
-  parameter.persistent = attributes.yes("persistent", false);
+  read_access(attributes, parameter);
   claim_parameter_id(attributes, parameter.field.type, parameter.id);
   no_children(element, problems_);
   const bool zero_outside = parameter.field.minimum.value_or(0) > 0 || parameter.field.maximum.value_or(0) < 0;
@@ -159,6 +157,19 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   if (!parameter.field.name.empty())
     parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
   subsystem_.parameters.push_back(std::move(parameter));
+}
+
+void SubsystemReader::read_access(Attributes& attributes, Parameter& parameter) {
+  parameter.read_only = attributes.yes("read_only", false);
+  parameter.persistent = attributes.yes("persistent", false);
+  parameter.protection = attributes.yes("protection", false);
+  parameter.writable_states = read_states(attributes, "writable", {});
+  const auto* writable = attributes.optional("writable");
+  if (writable == nullptr || (!parameter.protection && !parameter.read_only)) return;
+  problems_.add(
+      *writable, "E0219",
+      fmt::format("'{}' is {} and writable", parameter.field.name, parameter.protection ? "a protection" : "read-only"),
+      parameter.protection ? "a protection is raised by its own function only" : "leave one of them out");
 }
 
 void SubsystemReader::claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id) {

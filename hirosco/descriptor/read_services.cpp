@@ -75,7 +75,7 @@ void SubsystemReader::read_function(const xml::Element& element) {
   function.at = place(element.at);
   function.name = attributes.name("name", NameKind::Function);
   function.essential = attributes.yes("essential", false);
-  function.states = read_states(attributes);
+  function.states = read_states(attributes, "states", {State::Operational});
   // A function's identity on the wire is its name; a number is allowed as documentation.
   static_cast<void>(attributes.integer("id", 0, 65'535));
   Unique names{"argument name", "E0201"};
@@ -94,9 +94,9 @@ void SubsystemReader::read_function(const xml::Element& element) {
   subsystem_.functions.push_back(std::move(function));
 }
 
-std::uint16_t SubsystemReader::read_states(Attributes& attributes) {
+std::uint16_t SubsystemReader::read_states(Attributes& attributes, std::string_view name, std::vector<State> fallback) {
   unsigned states = 0;
-  for (const State state : attributes.list_of<State>("states", {State::Operational}))
+  for (const State state : attributes.list_of<State>(name, std::move(fallback)))
     states |= 1U << static_cast<unsigned>(state);
   return static_cast<std::uint16_t>(states);
 }
@@ -104,13 +104,36 @@ std::uint16_t SubsystemReader::read_states(Attributes& attributes) {
 void SubsystemReader::read_argument(const xml::Element& element, Function& function, Unique& names) {
   Attributes attributes{element, problems_};
   Function::Argument argument;
-  argument.field = read_field(attributes, true);
+  if (element.find("of") != nullptr) read_range_of(attributes, argument);
+  else argument.field = read_field(attributes, true);
   if (const auto fallback = attributes.number("default"))
     if (check_values(problems_, *element.find("default"), argument.field, {*fallback})) argument.fallback = fallback;
   no_children(element, problems_);
   if (!argument.field.name.empty())
     names.add(argument.field.name, place(element.at), problems_, element.name.size() + 1);
   function.arguments.push_back(std::move(argument));
+}
+
+/// One range for a number wherever it is set: the argument is one value of the parameter.
+void SubsystemReader::read_range_of(Attributes& attributes, Function::Argument& argument) {
+  const std::string name = attributes.name();
+  const xml::Attribute& at = *attributes.optional("of");
+  for (const std::string_view own : {"type", "count", "unit", "minimum", "maximum", "enumeration"})
+    if (const auto* given = attributes.optional(own); given != nullptr)
+      problems_.add(place(given->at), "E0220", fmt::format("'{}' has its {} from {}", name, own, in_quotes(at.value)),
+                    fmt::format("leave {} or of out", own), own.size());
+  if (const auto parameter = resolve(at, fmt::format("argument '{}'", name))) {
+    const auto fields = fields_of(subsystem_, *parameter);
+    argument.of = at.value;
+    if (fields.size() != 1)
+      problems_.add(at, "E0221", in_quotes(at.value) + " is a structure", "name one of its members");
+    else if (!fields.front().minimum || !fields.front().maximum)
+      problems_.add(at, "E0221", in_quotes(at.value) + " has no range", "give it minimum and maximum");
+    if (!fields.empty()) argument.field = fields.front();
+  }
+  argument.field.name = name;
+  argument.field.count = 1;
+  argument.field.at = place(attributes.element().at);
 }
 
 void SubsystemReader::read_housekeeping(const xml::Element& element, Services& services) {

@@ -72,6 +72,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
     std::ranges::find(service_rows, element->name, &Child::name)->read(*element);
   for (const xml::Element* element : configurations) read_configuration(*element);
   check_enumerations();
+  check_addresses();
   return std::move(subsystem_);
 }
 
@@ -124,6 +125,7 @@ void SubsystemReader::read_device(const xml::Element& element) {
   device.at = place(element.at);
   device.name = attributes.name("name", NameKind::Loose);
   device.actuator = attributes.yes("actuator", false);
+  read_stop(attributes, device);
   Unique inputs{"input field", "E0201"}, outputs{"output field", "E0201"};
   each_child(element, problems_,
              {{"Input",
@@ -139,7 +141,8 @@ void SubsystemReader::read_device(const xml::Element& element) {
                  each_child(output, problems_,
                             {{"Field", [&](const auto& field) { read_output(field, device, outputs); }}});
                },
-               1}});
+               1},
+              {"Enable", [&](const auto& enable) { read_enable(enable, device); }, 1}});
   if (device.input.empty() && device.output.empty())
     problems_.add(element, "E0106", "<Device> needs a <Field> of <Input> or <Output>");
   check_octets(element, device);
@@ -147,6 +150,29 @@ void SubsystemReader::read_device(const xml::Element& element) {
     problems_.add(element, "E0106", "an actuator needs an <Output> with at least one <Field>");
   if (!device.name.empty()) device_names_.add(device.name, device.at, problems_, element.name.size() + 1);
   subsystem_.devices.push_back(std::move(device));
+}
+
+void SubsystemReader::read_stop(Attributes& attributes, Device& device) {
+  device.stop = attributes.one_of("stop", StopKind::Drop);
+  device.stop_within = std::chrono::milliseconds{attributes.integer_or<std::int64_t>("stop_within_ms", 1, 60'000, 0)};
+  const xml::Element& element = attributes.element();
+  const auto* within = attributes.optional("stop_within_ms");
+  if (element.find("stop") != nullptr && device.stop == StopKind::Controlled && within == nullptr)
+    problems_.add(element, "E0105", "<Device stop=\"controlled\"> needs the attribute 'stop_within_ms'",
+                  "the time in which it comes to rest by itself");
+  for (const std::string_view name : {"stop", "stop_within_ms"})
+    if (element.find(name) != nullptr && !device.actuator)
+      problems_.add(*element.find(name), "E0223",
+                    fmt::format("'{}' is no actuator: it has nothing to stop", device.name), "actuator=\"yes\"");
+}
+
+void SubsystemReader::read_enable(const xml::Element& element, Device& device) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  device.enable = read_address(attributes);  // its frames are little endian, always
+  if (!device.actuator)
+    problems_.add(element, "E0223", fmt::format("'{}' is no actuator: there is nothing to enable", device.name),
+                  "actuator=\"yes\"");
 }
 
 void SubsystemReader::check_octets(const xml::Element& element, const Device& device) {

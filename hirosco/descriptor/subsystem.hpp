@@ -70,6 +70,8 @@ struct Parameter {
   std::uint8_t id{};
   std::vector<double> init;          ///< `count` values or empty (zeros)
   bool read_only{false};             ///< ST[20] may not set it
+  std::uint16_t writable_states{0};  ///< bit n set: ST[20] may set it in State n; 0 = never
+  bool protection{false};            ///< a limit that protects: only its own function raises it
   bool persistent{false};
   struct Member {
     Field field;
@@ -82,6 +84,10 @@ struct Parameter {
     std::size_t sum = 0;
     for (const auto& member : members) sum += member.field.octets();
     return sum;
+  }
+  [[nodiscard]] bool writable() const noexcept { return writable_states != 0; }
+  [[nodiscard]] bool writable_in(State state) const noexcept {
+    return (writable_states >> static_cast<int>(state) & 1) != 0;
   }
 };
 
@@ -122,6 +128,7 @@ struct Function {
   bool essential{false};             ///< forwarded before it is logged (decision 24)
   struct Argument {
     Field field;
+    std::string of;                  ///< parameter that gave type, unit, enumeration and range; empty = its own
     std::optional<double> fallback;  ///< value when the argument is absent from the request
   };
   std::vector<Argument> arguments;
@@ -180,6 +187,13 @@ struct Endnode {
   Location at;
 };
 
+/// What a device does by itself when its command is taken away: the inhibit falls, or its frames stay out.
+enum class StopKind : std::uint8_t {
+  Drop,        ///< no force at once
+  Controlled,  ///< comes to rest within `stop_within`, then no force or brake
+  Hold,        ///< keeps its position
+};
+
 /// A hardware device: its identity and frames. Declared once under <Subsystem>.
 struct Device {
   std::string name;
@@ -190,6 +204,10 @@ struct Device {
     std::vector<double> safe;        ///< value in every state but Operational; `count` values
   };
   std::vector<Output> output;        ///< subsystem -> device
+  StopKind stop{StopKind::Drop};
+  Duration stop_within{};            ///< from the loss of the command to the stop; 0 = at once
+  /// Second inhibit of an actuator, held by the supervisor's side and never handed to the subsystem; empty = none.
+  std::optional<Endnode> enable;
   Location at;
 };
 
@@ -259,6 +277,9 @@ struct Subsystem {
   [[nodiscard]] const Configuration* find_configuration(std::uint8_t configuration) const noexcept;
 };
 
+/// Names of the actuator devices that have no second inhibit: nothing but their subsystem keeps them from moving.
+[[nodiscard]] std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem);
+
 /// Fields a reference stands for, in wire order: one for a value or member, all members for a structure.
 [[nodiscard]] std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference);
 
@@ -308,6 +329,12 @@ template <>
 struct EnumTexts<descriptor::MissingPolicy> {
   using enum descriptor::MissingPolicy;
   static constexpr auto table = enum_table<descriptor::MissingPolicy>({{Inhibit, "inhibit"}, {Hold, "hold"}});
+};
+template <>
+struct EnumTexts<descriptor::StopKind> {
+  using enum descriptor::StopKind;
+  static constexpr auto table =
+      enum_table<descriptor::StopKind>({{Drop, "drop"}, {Controlled, "controlled"}, {Hold, "hold"}});
 };
 template <>
 struct EnumTexts<descriptor::Transfer> {

@@ -94,7 +94,7 @@ TEST(SubsystemDescriptor, FillsTheWholeModel) {
 
 TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
   const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
-  ASSERT_EQ(robot.functions.size(), 3U);
+  ASSERT_EQ(robot.functions.size(), 4U);
   const Function* move = robot.find_function("MOVE_TO");
   EXPECT_TRUE(move->permitted_in(State::Operational));
   EXPECT_FALSE(move->permitted_in(State::SafeOperational));
@@ -104,6 +104,56 @@ TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
   EXPECT_TRUE(robot.find_function("HOLD")->permitted_in(State::SafeOperational));
   EXPECT_TRUE(robot.find_function("HOLD")->essential);
   EXPECT_NE(robot.find_function("RELEASE"), nullptr) << "it stands in a configuration";
+}
+
+TEST(SubsystemDescriptor, AParameterIsWritableInTheStatesItNamesOnly) {
+  const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  const Parameter& goal = *robot.find_parameter("DES_POSITION");
+  EXPECT_EQ(goal.writable_states, 1U << 3 | 1U << 4);
+  EXPECT_TRUE(goal.writable_in(State::SafeOperational));
+  EXPECT_FALSE(goal.writable_in(State::Operational));
+  EXPECT_FALSE(goal.protection);
+  EXPECT_FALSE(robot.find_parameter("CUR_VALUES")->writable()) << "never, unless it says so";
+  EXPECT_TRUE(robot.find_parameter("TORQUE_LIMIT")->protection);
+}
+
+TEST(SubsystemDescriptor, AnArgumentOfAParameterHasItsRange) {
+  const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  const Function::Argument& limit = robot.find_function("SET_TORQUE_LIMIT")->arguments.at(0);
+  EXPECT_EQ(limit.of, "TORQUE_LIMIT");
+  EXPECT_EQ(limit.field.name, "LIMIT");
+  EXPECT_EQ(limit.field.unit, "N m");
+  EXPECT_EQ(limit.field.minimum, 0);
+  EXPECT_EQ(limit.field.maximum, 15);
+  EXPECT_EQ(limit.fallback, 12);
+  const auto reading = read_text(
+      "<Subsystem name=\"S\" id=\"10\"><FunctionService><Function name=\"SET\"><Argument name=\"COLD\" "
+      "of=\"LIMITS\"/></Function></FunctionService><ParamRef name=\"LIMITS\" id=\"1\" type=\"FLOAT\" count=\"3\" "
+      "minimum=\"0\" maximum=\"90\"/></Subsystem>");
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(""));
+  const Field& cold = reading.value->functions.at(0).arguments.at(0).field;
+  EXPECT_EQ(cold.count, 1) << "one value of the array";
+  EXPECT_EQ(cold.type, Type::Float);
+  EXPECT_EQ(cold.maximum, 90);
+}
+
+TEST(SubsystemDescriptor, AnActuatorDeclaresItsStopAndItsSecondInhibit) {
+  const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  const Device& device = robot.devices.at(0);
+  EXPECT_EQ(device.stop, StopKind::Controlled);
+  EXPECT_EQ(device.stop_within, 200ms);
+  ASSERT_TRUE(device.enable);
+  EXPECT_EQ(device.enable->transfer, Transfer::SharedMemory);
+  EXPECT_EQ(device.enable->address, "rokviss-robot-enable");
+  EXPECT_EQ(device.enable->byte_order, ByteOrder::Little);
+  EXPECT_TRUE(actuators_without_enable(robot).empty());
+  const Subsystem stick = read_subsystem(data / "joystick.xml", file_system()).value.value();
+  EXPECT_EQ(stick.devices.at(0).stop, StopKind::Drop);
+  EXPECT_FALSE(stick.devices.at(0).enable);
+  EXPECT_TRUE(actuators_without_enable(stick).empty()) << "it is no actuator";
+  Subsystem bare = robot;
+  bare.devices.at(0).enable.reset();
+  EXPECT_EQ(actuators_without_enable(bare), std::vector<std::string_view>{"ROBOT"});
 }
 
 TEST(SubsystemDescriptor, FillsTheConfiguration) {

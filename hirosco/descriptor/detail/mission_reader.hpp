@@ -34,6 +34,7 @@ class MissionReader {
   /// The descriptor that the attribute names; reported when it cannot be taken.
   [[nodiscard]] std::optional<Subsystem> read_descriptor(Attributes& attributes);
   void check_endnodes(const Subsystem& subsystem);
+  void check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems);
   [[nodiscard]] std::string executable(Attributes& attributes);
 
   // read_modes.cpp
@@ -56,6 +57,7 @@ class MissionReader {
   void read_do(const xml::Element& element, Plan& plan);
   [[nodiscard]] State read_steady_state(Attributes& attributes, State fallback);
   void check_functions(const xml::Attribute& at, const Permit& permit);
+  void check_parameters(const xml::Attribute& at, const Permit& permit);
 
   /// A subsystem of the mission, with `supervisor` also the supervisor; reported when there is none.
   [[nodiscard]] const Subsystem* find(const xml::Attribute& at, std::string_view name, bool supervisor);
@@ -74,6 +76,7 @@ class MissionReader {
   Unique mode_names_{"mode name", "E0201"};
   Unique mode_ids_{"mode id", "E0202"};
   Unique plan_names_{"plan name", "E0201"};
+  std::map<std::pair<Transfer, std::string>, std::string> addresses_;  ///< of devices, and whose they are
 };
 
 }  // namespace hirosco::descriptor::detail

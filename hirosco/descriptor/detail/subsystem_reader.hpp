@@ -43,6 +43,8 @@ class SubsystemReader {
   void read_hang(const xml::Element& element);
   void read_device(const xml::Element& element);
   void check_octets(const xml::Element& element, const Device& device);
+  void read_stop(Attributes& attributes, Device& device);
+  void read_enable(const xml::Element& element, Device& device);
   void read_output(const xml::Element& element, Device& device, Unique& names);
 
   // read_configuration.cpp
@@ -50,6 +52,9 @@ class SubsystemReader {
   void read_device_use(const xml::Element& element, Configuration& configuration, Unique& names);
   void read_setting(const xml::Element& element, DeviceUse& use, Unique& names);
   [[nodiscard]] Endnode read_endnode(const xml::Element& element);
+  [[nodiscard]] Endnode read_address(Attributes& attributes);
+  /// An address belongs to one device: in all configurations, and its enable endnode to nothing else.
+  void check_addresses();
   void read_initial(const xml::Element& element, Configuration& configuration);
 
   // read_parameters.cpp
@@ -57,6 +62,8 @@ class SubsystemReader {
   void read_structure(const xml::Element& element);
   void read_parameter(const xml::Element& element);
   void read_member(const xml::Element& element, Parameter& structure, Unique& names);
+  /// Who may set it: read_only, writable, protection, persistent.
+  void read_access(Attributes& attributes, Parameter& parameter);
   void claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id);
   void check_enumerations();
   /// Name, type, count, unit and, with `ranged`, minimum and maximum.
@@ -76,7 +83,9 @@ class SubsystemReader {
   bool first_service(const xml::Element& element, Services& services);
   void read_event(const xml::Element& element);
   void read_function(const xml::Element& element);
-  [[nodiscard]] std::uint16_t read_states(Attributes& attributes);
+  [[nodiscard]] static std::uint16_t read_states(Attributes& attributes, std::string_view name,
+                                                 std::vector<State> fallback);
+  void read_range_of(Attributes& attributes, Function::Argument& argument);
   void read_argument(const xml::Element& element, Function& function, Unique& names);
   void read_housekeeping(const xml::Element& element, Services& services);
   void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);
