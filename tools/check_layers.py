@@ -19,7 +19,7 @@ def wrong(path, to):
     if system.match(to):
         return not path.startswith(shells) and not path.endswith(("_test.cpp", "main.cpp", "run.cpp")) and "the operating system"
     if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
-    if path.startswith(("simulation/spacecraft/", "simulation/scenarios/")): return False  # assemble and fly all parts
+    if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return False  # assemble and fly all parts
     same = path.split("/")[:2] == to.split("/")[:2]
     if top in may and target not in may[top] and not same: return "another part"
     if top == target == "hirosco" and rank(to) > rank(path): return "a higher rank"

@@ -80,6 +80,8 @@ struct Spacecraft::Member {
   TimePoint cycle_wake{never};
   bool cycling{false};
   bool stopped{false};
+  bool spinning{false};
+  bool stuck{false};
   int strained_cycles{0};
   Duration cycle_takes{0};
   std::optional<supervisor::ProcessEnd> end;
@@ -109,7 +111,9 @@ template <class Page>
 Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
   // Away from zero, so that spans before the start stay positive.
   clock_.set(TimePoint{1s});
-  log_ = std::make_unique<supervisor::DirectPacketLog>(clock_, std::make_unique<BorrowedDatabase>(parts.log));
+  log_ = parts.make_log ? parts.make_log(clock_)
+                        : std::make_unique<supervisor::DirectPacketLog>(
+                              clock_, std::make_unique<BorrowedDatabase>(parts.log));
   for (const auto& described : parts.mission.devices) {
     const auto* subsystem = parts.mission.find_subsystem(described.subsystem);
     const auto make = parts.devices.find(described.executable);
@@ -137,7 +141,10 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       .world = world,
       .launcher = *this,
       .log = *log_,
-      .open_database = [](supervisor::DatabaseStrategy) { return std::make_unique<supervisor::MemoryDatabase>(); },
+      .open_database = parts.open_database ? parts.open_database
+                                           : [](supervisor::DatabaseStrategy) -> std::unique_ptr<supervisor::Database> {
+        return std::make_unique<supervisor::MemoryDatabase>();
+      },
       .observer = parts.observer,
       .first_sequence_count = first_count(parts.seed)});
   supervisor_wake_ = clock_.now();
@@ -163,13 +170,18 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   member.service_wake = clock_.now();
   supervisor::LaunchedSubsystem launched;
   launched.channel = std::make_unique<ChannelEnd>(member.channels);
+  if (parts_.wrap_channel)
+    launched.channel = parts_.wrap_channel(described.subsystem.name, std::move(launched.channel));
   launched.vital = mapping_of(member.vital);
   launched.permit = mapping_of(member.permit);
   launched.process = static_cast<std::uint32_t>(members_.size());
   return launched;
 }
 
-std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) { return members_[process - 1]->end; }
+std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) {
+  const Member& member = *members_[process - 1];
+  return parts_.tell_end ? parts_.tell_end(member.described->subsystem.name, member.end) : member.end;
+}
 
 void Spacecraft::kill(std::uint32_t process) {
   Member& member = *members_[process - 1];
@@ -188,6 +200,19 @@ void Spacecraft::kill(std::string_view name) {
 void Spacecraft::stop(std::string_view name, bool stopped) {
   if (name == parts_.mission.supervisor.name) supervisor_wake_ = stopped ? never : clock_.now();
   else if (Member* member = find(name)) member->stopped = stopped;
+}
+
+void Spacecraft::spin(std::string_view name) {
+  if (Member* member = find(name)) member->spinning = true;
+}
+
+void Spacecraft::stick(std::string_view name, bool stuck) {
+  if (Member* member = find(name)) member->stuck = stuck;
+}
+
+bool Spacecraft::send_as(std::string_view name, Octets packet) {
+  Member* member = find(name);
+  return member != nullptr && member->channels.subsystem_end().send({.packet = packet}).has_value();
 }
 
 void Spacecraft::strain(std::string_view name, int cycles, Duration takes) {
@@ -219,7 +244,8 @@ bool Spacecraft::advance(TimePoint end) {
   for (const Device& device : devices_) next = std::min(next, device.device->next_wake());
   for (const auto& member : members_) {
     if (!member->engine || member->stopped) continue;
-    next = std::min({next, member->service_wake, member->cycle_wake});
+    if (!member->stuck) next = std::min(next, member->service_wake);
+    if (may_cycle(*member)) next = std::min(next, member->cycle_wake);
   }
   if (next > end) {
     clock_.set(end);
@@ -230,11 +256,17 @@ bool Spacecraft::advance(TimePoint end) {
   for (std::size_t i = 0; i < devices_.size(); ++i)
     if (devices_[i].device->next_wake() <= next) step_device(i);
   for (const auto& member : members_)
-    if (member->engine && !member->stopped && member->cycle_wake <= next) step_cycle(*member);
+    if (may_cycle(*member) && member->cycle_wake <= next) step_cycle(*member);
   for (const auto& member : members_)
-    if (member->engine && !member->stopped && member->service_wake <= next) step_service(*member);
+    if (member->engine && !member->stopped && !member->stuck && member->service_wake <= next) step_service(*member);
   if (supervisor_wake_ <= next) supervisor_wake_ = supervisor_->step(next);
   return true;
+}
+
+/// One that spins in a cycle has the processor of all cycles.
+bool Spacecraft::may_cycle(const Member& member) const noexcept {
+  const auto spins = [](const auto& other) { return other->engine && !other->stopped && other->spinning && other->cycling; };
+  return member.engine && !member.stopped && std::ranges::none_of(members_, spins);
 }
 
 void Spacecraft::step_device(std::size_t device) { devices_[device].device->step(clock_.now()); }

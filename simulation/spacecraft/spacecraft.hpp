@@ -52,6 +52,15 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     supervisor::Observer& observer;
     std::uint64_t seed{1};
     bool realtime{true};  ///< which set of limits holds
+    /// A log of the caller's in place of one that stores at once in `log`, for faults of it.
+    std::function<std::unique_ptr<supervisor::PacketLog>(const Clock&)> make_log{};
+    supervisor::DatabaseOpener open_database{};  ///< for SET_DATABASE; empty: one in memory
+    /// What stands between the supervisor and a member's channel, for faults of that; empty: nothing.
+    std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
+    /// What the supervisor is told of a member's end; empty: the truth.
+    std::function<std::optional<supervisor::ProcessEnd>(std::string_view member,
+                                                        std::optional<supervisor::ProcessEnd>)>
+        tell_end{};
   };
   explicit Spacecraft(const Parts& parts);
   ~Spacecraft() override;
@@ -71,6 +80,14 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   void kill(std::string_view name);
   /// The process stands still, as by SIGSTOP, and goes on; the supervisor by its own name.
   void stop(std::string_view name, bool stopped);
+  /// Its next cycle never ends: with one processor for all cycles (adr 0007) nobody else's runs, until it is killed.
+  void spin(std::string_view name);
+  /// Its service loop stands still and goes on, beside its cycle.
+  void stick(std::string_view name, bool stuck);
+  /// Puts a packet into a subsystem's end of its channel as if it had sent it. False: it is gone, or the channel is full.
+  bool send_as(std::string_view name, Octets packet);
+  /// Whether its process is there.
+  [[nodiscard]] bool alive(std::string_view name) const noexcept { return find(name) != nullptr; }
   /// The next cycles of a subsystem take that long; otherwise a cycle takes no time.
   void strain(std::string_view name, int cycles, Duration takes);
   /// Called after every cycle of the fastest subsystem, for traces and checks at cycle rate.
@@ -88,6 +105,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   void kill(std::uint32_t process) override;
 
   bool advance(TimePoint end);
+  [[nodiscard]] bool may_cycle(const Member& member) const noexcept;
   void step_device(std::size_t device);
   void step_cycle(Member& member);
   void step_service(Member& member);
