@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,7 @@ Mat2 robot_home_jacobian() noexcept {
 }
 
 constexpr double farthest_m = 0.2;
+constexpr double unyielding = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -48,12 +50,23 @@ void JoystickDevice::lay_on(Hand hand) noexcept {
   OperatorHand& operators = handle_.hand();
   if (hand != Hand::Simulated) {
     wandered_ = wandered_ || operators.wandering();
+    led_ = false;
     intent_rad_ = operators.intent().angle_rad;
     operators.hold(intent_rad_);
   } else if (wandered_) {
     operators.wander();
     wandered_ = false;
   }
+}
+
+void JoystickDevice::lead(const Vec2& target_rad) {
+  OperatorHand& operators = handle_.hand();
+  if (!led_) {
+    led_hand_.begin(operators.intent());
+    operators.custom([this](double) { return led_hand_.intent(); });
+    led_ = true;
+  }
+  led_hand_.lead(target_rad);
 }
 
 void JoystickDevice::take_from_person() noexcept {
@@ -73,6 +86,9 @@ void JoystickDevice::advance(Duration cycle) noexcept {
   raise(device_flag::torque_saturated, std::abs(applied_[0]) > limit || std::abs(applied_[1]) > limit);
   for (double& torque : applied_) torque = std::clamp(torque, -limit, limit);
   if (hand_ == Hand::Person && stick_) take_from_person();
+  // Who wanders gives way too: after a stop the robot may be coupled in another place than before.
+  handle_.give_way_at(handle_.hand().wandering() ? led_hand_.limits().pull_n_m : unyielding);
+  led_hand_.advance(handle_.angle_rad(), handle_.parameters().hand_stiffness_n_m_per_rad, seconds(cycle));
   handle_.step(applied_, cycle);
 }
 
@@ -97,6 +113,15 @@ Result<> JoystickDevice::do_fault(const Words& words) {
   if (hand_ != Hand::Simulated) return fail(ErrorCode::Unavailable, "another hand is on the handle");
   OperatorHand& hand = handle_.hand();
   const std::string_view what = words[1];
+  if (what == "target") {
+    HIROSCO_TRY(words.expect(4));
+    const double range = handle_.parameters().range_rad;
+    HIROSCO_TRY_LET(const double first, words.number(2, -1, 1));
+    HIROSCO_TRY_LET(const double second, words.number(3, -1, 1));
+    lead({std::clamp(first, -range, range), std::clamp(second, -range, range)});
+    return ok();
+  }
+  led_ = false;  // for the next target to begin where the hand is then
   if (what == "wander") {
     HIROSCO_TRY(words.expect(2));
     hand.wander();
@@ -129,7 +154,7 @@ Result<> JoystickDevice::do_fault(const Words& words) {
     what == "ramp" ? hand.ramp({dx, dy}, pace) : hand.cartesian({dx, dy}, pace);
     return ok();
   }
-  return fail(ErrorCode::InvalidArgument, "hand: hold, sine, ramp, cartesian or wander");
+  return fail(ErrorCode::InvalidArgument, "hand: target, hold, sine, ramp, cartesian or wander");
 }
 
 std::string JoystickDevice::do_truth() const {

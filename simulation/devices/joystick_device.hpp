@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "simulation/devices/led_hand.hpp"
 #include "simulation/devices/simulated_device.hpp"
 #include "simulation/devices/stick.hpp"
 #include "simulation/world/joystick_handle.hpp"
@@ -26,7 +27,8 @@ class JoystickDevice final : public SimulatedDevice {
                  const HandleParameters& handle = {}, OpenStick open_stick = {});
 
   /// What the operator's hand does from now on; recorded like a fault:
-  ///   hold A B | sine AXIS AMPLITUDE HZ [PHASE] | ramp DX DY SPEED | cartesian DX DY SECONDS | wander
+  ///   target A B | hold A B | sine AXIS AMPLITUDE HZ [PHASE] | ramp DX DY SPEED | cartesian DX DY SECONDS | wander
+  /// `target` may be told as often as a mouse moves: the hand goes after it and gives way (LedHand).
   /// Unavailable while another hand is on the handle. Angles rad, axes count from 1; DX DY m from the robot's home, SPEED m/s. Also as the fault line "hand ...".
   [[nodiscard]] Result<> hand(std::string_view line);
 
@@ -43,12 +45,15 @@ class JoystickDevice final : public SimulatedDevice {
   [[nodiscard]] std::string do_truth() const override;
 
   void lay_on(Hand hand) noexcept;
+  void lead(const Vec2& target_rad);
   void take_from_person() noexcept;
 
   JoystickHandle handle_;
   OpenStick open_stick_;
   std::unique_ptr<Stick> stick_;
   Hand hand_{Hand::Simulated};
+  LedHand led_hand_{LedHand::Limits{}};
+  bool led_{false};       ///< by led_hand_
   bool wandered_{false};  ///< before the hand was commanded
   Vec2 intent_rad_{};
   Vec2 commanded_{};

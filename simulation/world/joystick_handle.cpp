@@ -102,10 +102,16 @@ Intent OperatorHand::intent() const noexcept {
   return wish;
 }
 
+double JoystickHandle::pull_n_m(double ahead_rad) const noexcept {
+  const double most = parameters_.hand_pull_max_n_m;
+  return std::clamp(parameters_.hand_stiffness_n_m_per_rad * ahead_rad, -most, most);
+}
+
 Vec2 JoystickHandle::hand_torque_n_m() const noexcept {
   if (!parameters_.hand_on) return {};
   const Intent wish = hand_.intent();
-  return parameters_.hand_stiffness_n_m_per_rad * (wish.angle_rad - angle_rad_) +
+  const Vec2 ahead = wish.angle_rad - angle_rad_;
+  return Vec2{pull_n_m(ahead[0]), pull_n_m(ahead[1])} +
          parameters_.hand_damping_n_m_s_per_rad * (wish.rate_rad_s - rate_rad_s_);
 }
 
@@ -128,7 +134,7 @@ void JoystickHandle::step(const Vec2& torque_n_m, Duration span) noexcept {
         // The wish stands still within a sub-step: 125 us against motions of seconds.
         double torque = motor[i] - p.friction_n_m_s * at[2 + i];
         if (p.hand_on)
-          torque += p.hand_stiffness_n_m_per_rad * (wish.angle_rad[i] - at[i]) +
+          torque += pull_n_m(wish.angle_rad[i] - at[i]) +
                     p.hand_damping_n_m_s_per_rad * (wish.rate_rad_s[i] - at[2 + i]);
         const double beyond = at[i] - std::clamp(at[i], -p.range_rad, p.range_rad);
         if (beyond != 0) torque -= p.stop_n_m_per_rad * beyond + p.stop_n_m_s_per_rad * at[2 + i];

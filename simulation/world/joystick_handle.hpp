@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 
 #include "hirosco/utilities/time.hpp"
 #include "simulation/world/numerics.hpp"
@@ -78,6 +79,7 @@ struct HandleParameters {
   double hand_inertia_kg_m2{0.0072};
   double hand_stiffness_n_m_per_rad{4.3};
   double hand_damping_n_m_s_per_rad{0.144};
+  double hand_pull_max_n_m{std::numeric_limits<double>::infinity()};
   bool hand_on{true};
   Duration largest_sub_step{std::chrono::microseconds{125}};
 };
@@ -91,6 +93,9 @@ class JoystickHandle {
   /// Moves on by `span` under a constant motor torque (limited to what the motors can give).
   void step(const Vec2& torque_n_m, Duration span) noexcept;
 
+  /// From here on the hand pulls no harder than this towards what it intends: it gives way.
+  void give_way_at(double pull_n_m) noexcept { parameters_.hand_pull_max_n_m = pull_n_m; }
+
   [[nodiscard]] const HandleParameters& parameters() const noexcept { return parameters_; }
   [[nodiscard]] OperatorHand& hand() noexcept { return hand_; }
   [[nodiscard]] const OperatorHand& hand() const noexcept { return hand_; }
@@ -100,6 +105,8 @@ class JoystickHandle {
   [[nodiscard]] Vec2 hand_torque_n_m() const noexcept;
 
  private:
+  [[nodiscard]] double pull_n_m(double ahead_rad) const noexcept;
+
   HandleParameters parameters_;
   OperatorHand hand_;
   Vec2 angle_rad_{};

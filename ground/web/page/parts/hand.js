@@ -1,17 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// A mouse or gamepad as the hand at the simulated joystick. Everything goes as `hand cartesian`, which begins where the hand is and
-// moves smoothly: a mouse that leaps must not make the robot leap into its torque limit.
-const shortest_s = 0.15;
-const fastest_tip_m_s = 0.2;
+// A mouse or gamepad leads the hand at the simulated joystick: it says where it is wanted as often as it moves, and the hand goes after
+// it in a path of its own, as fast as is good and giving way to what it feels (docs/adr/0030). No leap of a mouse becomes one of the robot.
 
-/// The fault line that takes the hand to (dx, dy) from home, from the offset where it is about now.
-export function hand_line([dx, dy], [from_x, from_y] = [0, 0], least_s = shortest_s) {
-  const span_s = Math.max(least_s, Math.hypot(dx - from_x, dy - from_y) / fastest_tip_m_s);
-  return `hand cartesian ${dx.toFixed(4)} ${dy.toFixed(4)} ${span_s.toFixed(3)}`;
+/// The fault line that leads the hand to these angles of the handle.
+export const target_line = ([first, second]) => `hand target ${first.toFixed(4)} ${second.toFixed(4)}`;
+
+/// Handle angles that move the tip by (dx, dy), as the operator's hand turns them (the Jacobian at home).
+export function angles_of_offset({home_jacobian_m_per_rad: [[a, b], [c, d]]}, [dx, dy]) {
+  const determinant = a * d - b * c;
+  return [(d * dx - b * dy) / determinant, (a * dy - c * dx) / determinant];
 }
 
-/// Tip offsets of handle angles, as the operator's hand turns them (the Jacobian at home).
-export const offset_of_angles = (hand, [first, second]) =>
-  hand.home_jacobian_m_per_rad.map((row) => row[0] * first + row[1] * second);
+/// Both angles within what the handle can do.
+export const within_range = (hand, angles) =>
+  angles.map((angle) => Math.max(-hand.handle_range_rad, Math.min(hand.handle_range_rad, angle)));
+
+/// Abscissa of the contour's surface at an ordinate.
+export function surface_x_m(contour, y) {
+  const across = y - contour.bump_y_m;
+  if (Math.abs(across) >= contour.bump_half_width_m) return contour.rail_x_m;
+  return contour.rail_x_m - contour.bump_height_m / 2 * (1 + Math.cos(Math.PI * across / contour.bump_half_width_m));
+}
+
+const press_m = 0.010;
+
+/// Where a fingertip is wanted that may press on the contour, but not go through it: 10 mm behind its surface at most.
+export const before_wall = (contour, [x, y]) =>
+  [contour ? Math.min(x, surface_x_m(contour, y) - contour.finger_radius_m + press_m) : x, y];

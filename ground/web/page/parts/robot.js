@@ -6,7 +6,7 @@ import {asset} from '../api.js';
 import {fault} from '../commanding.js';
 import {number_text} from '../format.js';
 import {html} from '../html.js';
-import {hand_line, offset_of_angles} from './hand.js';
+import {target_line} from './hand.js';
 import {fast, freshness, mission, operator, replay, slow, values} from '../store.js';
 
 /// models/NAME/scene.json of the mission; null when there is none, undefined while it is not known.
@@ -47,7 +47,7 @@ function useGamepad(on, hand) {
       const stick = `${x.toFixed(3)} ${y.toFixed(3)}`;
       if (stick === last) return;
       last = stick;
-      fault(hand.device, hand_line(offset_of_angles(hand, [x, -y]), [0, 0]), {quiet: true}).catch(() => {});
+      fault(hand.device, target_line([x, -y]), {quiet: true}).catch(() => {});
     }, gamepad_period_ms);
     return () => clearInterval(timer);
   }, [on, hand]);

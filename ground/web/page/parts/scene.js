@@ -13,13 +13,14 @@ import URDFLoader from 'urdf-loader';
 import {asset} from '../api.js';
 import {fault} from '../commanding.js';
 import {replay, values} from '../store.js';
-import {hand_line, offset_of_angles} from './hand.js';
+import {angles_of_offset, before_wall, surface_x_m, target_line, within_range} from './hand.js';
 
 const moved_rad = 1e-5;
 const trail_points = 400;
 const hand_period_ms = 60;
 const near_limit = 0.08;
-const calm_return_s = 0.8;
+const lever_m = 0.109;
+const band_from_m = 0.006;
 
 const colour_ok = new Color(0x5b6880), colour_near = new Color(0xf2a93b), colour_at = new Color(0xf05d5e);
 
@@ -54,15 +55,10 @@ function rings_of(robot) {
 function contour_mesh(contour) {
   const shape = new Shape();
   const steps = 96;
-  const surface = (y) => {
-    const across = y - contour.bump_y_m;
-    if (Math.abs(across) >= contour.bump_half_width_m) return contour.rail_x_m;
-    return contour.rail_x_m - contour.bump_height_m / 2 * (1 + Math.cos(Math.PI * across / contour.bump_half_width_m));
-  };
   shape.moveTo(contour.rail_x_m + contour.depth_m, contour.from_y_m);
   for (let i = 0; i <= steps; ++i) {
     const y = contour.from_y_m + (contour.to_y_m - contour.from_y_m) * i / steps;
-    shape.lineTo(surface(y), y);
+    shape.lineTo(surface_x_m(contour, y), y);
   }
   shape.lineTo(contour.rail_x_m + contour.depth_m, contour.to_y_m);
   const geometry = new ExtrudeGeometry(shape, {depth: contour.height_m, bevelEnabled: false});
@@ -216,7 +212,10 @@ export class RobotView {
       if (robot.shadow && !this.show.ghost) robot.shadow.visible = false;
       if (moved && robot.tip) this.follow_tip(robot);
     }
-    if (moved) this.draw_soon();
+    if (moved) {
+      this.stretch();
+      this.draw_soon();
+    }
   }
 
   pose(robot, body, joints, which) {
@@ -286,11 +285,18 @@ export class RobotView {
     this.trail?.geometry.setDrawRange(0, 0);
   }
 
-  // The visitor's mouse as the operator's hand: the handle follows it in angles, the fingertip in metres.
+  // The visitor's mouse leads the operator's hand, by the handle or by the fingertip. What counts is how far it went since the grab,
+  // wherever on the part that was.
   listen() {
     const canvas = this.renderer.domElement;
     this.ray = new Raycaster();
-    const start = (event) => {
+    this.band = new Line(new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(6), 3)),
+      new LineBasicMaterial({color: 0xb9a2ff, depthTest: false}));
+    this.band.frustumCulled = false;
+    this.band.visible = false;
+    this.band.renderOrder = 2;
+    this.scene.add(this.band);
+    canvas.addEventListener('pointerdown', (event) => {
       const grip = this.grip_at(event);
       if (!grip) return;
       event.stopImmediatePropagation();
@@ -298,8 +304,7 @@ export class RobotView {
       this.controls.enabled = false;
       canvas.style.cursor = 'grabbing';
       canvas.setPointerCapture(event.pointerId);
-    };
-    canvas.addEventListener('pointerdown', start, {capture: true});
+    }, {capture: true});
     canvas.addEventListener('pointermove', (event) => {
       if (this.dragging) this.drag(event);
       else canvas.style.cursor = event.buttons === 0 && this.grip_at(event) ? 'grab' : '';
@@ -307,9 +312,11 @@ export class RobotView {
     const end = () => {
       if (!this.dragging) return;
       this.dragging = null;
+      this.band.visible = false;
       canvas.style.cursor = '';
       this.controls.enabled = true;
-      this.hand([0, 0], true);
+      this.lead([0, 0], true);
+      this.draw_soon();
     };
     canvas.addEventListener('pointerup', end);
     canvas.addEventListener('pointercancel', end);
@@ -321,6 +328,7 @@ export class RobotView {
       1 - (event.clientY - box.top) / box.height * 2), this.camera);
   }
 
+  /// What is under the pointer and can be led: where it was touched, in its own and in the world's frame, and how the handle stood.
   grip_at(event) {
     if (!this.description.hand || replay.value || !this.hand_allowed) return null;
     this.aim(event);
@@ -329,38 +337,57 @@ export class RobotView {
       if (!what) continue;
       const link = robot.body.links[robot[what]];
       const box = new Box3().setFromObject(link).expandByScalar(what === 'tip' ? 0.012 : 0.004);
-      if (this.ray.ray.intersectsBox(box)) return {what, robot};
+      const touched = this.ray.ray.intersectBox(box, new Vector3());
+      if (!touched) continue;
+      return {what, robot, link, held: link.worldToLocal(touched.clone()), from: touched, angles: this.handle_angles()};
     }
     return null;
   }
 
   drag(event) {
     this.aim(event);
-    const {what, robot} = this.dragging;
+    const {what, robot, from, angles} = this.dragging;
     const at = new Vector3();
-    const {hand} = this.description;
+    if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -from.z), at)) return;
+    const {hand, contour} = this.description;
+    this.dragging.at = at;
+    let turned;
     if (what === 'tip') {
-      if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -this.description.plane_z_m), at)) return;
-      const clamp = (x) => Math.max(-hand.tip_range_m, Math.min(hand.tip_range_m, x));
-      return this.hand([clamp(at.x - hand.tip_home_m[0]), clamp(at.y - hand.tip_home_m[1])]);
+      const {tip} = this;
+      this.dragging.tip ??= tip.clone();
+      const start = this.dragging.tip;
+      const [x, y] = before_wall(contour, [start.x + at.x - from.x, start.y + at.y - from.y]);
+      turned = angles_of_offset(hand, [x - start.x, y - start.y]);
+    } else {
+      const pivot = robot.body.position;
+      const angle = (x) => Math.atan2(x, lever_m);
+      turned = [angle(at.x - pivot.x) - angle(from.x - pivot.x), angle(at.y - pivot.y) - angle(from.y - pivot.y)];
     }
-    const height = 0.115;
-    const pivot = robot.body.position;
-    if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -(pivot.z + 0.038 + height * 0.95)), at)) return;
-    const range = hand.handle_range_rad;
-    const angle = (x) => Math.max(-range, Math.min(range, Math.atan2(x, height)));
-    this.hand(offset_of_angles(hand, [angle(at.x - pivot.x), angle(at.y - pivot.y)]));
+    this.lead(within_range(hand, [angles[0] + turned[0], angles[1] + turned[1]]));
+    this.stretch();
+  }
+
+  /// The band from what is held to the pointer: the hand goes slower than a mouse, and gives way at the rail.
+  stretch() {
+    if (!this.dragging?.at) return;
+    const {link, held, at} = this.dragging;
+    const from = link.localToWorld(held.clone());
+    this.band.visible = from.distanceTo(at) > band_from_m;
+    const position = this.band.geometry.attributes.position;
+    position.setXYZ(0, from.x, from.y, from.z);
+    position.setXYZ(1, at.x, at.y, at.z);
+    position.needsUpdate = true;
+    this.draw_soon();
   }
 
   /// At most one line in 60 ms, the last one always.
-  hand(offset_m, now = false) {
-    this.wanted_m = offset_m;
+  lead(angles, now = false) {
+    this.wanted = angles;
     const send = () => {
       this.hand_timer = 0;
-      if (!this.wanted_m) return;
-      const line = hand_line(this.wanted_m, this.hand_at_m(), now ? calm_return_s : undefined);
-      fault(this.description.hand.device, line, {quiet: true}).catch(() => {});
-      this.wanted_m = null;
+      if (!this.wanted) return;
+      fault(this.description.hand.device, target_line(this.wanted), {quiet: true}).catch(() => {});
+      this.wanted = null;
     };
     if (now) {
       clearTimeout(this.hand_timer);
@@ -369,11 +396,10 @@ export class RobotView {
     this.hand_timer ||= setTimeout(send, hand_period_ms);
   }
 
-  /// Where the hand is now, by the measured angles of its handle.
-  hand_at_m() {
+  /// How the handle stands, as measured.
+  handle_angles() {
     const handle = this.robots.find((robot) => robot.handle);
-    const angles = Object.values(handle?.joints ?? {}).map((name) => values.get(name)?.v ?? 0);
-    return angles.length === 2 ? offset_of_angles(this.description.hand, angles) : [0, 0];
+    return Object.values(handle?.joints ?? {x: '', y: ''}).map((name) => values.get(name)?.v ?? 0);
   }
 
   view_from(from_m) {
