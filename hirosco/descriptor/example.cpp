@@ -8,7 +8,7 @@ using namespace hirosco::descriptor;
 
 int main() {
   const FileSource source = [](const std::filesystem::path&) {
-    return std::optional<std::string>{
+    return hirosco::Result<std::string>{
         "<Subsystem name=\"HELLO\" id=\"7\">\n"
         "  <ParamRef name=\"GOAL\" id=\"1\" type=\"DUBLE\"/>\n"
         "</Subsystem>\n"};

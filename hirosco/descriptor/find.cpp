@@ -43,6 +43,23 @@ const MissionLink* Mission::find_link(std::uint8_t link) const noexcept {
   return find_in(links, link, &MissionLink::id);
 }
 
+double cycle_share(const Mission& mission, const Mode& mode) noexcept {
+  double share = 0;
+  for (const CommissionStep& step : mode.commission) {
+    const auto* member = mission.find_subsystem(step.subsystem);
+    const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
+    if (configuration != nullptr && configuration->sampling.count() > 0)
+      share +=
+          static_cast<double>(configuration->budget.count()) / static_cast<double>(configuration->sampling.count());
+  }
+  return share;
+}
+double cycle_share(const Mission& mission) noexcept {
+  double share = 0;
+  for (const Mode& mode : mission.modes) share = std::max(share, cycle_share(mission, mode));
+  return share;
+}
+
 std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem) {
   std::vector<std::string_view> names;
   for (const Device& device : subsystem.devices)

@@ -121,6 +121,11 @@ struct Mission {
   [[nodiscard]] const MissionLink* find_link(std::uint8_t link) const noexcept;
 };
 
+/// Share of the one processor of all cycles (docs/adr/0007) that the configurations of a mode declare as their budgets.
+[[nodiscard]] double cycle_share(const Mission& mission, const Mode& mode) noexcept;
+/// The greatest of all modes.
+[[nodiscard]] double cycle_share(const Mission& mission) noexcept;
+
 }  // namespace hirosco::descriptor
 
 namespace hirosco {

@@ -16,9 +16,9 @@ using testing::rendered;
 
 /// Files in memory; what is not there is read from the test data.
 FileSource overlay(std::map<std::string, std::string> files) {
-  return [files = std::move(files)](const std::filesystem::path& file) -> std::optional<std::string> {
+  return [files = std::move(files)](const std::filesystem::path& file) -> Result<std::string> {
     const auto found = files.find(file.filename().string());
-    return found == files.end() ? file_system()(file) : std::optional{found->second};
+    return found == files.end() ? file_system()(file) : found->second;
   };
 }
 
@@ -195,7 +195,7 @@ TEST(MissionErrors, FieldsOfALinkMustMatch) {
             "link 1 does not fit: field 'FORCE' is not in the provided set");
   EXPECT_EQ(with("from=\"MANIPULATOR\"", "from=\"OTHER\""),
             "link 1 does not fit: 'ROBOT_STATE' is required from 'OTHER'");
-  EXPECT_EQ(with("from=\"MANIPULATOR\"", "methods=\"tipc\""), "link 1 does not fit: no common method");
+  EXPECT_EQ(with("from=\"MANIPULATOR\"", "byte_order=\"big\""), "link 1 does not fit: no common byte order");
 }
 
 TEST(MissionOverrides, ReachALaunchedSubsystemAsTheyWereRead) {
@@ -231,6 +231,107 @@ TEST(MissionErrors, WhatAModeCommissionsMustFitThePowerBudget) {
   EXPECT_EQ(reading.problems[0].code, "E0318");
   EXPECT_EQ(reading.problems[0].message, "mode 'telepresence' commissions 85.5 W, the budget is 85 W");
   EXPECT_EQ(reading.problems[0].at.column, 5);
+}
+
+/// The good mission with changes to any of its files; each names the file and what is replaced.
+struct Change {
+  const char* file;
+  std::string from, to;
+};
+Reading<Mission> read_changed(const std::vector<Change>& changes) {
+  std::map<std::string, std::string> files;
+  for (const Change& change : changes) {
+    auto& text = files.try_emplace(change.file, file_system()(data / change.file).value()).first->second;
+    text = changed(change.from, change.to, text);
+  }
+  return read_mission(data / "mission.xml", overlay(files));
+}
+
+void expect_one(const Reading<Mission>& reading, std::string_view code, std::string_view message) {
+  ASSERT_EQ(reading.problems.size(), 1U) << message << rendered(reading.problems, file_system());
+  EXPECT_EQ(reading.problems[0].code, code);
+  EXPECT_EQ(reading.problems[0].message, message);
+  EXPECT_FALSE(reading.problems[0].hint.empty());
+  EXPECT_GT(reading.problems[0].at.line, 1);
+}
+
+TEST(MissionErrors, AModeBringsUpALinkIntoEachSetThatItRequires) {
+  const Change without{"mission.xml", "<Establish link=\"1\"/>", ""};
+  const std::string_view missing =
+      "mode 'telepresence' brings up no link into 'JOYSTICK.ROBOT_STATE', which configuration 'COUPLED' requires";
+  expect_one(read_changed({without}), "E0321", missing);
+  EXPECT_EQ(read_changed({without}).problems.at(0).hint, "add <Establish link=\"1\"/>");
+  const Change none{"mission.xml", R"(<Link id="1" from="MANIPULATOR.ROBOT_STATE" to="JOYSTICK.ROBOT_STATE"/>)", ""};
+  expect_one(read_changed({without, none}), "E0321", missing);
+  const Change optional{"joystick.xml", "<Requires name=\"ROBOT_STATE\"",
+                        "<Requires name=\"ROBOT_STATE\" required=\"no\""};
+  EXPECT_TRUE(read_changed({without, optional}).value);
+  const Change resting{"mission.xml", R"(<Commission subsystem="JOYSTICK" configuration="COUPLED"/>)",
+                       R"(<Commission subsystem="JOYSTICK" configuration="COUPLED" state="PreOperational"/>)"};
+  EXPECT_TRUE(read_changed({without, resting}).value) << "Pre-Operational waits for no link";
+}
+
+TEST(MissionErrors, ALinkComesUpBetweenSetsThatItsModeCommissions) {
+  expect_one(read_changed({{"mission.xml", R"(subsystem="MANIPULATOR" configuration="COUPLED")",
+                            R"(subsystem="MANIPULATOR" configuration="STANDALONE")"},
+                           {"mission.xml", "<Establish link=\"2\"/>", ""}}),
+             "E0322",
+             "link 1 cannot come up: configuration 'STANDALONE' of 'MANIPULATOR' does not provide 'ROBOT_STATE'");
+  expect_one(read_changed({{"mission.xml", R"(<Commission subsystem="JOYSTICK" configuration="COUPLED"/>)", ""},
+                           {"mission.xml", "<Establish link=\"1\"/>", ""}}),
+             "E0322", "link 2 cannot come up: the mode does not commission 'JOYSTICK'");
+}
+
+TEST(MissionErrors, ASetIsFilledByOneLink) {
+  expect_one(
+      read_changed({{"mission.xml", "<Links>",
+                     R"(<Links><Link id="3" from="MANIPULATOR.ROBOT_STATE" to="JOYSTICK.ROBOT_STATE"/>)"},
+                    {"mission.xml", "<Establish link=\"2\"/>", R"(<Establish link="2"/><Establish link="3"/>)"}}),
+      "E0323", "links 1 and 3 both fill 'JOYSTICK.ROBOT_STATE'");
+}
+
+TEST(MissionErrors, ASetHasNoMoreConsumersThanItHasRoomFor) {
+  std::string requires_, links, establish;
+  for (int i = 0; i < 9; ++i) {
+    const std::string set = "COPY" + std::to_string(i), id = std::to_string(10 + i);
+    requires_ += "<Requires name=\"" + set + "\"><Field name=\"ACTIVE\" type=\"UINT8\"/></Requires>";
+    links += "<Link id=\"" + id + "\" from=\"MANIPULATOR.ROBOT_STATE\" to=\"JOYSTICK." + set + "\"/>";
+    establish += "<Establish link=\"" + id + "\"/>";
+  }
+  const auto with = [&](const std::string& established) {
+    return read_changed({{"joystick.xml", "<Requires name=\"ROBOT_STATE\"",
+                          requires_ + "<Requires name=\"ROBOT_STATE\" required=\"no\""},
+                         {"mission.xml", "<Links>", "<Links>" + links},
+                         {"mission.xml", "<Establish link=\"1\"/>", established}});
+  };
+  expect_one(with(establish), "E0323", "'MANIPULATOR.ROBOT_STATE' has more than 8 consumers");
+}
+
+TEST(MissionErrors, TheCyclesOfAModeFitOneProcessor) {
+  const auto with = [](const char* robot, const char* joystick) {
+    return read_changed({{"manipulator.xml", R"(<Configuration name="COUPLED")",
+                          std::string{R"(<Configuration name="COUPLED" budget_us=")"} + robot + "\""},
+                         {"joystick.xml", R"(<Configuration name="COUPLED")",
+                          std::string{R"(<Configuration name="COUPLED" budget_us=")"} + joystick + "\""}});
+  };
+  const auto good = with("300", "200");
+  ASSERT_TRUE(good.value) << rendered(good.problems, file_system());
+  EXPECT_DOUBLE_EQ(cycle_share(*good.value, *good.value->find_mode("telepresence")), 1);
+  EXPECT_DOUBLE_EQ(cycle_share(*good.value), 1);
+  EXPECT_DOUBLE_EQ(cycle_share(*good.value, *good.value->find_mode("commissioning")), 0);
+  expect_one(with("300", "205"), "E0324", "the cycles of mode 'telepresence' take 101 % of a processor");
+}
+
+TEST(MissionWarnings, NameActuatorsWithoutASecondInhibitAndKeepTheMission) {
+  EXPECT_TRUE(read_changed({}).warnings.empty());
+  const auto reading =
+      read_changed({{"manipulator.xml", R"(<Enable transfer="shared_memory" address="rokviss-robot-enable"/>)", ""}});
+  EXPECT_TRUE(reading.value);
+  ASSERT_EQ(reading.warnings.size(), 1U);
+  EXPECT_EQ(reading.warnings[0].grade, Grade::Warning);
+  EXPECT_EQ(reading.warnings[0].code, "E0403");
+  EXPECT_EQ(reading.warnings[0].file, data / "manipulator.xml");
+  EXPECT_EQ(reading.warnings[0].message, "actuator 'ROBOT' has no second inhibit");
 }
 
 TEST(MissionErrors, NamesAndIdsOfSubsystemsAreUnique) {

@@ -11,8 +11,14 @@
 
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/utilities/result.hpp"
 
 namespace hirosco::descriptor {
+
+enum class Grade : std::uint8_t {
+  Error,    ///< the descriptor is not taken
+  Warning,  ///< it is, but somebody should know
+};
 
 /// One problem of a descriptor, where it is and what to do about it.
 struct Diagnostic {
@@ -22,17 +28,19 @@ struct Diagnostic {
   std::string message;               ///< "unknown parameter type 'DUBLE'"
   std::string hint;                  ///< "did you mean 'DOUBLE'?"; may be empty
   std::size_t length{1};             ///< characters to underline
+  Grade grade{Grade::Error};
 };
 
 /// Reads whole files; given from outside so that reading is testable without a file system.
-/// Returns the octets, or nothing when there is no such (regular, readable, at most 4 MiB) file.
-using FileSource = std::function<std::optional<std::string>(const std::filesystem::path&)>;
+/// Returns the octets, or why there is no such (regular, readable, at most 4 MiB) file: "is a folder".
+using FileSource = std::function<Result<std::string>(const std::filesystem::path&)>;
 [[nodiscard]] FileSource file_system();
 
 template <class T>
 struct Reading {
   std::optional<T> value;            ///< present only when `problems` is empty
-  std::vector<Diagnostic> problems;  ///< all of them, in file order
+  std::vector<Diagnostic> problems;  ///< all errors, in file order
+  std::vector<Diagnostic> warnings;  ///< all of them, in file order
 };
 
 /// Reads and checks a subsystem descriptor. `name` is used in the diagnostics.  Realtime: allocates.

@@ -10,6 +10,7 @@
 namespace hirosco::descriptor::detail {
 namespace {
 
+constexpr std::int64_t least_sampling_us = least_sampling / std::chrono::microseconds{1};
 constexpr std::int64_t max_sampling_us = 3'600'000'000;  // an hour
 constexpr double max_watchdog_ms = 60'000;
 
@@ -21,15 +22,11 @@ std::string_view refuse_address(Transfer transfer, std::string_view address) noe
   };
   switch (transfer) {
     case Transfer::Udp:
-    case Transfer::Tcp:
       return classify_address(address) == Address::Malformed ? "host:port is needed, for example 127.0.0.1:5000" : "";
-    case Transfer::Serial: {
-      const bool device = address.starts_with("/dev/") && address.find("..") == std::string_view::npos &&
-                          address.size() > 5 && address.size() <= 64;
-      return device ? "" : "a device below /dev is needed, for example /dev/ttyS0";
-    }
+    case Transfer::Tcp:
+    case Transfer::Serial:
+    case Transfer::MessageQueue: return "";  // not built in: reported, and no address helps
     case Transfer::SharedMemory:
-    case Transfer::MessageQueue:
     case Transfer::Unix:
       return !address.empty() && address.size() <= 64 && address.front() != '.' && std::ranges::all_of(address, plain)
                  ? ""
@@ -47,8 +44,9 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   configuration.name = attributes.name();
   configuration.id = attributes.required_integer<std::uint8_t>("id", 1, 255);
   configuration.priority = attributes.integer_or<int>("priority", 0, 98, 0);
-  configuration.sampling =
-      std::chrono::microseconds{attributes.required_integer<std::int64_t>("sampling_us", 1, max_sampling_us)};
+  configuration.sampling = std::chrono::microseconds{
+      attributes.required_integer<std::int64_t>("sampling_us", least_sampling_us, max_sampling_us)};
+  read_budget(attributes, configuration);
   configuration.power_w = attributes.watts("power_W").value_or(0);
   configuration.overruns = read_limit(attributes, "overruns", "overruns_reduced", configuration.overruns);
   configuration.provides = provides_;
@@ -69,6 +67,16 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
     configuration_ids_.add(std::to_string(configuration.id), place(element.find("id")->value_at), problems_,
                            element.find("id")->value.size());
   subsystem_.configurations.push_back(std::move(configuration));
+}
+
+void SubsystemReader::read_budget(Attributes& attributes, Configuration& configuration) {
+  configuration.budget =
+      std::chrono::microseconds{attributes.integer_or<std::int64_t>("budget_us", 1, max_sampling_us, 0)};
+  if (configuration.sampling == Duration{} || configuration.budget <= configuration.sampling) return;
+  problems_.add(*attributes.optional("budget_us"), "E0227",
+                fmt::format("a cycle of {} us every {} us is an overrun each time", configuration.budget / 1us,
+                            configuration.sampling / 1us),
+                "the budget is at most the sampling period");
 }
 
 void SubsystemReader::read_device_use(const xml::Element& element, Configuration& configuration, Unique& names) {
@@ -138,6 +146,8 @@ Endnode SubsystemReader::read_address(Attributes& attributes) {
   if (const auto* transfer = attributes.required("transfer"); transfer != nullptr) {
     const auto known = attributes.word<Transfer>(*transfer, transfer->value);
     if (known) endnode.transfer = *known;
+    if (known == Transfer::MessageQueue || known == Transfer::Tcp || known == Transfer::Serial)
+      problems_.not_built_in(*transfer, transfer->value, "shared_memory, unix and udp are");
     const auto* address = attributes.required("address");
     if (address != nullptr) {
       endnode.address = address->value;

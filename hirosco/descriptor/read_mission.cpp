@@ -79,6 +79,8 @@ std::vector<Diagnostic> MissionReader::take_subsystem_problems() {
   return all;
 }
 
+std::vector<Diagnostic> MissionReader::take_subsystem_warnings() { return std::move(warnings_); }
+
 void MissionReader::read_supervisor(const xml::Element& element) {
   Attributes attributes{element, problems_};
   if (auto subsystem = read_descriptor(attributes)) {
@@ -209,9 +211,10 @@ std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) 
   Reading<Subsystem> reading = read_subsystem(file, source_);
   const bool unreadable = std::ranges::any_of(reading.problems, [](const Diagnostic& d) { return d.code == "E0001"; });
   if (unreadable)
-    problems_.add(*at, "E0315", fmt::format("descriptor {} cannot be read", in_quotes(at->value)),
+    problems_.add(*at, "E0315", fmt::format("descriptor {} {}", in_quotes(at->value), reading.problems.front().message),
                   "the path is relative to the mission file");
   else if (!reading.problems.empty()) subsystem_problems_.push_back(std::move(reading.problems));
+  std::ranges::move(reading.warnings, std::back_inserter(warnings_));
   if (!reading.value) incomplete_ = true;
   else check_endnodes(*reading.value);
   return std::move(reading.value);
@@ -296,12 +299,14 @@ Reading<Mission> read_mission(const std::filesystem::path& file, const FileSourc
   std::string octets;
   const auto root = detail::read_root(file, source, "Mission", octets, problems);
   Reading<Mission> reading;
-  if (!root) return {std::nullopt, problems.take()};
+  if (!root) return {std::nullopt, problems.take(), {}};
   detail::MissionReader reader{problems, source};
   Mission mission = reader.read(*root);
   mission.file = file;
   reading.problems = problems.take();
   std::ranges::move(reader.take_subsystem_problems(), std::back_inserter(reading.problems));
+  reading.warnings = problems.take_warnings();
+  std::ranges::move(reader.take_subsystem_warnings(), std::back_inserter(reading.warnings));
   if (reading.problems.empty()) reading.value = std::move(mission);
   return reading;
 }

@@ -20,33 +20,6 @@ constexpr bool is_steady(State state) noexcept {
          state == State::Operational || state == State::ErrorOperational || state == State::PostOperational;
 }
 
-template <class E>
-bool share(const std::vector<E>& ours, const std::vector<E>& theirs) {
-  return std::ranges::any_of(ours, [&](E e) { return std::ranges::find(theirs, e) != theirs.end(); });
-}
-
-std::string describe(const Field& field) {
-  return fmt::format("{}{}{}", to_text(field.type), field.count == 1 ? "" : fmt::format("[{}]", field.count),
-                     field.unit.empty() ? "" : " " + field.unit);
-}
-
-/// Why the producer's set cannot feed the consumer's; empty when it can.
-std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_) {
-  std::vector<Field> offered;
-  for (const ParameterRef& reference : provides.parameters)
-    std::ranges::move(fields_of(producer, reference), std::back_inserter(offered));
-  for (const Field& wanted : requires_.fields) {
-    const auto found = std::ranges::find(offered, wanted.name, &Field::name);
-    if (found == offered.end()) return fmt::format("field '{}' is not in the provided set", wanted.name);
-    if (found->type != wanted.type || found->count != wanted.count || found->unit != wanted.unit)
-      return fmt::format("field '{}': {} against {}", wanted.name, describe(*found), describe(wanted));
-  }
-  if (!share(provides.terms.methods, requires_.terms.methods)) return "no common method";
-  if (!share(provides.terms.byte_orders, requires_.terms.byte_orders)) return "no common byte order";
-  if (!share(provides.terms.kinds, requires_.terms.kinds)) return "no common kind";
-  return {};
-}
-
 template <class Set>
 std::vector<std::string_view> names_of(const std::vector<const Set*>& sets) {
   std::vector<std::string_view> names;
@@ -62,12 +35,14 @@ void MissionReader::read_link(const xml::Element& element) {
   MissionLink link;
   link.at = place(element.at);
   link.id = attributes.required_integer<std::uint8_t>("id", 1, 255);
+  const std::size_t before = problems_.count();
   const Subsystem* producer = read_end(attributes, "from", link.from, link.provides);
   const Subsystem* consumer = read_end(attributes, "to", link.to, link.requires_);
   if (producer != nullptr && consumer != nullptr) check_link(element, *producer, *consumer, link);
   if (link.id != 0)
     link_ids_.add(std::to_string(link.id), place(element.find("id")->value_at), problems_,
                   element.find("id")->value.size());
+  if (problems_.count() != before) ++doubtful_links_;
   mission_.links.push_back(std::move(link));
 }
 
@@ -141,6 +116,7 @@ void MissionReader::read_mode(const xml::Element& element) {
   mode.name = attributes.name("name", NameKind::Loose);
   // Counted from 1 in the order of the file, so that 0 means no mode.
   mode.id = attributes.integer_or<std::uint8_t>("id", 1, 255, static_cast<std::uint8_t>(mission_.modes.size() + 1));
+  const std::size_t before = problems_.count();
   Unique commissioned{"subsystem", "E0201"}, established{"link", "E0202"};
   each_child(element, problems_,
              {{"Commission", [&](const auto& child) { read_commission(child, mode, commissioned); }, 255},
@@ -150,23 +126,12 @@ void MissionReader::read_mode(const xml::Element& element) {
   if (!mode.name.empty()) mode_names_.add(mode.name, mode.at, problems_, length);
   mode_ids_.add(std::to_string(mode.id), mode.at, problems_, length, "a mode without id has its number in the file");
   check_power(element, mode);
-  mission_.modes.push_back(std::move(mode));
-}
-
-void MissionReader::check_power(const xml::Element& element, const Mode& mode) {
-  if (!mission_.power_budget_w) return;
-  const auto& own = mission_.supervisor.configurations;
-  double sum_w = own.empty() ? 0 : own.front().power_w;
-  for (const CommissionStep& step : mode.commission) {
-    const auto* member = mission_.find_subsystem(step.subsystem);
-    const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
-    if (configuration != nullptr && step.state != State::PreOperational) sum_w += configuration->power_w;
+  if (whole() && problems_.count() == before && doubtful_links_ == 0) {
+    check_cycles(element, mode);
+    check_required(mode);
+    check_established(element, mode);
   }
-  if (sum_w <= *mission_.power_budget_w) return;
-  problems_.add(element, "E0318",
-                fmt::format("mode {} commissions {} W, the budget is {} W", in_quotes(mode.name), sum_w,
-                            *mission_.power_budget_w),
-                "the sum of power_W of its configurations and the supervisor's; Pre-Operational does not count");
+  mission_.modes.push_back(std::move(mode));
 }
 
 State MissionReader::read_steady_state(Attributes& attributes, State fallback) {

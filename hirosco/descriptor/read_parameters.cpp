@@ -162,6 +162,7 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
 void SubsystemReader::read_access(Attributes& attributes, Parameter& parameter) {
   parameter.read_only = attributes.yes("read_only", false);
   parameter.persistent = attributes.yes("persistent", false);
+  if (parameter.persistent) problems_.not_built_in(*attributes.optional("persistent"), "yes", "values begin with init");
   parameter.protection = attributes.yes("protection", false);
   parameter.writable_states = read_states(attributes, "writable", {});
   const auto* writable = attributes.optional("writable");

@@ -14,6 +14,17 @@ constexpr std::int64_t max_cycles = 1'000'000;
 constexpr std::size_t max_arguments = 255;
 constexpr std::size_t max_structures = 256;
 constexpr std::size_t max_sets = 32;
+
+/// A list of words of which one is built in.
+template <class E>
+void expect_built_in(Attributes& attributes, Problems& problems, std::string_view name, E built_in) {
+  const auto* given = attributes.optional(name);
+  if (given == nullptr) return;
+  for (const std::string_view word : words(given->value))
+    if (const auto known = from_text<E>(word); known && *known != built_in)
+      problems.not_built_in(*given, word, fmt::format("{} is", to_text(built_in)));
+}
+
 constexpr std::size_t max_set_fields = 64;
 
 }  // namespace
@@ -87,11 +98,24 @@ void SubsystemReader::read_function(const xml::Element& element) {
                  function.description = child.text;
                },
                1}});
+  check_arguments(element, function);
   if (function.name == "SET_STATE" || function.name == "CONFIGURE")
     problems_.add(*element.find("name"), "E0213",
                   fmt::format("'{}' is built in: every subsystem has it", function.name));
   else if (!function.name.empty()) function_names_.add(function.name, function.at, problems_, element.name.size() + 1);
   subsystem_.functions.push_back(std::move(function));
+}
+
+void SubsystemReader::check_arguments(const xml::Element& element, const Function& function) {
+  for (const Function::Argument& argument : function.arguments)
+    if (argument.field.count != 1)
+      problems_.add(argument.field.at, "E0225",
+                    fmt::format("argument '{}' is an array of {}", argument.field.name, argument.field.count),
+                    "a handler takes single numbers: one argument for each", 9);
+  if (function.arguments.size() > max_argument_values)
+    problems_.add(element, "E0225",
+                  fmt::format("function '{}' has {} arguments", function.name, function.arguments.size()),
+                  fmt::format("a handler takes at most {}", max_argument_values));
 }
 
 std::uint16_t SubsystemReader::read_states(Attributes& attributes, std::string_view name, std::vector<State> fallback) {
@@ -193,6 +217,8 @@ LinkTerms SubsystemReader::read_terms(Attributes& attributes) {
   LinkTerms terms;
   terms.methods = attributes.list_of<Method>("methods", terms.methods);
   terms.kinds = attributes.list_of<LinkKind>("kind", terms.kinds);
+  expect_built_in(attributes, problems_, "methods", Method::SharedMemory);
+  expect_built_in(attributes, problems_, "kind", LinkKind::Latest);
   const auto* orders = attributes.optional("byte_order");
   if (orders == nullptr) return terms;
   if (orders->value != "native") terms.byte_orders = attributes.list_of<ByteOrder>("byte_order", terms.byte_orders);

@@ -149,6 +149,10 @@ void SubsystemReader::read_device(const xml::Element& element) {
   if (device.actuator && device.output.empty())
     problems_.add(element, "E0106", "an actuator needs an <Output> with at least one <Field>");
   if (!device.name.empty()) device_names_.add(device.name, device.at, problems_, element.name.size() + 1);
+  if (device.actuator && !device.enable)
+    problems_.warn(device.at, "E0403", fmt::format("actuator '{}' has no second inhibit", device.name),
+                   "only its subsystem keeps it from moving: add <Enable transfer=\"...\" address=\"...\"/>",
+                   element.name.size() + 1);
   subsystem_.devices.push_back(std::move(device));
 }
 
@@ -213,6 +217,7 @@ Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileS
     if (problems.count() == 0) reading.value = std::move(subsystem);
   }
   reading.problems = problems.take();
+  reading.warnings = problems.take_warnings();
   return reading;
 }
 

@@ -11,7 +11,8 @@ namespace hirosco::descriptor {
 namespace {
 
 constexpr std::size_t max_shown = 160;
-constexpr std::string_view bold = "\x1b[1m", red = "\x1b[1;31m", green = "\x1b[1;32m", plain = "\x1b[0m";
+constexpr std::string_view bold = "\x1b[1m", red = "\x1b[1;31m", yellow = "\x1b[1;33m", green = "\x1b[1;32m",
+                           plain = "\x1b[0m";
 
 constexpr bool is_continuation(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
@@ -48,8 +49,9 @@ std::string render(const Diagnostic& problem, const FileSource& source, bool col
   const std::string message = detail::printable(problem.message), hint = detail::printable(problem.hint);
   const bool located = problem.at.line > 0;
   const std::string where = located ? fmt::format("{}:{}:{}:", file, problem.at.line, problem.at.column) : file + ":";
-  std::string text = fmt::format("{} {} {}\n", paint(bold, where), paint(red, "error:"), message);
-  const auto content = located && source ? source(problem.file) : std::nullopt;
+  const std::string grade = problem.grade == Grade::Error ? paint(red, "error:") : paint(yellow, "warning:");
+  std::string text = fmt::format("{} {} {}\n", paint(bold, where), grade, message);
+  const auto content = located && source ? source(problem.file) : fail(ErrorCode::NotFound, "");
   const std::string_view line = content ? line_of(*content, problem.at.line) : std::string_view{};
   if (line.empty()) return hint.empty() ? text : text + fmt::format("        {}\n", hint);
 

@@ -25,8 +25,14 @@ TEST(Render, ColoursOnlyWhenAsked) {
   EXPECT_NE(render(problem, source, true).find("\x1b[1;31merror:\x1b[0m"), std::string::npos);
 }
 
+TEST(Render, AWarningSaysThatItIsOne) {
+  Diagnostic warning = problem;
+  warning.grade = Grade::Warning;
+  EXPECT_TRUE(render(warning, text_source(""), false).starts_with("mcs.xml:2:46: warning: unknown"));
+}
+
 TEST(Render, GoesWithoutTheLineWhenItIsGone) {
-  const auto gone = [](const auto&) { return std::nullopt; };
+  const auto gone = [](const auto&) { return fail(ErrorCode::NotFound, "does not exist"); };
   EXPECT_EQ(render(problem, gone, false),
             "mcs.xml:2:46: error: unknown parameter type 'DUBLE'\n        did you mean 'DOUBLE'?\n");
   EXPECT_EQ(render({"a.xml", {}, "E0001", "cannot be read", "", 1}, gone, false), "a.xml: error: cannot be read\n");

@@ -225,11 +225,17 @@ struct DeviceUse {
   Location at;
 };
 
+/// Shorter cycles cannot be kept, and somebody else would be told as hung for it.
+inline constexpr Duration least_sampling = std::chrono::microseconds{50};
+/// Most values that the arguments of a function have together (pus/st08_function.hpp).
+inline constexpr std::size_t max_argument_values = 8;
+
 struct Configuration {
   std::string name;
   std::uint8_t id{};
   int priority{0};                   ///< SCHED_FIFO priority of the cycle; 0 = ordinary scheduling
   Duration sampling{};               ///< period of the cycle
+  Duration budget{};                 ///< most processor time that a cycle takes; 0 = not declared
   double power_w{0};                 ///< most that it draws from Safe- to Post-Operational; 0 = not accounted
   CycleLimit overruns{3, 20};        ///< overruns in a row until the overrun event
   std::vector<HousekeepingStructure> housekeeping;

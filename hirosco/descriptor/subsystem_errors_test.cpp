@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "hirosco/descriptor/testing.hpp"
 
@@ -83,23 +86,23 @@ constexpr Bad bad_values[] = {
     {"E0112", R"(<HKService id="1" interval="@-1"><SampledOnce><ParamRef name="GOAL"/></SampledOnce></HKService>)"},
     {"E0112", R"(<HKService id="1" interval="5"><SampledNREPTimes nrep="@0"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
     {"E0112", R"(<Configuration name="C" id="1" sampling_us="@0"/>)"},
-    {"E0112", R"(<Configuration name="C" id="1" sampling_us="1" power_W="@0"/>)"},
-    {"E0112", R"(<Configuration name="C" id="1" sampling_us="1" priority="@99"/>)"},
-    {"E0112", R"(<Configuration name="C" id="@0" sampling_us="1"/>)"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="100" power_W="@0"/>)"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="100" priority="@99"/>)"},
+    {"E0112", R"(<Configuration name="C" id="@0" sampling_us="100"/>)"},
     {"E0112", R"(<Resources><Pool block="@0" count="1"/></Resources>)"},
     {"E0112", R"(<Hang realtime="@0"/>)"},
-    {"E0112", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT" watchdog_ms="@0"><Endnode transfer="unix" address="x"/></Device></Configuration>)"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT" watchdog_ms="@0"><Endnode transfer="unix" address="x"/></Device></Configuration>)"},
     {"E0113", R"(<ParamRef name="X" id="2" type="DOUBLE" read_only="@true"/>)"},
     {"E0113", R"(<EventService><Event name="X" id="1" severity="@meduim"/></EventService>)", "'medium'"},
     {"E0113", R"(<FunctionService><Function name="X" states="@Operational SaveOperational"/></FunctionService>)", "'SafeOperational'"},
     {"E0113", R"(<FunctionService><Function name="X" states="@Operational Operational"/></FunctionService>)"},
-    {"E0113", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT"><Endnode transfer="@usb" address="x"/></Device></Configuration>)", "one of"},
+    {"E0113", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="@usb" address="x"/></Device></Configuration>)", "one of"},
     {"E0114", R"(<ParamRef name="X" id="2" type="DOUBLE" unit="@123456789012345678901234567890123"/>)"},
     {"E0206", R"(<ParamRef name="X" id="2" type="DOUBLE" minimum="@2" maximum="1"/>)"},
     {"E0207", R"(<ParamRef name="X" id="2" type="DOUBLE" maximum="1" init="@2"/>)"},
     {"E0207", R"(@<ParamRef name="X" id="2" type="DOUBLE" minimum="1"/>)", "init"},
     {"E0207", R"(<FunctionService><Function name="X"><Argument name="A" type="DOUBLE" minimum="1" default="@0"/></Function></FunctionService>)"},
-    {"E0207", R"(<Configuration name="C" id="1" sampling_us="1"><Initial><ParamRef name="GOAL" value="@2"/></Initial></Configuration>)"},
+    {"E0207", R"(<Configuration name="C" id="1" sampling_us="100"><Initial><ParamRef name="GOAL" value="@2"/></Initial></Configuration>)"},
     {"E0208", R"(<ParamRef name="X" id="2" type="UINT8" init="@1.5"/>)"},
     {"E0208", R"(<ParamRef name="X" id="2" type="UINT8" init="@256"/>)"},
     {"E0208", R"(<ParamRef name="X" id="2" type="INT64" init="@1e300"/>)"},
@@ -108,44 +111,61 @@ constexpr Bad bad_values[] = {
     {"E0208", "<Enumeration name=\"A\"><Text value=\"1\">a</Text></Enumeration>\n<ParamRef name=\"X\" id=\"2\" type=\"DOUBLE\" enumeration=\"@A\"/>"},
     {"E0209", R"(<ParamRef name="X" id="2" type="DOUBLE" count="2" init="@1"/>)"},
     {"E0209", R"(<Device name="X"><Output><Field name="Y" type="DOUBLE" safe="@0 0"/></Output></Device>)"},
-    {"E0209", R"(<Configuration name="C" id="1" sampling_us="1"><Initial><ParamRef name="CUR_VALUES" value="@1 2"/></Initial></Configuration>)"},
+    {"E0209", R"(<Configuration name="C" id="1" sampling_us="100"><Initial><ParamRef name="CUR_VALUES" value="@1 2"/></Initial></Configuration>)"},
 };
 constexpr Bad bad_meaning[] = {
     {"E0201", "<ParamRef name=\"X\" id=\"2\" type=\"INT8\"/>\n@<ParamRef name=\"X\" id=\"3\" type=\"INT8\"/>"},
     {"E0201", R"(<StructRef name="A" id="1"><ParamRef name="X" id="2" type="INT8"/>@<ParamRef name="X" id="3" type="INT8"/></StructRef>)"},
-    {"E0201", "<FunctionService><Function name=\"A\"/></FunctionService>\n<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"><FunctionService>@<Function name=\"A\"/></FunctionService></Configuration>"},
+    {"E0201", "<FunctionService><Function name=\"A\"/></FunctionService>\n<Configuration name=\"C\" id=\"1\" sampling_us=\"100\"><FunctionService>@<Function name=\"A\"/></FunctionService></Configuration>"},
     {"E0201", R"(<FunctionService><Function name="A"><Argument name="X" type="INT8"/>@<Argument name="X" type="INT8"/></Function></FunctionService>)"},
     {"E0201", R"(<EventService><Event name="A" id="1" severity="low"/>@<Event name="A" id="2" severity="low"/></EventService>)"},
-    {"E0201", "<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"/>\n@<Configuration name=\"C\" id=\"2\" sampling_us=\"1\"/>"},
-    {"E0201", "<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"><RealTimeLinkService><Provides name=\"P\"><ParamRef name=\"GOAL\"/><ParamRef name=\"@GOAL\"/></Provides></RealTimeLinkService></Configuration>"},
+    {"E0201", "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\"/>\n@<Configuration name=\"C\" id=\"2\" sampling_us=\"100\"/>"},
+    {"E0201", "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\"><RealTimeLinkService><Provides name=\"P\"><ParamRef name=\"GOAL\"/><ParamRef name=\"@GOAL\"/></Provides></RealTimeLinkService></Configuration>"},
     {"E0202", R"(<EventService><Event name="A" id="1" severity="low"/><Event name="B" id="@1" severity="low"/></EventService>)"},
-    {"E0202", "<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"/>\n<Configuration name=\"D\" id=\"@1\" sampling_us=\"1\"/>"},
+    {"E0202", "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\"/>\n<Configuration name=\"D\" id=\"@1\" sampling_us=\"100\"/>"},
     {"E0202", R"(<Enumeration name="A"><Text value="1">a</Text>@<Text value="1">b</Text></Enumeration>)"},
     {"E0203", "<ParamRef name=\"X\" id=\"2\" type=\"INT8\"/>\n<ParamRef name=\"Y\" id=\"@2\" type=\"INT8\"/>", "together"},
     {"E0203", R"(<ParamRef name="X" id="2" type="INT8"/><StructRef name="A" id="1"><ParamRef name="Y" id="@2" type="INT8"/></StructRef>)"},
     {"E0204", R"(<HKService id="1" interval="1"><SampledOnce><ParamRef name="@CUR_VALUE"/></SampledOnce></HKService>)", "'CUR_VALUES'? (line 3)"},
     {"E0204", R"(<HKService id="1" interval="1"><SampledOnce><ParamRef name="@CUR_VALUES.SPEED"/></SampledOnce></HKService>)"},
-    {"E0204", R"(<Configuration name="C" id="1" sampling_us="1"><Initial><ParamRef name="@GAOL" value="0"/></Initial></Configuration>)", "'GOAL'"},
+    {"E0204", R"(<Configuration name="C" id="1" sampling_us="100"><Initial><ParamRef name="@GAOL" value="0"/></Initial></Configuration>)", "'GOAL'"},
     {"E0205", R"(<StructRef name="A" id="1"><ParamRef name="STATE" id="2" type="INT8"/></StructRef><HKService id="1" interval="1"><SampledOnce><ParamRef name="@STATE"/></SampledOnce></HKService>)", "'A.STATE' 'CUR_VALUES.STATE'"},
     {"E0210", R"(<ParamRef name="X" id="2" type="INT8" enumeration="@STATES"/>)"},
     {"E0211", "<HKService id=\"1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService>\n<HKService id=\"@1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService>"},
-    {"E0211", "<HKService id=\"1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService>\n<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"><HKService id=\"@1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService></Configuration>"},
+    {"E0211", "<HKService id=\"1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService>\n<Configuration name=\"C\" id=\"1\" sampling_us=\"100\"><HKService id=\"@1\" interval=\"1\"><SampledOnce><ParamRef name=\"GOAL\"/></SampledOnce></HKService></Configuration>"},
     {"E0212", "<FunctionService/>\n@<FunctionService/>", "line 2"},
     {"E0212", "<EventService/>\n@<EventService/>"},
     {"E0212", "<TestService/>@<TestService/>"},
-    {"E0212", "<Configuration name=\"C\" id=\"1\" sampling_us=\"1\"><EventService/>@<EventService/></Configuration>"},
+    {"E0212", "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\"><EventService/>@<EventService/></Configuration>"},
     {"E0213", R"(<FunctionService><Function name="@SET_STATE"/></FunctionService>)"},
     {"E0214", R"(<HKService id="1" interval="500"><SampledNREPTimes nrep="@3"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
     {"E0214", R"(<HKService id="1" interval="5"><SampledNREPTimes nrep="@10"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
     {"E0215", R"(@<HKService id="1" interval="510"><SampledNREPTimes nrep="510"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)", "4072"},
     {"E0215", R"(@<Device name="X"><Input><Field name="A" type="UINT8" count="1003"/></Input><Output><Field name="B" type="UINT8" count="1002"/></Output></Device>)", "1002"},
-    {"E0216", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="@ROBOTS"><Endnode transfer="unix" address="x"/></Device></Configuration>)", "'ROBOT'"},
-    {"E0106", R"(<Configuration name="C" id="1" sampling_us="1">@<Device name="ROBOT"/></Configuration>)"},
-    {"E0106", R"(<Configuration name="C" id="1" sampling_us="1"><RealTimeLinkService>@<Requires name="R"/></RealTimeLinkService></Configuration>)"},
-    {"E0217", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT"><Endnode transfer="udp" address="@here"/></Device></Configuration>)"},
-    {"E0217", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT"><Endnode transfer="unix" address="@../x"/></Device></Configuration>)"},
-    {"E0217", R"(<Configuration name="C" id="1" sampling_us="1"><Device name="ROBOT"><Endnode transfer="serial" address="@/dev/../etc/x"/></Device></Configuration>)"},
+    {"E0216", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="@ROBOTS"><Endnode transfer="unix" address="x"/></Device></Configuration>)", "'ROBOT'"},
+    {"E0106", R"(<Configuration name="C" id="1" sampling_us="100">@<Device name="ROBOT"/></Configuration>)"},
+    {"E0106", R"(<Configuration name="C" id="1" sampling_us="100"><RealTimeLinkService>@<Requires name="R"/></RealTimeLinkService></Configuration>)"},
+    {"E0217", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="udp" address="@here"/></Device></Configuration>)"},
+    {"E0217", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="unix" address="@../x"/></Device></Configuration>)"},
     {"E0218", R"(<Device name="X" actuator="yes"><Output>@<Field name="Y" type="DOUBLE"/></Output></Device>)", "safe"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="@49"/>)", "50 to"},
+    {"E0224", R"(<ParamRef name="X" id="2" type="DOUBLE" persistent="@yes"/>)"},
+    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="@message_queue" address="x"/></Device></Configuration>)", "shared_memory"},
+    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="@tcp" address="127.0.0.1:5000"/></Device></Configuration>)", "udp"},
+    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="@serial" address="/dev/ttyS0"/></Device></Configuration>)"},
+    {"E0224", R"(<Device name="L" actuator="yes"><Output><Field name="Q" type="INT8" safe="0"/></Output><Enable transfer="@serial" address="/dev/ttyS0"/></Device>)"},
+    {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@udp"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)", "shared_memory is"},
+    {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@shared_memory dds"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)"},
+    {"E0224", R"(<RealTimeLinkService><Requires name="A" kind="@queued"><Field name="X" type="INT8"/></Requires></RealTimeLinkService>)", "latest is"},
+    {"E0225", R"(<FunctionService><Function name="X">@<Argument name="A" type="DOUBLE" count="2" minimum="0" maximum="1"/></Function></FunctionService>)", "one argument for each"},
+    {"E0226", R"(<ParamRef name="A" id="2" type="DOUBLE"/>@<ParamRef name="a" id="3" type="DOUBLE"/>)", "one"},
+    {"E0226", R"(<ParamRef name="A" id="2" type="DOUBLE"/>@<StructRef name="a" id="3"><ParamRef name="X" id="9" type="INT8"/></StructRef>)"},
+    {"E0226", R"(<EventService><Event name="A" id="2" severity="low"/>@<Event name="a" id="3" severity="low"/></EventService>)"},
+    {"E0226", R"(<Configuration name="C" id="1" sampling_us="100"/>@<Configuration name="c" id="2" sampling_us="100"/>)"},
+    {"E0226", R"(<Device name="L"><Input><Field name="Q" type="DOUBLE"/></Input></Device>@<Device name="l"><Input><Field name="Q" type="DOUBLE"/></Input></Device>)"},
+    {"E0226", R"(<RealTimeLinkService><Provides name="A"><ParamRef name="GOAL"/></Provides>@<Provides name="a"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)"},
+    {"E0227", R"(<Configuration name="C" id="1" sampling_us="100" budget_us="@101"/>)", "at most"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="100" budget_us="@0"/>)"},
     {"E0219", R"(<ParamRef name="X" id="2" type="DOUBLE" writable="@Operational" protection="yes"/>)", "its own function"},
     {"E0219", R"(<ParamRef name="X" id="2" type="DOUBLE" writable="@Operational" read_only="yes"/>)"},
     {"E0219", R"(<StructRef name="A" id="1" writable="@Operational" protection="yes"><ParamRef name="X" id="9" type="INT8"/></StructRef>)"},
@@ -210,6 +230,18 @@ TEST(SubsystemErrors, TheHeadIsChecked) {
   expect_problem({"E0003", ""}, "@<!DOCTYPE Subsystem []><Subsystem name=\"S\" id=\"10\"/>");
 }
 
+TEST(SubsystemErrors, AFunctionHasNoMoreArgumentsThanAHandlerTakes) {
+  const auto with = [](int count) {
+    std::string arguments;
+    for (int i = 0; i < count; ++i)
+      arguments += "<Argument name=\"A" + std::to_string(i) + "\" type=\"INT8\" minimum=\"0\" maximum=\"1\"/>";
+    return "<FunctionService>@<Function name=\"X\">" + arguments + "</Function></FunctionService>";
+  };
+  expect_problem({"E0225", "", "at most 8"}, whole(with(9)));
+  const std::string eight = marked(whole(with(8))).text;
+  EXPECT_TRUE(read_text(eight).value) << rendered(read_text(eight).problems, text_source(eight));
+}
+
 TEST(SubsystemErrors, AUsedIdNamesBothPlaces) {
   const auto reading = read_text(
       "<Subsystem name=\"S\" id=\"1\">\n  <ParamRef name=\"X\" id=\"2\" type=\"INT8\"/>\n"
@@ -231,12 +263,32 @@ TEST(SubsystemErrors, AllAreReportedAtOnceInFileOrder) {
 }
 
 TEST(SubsystemErrors, AFileThatCannotBeReadIsAProblem) {
-  const auto reading = read_subsystem("none.xml", [](const auto&) { return std::nullopt; });
+  const auto reading = read_subsystem("none.xml", [](const auto&) { return fail(ErrorCode::NotFound, "is gone"); });
   ASSERT_EQ(reading.problems.size(), 1U);
   EXPECT_EQ(reading.problems[0].code, "E0001");
-  EXPECT_FALSE(file_system()(testing::data).has_value()) << "a folder is not a file";
-  EXPECT_FALSE(file_system()(testing::data / "none.xml").has_value());
-  EXPECT_FALSE(file_system()("/dev/zero").has_value()) << "an endless file must not be read";
+  EXPECT_EQ(reading.problems[0].message, "is gone");
+}
+
+TEST(SubsystemErrors, AFileThatIsNoneSaysWhatItIs) {
+  const auto folder = std::filesystem::path{HIROSCO_BINARY_DIR} / "no_files";
+  std::filesystem::create_directories(folder);
+  const auto said = [&](const std::filesystem::path& file) {
+    const auto reading = read_subsystem(file, file_system());
+    return reading.problems.size() == 1 ? reading.problems[0].message : std::string{};
+  };
+  EXPECT_EQ(said(folder), "is a folder");
+  EXPECT_EQ(said(folder / "none.xml"), "does not exist");
+  EXPECT_EQ(said("/dev/zero"), "is a device") << "an endless file must not be read";
+  const auto pipe = folder / "pipe.xml", large = folder / "large.xml", circle = folder / "circle.xml";
+  std::filesystem::remove(pipe);
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(said(pipe), "is a pipe (FIFO)") << "nobody writes: reading it would never end";
+  std::ofstream{large} << std::string(4 * 1024 * 1024 + 1, ' ');
+  EXPECT_EQ(said(large), "is larger than 4 MiB");
+  std::filesystem::remove(circle);
+  std::filesystem::create_symlink(circle, circle);
+  EXPECT_EQ(said(circle), "is a symbolic link that leads in a circle");
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

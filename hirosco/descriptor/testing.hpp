@@ -15,7 +15,7 @@ namespace hirosco::descriptor::testing {
 inline const std::filesystem::path data = std::filesystem::path{HIROSCO_SOURCE_DIR} / "hirosco/descriptor/testdata";
 
 inline FileSource text_source(std::string text) {
-  return [text = std::move(text)](const std::filesystem::path&) -> std::optional<std::string> { return text; };
+  return [text = std::move(text)](const std::filesystem::path&) -> Result<std::string> { return text; };
 }
 
 inline Reading<Subsystem> read_text(const std::string& text) { return read_subsystem("test.xml", text_source(text)); }

@@ -60,7 +60,7 @@ void command(GenericSubsystem& subsystem, ChannelPair& channels, ManualClock& cl
 
 int main() {
   const auto reading = descriptor::read_subsystem(
-      "counter.xml", [](const std::filesystem::path&) { return std::optional<std::string>{counter_xml}; });
+      "counter.xml", [](const std::filesystem::path&) { return Result<std::string>{counter_xml}; });
   if (!reading.value) return 1;
   ManualClock clock;
   HeapMemory memory;

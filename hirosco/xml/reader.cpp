@@ -4,6 +4,7 @@
 
 #include <expat.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -154,7 +155,28 @@ class Reader::Parser {
       finished_ = true;
       return;
     }
-    problem_ = Problem{Refusal::NotWellFormed, cursor_.at(offset()), XML_ErrorString(XML_GetErrorCode(expat_))};
+    problem_ = Problem{Refusal::NotWellFormed, cursor_.at(offset()), reason(XML_GetErrorCode(expat_))};
+  }
+
+  /// Expat's words and, where it helps, the element that is open: people look for the tag that they forgot.
+  [[nodiscard]] std::string reason(XML_Error error) const {
+    std::string text = XML_ErrorString(error);
+    const bool closing = error == XML_ERROR_TAG_MISMATCH;
+    if (open_.empty() || (!closing && error != XML_ERROR_NO_ELEMENTS && error != XML_ERROR_UNCLOSED_TOKEN)) return text;
+    const auto& [name, at] = open_.back();
+    const std::string where =
+        "<" + shortened(name) + ">, opened in " + std::to_string(at.line) + ":" + std::to_string(at.column);
+    if (!closing) return text + ": the document ends inside " + where;
+    const std::string_view rest = document_.substr(std::min(offset(), document_.size()));
+    return text + ": </" + shortened(rest.substr(0, rest.find_first_of("> \t\r\n"))) + "> stands where " + where +
+           ", is to be closed";
+  }
+
+  static std::string shortened(std::string_view name) {
+    constexpr std::size_t most = 64;
+    std::size_t end = std::min(name.size(), most);
+    while (end < name.size() && end > 0 && is_continuation(name[end])) --end;
+    return std::string{name.substr(0, end)};
   }
 
   void refuse(Refusal refusal, const char* reason) { refuse(refusal, reason, offset()); }
@@ -173,8 +195,9 @@ class Reader::Parser {
   void on_start(const XML_Char* name, const XML_Char** attributes) {
     if (problem_) return;
     give_text();
-    if (++depth_ > max_depth) return refuse(Refusal::TooLarge, "elements are nested deeper than 64");
+    if (open_.size() == max_depth) return refuse(Refusal::TooLarge, "elements are nested deeper than 64");
     Event event{.kind = Event::Kind::Start, .name = name, .attributes = {}, .text = {}, .at = cursor_.at(offset())};
+    open_.emplace_back(event.name, event.at);
     std::size_t place = offset() + 1 + event.name.size();
     for (; *attributes != nullptr; attributes += 2) {
       if (event.attributes.size() == max_attributes)
@@ -208,7 +231,7 @@ class Reader::Parser {
   void on_end(const XML_Char* name) {
     if (problem_) return;
     give_text();
-    --depth_;
+    open_.pop_back();
     events_.push_back(
         {.kind = Event::Kind::End, .name = name, .attributes = {}, .text = {}, .at = cursor_.at(offset())});
     suspend();
@@ -240,7 +263,7 @@ class Reader::Parser {
   std::deque<Event> events_;
   std::string text_;
   std::optional<Position> text_at_;
-  std::size_t depth_{0};
+  std::vector<std::pair<std::string, Position>> open_;  ///< elements, the innermost last
   bool started_{false};
   bool finished_{false};
 };

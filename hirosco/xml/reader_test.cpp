@@ -68,17 +68,26 @@ TEST(Reader, SaysWhereADocumentIsNotWellFormed) {
   const Problem mismatch = problem_of("<a>\n  <b></a>");
   EXPECT_EQ(mismatch.refusal, Refusal::NotWellFormed);
   EXPECT_EQ(mismatch.at.line, 2);
-  EXPECT_EQ(mismatch.reason, "mismatched tag");
+  EXPECT_EQ(mismatch.reason, "mismatched tag: </a> stands where <b>, opened in 2:3, is to be closed");
   EXPECT_EQ(problem_of("<a x='1' x='2'/>").reason, "duplicate attribute");
   EXPECT_EQ(problem_of("<a/><b/>").at, (Position{1, 5}));
   EXPECT_EQ(problem_of("").reason, "no element found");
+}
+
+TEST(Reader, ATagThatIsMissingIsNamedWithItsPlace) {
+  EXPECT_EQ(problem_of("<a>\n <b>\n  <c/>\n</a>").reason,
+            "mismatched tag: </a> stands where <b>, opened in 2:2, is to be closed");
+  EXPECT_EQ(problem_of("<a>\n <b>").reason, "no element found: the document ends inside <b>, opened in 2:2");
+  EXPECT_EQ(problem_of("<a>\n <b></b").reason, "unclosed token: the document ends inside <b>, opened in 2:2");
+  const std::string far(5000, 'x');
+  EXPECT_LT(problem_of("<" + far + "></y" + far + ">").reason.size(), 250U) << "however long the names are";
 }
 
 TEST(Reader, AProblemIsFinal) {
   Reader reader{"<a><b></a>"};
   while (reader.next().has_value()) {}
   EXPECT_FALSE(reader.next().has_value());
-  EXPECT_EQ(reader.next().error().reason, "mismatched tag");
+  EXPECT_TRUE(reader.next().error().reason.starts_with("mismatched tag: </a>"));
 }
 
 TEST(Reader, RefusesDocumentTypesBeforeAnyEntityGrows) {

@@ -51,9 +51,9 @@ void hand_rests(descriptor::Mission& mission) {
 
 Flight::Flight(Plan plan) : subsystems_{std::move(plan.subsystems)}, devices_{std::move(plan.devices)} {
   const auto files = descriptor::file_system();
-  const descriptor::FileSource source = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+  const descriptor::FileSource source = [&](const std::filesystem::path& path) -> Result<std::string> {
     const auto found = plan.files.find(path.filename().string());
-    return found != plan.files.end() ? std::optional{found->second} : files(path);
+    return found != plan.files.end() ? found->second : files(path);
   };
   auto reading = descriptor::read_mission(plan.mission, source);
   std::string problems;

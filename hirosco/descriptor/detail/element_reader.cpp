@@ -148,10 +148,25 @@ void Problems::add(const xml::Attribute& attribute, std::string_view code, std::
   add(place(attribute.value_at), code, std::move(message), std::move(hint), characters(attribute.value));
 }
 
-std::vector<Diagnostic> Problems::take() {
-  std::ranges::stable_sort(problems_, {}, [](const Diagnostic& d) { return std::tuple{d.at.line, d.at.column}; });
-  return std::move(problems_);
+void Problems::warn(Location at, std::string_view code, std::string message, std::string hint, std::size_t length) {
+  if (warnings_.size() >= max_problems) return;
+  warnings_.push_back({file_, at, std::string{code}, std::move(message), std::move(hint),
+                       std::max<std::size_t>(1, length), Grade::Warning});
 }
+
+void Problems::not_built_in(const xml::Attribute& attribute, std::string_view word, std::string hint) {
+  add(attribute, "E0224", fmt::format("{} {} is not built in", attribute.name, in_quotes(word)), std::move(hint));
+}
+
+namespace {
+std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> all) {
+  std::ranges::stable_sort(all, {}, [](const Diagnostic& d) { return std::tuple{d.at.line, d.at.column}; });
+  return all;
+}
+}  // namespace
+
+std::vector<Diagnostic> Problems::take() { return in_file_order(std::move(problems_)); }
+std::vector<Diagnostic> Problems::take_warnings() { return in_file_order(std::move(warnings_)); }
 
 const xml::Attribute* Attributes::optional(std::string_view name) {
   if (std::ranges::find(asked_, name) == asked_.end()) asked_.push_back(name);
@@ -293,12 +308,20 @@ void no_children(const xml::Element& element, Problems& problems, bool text_allo
 }
 
 bool Unique::add(const std::string& key, Location at, Problems& problems, std::size_t length, const std::string& hint) {
-  const auto [before, first] = seen_.emplace(key, at);
+  std::string folded = key;
+  std::ranges::transform(folded, folded.begin(), lower);
+  const auto [before, first] = seen_.try_emplace(std::move(folded), key, at);
   if (first) return true;
-  problems.add(
-      at, code_,
-      fmt::format("{} {} is already used in {}:{}", what_, in_quotes(key), before->second.line, before->second.column),
-      hint, length);
+  const auto& [used, where] = before->second;
+  if (used == key)
+    problems.add(at, code_,
+                 fmt::format("{} {} is already used in {}:{}", what_, in_quotes(key), where.line, where.column), hint,
+                 length);
+  else
+    problems.add(at, "E0226",
+                 fmt::format("{} {} differs from {} in {}:{} in case only", what_, in_quotes(key), in_quotes(used),
+                             where.line, where.column),
+                 "people and file systems take them for one", length);
   return false;
 }
 
@@ -312,7 +335,7 @@ std::optional<xml::Element> read_root(const std::filesystem::path& file, const F
                                       std::string_view root, std::string& octets, Problems& problems) {
   auto content = source(file);
   if (!content) {
-    problems.add(Location{}, "E0001", "cannot be read", "a regular, readable file of at most 4 MiB is needed");
+    problems.add(Location{}, "E0001", content.error().text, "a regular, readable file of at most 4 MiB is needed");
     return std::nullopt;
   }
   octets = std::move(*content);

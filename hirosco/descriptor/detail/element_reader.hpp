@@ -54,15 +54,22 @@ class Problems {
   /// At an attribute's value.
   void add(const xml::Attribute& attribute, std::string_view code, std::string message, std::string hint = {});
 
+  /// What does not keep the file from being taken.
+  void warn(Location at, std::string_view code, std::string message, std::string hint = {}, std::size_t length = 1);
+  /// A word that is known, but that no code honours yet.
+  void not_built_in(const xml::Attribute& attribute, std::string_view word, std::string hint);
+
   [[nodiscard]] std::size_t count() const noexcept { return problems_.size(); }
   [[nodiscard]] bool full() const noexcept { return problems_.size() >= max_problems; }
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
   /// All of them in file order.
   [[nodiscard]] std::vector<Diagnostic> take();
+  [[nodiscard]] std::vector<Diagnostic> take_warnings();
 
  private:
   std::filesystem::path file_;
   std::vector<Diagnostic> problems_;
+  std::vector<Diagnostic> warnings_;
 };
 
 /// What characters a name may have.
@@ -165,7 +172,7 @@ void each_child(const xml::Element& element, Problems& problems, const std::vect
 /// For elements that have only text, or nothing at all.
 void no_children(const xml::Element& element, Problems& problems, bool text_allowed = false);
 
-/// Remembers names or ids, with their places, to report the second use of one.
+/// Remembers names or ids, with their places, to report the second use of one; one in another case is the same.
 class Unique {
  public:
   /// `what` begins the message: "event name".
@@ -177,7 +184,7 @@ class Unique {
  private:
   std::string what_;
   std::string_view code_;
-  std::map<std::string, Location> seen_;
+  std::map<std::string, std::pair<std::string, Location>> seen_;  ///< in lower case: as written first, and where
 };
 
 /// FNV-1a, 64 bit.

@@ -13,6 +13,9 @@
 
 namespace hirosco::descriptor::detail {
 
+/// Why the producer's set cannot feed the consumer's; empty when it can.
+[[nodiscard]] std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_);
+
 /// Reads one <Mission> and the subsystem descriptors it names.
 class MissionReader {
  public:
@@ -20,6 +23,7 @@ class MissionReader {
   [[nodiscard]] Mission read(const xml::Element& root);
   /// Problems of the subsystem files, each file's in its order.
   [[nodiscard]] std::vector<Diagnostic> take_subsystem_problems();
+  [[nodiscard]] std::vector<Diagnostic> take_subsystem_warnings();
 
  private:
   // read_mission.cpp
@@ -46,8 +50,19 @@ class MissionReader {
                   const MissionLink& link);
   void read_modes(const xml::Element& element);
   void read_mode(const xml::Element& element);
+
+  // check_modes.cpp: only what was read without a problem is judged
   /// What a mode commissions must fit the power budget together.
   void check_power(const xml::Element& element, const Mode& mode);
+  /// And the one processor of all cycles.
+  void check_cycles(const xml::Element& element, const Mode& mode);
+  /// A mode brings up a link into each set that what it commissions requires.
+  void check_required(const Mode& mode);
+  /// Both ends of a link are commissioned with the sets that it joins.
+  void check_established(const xml::Element& element, const Mode& mode);
+  [[nodiscard]] std::string refuse_link(const Mode& mode, const MissionLink& link) const;
+
+  // read_modes.cpp
   void read_commission(const xml::Element& element, Mode& mode, Unique& names);
   void read_establish(const xml::Element& element, Mode& mode, Unique& ids);
   void read_permit(const xml::Element& element, Mode& mode);
@@ -67,6 +82,8 @@ class MissionReader {
   const FileSource& source_;
   Mission mission_;
   std::vector<std::vector<Diagnostic>> subsystem_problems_;
+  std::vector<Diagnostic> warnings_;
+  std::size_t doubtful_links_{0};    ///< that were reported: what a mode establishes cannot be judged then
   bool incomplete_{false};           ///< a subsystem could not be read: names may be missing for that reason only
   Unique subsystem_names_{"subsystem name", "E0301"};
   Unique subsystem_ids_{"subsystem id", "E0302"};

@@ -49,6 +49,7 @@ class SubsystemReader {
 
   // read_configuration.cpp
   void read_configuration(const xml::Element& element);
+  void read_budget(Attributes& attributes, Configuration& configuration);
   void read_device_use(const xml::Element& element, Configuration& configuration, Unique& names);
   void read_setting(const xml::Element& element, DeviceUse& use, Unique& names);
   [[nodiscard]] Endnode read_endnode(const xml::Element& element);
@@ -86,6 +87,7 @@ class SubsystemReader {
   [[nodiscard]] static std::uint16_t read_states(Attributes& attributes, std::string_view name,
                                                  std::vector<State> fallback);
   void read_range_of(Attributes& attributes, Function::Argument& argument);
+  void check_arguments(const xml::Element& element, const Function& function);
   void read_argument(const xml::Element& element, Function& function, Unique& names);
   void read_housekeeping(const xml::Element& element, Services& services);
   void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);

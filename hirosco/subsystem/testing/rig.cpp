@@ -22,7 +22,7 @@ std::string hex(Octets octets) {
 }
 
 descriptor::Subsystem read_descriptor(const std::string& text) {
-  const descriptor::FileSource source = [&](const std::filesystem::path&) { return std::optional{text}; };
+  const descriptor::FileSource source = [&](const std::filesystem::path&) { return Result<std::string>{text}; };
   auto reading = descriptor::read_subsystem("probe.xml", source);
   std::string problems;
   for (const auto& problem : reading.problems) problems += descriptor::render(problem, source, false);
