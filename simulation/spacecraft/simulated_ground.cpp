@@ -45,8 +45,10 @@ OpenGroundTransport SimulatedGround::transport() {
   };
 }
 
-void SimulatedGround::send(Octets packet) {
-  if (end_ != nullptr) end_->arrive(packet);
+bool SimulatedGround::send(Octets packet) {
+  if (end_ == nullptr) return false;
+  end_->arrive(packet);
+  return true;
 }
 
 }  // namespace hirosco::simulation

@@ -17,8 +17,8 @@ class SimulatedGround {
  public:
   /// For the communication subsystem: opens the on-board end. One at a time.
   [[nodiscard]] OpenGroundTransport transport();
-  /// Sends a telecommand packet up; lost while the on-board end is closed, as on a dead link.
-  void send(Octets packet);
+  /// Sends a telecommand packet up; lost, and false, while the on-board end is closed, as on a dead link.
+  bool send(Octets packet);
   /// Called for every packet that comes down.
   void on_telemetry(std::function<void(Octets)> receive) { receive_ = std::move(receive); }
 

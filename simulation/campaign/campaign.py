@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Flies a mission under random plans and has each flight judged. The drawing aims at what was seldom covered so far."""
+import argparse, collections, concurrent.futures, json, os, pathlib, subprocess, sys, tempfile, time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE / "judge"))
+from descriptors import read_mission  # noqa: E402
+from draw import Draw, commands_of, faults_of  # noqa: E402
+from shrink import shrink  # noqa: E402
+
+BATCH = 20                 # flights that are drawn from the same coverage
+AIM_COMMANDS, AIM_FAULTS = 40, 4
+COMMAND_GOAL, FAULT_GOAL = 20, 10
+FLIGHT_LIMIT_S = 120
+
+
+class Pilot:
+    """Flies plans and has them judged."""
+
+    def __init__(self, mission, fly_plan, plant=None):
+        self.mission, self.fly_plan, self.plant = mission, fly_plan, plant
+
+    def fly(self, plan, folder=None):
+        """{"violations": [[invariant, seconds, text]], ...}"""
+        with tempfile.TemporaryDirectory() as own:
+            folder = pathlib.Path(folder or own)
+            (folder / "plan.txt").write_text(plan)
+            command = [self.fly_plan, self.mission, folder / "plan.txt", folder] + ([self.plant] if self.plant else [])
+            try:
+                flown = subprocess.run(command, capture_output=True, text=True, timeout=FLIGHT_LIMIT_S)
+            except subprocess.TimeoutExpired:
+                return {"violations": [["I1", 0, "the flight does not end"]], "commands": {}, "faults": {}}
+            if flown.returncode != 0:
+                last = (flown.stderr.strip().splitlines() or [""])[-1]
+                return {"violations": [["I1", 0, f"the flight ended with {flown.returncode}: {last}"]], "commands": {}, "faults": {}}
+            judged = subprocess.run([sys.executable, "-B", HERE / "judge" / "judge.py", self.mission, folder],
+                                    capture_output=True, text=True)
+            if judged.returncode not in (0, 1) or not judged.stdout:
+                raise RuntimeError(f"the judge failed: {judged.stderr}")
+            return json.loads(judged.stdout)
+
+
+def emptiest(cells, covered, goal, number, turn):
+    """The next `number` cells of those that are covered least, each flight of a batch its own."""
+    empty = sorted((cell for cell in cells if covered[cell] < goal), key=lambda cell: (covered[cell], cell.split("|")[0], cell))
+    return empty[turn * number:(turn + 1) * number]
+
+
+class Campaign:
+    def __init__(self, arguments):
+        self.arguments = arguments
+        self.mission = read_mission(arguments.mission)
+        self.pilot = Pilot(arguments.mission, arguments.fly_plan, arguments.plant)
+        self.commands, self.faults = collections.Counter(), collections.Counter()
+        self.command_cells, self.fault_cells = list(commands_of(self.mission)), list(faults_of(self.mission))
+        self.failed = []
+
+    def plan(self, index):
+        turn = index % BATCH
+        commands = emptiest(self.command_cells, self.commands, COMMAND_GOAL, AIM_COMMANDS, turn)
+        faults = emptiest(self.fault_cells, self.faults, FAULT_GOAL, AIM_FAULTS, turn)
+        return Draw(self.mission, self.arguments.seed, index, commands, faults).text()
+
+    def run(self):
+        started = time.monotonic()
+        only, flights = self.arguments.only, self.arguments.flights
+        last = flights if only is None else only + 1
+        with concurrent.futures.ThreadPoolExecutor(self.arguments.jobs) as pool:
+            for first in range(0, last, BATCH):
+                batch = range(first, min(first + BATCH, last))
+                plans = {index: self.plan(index) for index in batch}
+                wanted = [index for index in batch if only is None or index == only or first + BATCH <= only]
+                for index, result in zip(wanted, pool.map(lambda index: self.pilot.fly(plans[index]), wanted)):
+                    self.commands.update(result["commands"])
+                    self.faults.update(result["faults"])
+                    if result["violations"] and only in (None, index):
+                        self.tell(index, result, plans[index])
+        self.table()
+        flown = len(range(last)) if only is None else 1
+        print(f"{flown - len(self.failed)} passed, {len(self.failed)} failed ({time.monotonic() - started:.0f} s)")
+        return 1 if self.failed else 0
+
+    def tell(self, index, result, plan):
+        self.failed.append(index)
+        print(f"flight {index} of seed {self.arguments.seed}:")
+        for invariant, seconds, text in result["violations"]:
+            print(f"  {invariant} {seconds:.4f} s: {text}")
+        if self.arguments.out:
+            pathlib.Path(self.arguments.out).mkdir(parents=True, exist_ok=True)
+            (pathlib.Path(self.arguments.out) / f"{index}.plan").write_text(plan)
+        if self.arguments.shrink and len(self.failed) <= self.arguments.shrink:
+            kind = result["violations"][0][0], result["violations"][0][2].split(" ")[0]
+            small = shrink(plan, lambda text: any((v[0], v[2].split(" ")[0]) == kind for v in self.pilot.fly(text)["violations"]),
+                           self.arguments.jobs)
+            print("  no action of this plan can be left out:\n    " + "\n    ".join(small.splitlines()))
+            for invariant, seconds, text in self.pilot.fly(small)["violations"]:
+                print(f"    -> {invariant} {seconds:.4f} s: {text}")
+        sys.stdout.flush()
+
+    def table(self):
+        """Covered: how many cells reached their goal, and the emptiest of them."""
+        for title, cells, covered, goal in (("state x telecommand x origin", self.command_cells, self.commands, COMMAND_GOAL),
+                                            ("fault x state x member", self.fault_cells, self.faults, FAULT_GOAL)):
+            full = sum(covered[cell] >= goal for cell in cells)
+            print(f"{title}: {full} of {len(cells)} cells at least {goal} times, {sum(covered[c] == 0 for c in cells)} never, "
+                  f"{sum(covered.values())} in all")
+            columns = collections.defaultdict(collections.Counter)
+            for cell in cells:
+                first, second, third = cell.split("|")
+                row, column = (second, f"{first}") if title.startswith("state") else (f"{first} {third}", second)
+                columns[row][column] = min(columns[row].get(column, 10**6), covered[cell])
+            names = ["Offline", "PreOperational", "SafeOperational", "Operational", "ErrorOperational", "PostOperational"]
+            if self.arguments.table:
+                print(f"{'(least of all origins)' if title.startswith('state') else '':<28}" + "".join(f"{name:>17}" for name in names))
+                for row in columns:
+                    print(f"{row:<28}" + "".join(f"{columns[row].get(name, '-'):>17}" for name in names))
+
+
+def main():
+    default = HERE.parents[1] / "build" / "release" / "bin" / "hirosco-fly-plan"
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("mission")
+    parser.add_argument("--flights", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", type=int, help="this flight alone; those of earlier batches fly first, as its drawing aims by them")
+    parser.add_argument("--plan", help="fly and judge this plan")
+    parser.add_argument("--show", action="store_true", help="print the plan of --only instead of flying it")
+    parser.add_argument("--out", help="folder for the plans that failed")
+    parser.add_argument("--shrink", type=int, default=3, help="how many failed plans are made small (0: none)")
+    parser.add_argument("--table", action="store_true", help="print coverage cell by cell")
+    parser.add_argument("--plant", help="fly with this planted defect")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--fly-plan", default=os.environ.get("HIROSCO_FLY_PLAN", str(default)))
+    arguments = parser.parse_args()
+    if arguments.plan:
+        result = Pilot(arguments.mission, arguments.fly_plan, arguments.plant).fly(pathlib.Path(arguments.plan).read_text(), arguments.out)
+        for invariant, seconds, text in result["violations"]:
+            print(f"{invariant} {seconds:.4f} s: {text}")
+        return 1 if result["violations"] else 0
+    campaign = Campaign(arguments)
+    if arguments.show:
+        print(campaign.plan(arguments.only or 0), end="")
+        return 0
+    return campaign.run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/campaign/campaign_log.hpp"
+
+#include <algorithm>
+#include <deque>
+
+namespace hirosco::campaign {
+namespace {
+
+using supervisor::LogRecord;
+
+class FaultyDatabase final : public supervisor::Database {
+ public:
+  explicit FaultyDatabase(Disk& disk) : disk_{disk} {}
+
+ private:
+  Result<> do_append(std::span<const LogRecord> batch) override {
+    constexpr int input_output_error = 5, no_space_left = 28, no_such_file = 2;
+    switch (disk_.fault) {
+      case DiskFault::Failing: return fail(ErrorCode::SystemFailure, "input/output error", input_output_error);
+      case DiskFault::Full: return fail(ErrorCode::SystemFailure, "no space left on device", no_space_left);
+      case DiskFault::Deleted: return fail(ErrorCode::SystemFailure, "the file is gone", no_such_file);
+      case DiskFault::None: break;
+    }
+    for (const LogRecord& record : batch)
+      if (!disk_.keeps || disk_.keeps(record)) disk_.records.push_back(record);
+    return ok();
+  }
+  Result<supervisor::LogPage> do_read(const supervisor::LogQuery&) override {
+    return supervisor::LogPage{disk_.records, 0};
+  }
+  [[nodiscard]] std::string_view do_strategy() const noexcept override { return "memory"; }
+
+  Disk& disk_;
+};
+
+class SlowLog final : public supervisor::PacketLog {
+ public:
+  SlowLog(Disk& disk, const Clock& clock) : disk_{disk}, clock_{clock}, stored_{clock, database_on(disk)} {}
+
+ private:
+  std::uint64_t do_append(const supervisor::LogEntry& entry) override {
+    const std::uint64_t number = stored_.append(entry);
+    if (number != 0) waiting_.push_back({number, clock_.now()});
+    return number;
+  }
+  [[nodiscard]] std::uint64_t do_durable() const noexcept override {
+    const TimePoint now = clock_.now();
+    const auto is_durable = [&](const Waiting& record) {
+      return disk_.delay == Duration::zero() || (disk_.delay != Duration::max() && record.since + disk_.delay <= now);
+    };
+    while (!waiting_.empty() && is_durable(waiting_.front())) waiting_.pop_front();
+    const std::uint64_t stored = stored_.durable();
+    return waiting_.empty() ? stored : std::min(stored, waiting_.front().number - 1);
+  }
+  void do_switch_to(std::unique_ptr<supervisor::Database> next) override { stored_.switch_to(std::move(next)); }
+  [[nodiscard]] supervisor::LogCounters do_counters() const override { return stored_.counters(); }
+  [[nodiscard]] std::optional<Error> do_failure() const override { return stored_.failure(); }
+  [[nodiscard]] OnboardTime do_run() const noexcept override { return stored_.run(); }
+
+  struct Waiting {
+    std::uint64_t number{};
+    TimePoint since{};
+  };
+  Disk& disk_;
+  const Clock& clock_;
+  supervisor::DirectPacketLog stored_;
+  mutable std::deque<Waiting> waiting_;
+};
+
+}  // namespace
+
+std::unique_ptr<supervisor::Database> database_on(Disk& disk) { return std::make_unique<FaultyDatabase>(disk); }
+
+std::unique_ptr<supervisor::PacketLog> log_on(Disk& disk, const Clock& clock) {
+  return std::make_unique<SlowLog>(disk, clock);
+}
+
+}  // namespace hirosco::campaign

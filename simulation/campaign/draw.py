@@ -1,0 +1,292 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Draws the plan of a flight from a seed: who is told what, and what breaks, at random instants."""
+import pathlib, random, struct, sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "judge"))
+from descriptors import ERROR, OFFLINE, OPERATIONAL, POST, PRE, SAFE, STATES, TYPES  # noqa: E402
+
+FINALE_S = 26.0
+BEGIN_S = 0.1           # commissioned by then
+COMMON = ["3.1", "3.3", "3.5", "3.6", "3.9", "3.27", "3.29", "3.31", "3.33", "5.5", "5.6", "5.7", "17.1", "20.1", "20.3",
+          "128.1", "128.2", "128.3", "128.4", "129.1", "3.77", "99.1", "SET_STATE", "CONFIGURE", "unknown"]
+DEVICE_FAULTS = ["unplug", "silent", "stall", "freeze", "corrupt", "delay"]
+OWN_FAULTS = {"MANIPULATOR": ["temperature", "hook", "release", "friction", "noise", "thermal_accel"], "JOYSTICK": ["hand"]}
+MEMBER_FAULTS = ["kill", "stop", "spin", "stick", "strain"]
+LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
+# The states that last; the others are passed in one instant of virtual time.
+WAY_TO = {OFFLINE: [OFFLINE], PRE: [OFFLINE, PRE], SAFE: [OFFLINE, PRE, "CONFIGURE", "LINKS", SAFE],
+          OPERATIONAL: [OFFLINE, PRE, "CONFIGURE", "LINKS", SAFE, OPERATIONAL], ERROR: [OFFLINE, PRE, "CONFIGURE", ERROR],
+          POST: [OFFLINE, PRE, "CONFIGURE", POST]}
+
+
+def commands_of(mission):
+    """Cells that can be reached: state | kind | origin."""
+    origins = ["ground", *(m.name for m in mission.members)]
+    for state in WAY_TO:
+        for origin in origins:
+            for kind in COMMON + [f for m in mission.members for f in m.functions]:
+                yield f"{STATES[state]}|{kind}|{origin}"
+    for kind in mission.supervisor.functions:
+        for origin in origins:
+            yield f"Operational|{kind}|{origin}"
+
+
+def faults_of(mission):
+    """Cells that can be reached: fault | state | member."""
+    members = [m.name for m in mission.members]
+    acting = [m for m in members if m != mission.ground]
+    for state in WAY_TO:
+        for member in acting:
+            for fault in MEMBER_FAULTS + [f"log {f}" for f in LOG_FAULTS] + ["flood valid", "flood damaged"]:
+                yield f"{fault}|{STATES[state]}|{member}"
+            for fault in DEVICE_FAULTS + OWN_FAULTS.get(member, []):
+                yield f"fault {fault}|{STATES[state]}|{member}"
+    for fault in MEMBER_FAULTS:
+        yield f"{fault}|Operational|{mission.ground}"
+    yield f"stop|Operational|{mission.supervisor.name}"
+
+
+class Draw:
+    def __init__(self, mission, seed, index, wanted_commands=(), wanted_faults=()):
+        self.mission = mission
+        self.random = random.Random(f"{seed}/{index}")
+        self.lines = []           # (time, words)
+        self.wanted_commands, self.wanted_faults = list(wanted_commands), list(wanted_faults)
+        self.flight_seed = self.random.randrange(1, 1 << 32)
+        self.mode = self.random.choice(["telepresence"] * 3 + [m for m in mission.modes if m not in (mission.initial_mode, "safe")])
+
+    # --- values ------------------------------------------------------------------------------------------------------
+    def value(self, argument):
+        """Mostly in range, then its corners, just beside them, and what no honest sender sends."""
+        low = argument.minimum if argument.minimum is not None else {"D": -1e6, "F": -1e6}.get(argument.type[:1], 0)
+        high = argument.maximum if argument.maximum is not None else {"D": 1e6, "F": 1e6}.get(argument.type[:1], 255)
+        draw = self.random.random()
+        if draw < 0.55:
+            value = self.random.uniform(low, high)
+        elif draw < 0.8:
+            value = self.random.choice([low, high])
+        elif draw < 0.9:
+            value = self.random.choice([low - 1, high + 1, low - 1e-9, high + 1e-9, 0, -0.0])
+        else:
+            value = self.random.choice([float("nan"), float("inf"), -float("inf"), 1e300, 255, 1e-300])
+        return pack(argument.type, value)
+
+    def call(self, name, arguments):
+        data = name.encode()[:16].ljust(16, b"\0")
+        number = len(arguments)
+        if self.random.random() < 0.04:
+            number = self.random.randrange(0, 9)
+        data += bytes([number])
+        for place, argument in enumerate(arguments[:number], 1):
+            data += bytes([place if self.random.random() > 0.02 else self.random.randrange(256)]) + self.value(argument)
+        return data[:-1] if self.random.random() < 0.02 else data
+
+    def parameter_write(self, subsystem):
+        chosen = self.random.sample(subsystem.parameters, min(len(subsystem.parameters), self.random.choice([1, 1, 1, 2, 3])))
+        data = bytes([len(chosen)])
+        for parameter in chosen:
+            data += struct.pack(">I", parameter.wire_id if self.random.random() > 0.03 else self.random.getrandbits(32))
+            for field in parameter.fields:
+                data += b"".join(self.value(field) for _ in range(field.count))
+        return data
+
+    def data_of(self, kind, subsystem):
+        """(service, subtype, application data)"""
+        r = self.random
+        structures = [h for c in subsystem.configurations.values() for h in c.housekeeping] or [1]
+        ids = lambda values, width: bytes([len(values)]) + b"".join(v.to_bytes(width, "big") for v in values)
+        some_ids = lambda: r.sample([p.wire_id for p in subsystem.parameters], min(len(subsystem.parameters), r.randrange(1, 5)))
+        if "." in kind:
+            service, subtype = map(int, kind.split("."))
+            if r.random() < 0.1:
+                return service, subtype, r.randbytes(r.randrange(0, 40))
+            if (service, subtype) in ((3, 1), (3, 29)):
+                return service, subtype, (struct.pack(">HI", r.choice([9000, 9001, structures[0]]), r.choice([1, 2, 100, 2000]))
+                                          + ids(some_ids(), 4) + bytes([0]))
+            if service == 3 and subtype == 31:
+                return service, subtype, bytes([1]) + struct.pack(">HI", r.choice(structures), r.choice([1, 10, 1000]))
+            if service == 3:
+                return service, subtype, ids([r.choice([*structures, 9000])], 2)
+            if service == 5 and subtype != 7:
+                return service, subtype, ids([r.choice(list(subsystem.events) or [1])], 2)
+            if (service, subtype) == (20, 1):
+                return service, subtype, ids(some_ids(), 4)
+            if (service, subtype) == (20, 3):
+                return service, subtype, self.parameter_write(subsystem)
+            if service == 128:
+                return service, subtype, r.randbytes(r.choice([1, 4, 20]))
+            return service, subtype, b""
+        if kind == "SET_STATE":
+            return 8, 1, b"SET_STATE".ljust(16, b"\0") + bytes([1, 1, r.choice([*range(10), OPERATIONAL, OFFLINE, PRE, 255])])
+        if kind == "CONFIGURE":
+            return 8, 1, b"CONFIGURE".ljust(16, b"\0") + bytes([1, 1, r.choice([*subsystem.configurations, 0, 99])])
+        if kind == "unknown":
+            return 8, 1, r.choice([b"NOBODY_HAS_IT".ljust(16, b"\0") + b"\0", r.randbytes(17), b"HOLD"])
+        return 8, 1, self.call(kind, subsystem.functions[kind].arguments)
+
+    # --- actions -----------------------------------------------------------------------------------------------------
+    def add(self, time, text):
+        if BEGIN_S <= time < FINALE_S:
+            self.lines.append((round(time, 6), text))
+
+    def telecommand(self, time, origin, subsystem, kind, data=None):
+        service, subtype, octets = self.data_of(kind, subsystem) if data is None else (8, 1, data)
+        ack = 15 if self.random.random() < 0.8 else self.random.randrange(16)
+        words = f"tc {origin} {subsystem.apid} {service} {subtype} {ack}" + (f" {octets.hex()}" if octets else "")
+        self.add(time, f"{words}  # {subsystem.name} {kind}")
+
+    def send_random(self, time, kind=None, origin=None, member=None):
+        r, mission = self.random, self.mission
+        origin = origin or r.choice(["ground"] * 3 + [m.name for m in mission.members])
+        if member is None:
+            member = r.choice([mission.supervisor, *mission.members * 2])
+        if kind is None:
+            kind = r.choice(COMMON + list(member.functions) * 2)
+        if kind == "SHUTDOWN" and r.random() < 0.97:
+            kind = "SAFE_ALL"
+        owner = next((s for s in [mission.supervisor, *mission.members] if kind in s.functions), member)
+        if r.random() < 0.02:
+            octets = r.choice([r.randbytes(r.randrange(0, 60)), b"\x1f\xff" + r.randbytes(12)])
+            return self.add(time, f"raw {origin} {octets.hex() or '00'}")
+        return self.telecommand(time, origin, owner, kind)
+
+    def drive(self, time, member, state, mode="COUPLED"):
+        """Ground brings a member into a state, step by step; 30 ms each."""
+        mission = self.mission
+        self.telecommand(time, "ground", mission.supervisor, "SET_MODE",
+                         b"SET_MODE".ljust(16, b"\0") + bytes([1, 1, mission.mode_ids[mission.initial_mode]]))
+        for step in WAY_TO[state]:
+            time += 0.03
+            if step == "CONFIGURE":
+                chosen = next((c.id for c in member.configurations.values() if c.name == mode), 1)
+                self.telecommand(time, "ground", member, "CONFIGURE", b"CONFIGURE".ljust(16, b"\0") + bytes([1, 1, chosen]))
+            elif step == "LINKS":
+                for link in (1, 2):
+                    self.telecommand(time, "ground", mission.supervisor, "LINK", b"LINK".ljust(16, b"\0") + bytes([1, 1, link]))
+            else:
+                self.telecommand(time, "ground", member, "SET_STATE", b"SET_STATE".ljust(16, b"\0") + bytes([1, 1, step]))
+        return time + 0.03
+
+    def bring_up(self, time):
+        """Both ends of the network by ground, as an operator would."""
+        mission = self.mission
+        acting = [m for m in mission.members if m.name != mission.ground]
+        if self.random.random() < 0.5:
+            self.telecommand(time, "ground", mission.supervisor, "SAFE_ALL", b"SAFE_ALL".ljust(16, b"\0") + bytes([0]))
+        for step in WAY_TO[OPERATIONAL]:
+            time += 0.04
+            for member in acting:
+                if step == "CONFIGURE":
+                    chosen = next((c.id for c in member.configurations.values() if c.name == "COUPLED"), 1)
+                    self.telecommand(time, "ground", member, "CONFIGURE", b"CONFIGURE".ljust(16, b"\0") + bytes([1, 1, chosen]))
+                elif step != "LINKS":
+                    self.telecommand(time, "ground", member, "SET_STATE", b"SET_STATE".ljust(16, b"\0") + bytes([1, 1, step]))
+            if step == "LINKS":
+                for link in (1, 2):
+                    self.telecommand(time, "ground", mission.supervisor, "LINK", b"LINK".ljust(16, b"\0") + bytes([1, 1, link]))
+        return time + 0.04
+
+    def fault(self, time, fault, member):
+        """One fault, and mostly its end some time later."""
+        r = self.random
+        lasts = r.choice([0.005, 0.05, 0.3, 1.0, 3.0])
+        if fault.startswith("fault "):
+            device = next(d for d, (owner, _) in self.mission.devices.items() if owner == member)
+            what = fault.split()[1]
+            words = {"stall": f"stall {r.choice([1, 3, 50, 500])}", "freeze": f"freeze {r.choice([1, 3, 50, 5000])}",
+                     "corrupt": f"corrupt {r.choice([1, 3, 50, 1000000])}", "delay": f"delay {r.choice([1, 5, 100])}",
+                     "temperature": f"temperature {r.choice([1, 2])} {r.choice([56, 72, 81, 20])}", "hook": f"hook {r.choice([1, 2])}",
+                     "friction": f"friction {r.choice(['on', 'off'])}", "noise": f"noise {r.choice([0, 0.1, 2])}",
+                     "thermal_accel": f"thermal_accel {r.choice([0, 10])}",
+                     "hand": r.choice(["hand wander", "hand cartesian 0.0226 0 0.2", "hand sine 1 0.3 2", "hand hold 0.1 0.1",
+                                       "hand ramp 0.05 0 1"])}.get(what, what)
+            self.add(time, f"fault {device} {words}")
+            if what in DEVICE_FAULTS and r.random() < 0.8:
+                self.add(time + lasts, f"fault {device} {'plug' if what == 'unplug' else 'heal'}")
+        elif fault.startswith("log "):
+            what = fault.split()[1]
+            self.add(time, f"log {what}" + (f" {r.choice([5, 100, 1000, 3000])}" if what == "slow" else ""))
+            if r.random() < 0.8:
+                self.add(time + lasts, "log heal")
+                if what in ("failing", "full", "deleted"):
+                    self.telecommand(time + lasts + 0.05, "ground", self.mission.supervisor, "SET_DATABASE",
+                                     b"SET_DATABASE".ljust(16, b"\0") + bytes([1, 1, 1]))
+        elif fault.startswith("flood "):
+            self.add(time, f"flood {r.choice(['ground', *(m.name for m in self.mission.members)])} {fault.split()[1]} {r.choice([20, 100, 400])}")
+            if r.random() < 0.5:
+                self.telecommand(time, "ground", self.mission.supervisor, "SAFE_ALL", b"SAFE_ALL".ljust(16, b"\0") + bytes([0]))
+        else:
+            self.add(time, f"{fault} {member}" + (f" {r.choice([1, 2, 3, 4, 10])} {r.choice([600, 2000, 30000])}" if fault == "strain" else ""))
+            if fault == "stop" and r.random() < 0.8:
+                self.add(time + lasts, f"go {member}")
+            if fault == "stick" and r.random() < 0.8:
+                self.add(time + lasts, f"unstick {member}")
+
+    # --- a flight ----------------------------------------------------------------------------------------------------
+    def aim(self):
+        """At the emptiest cells: drives a member into the state and does there what is wanting."""
+        r, mission = self.random, self.mission
+        time = BEGIN_S + 0.3
+        while self.wanted_commands or self.wanted_faults:
+            cells = self.wanted_commands or self.wanted_faults
+            state = cells[0].split("|")[1 if cells is self.wanted_faults else 0]
+            here = [c for c in self.wanted_commands if c.split("|")[0] == state]
+            faults = [c for c in self.wanted_faults if c.split("|")[1] == state]
+            self.wanted_commands = [c for c in self.wanted_commands if c not in here]
+            self.wanted_faults = [c for c in self.wanted_faults if c not in faults]
+            acting = [m for m in mission.members if m.name != mission.ground]
+            member = next((m for m in acting if faults and m.name == faults[0].split("|")[2]), r.choice(acting))
+            ready = max(self.drive(time, m, STATES.index(state)) for m in acting)
+            time = ready + 0.02
+            for cell in here:
+                _, kind, origin = cell.split("|")
+                owner = next((s for s in [mission.supervisor, *mission.members] if kind in s.functions), member)
+                self.send_random(time, kind, origin, owner)
+                time += r.choice([0.0, 0.001, 0.004])
+                if kind in ("SET_STATE", "CONFIGURE"):
+                    time = max(self.drive(time + 0.01, m, STATES.index(state)) for m in acting) + 0.01
+            for cell in faults:
+                fault, _, struck = cell.split("|")
+                self.fault(time, fault, struck)
+                time += 0.25
+            time += r.uniform(0.1, 0.6)
+            if time > FINALE_S - 3:
+                return
+
+    def roam(self):
+        """Whatever, whenever; faults come alone, in pairs, and into a recovery that is under way."""
+        r, mission = self.random, self.mission
+        for _ in range(r.choice([20, 80, 200])):
+            self.send_random(r.uniform(BEGIN_S, FINALE_S))
+        for _ in range(r.choice([1, 2, 4])):
+            time = r.uniform(0.3, FINALE_S - 2)
+            for _ in range(r.choice([1, 1, 2, 3])):
+                cell = r.choice(list(faults_of(mission)))
+                fault, _, struck = cell.split("|")
+                self.fault(time, fault, struck)
+                time += r.choice([0.0, 0.0005, 0.002, 0.004, 0.05, 0.5])
+            if r.random() < 0.6:
+                self.bring_up(time + r.uniform(0.5, 3))
+
+    def text(self):
+        if self.wanted_commands or self.wanted_faults:
+            self.aim()
+        self.roam()
+        self.lines.sort(key=lambda line: line[0])
+        head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}"]
+        return "\n".join(head + [f"{time:.6f} {words}" for time, words in self.lines]) + "\n"
+
+
+def pack(kind, value):
+    octets = TYPES[kind][1] if kind in TYPES and kind != "STRUCT" else 8
+    if kind == "DOUBLE":
+        return struct.pack(">d", value)
+    if kind == "FLOAT":
+        try:
+            return struct.pack(">f", value)
+        except OverflowError:
+            return struct.pack(">f", float("inf"))
+    if value != value or abs(value) == float("inf"):
+        value = (1 << 8 * octets) - 1
+    return (int(max(-2.0**63, min(value, 2.0**63))) & ((1 << 8 * octets) - 1)).to_bytes(octets, "big")

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "hirosco/pus/st08_function.hpp"
+#include "simulation/campaign/planned_flight.hpp"
+
+/// The same end for every flight: the faults stop, SAFE_ALL stops the craft, and two seconds later all that lives can be
+/// brought up by ground's telecommands and stays up (I10; SF14).
+namespace hirosco::campaign {
+
+using descriptor::State;
+
+std::uint32_t PlannedFlight::state(std::string_view name) const {
+  const VitalPage* page = craft_->vital(name);
+  return page != nullptr ? page->state.load() : 0;
+}
+
+void PlannedFlight::end_faults() {
+  for (const auto& device : mission_.devices) {
+    if (auto* simulated = craft_->device(device.name)) {
+      static_cast<void>(simulated->fault("heal"));
+      static_cast<void>(simulated->fault("plug"));
+    }
+  }
+  for (const auto& member : mission_.subsystems) {
+    craft_->stop(member.subsystem.name, false);
+    craft_->stick(member.subsystem.name, false);
+    craft_->strain(member.subsystem.name, 0, {});
+  }
+  if (supervisor_stopped_) craft_->stop(mission_.supervisor.name, false);
+  supervisor_stopped_ = false;
+  disk_.fault = DiskFault::None;
+  disk_.delay = {};
+  trace_->say("calm");
+}
+
+/// Sends a function with all acknowledgements and waits for its end.
+bool PlannedFlight::call(std::string_view subsystem, std::string_view name, std::optional<double> argument) {
+  const auto* member = mission_.find_subsystem(subsystem);
+  const descriptor::Subsystem& target = member != nullptr ? member->subsystem : mission_.supervisor;
+  const auto common = pus::common_functions();
+  const auto built_in = std::ranges::find(common, name, &descriptor::Function::name);
+  const auto* function = built_in != common.end() ? &*built_in : target.find_function(name);
+  if (function == nullptr) return false;
+  std::vector<double> values;
+  if (argument) values.push_back(*argument);
+  const auto data = pus::encode_call(*function, std::span<const double>{values});
+  if (!data || !send("ground", {.apid = target.id, .service = 8, .subtype = 1, .ack = 15}, *data)) return false;
+  const std::uint32_t request = last_request_;
+  constexpr Duration patience = 2s;
+  run_until([&] { return verdicts_[request].over; }, patience);
+  trace_->say("called {} {} {} {}", target.name, name, argument.value_or(0),
+              verdicts_[request].completed ? "completed" : "failed");
+  return verdicts_[request].completed;
+}
+
+void PlannedFlight::finale() {
+  if (craft_->supervisor().finished()) return;
+  end_faults();
+  run_until(craft_->now() - start_of_flight + 100ms);
+  // A store that has failed takes nothing more; a new one does.
+  static_cast<void>(call(mission_.supervisor.name, "SET_DATABASE", 1));
+  static_cast<void>(call(mission_.supervisor.name, "SAFE_ALL", {}));
+  run_until(plan_.finale + 2s);
+  trace_->say("recovered");
+  for (const auto& member : mission_.subsystems)
+    if (craft_->alive(member.subsystem.name))
+      send("ground", {.apid = member.subsystem.id, .service = 17, .subtype = 1, .ack = 15}, {});
+  run_until(craft_->now() - start_of_flight + 200ms);
+  bring_up();
+  static_cast<void>(call(mission_.supervisor.name, "SAFE_ALL", {}));
+  run_until(craft_->now() - start_of_flight + 500ms);
+  static_cast<void>(call(mission_.supervisor.name, "SHUTDOWN", {}));
+  constexpr Duration longest_shutdown = 6s;
+  run_until(craft_->now() - start_of_flight + longest_shutdown);
+}
+
+/// The mode that couples most, or what is left of it.
+void PlannedFlight::bring_up() {
+  const auto* mode = mission_.find_mode("telepresence");
+  const auto* alone = mission_.find_mode("standalone");
+  const auto* commissioning = mission_.find_mode(mission_.initial_mode);
+  if (mode == nullptr || alone == nullptr || commissioning == nullptr) return;
+  const auto lives = [&](const auto& step) { return craft_->alive(step.subsystem); };
+  if (!std::ranges::all_of(mode->commission, lives)) mode = alone;
+  static_cast<void>(call(mission_.supervisor.name, "SET_MODE", commissioning->id));
+  std::vector<const descriptor::CommissionStep*> steps;
+  for (const auto& step : mode->commission)
+    if (lives(step) && step.subsystem != mission_.ground.subsystem) steps.push_back(&step);
+  const auto each = [&](std::string_view function, const auto& argument) {
+    for (const auto* step : steps) static_cast<void>(call(step->subsystem, function, argument(*step)));
+  };
+  const auto to = [](State target) { return [target](const auto&) { return static_cast<double>(target); }; };
+  const auto configuration = [&](const descriptor::CommissionStep& step) {
+    const auto& subsystem = mission_.find_subsystem(step.subsystem)->subsystem;
+    return static_cast<double>(subsystem.find_configuration(step.configuration)->id);
+  };
+  for (const auto* step : steps) {
+    if (state(step->subsystem) != static_cast<std::uint32_t>(State::Offline))
+      static_cast<void>(call(step->subsystem, "SET_STATE", static_cast<double>(State::Offline)));
+  }
+  each("SET_STATE", to(State::PreOperational));
+  each("CONFIGURE", configuration);
+  for (const std::uint8_t link : mode->establish) static_cast<void>(call(mission_.supervisor.name, "LINK", link));
+  each("SET_STATE", to(State::SafeOperational));
+  each("SET_STATE", to(State::Operational));
+  for (const auto* step : steps) trace_->say("up {}", step->subsystem);
+  run_until(craft_->now() - start_of_flight + 500ms);
+  trace_->say("flown");
+}
+
+}  // namespace hirosco::campaign

@@ -1,0 +1,187 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""What the judge must know of mission and descriptors. An own reading: nothing here comes from the code it judges."""
+import dataclasses, pathlib
+import xml.etree.ElementTree as xml
+
+STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational",
+          "ErrorOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit"]
+OFFLINE, SOFTWARE_INIT, HARDWARE_INIT, PRE, SAFE, OPERATIONAL, ERROR, POST, HARDWARE_DEINIT, SOFTWARE_DEINIT = range(10)
+TRANSIENT = {SOFTWARE_INIT, HARDWARE_INIT, HARDWARE_DEINIT, SOFTWARE_DEINIT}
+# Figure 4 of the paper.
+EDGES = {(OFFLINE, SOFTWARE_INIT), (SOFTWARE_INIT, HARDWARE_INIT), (SOFTWARE_INIT, SOFTWARE_DEINIT), (HARDWARE_INIT, PRE),
+         (HARDWARE_INIT, HARDWARE_DEINIT), (PRE, SAFE), (PRE, POST), (PRE, ERROR), (SAFE, OPERATIONAL), (SAFE, POST),
+         (SAFE, ERROR), (OPERATIONAL, SAFE), (OPERATIONAL, ERROR), (ERROR, POST), (POST, PRE), (POST, HARDWARE_DEINIT),
+         (HARDWARE_DEINIT, SOFTWARE_DEINIT), (SOFTWARE_DEINIT, OFFLINE)}
+
+
+def reachable_unseen(start, goal):
+    """Whether `goal` follows `start` by edges that pass only through states that last no time of their own."""
+    seen, front = set(), [start]
+    while front:
+        state = front.pop()
+        for source, target in EDGES:
+            if source != state or target in seen:
+                continue
+            if target == goal:
+                return True
+            seen.add(target)
+            if target in TRANSIENT or target == POST:
+                front.append(target)
+    return False
+
+
+@dataclasses.dataclass
+class Argument:
+    name: str
+    type: str
+    minimum: float | None
+    maximum: float | None
+    count: int = 1
+
+
+@dataclasses.dataclass
+class Function:
+    name: str
+    states: set
+    essential: bool
+    arguments: list
+
+
+@dataclasses.dataclass
+class Parameter:
+    name: str
+    wire_id: int
+    fields: list
+    read_only: bool
+    writable: set | None
+    protection: bool
+
+
+@dataclasses.dataclass
+class Required:
+    name: str
+    source: str
+    required: bool
+    age: int
+    inhibits: bool
+
+
+@dataclasses.dataclass
+class Configuration:
+    id: int
+    name: str
+    sampling_us: int
+    requires: list
+    devices: list
+    housekeeping: list
+
+
+@dataclasses.dataclass
+class Subsystem:
+    name: str
+    apid: int
+    functions: dict
+    parameters: list
+    events: dict       # id: (name, severity)
+    configurations: dict
+    actuators: set
+
+
+@dataclasses.dataclass
+class Mission:
+    supervisor: Subsystem
+    members: list
+    ground: str
+    modes: dict        # name: [(subsystem, functions, services, parameters)]
+    mode_ids: dict
+    initial_mode: str
+    links: dict        # id: (from, to, required set)
+    devices: dict      # simulated device: (member, device)
+
+    def by_apid(self, apid):
+        if apid == self.supervisor.apid:
+            return self.supervisor
+        return next((member for member in self.members if member.apid == apid), None)
+
+    def by_name(self, name):
+        return next((s for s in [self.supervisor, *self.members] if s.name == name), None)
+
+
+TYPES = {"UINT8": (1, 1), "INT8": (2, 1), "UINT16": (3, 2), "INT16": (4, 2), "UINT32": (5, 4), "INT32": (6, 4),
+         "UINT64": (7, 8), "INT64": (8, 8), "FLOAT": (9, 4), "DOUBLE": (10, 8), "STRUCT": (32, 0)}
+
+
+def number(element, name):
+    text = element.get(name)
+    return float(text) if text is not None else None
+
+
+def argument(element):
+    return Argument(element.get("name"), element.get("type") or "", number(element, "minimum"), number(element, "maximum"),
+                    int(element.get("count", 1)))
+
+
+def states(text):
+    return {STATES.index(name) for name in (text or "").split()}
+
+
+def read_parameters(root, apid):
+    parameters = []
+    for element in root.find("Parameters") if root.find("Parameters") is not None else []:
+        kind = element.get("type")
+        fields = [argument(child) for child in element] if kind == "STRUCT" else [argument(element)]
+        wire_id = apid << 16 | TYPES[kind][0] << 8 | int(element.get("id"))
+        writable = element.get("writable")
+        parameters.append(Parameter(element.get("name"), wire_id, fields, element.get("read_only") == "yes",
+                                    states(writable) if writable is not None else None, element.get("protection") == "yes"))
+    return parameters
+
+
+def read_configuration(element):
+    requires = [Required(r.get("name"), r.get("from", ""), r.get("required", "yes") != "no", int(r.get("age", 3)),
+                         r.get("missing", "inhibit") == "inhibit") for r in element.iter("Requires")]
+    devices = [(d.get("name"), int(d.get("watchdog_ms", 10))) for d in element.findall("Device")]
+    reports = [int(h.get("id")) for h in element.findall("HKService")]
+    return Configuration(int(element.get("id")), element.get("name"), int(element.get("sampling_us")), requires, devices, reports)
+
+
+def read_subsystem(path):
+    root = xml.parse(path).getroot()
+    apid = int(root.get("id"))
+    parameters = read_parameters(root, apid)
+    ranges = {p.name: p.fields[0] for p in parameters}
+    functions = {}
+    for element in root.iter("Function"):
+        arguments = []
+        for child in element.findall("Argument"):
+            given = argument(child)
+            if child.get("of") in ranges:
+                same = ranges[child.get("of")]
+                given = Argument(given.name, same.type, same.minimum, same.maximum)
+            arguments.append(given)
+        functions[element.get("name")] = Function(element.get("name"), states(element.get("states")),
+                                                  element.get("essential") == "yes", arguments)
+    events = {int(e.get("id"), 0): (e.get("name"), e.get("severity")) for e in root.iter("Event") if e.get("id")}
+    configurations = {c.id: c for c in map(read_configuration, root.findall("Configuration"))}
+    actuators = {d.get("name") for d in root.findall("Device") if d.get("actuator") == "yes"}
+    return Subsystem(root.get("name"), apid, functions, parameters, events, configurations, actuators)
+
+
+def read_mission(path):
+    path = pathlib.Path(path)
+    path = path / "mission.xml" if path.is_dir() else path
+    root = xml.parse(path).getroot()
+    supervisor = read_subsystem(path.parent / root.find("Supervisor").get("descriptor"))
+    members = [read_subsystem(path.parent / s.get("descriptor")) for s in root.findall("Subsystem")]
+    modes, mode_ids = {}, {}
+    for place, mode in enumerate(root.find("Modes"), 1):
+        permits = [(p.get("subsystem"), set((p.get("functions") or "").split()), set((p.get("services") or "").split()),
+                    set((p.get("parameters") or "").split())) for p in mode.findall("Permit")]
+        modes[mode.get("name")] = permits
+        mode_ids[mode.get("name")] = int(mode.get("id", place))
+    links = {int(link.get("id")): (link.get("from").split(".")[0], *link.get("to").split("."))
+             for link in root.find("Links")}
+    devices = {d.get("name"): (d.get("subsystem"), d.get("device")) for d in root.findall("SimulatedDevice")}
+    ground = root.find("Supervisor/Ground").get("subsystem")
+    return Mission(supervisor, members, ground, modes, mode_ids, root.find("Modes").get("initial"), links, devices)

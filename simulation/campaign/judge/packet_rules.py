@@ -1,0 +1,199 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Invariants on packets: what was asked, permitted, logged and answered."""
+import collections, struct
+
+from descriptors import ERROR, OPERATIONAL, POST, SAFE, STATES
+from record import meets
+from rules import ground_link_works
+
+PING_US = 200_000
+LAST_SECOND_US = 1_000_000
+
+
+def lost_records(flight):
+    return sum(record.lost for record in flight.log if record.kind == "gap")
+
+
+def i2_one_final_report(flight, victims):
+    """Each telecommand that was accepted ends in exactly one final report; none that was sent vanishes without a word."""
+    finals, starts_failed, reported = collections.Counter(), set(), set()
+    for record in flight.log:
+        if record.report is None or record.report.service != 1 or len(record.report.data) < 4:
+            continue
+        key = record.report.request_key
+        reported.add(key)
+        if record.report.subtype in (2, 7, 8, 10):
+            finals[key] += 1
+        elif record.report.subtype == 4:
+            starts_failed.add(key)
+    reported |= {(down[5], down[6]) for down in flight.down if down[3] == 1}
+    ended_below = {(down[5], down[6]) for down in flight.down if down[3] == 1 and down[4] in (2, 4, 7, 8, 10)}
+    logged, late = set(), min(flight.finished(), flight.end - LAST_SECOND_US)
+    for record in flight.log:
+        if record.telecommand is None:
+            continue
+        key = record.telecommand.key
+        logged.add(key)
+        if record.kind != "telecommand-forwarded" or record.time > late:
+            continue
+        wants_end = record.telecommand.ack & 8
+        if wants_end and not finals[key] and key not in starts_failed and key not in ended_below:
+            yield record.time, f"TC[{record.telecommand.service},{record.telecommand.subtype}] {record.telecommand.function or ''} to " \
+                               f"{name_of(flight, record.peer)} has no final report"
+    for key, number in finals.items():
+        if number > 1:
+            yield 0, f"request {key[1]:08x} of source {key[0]} has {number} final reports"
+    for sent in flight.sent:
+        quiet = sent.origin == "ground" and ground_link_works(flight, victims, sent.time, sent.time + PING_US)
+        if quiet and sent.time < late and sent.key not in logged | reported:
+            yield sent.time, f"TC[{sent.service},{sent.subtype}] of ground vanished without a word"
+            break
+
+
+def i3_everything_is_logged_once(flight, victims):
+    numbers, packets, received = set(), set(), collections.Counter()
+    for record in flight.log:
+        if record.number in numbers:
+            yield record.time, f"record number {record.number} stands twice"
+        numbers.add(record.number)
+        if record.report is not None:
+            if record.packet in packets:
+                yield record.time, f"a packet of {name_of(flight, record.source)} stands twice"
+            packets.add(record.packet)
+        if record.kind == "telecommand-received":
+            received[record.telecommand.key] += 1
+    kept = sum(record.kind != "gap" for record in flight.log)
+    last = max(numbers, default=0)
+    if kept + lost_records(flight) != last:
+        yield flight.end, f"{kept} records and {lost_records(flight)} lost are not the {last} that were numbered"
+    for key, number in received.items():
+        if number > 1:
+            yield 0, f"request {key[1]:08x} of source {key[0]} was received {number} times"
+    in_log = {(r.report.apid, r.report.count) for r in flight.log if r.report is not None}
+    missing = [down for down in flight.down if (down[1], down[2]) not in in_log]
+    if len(missing) > lost_records(flight):
+        time, apid, count = missing[0][:3]
+        yield time, f"{len(missing)} reports came to ground and are not in the log, the first {name_of(flight, apid)} {count}"
+    accepted = {(down[5], down[6]) for down in flight.down if down[3] == 1 and down[4] == 1 and down[5] == 0}
+    for key in accepted:
+        if received[key] == 0:
+            yield 0, f"request {key[1]:08x} was acknowledged and is not in the log"
+
+
+def i6_ping_is_answered(flight, victims):
+    answers = {}
+    for down in flight.down:
+        if down[3] == 1 and down[4] == 7 and down[5] == 0:
+            answers.setdefault(down[6], down[0])
+    for sent in flight.sent:
+        if sent.service != 17 or sent.subtype != 1 or sent.apid != flight.mission.supervisor.apid or sent.origin != "ground":
+            continue
+        if sent.time + PING_US >= flight.finished() or not ground_link_works(flight, victims, sent.time, sent.time + PING_US):
+            continue
+        if answers.get(sent.key[1], flight.end) > sent.time + PING_US:
+            yield sent.time, "a ping of ground to the supervisor was not answered within 200 ms"
+
+
+def i8_nothing_unauthorised(flight, victims):
+    mode = flight.mode()
+    origin = {}
+    for record in flight.log:
+        if record.kind == "telecommand-received" and record.telecommand:
+            origin.setdefault(record.telecommand.key, (record.source, record.time))
+    for record in flight.log:
+        if record.kind != "telecommand-forwarded" or record.telecommand is None:
+            continue
+        source, time = origin.get(record.telecommand.key, (record.telecommand.source, record.time))
+        modes = mode.during(time - 1_000, time + 1_000)
+        name = name_of(flight, record.peer)
+        lag_us = 12_000
+        states = flight.state[name].during(time - lag_us, record.time + lag_us) if name in flight.state else [OPERATIONAL]
+        if not any(permitted(flight.mission, record, source, m, s) for m in modes for s in states):
+            tc = record.telecommand
+            yield record.time, (f"TC[{tc.service},{tc.subtype}] {tc.function or ''} {tc.first_argument if tc.first_argument is not None else ''}"
+                                f" of {name_of(flight, source)} to {name} ran in mode {modes[-1]}, {STATES[states[-1]]}")
+
+
+def permitted(mission, record, source, mode, state):
+    """May this source send this in that mode to an addressee in that state? Own words of the mission's rules."""
+    tc, own = record.telecommand, source == mission.supervisor.apid
+    addressee = mission.by_apid(tc.apid)
+    if addressee is None or (tc.source == mission.supervisor.apid) != own:
+        return False
+    if tc.service in (17, 129):
+        return True
+    if own or tc.service == 128:
+        return own
+    function = addressee.functions.get(tc.function)
+    is_state = tc.function in ("SET_STATE", "CONFIGURE")
+    if is_state and addressee is mission.supervisor:
+        return False
+    if tc.function == "SET_STATE" and (tc.first_argument in (ERROR, POST) or (tc.first_argument == SAFE and state == OPERATIONAL)):
+        return True
+    if tc.function is not None and function is None and not is_state:
+        return True  # nobody has it: the addressee says so
+    if function is not None and function.essential:
+        return True
+    for subject, functions, services, parameters in mission.modes[mode]:
+        if subject not in ("*", addressee.name):
+            continue
+        if str(tc.service) in services or (tc.service == 8 and functions & {"*", tc.function}):
+            if tc.service == 20 and tc.subtype == 3 and not may_write(mission, addressee, tc, mode, state):
+                continue
+            if function is None or state in function.states:
+                return True
+    return False
+
+
+def may_write(mission, addressee, tc, mode, state):
+    """Of TC[20,3], once the descriptors say who may write what."""
+    declared = {p.wire_id: p for s in [mission.supervisor, *mission.members] for p in s.parameters}
+    if all(p.writable is None for p in declared.values()):
+        return True
+    names = set().union(*(parameters for subject, _, _, parameters in mission.modes[mode] if subject in ("*", addressee.name)))
+    known = [declared[i] for i in written(tc, declared) if i in declared]
+    return all(p.writable is not None and state in p.writable and names & {"*", p.name} for p in known)
+
+
+def written(tc, declared):
+    """Ids of the parameters that TC[20,3] sets; what cannot be read is the addressee's to refuse."""
+    from descriptors import TYPES
+    data, ids = tc.data, []
+    if not data:
+        return ids
+    number, at = data[0], 1
+    for _ in range(number):
+        if at + 4 > len(data):
+            break
+        wire_id = struct.unpack(">I", data[at:at + 4])[0]
+        if wire_id not in declared:
+            break
+        ids.append(wire_id)
+        at += 4 + sum(TYPES[f.type][1] * f.count for f in declared[wire_id].fields)
+    return ids
+
+
+def i11_nothing_goes_back(flight, victims):
+    before, times, stored, monotonic = {}, {}, 0, -10**9
+    for record in flight.log:
+        if record.kind != "gap" and (record.time < monotonic or record.stored < stored):
+            yield record.time, "the times of the log go back"
+        monotonic, stored = max(record.time, monotonic), max(record.stored, stored)
+        if record.report is None:
+            continue
+        apid = record.report.apid
+        if apid in before and not 0 < (record.report.count - before[apid]) % 16384 < 8192:
+            yield record.time, f"sequence count of {name_of(flight, apid)} goes from {before[apid]} to {record.report.count}"
+        if record.report.time < times.get(apid, 0):
+            yield record.time, f"times of {name_of(flight, apid)} go back"
+        before[apid], times[apid] = record.report.count, max(record.report.time, times.get(apid, 0))
+
+
+def name_of(flight, apid):
+    subsystem = flight.mission.by_apid(apid)
+    return subsystem.name if subsystem else "ground" if apid == 0 else f"APID {apid}"
+
+
+PACKETS = {"I2": [i2_one_final_report], "I3": [i3_everything_is_logged_once], "I6": [i6_ping_is_answered],
+           "I8": [i8_nothing_unauthorised], "I11": [i11_nothing_goes_back]}

@@ -1,0 +1,221 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Invariants on what happened in the world: who died, what moved, which states and links there were, how time passed."""
+from descriptors import EDGES, ERROR, OFFLINE, OPERATIONAL, STATES, reachable_unseen
+from record import meets
+
+CYCLES_TO_SAFE = 5             # actuators of a network, in cycles of whoever acts
+STATE_LAG_US = 12_000          # the vital page tells a state by the service loop, every 1 or 10 ms
+SAFE_ALL_US = 500_000
+OFFLINE_US = 2_000_000
+
+
+def i1_only_victims_die(flight, victims):
+    for name in flight.members:
+        for time, value in list(zip(flight.alive[name].times, flight.alive[name].values))[1:]:
+            if value or time >= flight.finished():
+                continue
+            if not any(start <= time for start, _ in victims[name]):
+                yield time, f"{name} died though nothing was done to it"
+
+
+def i4_actuators_are_off_outside_operational(flight, victims):
+    for device, (member, _) in flight.mission.devices.items():
+        for start, end in flight.active[device].spans(flight.end):
+            period_us = max(flight.period_ns[member].at(start) // 1000, flight.device_period_ns[device] // 1000)
+            watchdog_us = 12_000 + 2 * period_us  # of the device itself, when its member says nothing any more
+            late = STATE_LAG_US + CYCLES_TO_SAFE * period_us
+            for first, last in flight.state[member].spans(flight.end, lambda state: state != OPERATIONAL):
+                if meets(victims[member] + victims[device], first - 1, first + 1):
+                    late = max(late, watchdog_us)
+                first, last = max(first + late, start + STATE_LAG_US), min(last, end)
+                if last - first > STATE_LAG_US:
+                    yield first, f"{device} acts while {member} is {STATES[flight.state[member].at(first)]}"
+            for name in (member, device):
+                for first, last in victims[name]:
+                    if flight.alive[member].at(first + 1) == 0 and end > first + watchdog_us and start < first:
+                        yield first, f"{device} acts {(end - first) // 1000} ms after the death of {member}"
+
+
+def i4_safe_all_stops_everything(flight, victims):
+    supervisor = flight.mission.supervisor
+    for sent in flight.sent:
+        if sent.function != "SAFE_ALL" or sent.apid != supervisor.apid or sent.origin != "ground":
+            continue
+        if not ground_link_works(flight, victims, sent.time, sent.time + SAFE_ALL_US) or flight.finished() <= sent.time:
+            continue
+        done = next((r.time for r in flight.log if r.report and r.report.service == 1 and r.report.subtype == 7
+                     and r.report.request_key == sent.key), None)
+        if done is None or done > sent.time + SAFE_ALL_US:
+            refused = next((r.time for r in flight.log if r.kind == "telecommand-refused" and r.telecommand
+                            and r.telecommand.key == sent.key), None)
+            yield sent.time, "SAFE_ALL was " + ("refused" if refused is not None else "not completed within 500 ms")
+        at = min(done or sent.time + SAFE_ALL_US, sent.time + SAFE_ALL_US)
+        for device, (member, _) in flight.mission.devices.items():
+            released = [s.time for s in flight.sent if s.time >= sent.time and is_operational(flight, s, member)]
+            released += [r.time for r in flight.log if r.time >= sent.time and r.kind == "telecommand-received" and r.telecommand
+                         and r.source == supervisor.apid and r.telecommand.first_argument == OPERATIONAL
+                         and r.telecommand.function == "SET_STATE" and r.peer == flight.mission.by_name(member).apid]
+            until = min(released, default=flight.end)
+            for start, end in flight.active[device].spans(flight.end):
+                if end > at + STATE_LAG_US and start < until and end > start and max(start, at + STATE_LAG_US) < min(end, until):
+                    yield sent.time, f"{device} acts {(max(start, at) - sent.time) // 1000} ms after SAFE_ALL"
+                    break
+
+
+def is_operational(flight, sent, member):
+    """Whether it may be SET_STATE(Operational); its argument stands in the log only."""
+    return sent.function == "SET_STATE" and sent.apid == flight.mission.by_name(member).apid
+
+
+def ground_link_works(flight, victims, start, end):
+    ground = flight.mission.ground
+    return (all(state == OPERATIONAL for state in flight.state[ground].during(start, end)) and
+            not any(meets(victims[name], start - 100_000, end) for name in (ground, "SUPERVISOR", "FLOOD")))
+
+
+def networks(flight, time):
+    """Members that links join at this instant."""
+    groups = [{name} for name in flight.members]
+    for link in flight.links.at(time):
+        producer, consumer, _ = flight.mission.links[link]
+        joined = [group for group in groups if producer in group or consumer in group]
+        groups = [group for group in groups if group not in joined] + [set().union(*joined)]
+    return groups
+
+
+def i4_a_network_goes_down_with_its_member(flight, victims):
+    """Death, hang or unplugged device of a member: the others of its network are Offline within two seconds."""
+    for time, words in flight.did:
+        if words[0] == "kill" or (words[0] == "fault" and words[2] == "unplug"):
+            struck = flight.mission.devices[words[1]][0] if words[0] == "fault" else words[1]
+        else:
+            continue
+        if words[0] == "fault" and flight.state[struck].at(time) != OPERATIONAL:
+            continue
+        group = next(group for group in networks(flight, time - 1) if struck in group)
+        if time + OFFLINE_US > min(flight.finished(), flight.mark("calm") or flight.end):
+            continue
+        if meets(victims["SUPERVISOR"], time - OFFLINE_US, time + OFFLINE_US):
+            continue
+        for name in group - {struck, flight.mission.ground}:
+            if meets(victims[name], time - 1, time + OFFLINE_US) or not flight.alive[name].at(time):
+                continue
+            if OFFLINE not in flight.state[name].during(time, time + OFFLINE_US):
+                yield time, (f"{name} is not Offline 2 s after {' '.join(words)}, but "
+                             f"{STATES[flight.state[name].at(time + OFFLINE_US)]}")
+
+
+def i5_no_stale_sample_is_used(flight, victims):
+    for member in flight.mission.members:
+        devices = [device for device, (owner, _) in flight.mission.devices.items() if owner == member.name]
+        for device in devices:
+            for start, end in flight.active[device].spans(flight.end):
+                configuration = member.configurations.get(flight.configuration[member.name].at(start + 1))
+                for wanted in configuration.requires if configuration else []:
+                    if not wanted.inhibits or wanted.source not in flight.still:
+                        continue
+                    limit_us = (wanted.age + CYCLES_TO_SAFE) * max(flight.period_ns[member.name].at(start),
+                                                                   flight.period_ns[wanted.source].at(start)) // 1000
+                    for first, last in flight.still[wanted.source].spans(flight.end):
+                        stale = max(start, first) + limit_us
+                        if stale < min(end, last) and not meets(victims[member.name], first, stale):
+                            yield stale, f"{device} acts on samples of {wanted.source}, which stands still since {first / 1e6:.4f}"
+
+
+def i9_only_edges_of_the_table(flight, _):
+    for name in flight.members:
+        previous = OFFLINE
+        states, alive = flight.state[name], flight.alive[name]
+        for time, state in zip(states.times[1:], states.values[1:]):
+            if not alive.at(time):
+                previous = OFFLINE
+                continue
+            if state != previous and not reachable_unseen(previous, state):
+                yield time, f"{name} went from {STATES[previous]} to {STATES[state]}"
+            previous = state
+    told = {}
+    for record in flight.log:
+        if record.kind == "action" and (" died" in record.note or record.note.startswith(("started", "restarted"))):
+            told.pop(record.peer, None)
+        subsystem = flight.mission.by_apid(record.source)
+        if record.kind != "event" or subsystem is None or record.report is None or len(record.report.data) != 3:
+            continue
+        event = int.from_bytes(record.report.data[:2], "big")
+        if event != 0xF000 and subsystem.events.get(event, ("",))[0] != "STATE_CHANGED":
+            continue
+        state, previous = record.report.data[2], told.get(record.source)
+        if previous is not None and state != previous and (previous, state) not in EDGES and not muted(flight, record.source):
+            yield record.time, f"{subsystem.name} told of {STATES[state]} after {STATES[previous]}"
+        told[record.source] = state
+
+
+def muted(flight, apid):
+    """ST[05] was told to keep events of this subsystem to itself, or the log has gaps: a missing report is no jump."""
+    return (any(r.kind == "gap" for r in flight.log) or
+            any(r.kind == "telecommand-forwarded" and r.peer == apid and r.telecommand and r.telecommand.service == 5 for r in flight.log))
+
+
+def i10_commandable_again(flight, victims):
+    recovered, flown = flight.mark("recovered"), flight.mark("flown")
+    if recovered is None:
+        return
+    answered = {d[6] for d in flight.down if d[3] == 1 and d[4] == 7 and d[5] == 0}
+    for sent in flight.sent:
+        if recovered <= sent.time <= recovered + 1 and sent.service == 17 and sent.key[1] not in answered:
+            yield sent.time, f"{flight.mission.by_apid(sent.apid).name} answers no ping 2 s after the last fault"
+    if flown is None:
+        yield recovered, "nothing could be brought up"
+        return
+    for up, (name,) in flight.marks["up"]:
+        if any(state != OPERATIONAL for state in flight.state[name].during(up, flown)):
+            states = [STATES[state] for state in flight.state[name].during(up, flown)]
+            why = next((f"; {words[1]} of {words[0]} failed" for time, words in flight.called
+                        if recovered < time < flown and words[3] == "failed"), "")
+            yield up, f"{name} cannot be brought up again: {', '.join(states)}{why}"
+
+
+def i12_no_operational_without_required_link(flight, victims):
+    for member in flight.mission.members:
+        for start, end in flight.state[member.name].spans(flight.end, lambda state: state == OPERATIONAL):
+            configuration = member.configurations.get(flight.configuration[member.name].at(start))
+            for wanted in configuration.requires if configuration else []:
+                if not wanted.required:
+                    continue
+                link = next((i for i, (_, to, name) in flight.mission.links.items() if (to, name) == (member.name, wanted.name)), None)
+                for first, last in flight.links.spans(flight.end, lambda up: link not in up):
+                    first, last = max(first, start) + 2 * STATE_LAG_US, min(last, end)
+                    if first < last and not meets(victims[member.name] + victims["SUPERVISOR"], first - 1, last):
+                        yield first, f"{member.name} is Operational without {wanted.name}"
+
+
+def i13_cycles_keep_time(flight, victims):
+    """Over every span in which nothing was done to it, at the same period."""
+    for name in [*flight.members, *flight.mission.devices]:
+        is_device = name in flight.mission.devices
+        begun = None
+        for time, counts in flight.cycles:
+            period_ns = flight.device_period_ns[name] if is_device else flight.period_ns[name].at(time)
+            runs = (is_device or (flight.cycling[name].at(time) and not flight.still[name].at(time))) and period_ns
+            disturbed = meets(victims[name], time - 20_000, time) or meets(victims["SUPERVISOR"], time - 20_000, time)
+            if not runs or disturbed or time == 0 or time >= flight.finished():
+                begun = None
+                continue
+            if begun is None or begun[2] != period_ns or (not is_device and not steady(flight, name, begun[0], time)):
+                begun = time, counts[name], period_ns
+                continue
+            expected = (time - begun[0]) * 1000 / period_ns
+            if abs(counts[name] - begun[1] - expected) > 1.01:
+                yield time, (f"{name} made {counts[name] - begun[1]} cycles in {(time - begun[0]) / 1000:.0f} ms, "
+                             f"{expected:.0f} expected")
+                break
+
+
+def steady(flight, name, start, end):
+    return all(flight.cycling[name].during(start, end)) and not any(flight.still[name].during(start, end))
+
+
+WORLD = {"I1": [i1_only_victims_die],
+         "I4": [i4_actuators_are_off_outside_operational, i4_safe_all_stops_everything, i4_a_network_goes_down_with_its_member],
+         "I5": [i5_no_stale_sample_is_used], "I9": [i9_only_edges_of_the_table], "I10": [i10_commandable_again],
+         "I12": [i12_no_operational_without_required_link], "I13": [i13_cycles_keep_time]}
