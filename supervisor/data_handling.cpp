@@ -144,14 +144,23 @@ void Supervisor::forward_durable() {
   }
 }
 
-/// A store that fails or stands still: said once, and nothing waits for it for ever.
+/// A store that fails or stands still: said once, with cause and cure, and nothing waits for it for ever.
 void Supervisor::watch_log(TimePoint now) {
+  const StoreTrouble trouble = parts_.log.trouble();
+  // Somebody who deletes the log in a loop does not fill the console: the text carries the count.
+  const bool news = trouble.count != told_troubles_ && (told_troubles_ == 0 || now - trouble_told_ >= log_patience);
+  if (news) {
+    told_troubles_ = trouble.count;
+    trouble_told_ = now;
+    tell(trouble.text, 1);
+    engine_.announce(trouble.fault == StoreFault::Damaged ? "LOG_DAMAGED" : "LOG_STORE");
+  }
   const bool failing =
       parts_.log.failure().has_value() || (!waiting_.empty() && now - waiting_.front().since > log_patience);
   if (failing != log_failing_) {
     log_failing_ = failing;
     tell(failing ? "log storage fails: telecommands that must be durable are held back" : "log storage works", 1);
-    if (failing) engine_.announce("LOG_STORE");
+    if (failing && !news) engine_.announce("LOG_STORE");
   }
   while (!waiting_.empty() && now - waiting_.front().since >= durable_limit) {
     const Waiting late = std::move(waiting_.front());

@@ -19,6 +19,7 @@
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/log_store.hpp"
 #include "supervisor/platform/process_launcher.hpp"
 #include "supervisor/supervisor.hpp"
 
@@ -35,6 +36,7 @@ constexpr int exit_environment = 3;
 constexpr int supervisor_priority = 30;
 constexpr Duration status_period = 1s;
 constexpr Duration last_wait = 2s;
+constexpr Duration log_start_limit = 3s;
 
 struct Options {
   std::filesystem::path mission;
@@ -52,35 +54,25 @@ struct Options {
   return options;
 }
 
-[[nodiscard]] Result<std::unique_ptr<Database>> open_log(DatabaseStrategy strategy, std::filesystem::path path) {
+[[nodiscard]] std::unique_ptr<Database> make_store(DatabaseStrategy strategy, std::filesystem::path path) {
   if (strategy == DatabaseStrategy::Ascii) path.replace_extension(".log");
-  std::error_code failed;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
-  return open_database(strategy, path);
+  return std::make_unique<LogStore>(strategy, std::move(path));
 }
 
-/// Opens its store in the thread that writes it: opening touches the disk, which may stand still.
-class LateDatabase final : public Database {
- public:
-  LateDatabase(DatabaseStrategy strategy, std::filesystem::path path) : strategy_{strategy}, path_{std::move(path)} {}
-
- private:
-  Result<> do_append(std::span<const LogRecord> batch) override {
-    if (!store_) {
-      HIROSCO_TRY_LET(store_, open_log(strategy_, path_));
-    }
-    return store_->append(batch);
+/// Nothing flies whose telecommands nobody could find again: the first record must reach the disk. Empty when it did,
+/// else why not.
+[[nodiscard]] std::optional<std::string> begin_log(ThreadedPacketLog& log, const Clock& clock) {
+  static_cast<void>(log.append({.kind = LogKind::Action, .source = 1, .peer = 1, .packet = {}, .note = "log begins"}));
+  const TimePoint limit = clock.now() + log_start_limit;
+  for (;;) {
+    // A store in trouble fails the wait at once, and heals by itself if it can.
+    if (log.flush(limit - clock.now())) return std::nullopt;
+    if (clock.now() >= limit) break;
+    sleep_until(clock.now() + 20ms);
   }
-  Result<LogPage> do_read(const LogQuery& query) override {
-    if (!store_) return fail(ErrorCode::Unavailable, "nothing was written yet");
-    return store_->read(query);
-  }
-  [[nodiscard]] std::string_view do_strategy() const noexcept override { return to_text(strategy_); }
-
-  DatabaseStrategy strategy_;
-  std::filesystem::path path_;
-  std::unique_ptr<Database> store_;
-};
+  const StoreTrouble trouble = log.trouble();
+  return trouble.present ? trouble.text : "the disk of the log does not answer";
+}
 
 /// Descriptors that may wake the supervisor; follows the set of living members.
 class Waker {
@@ -128,17 +120,16 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   SystemFlowFactory flows;
   SystemLauncher launcher;
   const auto strategy = from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);
-  auto database = open_log(strategy, mission.database.path);
-  if (!database) {
-    fmt::print(stderr, "hirosco: cannot open the log {}: {}\n", mission.database.path.string(), database.error().text);
-    return exit_environment;
-  }
   auto log_progress = WakeEvent::create();
   if (!log_progress) return exit_environment;
   Console console{mission, options.style};
   ThreadedPacketLog::Options log_options;
   log_options.on_progress = [&] { log_progress->notify(); };
-  ThreadedPacketLog log{clock, std::move(*database), std::move(log_options)};
+  ThreadedPacketLog log{clock, make_store(strategy, mission.database.path), std::move(log_options)};
+  if (const auto why_not = begin_log(log, clock)) {
+    fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, mission.database.path.string());
+    return exit_environment;
+  }
   const bool realtime = realtime_permitted();
   // The log's and the console's threads exist already: they stay ordinary.
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
@@ -148,7 +139,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
        .launcher = launcher,
        .log = log,
        .open_database = [&](DatabaseStrategy wanted) -> std::unique_ptr<Database> {
-         return std::make_unique<LateDatabase>(wanted, mission.database.path);
+         return make_store(wanted, mission.database.path);
        },
        .observer = console,
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384)}};

@@ -197,6 +197,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   };
   std::deque<Waiting> waiting_;
   bool log_failing_{false};
+  std::uint64_t told_troubles_{0};   ///< of the log's store
+  TimePoint trouble_told_{};
 
   TimePoint now_{};
   TimePoint next_watch_{};

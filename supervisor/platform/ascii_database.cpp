@@ -70,11 +70,19 @@ bool take_octets(std::string_view& rest, std::vector<std::byte>& octets) {
   return true;
 }
 
+/// No space and no right are told apart from an error after which nobody knows what the file holds.
+ErrorCode code_of(int reason) {
+  if (reason == ENOSPC || reason == EDQUOT) return ErrorCode::ResourceExhausted;
+  const bool forbidden = reason == EACCES || reason == EPERM || reason == EROFS || reason == ENOENT ||
+                         reason == ENOTDIR || reason == EISDIR || reason == EMFILE || reason == ENFILE;
+  return forbidden ? ErrorCode::NotPermitted : ErrorCode::SystemFailure;
+}
+
 Result<> write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return fail(ErrorCode::SystemFailure, "writing the log file", errno);
+    if (written < 0) return fail(code_of(errno), "writing the log file", errno);
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return ok();
@@ -148,7 +156,7 @@ Result<std::unique_ptr<Database>> AsciiDatabase::open(const std::filesystem::pat
     return std::unique_ptr<Database>(new AsciiDatabase{path, -1, false});
   }
   const int descriptor = ::open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0640);
-  if (descriptor < 0) return fail(ErrorCode::SystemFailure, "opening the log file", errno);
+  if (descriptor < 0) return fail(code_of(errno), "opening the log file", errno);
   std::unique_ptr<Database> database{new AsciiDatabase{path, descriptor, ends_inside_a_line(descriptor)}};
   HIROSCO_TRY(sync_folder_of(path));
   return database;

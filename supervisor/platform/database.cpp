@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hirosco/pus/packet.hpp"
+#include "hirosco/utilities/lower_case.hpp"
 #include "supervisor/platform/ascii_database.hpp"
 #include "supervisor/platform/sqlite_database.hpp"
 
@@ -105,7 +106,9 @@ bool matches(const LogRecord& record, const LogQuery& query) {
       (record.packet.empty() || label.apid != *query.apid))
     return false;
   if (query.service && (record.packet.empty() || label.service != *query.service)) return false;
-  return query.text.empty() || describe(record).find(query.text) != std::string::npos;
+  if (query.text.empty()) return true;
+  const std::string words = query.words ? query.words(record) : describe(record);
+  return lower_case(words).find(lower_case(query.text)) != std::string::npos;
 }
 
 Result<> Database::append(std::span<const LogRecord> batch) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -86,7 +87,8 @@ struct PacketLabel {
 struct LogQuery {
   std::optional<std::uint16_t> apid{};  ///< source, peer or the packet's own APID
   std::optional<std::uint8_t> service{};
-  std::string text{};  ///< part of `describe`
+  std::string text{};  ///< part of `words`, whatever the case of its letters
+  std::function<std::string(const LogRecord&)> words{};  ///< of a record; empty = `describe`
   std::uint64_t since{0};  ///< numbers from here on
   std::optional<OnboardTime> run{};  ///< one run only
   std::size_t last{1000};
@@ -96,6 +98,23 @@ struct LogQuery {
 struct LogPage {
   std::vector<LogRecord> records{};
   std::uint64_t damaged{0};  ///< stored lines that do not carry their own checksum: torn or changed
+};
+
+/// What keeps a store from storing.
+enum class StoreFault : std::uint8_t {
+  Deleted,     ///< the file is gone from its name; a new one was begun
+  Full,        ///< no space on the disk
+  Unwritable,  ///< owner, rights, a read-only disk
+  Damaged,     ///< an error after which nobody knows what the file holds; a new segment was begun
+  Locked,      ///< another program holds it
+};
+/// The newest trouble of a store that heals by itself.
+struct StoreTrouble {
+  std::uint64_t count{0};   ///< how often one began; 0 = never
+  StoreFault fault{};
+  bool present{false};      ///< not over yet: nothing was stored since
+  Error error{};
+  std::string text{};       ///< cause and cure in one line
 };
 
 /// Strategy seam: where records live. Longest packet: 65,542 octets.
@@ -113,11 +132,14 @@ class Database {
   [[nodiscard]] Result<LogPage> read(const LogQuery& query) { return do_read(query); }
   /// `sqlite`, `ascii`, `memory`.
   [[nodiscard]] std::string_view strategy() const noexcept { return do_strategy(); }
+  /// Of a store that heals by itself (`LogStore`); others have none.
+  [[nodiscard]] StoreTrouble trouble() const { return do_trouble(); }
 
  private:
   virtual Result<> do_append(std::span<const LogRecord> batch) = 0;
   virtual Result<LogPage> do_read(const LogQuery& query) = 0;
   [[nodiscard]] virtual std::string_view do_strategy() const noexcept = 0;
+  [[nodiscard]] virtual StoreTrouble do_trouble() const { return {}; }
 
   std::optional<Error> failed_{};
 };

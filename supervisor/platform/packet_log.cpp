@@ -64,6 +64,12 @@ void DirectPacketLog::do_switch_to(std::unique_ptr<Database> next) {
   store_waiting();
 }
 
+std::optional<Error> DirectPacketLog::do_failure() const {
+  if (failure_) return failure_;
+  const StoreTrouble trouble = database_->trouble();
+  return trouble.present ? std::optional{trouble.error} : std::nullopt;
+}
+
 LogCounters DirectPacketLog::do_counters() const {
   LogCounters counters = counted_;
   counters.lost = queue_.lost();
@@ -122,7 +128,13 @@ class ThreadedPacketLog::Writer {
 
   [[nodiscard]] std::optional<Error> failure() {
     const LockGuard lock{mutex_};
-    return failure_;
+    if (failure_) return failure_;
+    return trouble_.present ? std::optional{trouble_.error} : std::nullopt;
+  }
+
+  [[nodiscard]] StoreTrouble trouble() {
+    const LockGuard lock{mutex_};
+    return trouble_;
   }
 
   [[nodiscard]] LogCounters counters() {
@@ -229,6 +241,8 @@ class ThreadedPacketLog::Writer {
     if (!next_database_ || (batch_.empty() ? !old_is_done : !failure_ && !pause_)) return;
     old = std::exchange(database_, std::move(next_database_));
     failure_.reset();
+    trouble_.present = false;
+    seen_troubles_ = 0;
     pause_ = false;
   }
 
@@ -246,8 +260,14 @@ class ThreadedPacketLog::Writer {
   void write_batch() {
     if (batch_.empty()) return;
     const Result<> stored = database_->append(batch_.records());
+    StoreTrouble trouble = database_->trouble();
     {
       const LockGuard lock{mutex_};
+      // Counted over all databases of this log.
+      if (trouble.count != seen_troubles_) trouble_count_ += trouble.count - seen_troubles_;
+      seen_troubles_ = trouble.count;
+      trouble.count = trouble_count_;
+      trouble_ = std::move(trouble);
       if (stored) {
         ++batches_;
         batch_.clear();
@@ -278,6 +298,9 @@ class ThreadedPacketLog::Writer {
   std::unique_ptr<Database> next_database_;
   std::uint64_t switch_after_{0};
   std::optional<Error> failure_;
+  StoreTrouble trouble_;
+  std::uint64_t trouble_count_{0};
+  std::uint64_t seen_troubles_{0};
   std::uint64_t batches_{0};
   std::uint64_t failures_{0};
   std::uint64_t switches_{0};
@@ -316,6 +339,7 @@ void ThreadedPacketLog::do_switch_to(std::unique_ptr<Database> next) { writer_->
 
 LogCounters ThreadedPacketLog::do_counters() const { return writer_->counters(); }
 std::optional<Error> ThreadedPacketLog::do_failure() const { return writer_->failure(); }
+StoreTrouble ThreadedPacketLog::do_trouble() const { return writer_->trouble(); }
 OnboardTime ThreadedPacketLog::do_run() const noexcept { return writer_->run(); }
 
 }  // namespace hirosco::supervisor

@@ -45,8 +45,11 @@ class PacketLog {
   /// Realtime: bounded. Thread: any.
   void switch_to(std::unique_ptr<Database> next) { do_switch_to(std::move(next)); }
   [[nodiscard]] LogCounters counters() const { return do_counters(); }
-  /// Why the present database takes nothing any more; empty while it works. Only `switch_to` heals it.
+  /// Why the present database takes nothing; empty while it works. One that does not heal by itself (`trouble`) takes
+  /// nothing any more until `switch_to`.
   [[nodiscard]] std::optional<Error> failure() const { return do_failure(); }
+  /// The newest trouble of the present database, also when it is over.  Thread: any.
+  [[nodiscard]] StoreTrouble trouble() const { return do_trouble(); }
   /// The `run` of all records of this log.
   [[nodiscard]] OnboardTime run() const noexcept { return do_run(); }
 
@@ -56,6 +59,7 @@ class PacketLog {
   virtual void do_switch_to(std::unique_ptr<Database> next) = 0;
   [[nodiscard]] virtual LogCounters do_counters() const = 0;
   [[nodiscard]] virtual std::optional<Error> do_failure() const = 0;
+  [[nodiscard]] virtual StoreTrouble do_trouble() const = 0;
   [[nodiscard]] virtual OnboardTime do_run() const noexcept = 0;
 };
 
@@ -72,7 +76,8 @@ class DirectPacketLog final : public PacketLog {
   [[nodiscard]] std::uint64_t do_durable() const noexcept override { return durable_; }
   void do_switch_to(std::unique_ptr<Database> next) override;
   [[nodiscard]] LogCounters do_counters() const override;
-  [[nodiscard]] std::optional<Error> do_failure() const override { return failure_; }
+  [[nodiscard]] std::optional<Error> do_failure() const override;
+  [[nodiscard]] StoreTrouble do_trouble() const override { return database_->trouble(); }
   [[nodiscard]] OnboardTime do_run() const noexcept override { return queue_.run(); }
   void store_waiting();
 
@@ -114,6 +119,7 @@ class ThreadedPacketLog final : public PacketLog {
   void do_switch_to(std::unique_ptr<Database> next) override;
   [[nodiscard]] LogCounters do_counters() const override;
   [[nodiscard]] std::optional<Error> do_failure() const override;
+  [[nodiscard]] StoreTrouble do_trouble() const override;
   [[nodiscard]] OnboardTime do_run() const noexcept override;
 
   class Writer;

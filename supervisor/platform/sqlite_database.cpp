@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <utility>
 
 namespace hirosco::supervisor {
@@ -18,7 +19,13 @@ Error error_of(sqlite3* connection, const char* what) {
   const int primary = code & 0xFF;
   if (primary == SQLITE_BUSY || primary == SQLITE_LOCKED) return {ErrorCode::Unavailable, what, code};
   if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) return {ErrorCode::Malformed, what, code};
-  if (primary == SQLITE_FULL) return {ErrorCode::ResourceExhausted, what, code};
+  // A failed fsync leaves the file doubtful whatever the reason; any other call without space is only that.
+  const bool synced = code == SQLITE_IOERR_FSYNC || code == SQLITE_IOERR_DIR_FSYNC;
+  const int reason = sqlite3_system_errno(connection);
+  const bool no_space = primary == SQLITE_IOERR && !synced && (reason == ENOSPC || reason == EDQUOT);
+  if (primary == SQLITE_FULL || no_space) return {ErrorCode::ResourceExhausted, what, code};
+  if (primary == SQLITE_READONLY || primary == SQLITE_CANTOPEN || primary == SQLITE_PERM)
+    return {reason == ENOSPC ? ErrorCode::ResourceExhausted : ErrorCode::NotPermitted, what, code};
   return {ErrorCode::SystemFailure, what, code};
 }
 
@@ -75,7 +82,8 @@ Result<std::unique_ptr<Database>> SqliteDatabase::open(const std::filesystem::pa
   sqlite3* raw = nullptr;
   const int code = sqlite3_open_v2(path.c_str(), &raw, flags, nullptr);
   Connection connection{raw};
-  if (code != SQLITE_OK) return fail(ErrorCode::SystemFailure, "opening the log database", code);
+  if (raw == nullptr) return fail(ErrorCode::ResourceExhausted, "no memory for the log database", code);
+  if (code != SQLITE_OK) return fail(error_of(raw, "opening the log database"));
   std::unique_ptr<SqliteDatabase> database{new SqliteDatabase{std::move(connection)}};
   HIROSCO_TRY(database->set_up(access));
   return database;

@@ -16,6 +16,13 @@ namespace hirosco::tools {
 namespace {
 
 constexpr int answer_limit_ms = 2000;
+/// A device's control socket closes on whoever sends more.
+constexpr std::size_t longest_line = 255;
+constexpr const char* lines_of_devices =
+    "every device takes: unplug, plug, silent, stall MS, freeze MS, delay MS, corrupt FRAMES, heal, truth\n"
+    "the robot besides: temperature JOINT CELSIUS, hook SPRING, release, friction on|off, noise N_M, ...\n"
+    "the joystick besides: hand hold Q1 Q2, hand sine AXIS AMPLITUDE HZ, hand ramp DX DY M_PER_S,\n"
+    "                      hand cartesian DX DY SECONDS, hand wander, stick PATH\n";
 
 /// Asks a device's control socket one line; empty when nobody answers.
 [[nodiscard]] std::optional<std::string> ask(const std::filesystem::path& socket_path, const std::string& line) {
@@ -49,6 +56,10 @@ int fault(const FaultOptions& options) {
   if (!mission) return exit_finding;
   std::string line;
   for (const std::string& word : options.words) line += (line.empty() ? "" : " ") + word;
+  if (line.size() > longest_line || line.find('\n') != std::string::npos) {
+    fmt::print(stderr, "hirosco fault: one line of at most {} characters, not {}\n", longest_line, line.size());
+    return exit_usage;
+  }
   const auto answer = ask(runtime_folder(*mission) / options.device, line);
   if (!answer) {
     fmt::print(stderr, "hirosco fault: no simulated device '{}' answers; does {} run? Devices:", options.device,
@@ -57,7 +68,12 @@ int fault(const FaultOptions& options) {
     fmt::print(stderr, "\n");
     return exit_environment;
   }
+  if (answer->empty()) {
+    fmt::print(stderr, "hirosco fault: '{}' closed without an answer\n", options.device);
+    return exit_finding;
+  }
   fmt::print("{}\n", *answer);
+  if (answer->find("unknown fault") != std::string::npos) fmt::print(stderr, "{}", lines_of_devices);
   return answer->starts_with("ok") ? exit_ok : exit_finding;
 }
 

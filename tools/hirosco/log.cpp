@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "hirosco/pus/describe.hpp"
-#include "supervisor/platform/database.hpp"
+#include "supervisor/platform/log_store.hpp"
 #include "tools/hirosco/commands.hpp"
 
 namespace hirosco::tools {
@@ -16,28 +16,27 @@ int log(const LogOptions& options) {
     path = mission->database.path;
     strategy = mission->database.strategy;
   }
-  const auto kind = from_text<supervisor::DatabaseStrategy>(strategy);
-  auto database = supervisor::open_database(kind.value_or(supervisor::DatabaseStrategy::Sqlite), path,
-                                            supervisor::DatabaseAccess::Read);
-  if (!database) {
-    fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), database.error().text);
-    return exit_environment;
-  }
-  const auto page =
-      (*database)->read({.apid = options.apid, .service = options.service, .text = options.text, .last = options.last});
+  const auto kind = from_text<supervisor::DatabaseStrategy>(strategy).value_or(supervisor::DatabaseStrategy::Sqlite);
+  const auto mission = find_mission(options.mission).empty() ? std::nullopt : load_mission(options.mission);
+  const auto describer = mission ? std::optional<pus::PacketDescriber>{*mission} : std::nullopt;
+  const auto text_of = [&](const supervisor::LogRecord& record) {
+    if (!describer || record.packet.empty()) return supervisor::describe(record);
+    std::string text = fmt::format("{} {} {} {}", record.number, supervisor::time_text(record.stored),
+                                   to_text(record.kind), describer->describe(record.packet));
+    if (!record.note.view().empty()) text += fmt::format(" \"{}\"", record.note.view());
+    return text;
+  };
+  // What is searched is what is shown.
+  const auto page = supervisor::read_segments(kind, path,
+                                              {.apid = options.apid,
+                                               .service = options.service,
+                                               .text = options.text,
+                                               .words = text_of,
+                                               .last = options.last});
   if (!page) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
     return exit_environment;
   }
-  const auto mission = find_mission(options.mission).empty() ? std::nullopt : load_mission(options.mission);
-  const auto text_of = [&](const supervisor::LogRecord& record) {
-    if (!mission || record.packet.empty()) return supervisor::describe(record);
-    const pus::PacketDescriber describer{*mission};
-    std::string text = fmt::format("{} {} {} {}", record.number, supervisor::time_text(record.stored),
-                                   to_text(record.kind), describer.describe(record.packet));
-    if (!record.note.view().empty()) text += fmt::format(" \"{}\"", record.note.view());
-    return text;
-  };
   for (const auto& record : page->records) {
     if (options.json)
       fmt::print("{{\"number\":{},\"stored\":\"{}\",\"kind\":\"{}\",\"source\":{},\"peer\":{},\"text\":\"{}\"}}\n",

@@ -1,6 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <system_error>
 
 #include "tools/hirosco/commands.hpp"
 
@@ -39,9 +47,28 @@ void add_connection(CLI::App& command, Connection& connection) {
   command.add_flag("--json", connection.json, "One JSON object instead of text");
 }
 
-}  // namespace
+/// Digits only, and no more than fit: a seed that is not the one asked for replays another run.
+[[nodiscard]] std::uint64_t seed_of(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (problem != std::errc{} || end != text.data() + text.size() || text.empty())
+    throw CLI::ValidationError("not a seed: '" + text + "' (0 to 18446744073709551615)");
+  return seed;
+}
 
-int main(int argc, char** argv) {
+/// A first word that is no command: says which there are.
+[[nodiscard]] bool unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    if (command->get_name() == argv[1]) return false;
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  fmt::print(stderr, "hirosco: no command '{}'; there are: {}\n", argv[1], names);
+  return true;
+}
+
+int read_and_do(int argc, char** argv) {
   CLI::App app{"HIROSCO, a high-level robotic spacecraft controller"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "hirosco 0.1.0");
@@ -69,23 +96,25 @@ int main(int argc, char** argv) {
 
   SimulateOptions simulate_options;
   std::string simulate_for = "10s";
+  std::string simulate_seed = "1";
   auto* simulate_command =
       app.add_subcommand("simulate", "Fly a mission in one process on virtual time and print its log");
   simulate_command->add_option("mission", simulate_options.mission, "Name or path of a mission")->required();
   simulate_command->add_option("--for", simulate_for, "Virtual time")->capture_default_str();
-  simulate_command->add_option("--seed", simulate_options.seed, "Seed of everything random")->capture_default_str();
+  simulate_command->add_option("--seed", simulate_seed, "Seed of everything random")->capture_default_str();
   simulate_command->add_option("--trace", simulate_options.trace, "Write link and world truth at cycle rate as CSV");
   simulate_command->add_option("--at", simulate_options.at,
                                "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
   simulate_command->add_flag("--summary", simulate_options.summary, "Print counts instead of the log");
 
   ReportOptions report_options;
+  std::string report_seed = "1";
   int faults = 0;
   auto* report_command =
       app.add_subcommand("report", "Fly the runs that a mission is judged by and compare their figures");
   report_command->add_option("mission", report_options.mission, "Name or path of a mission (rokviss)")->required();
   report_command->add_option("--out", report_options.out, "Folder for index.html and its plots");
-  report_command->add_option("--seed", report_options.seed, "Seed of everything random")->capture_default_str();
+  report_command->add_option("--seed", report_seed, "Seed of everything random")->capture_default_str();
   report_command->add_option("--only", report_options.only, "Only these runs (RO1,RO8)")->delimiter(',');
   report_command->add_option("--faults", faults, "Only the fault cases, each so many times")
       ->check(CLI::Range(1, 100000));
@@ -154,8 +183,11 @@ int main(int argc, char** argv) {
   // Values such as -0.8 are arguments, not options.
   tc_command->prefix_command(false);
 
+  if (unknown_command(app, argc, argv)) return exit_usage;
   try {
     app.parse(argc, argv);
+    simulate_options.seed = seed_of(simulate_seed);
+    report_options.seed = seed_of(report_seed);
     if (!run_for.empty()) run_options.run_for = duration_of(run_for);
     simulate_options.run_for = duration_of(simulate_for);
     report_options.real_for = duration_of(report_for);
@@ -185,4 +217,25 @@ int main(int argc, char** argv) {
   if (*status_command) return status(status_options);
   if (*log_command) return log(log_options);
   return fault(fault_options);
+}
+
+}  // namespace
+
+/// What was printed must have arrived: a full device or a closed file is an error like any other.
+int main(int argc, char** argv) {
+  int code = exit_internal;
+  try {
+    code = read_and_do(argc, argv);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    std::fprintf(stderr, "hirosco: what it prints cannot be written: %s\n", std::strerror(errno));
+  } catch (const std::bad_alloc&) {
+    std::fputs("hirosco: no memory left for this\n", stderr);
+  } catch (const std::system_error& problem) {
+    // Output that fails, a thread that cannot be started.
+    std::fprintf(stderr, "hirosco: %s\n", problem.what());
+  } catch (const std::exception& problem) {
+    std::fprintf(stderr, "hirosco: %s\n", problem.what());
+    return exit_internal;
+  }
+  return exit_environment;
 }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <set>
 
 #include "hirosco/descriptor/read.hpp"
 #include "tools/hirosco/commands.hpp"
@@ -12,21 +13,45 @@ namespace hirosco::tools {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Folders that may hold `missions/`: from the working directory and from this program upwards.
+[[nodiscard]] std::vector<fs::path> mission_roots() {
+  std::error_code failed;
+  std::vector<fs::path> starts{fs::current_path(failed)};
+  if (const auto self = fs::read_symlink("/proc/self/exe", failed); !failed) starts.push_back(self.parent_path());
+  std::vector<fs::path> roots;
+  for (fs::path folder : starts)
+    for (;;) {
+      roots.push_back(folder);
+      if (!folder.has_relative_path()) break;
+      folder = folder.parent_path();
+    }
+  return roots;
+}
+
+/// Names by which missions can be flown from here.
+[[nodiscard]] std::set<std::string> known_missions() {
+  std::set<std::string> names;
+  std::error_code failed;
+  for (const fs::path& root : mission_roots())
+    for (const auto& entry : fs::directory_iterator{root / "missions", failed})
+      if (fs::is_regular_file(entry.path() / "mission.xml", failed)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+}  // namespace
+
 fs::path find_mission(const std::string& name_or_path) {
   std::error_code failed;
   fs::path given{name_or_path};
   if (fs::is_regular_file(given, failed)) return given;
   if (fs::is_regular_file(given / "mission.xml", failed)) return given / "mission.xml";
   if (name_or_path.find('/') != std::string::npos) return {};
-  std::vector<fs::path> starts{fs::current_path(failed)};
-  if (const auto self = fs::read_symlink("/proc/self/exe", failed); !failed) starts.push_back(self.parent_path());
-  for (fs::path folder : starts)
-    for (;;) {
-      const fs::path candidate = folder / "missions" / name_or_path / "mission.xml";
-      if (fs::is_regular_file(candidate, failed)) return candidate;
-      if (!folder.has_relative_path()) break;
-      folder = folder.parent_path();
-    }
+  for (const fs::path& root : mission_roots()) {
+    const fs::path candidate = root / "missions" / name_or_path / "mission.xml";
+    if (fs::is_regular_file(candidate, failed)) return candidate;
+  }
   return {};
 }
 
@@ -36,6 +61,8 @@ std::optional<descriptor::Mission> load_mission(const std::string& name_or_path)
     fmt::print(stderr,
                "hirosco: no mission '{}': neither a file nor missions/{}/mission.xml here or above this program\n",
                name_or_path, name_or_path);
+    if (const auto known = known_missions(); !known.empty())
+      fmt::print(stderr, "there are: {}\n", fmt::join(known, ", "));
     return std::nullopt;
   }
   const auto source = descriptor::file_system();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <memory>
@@ -83,6 +84,22 @@ int simulate(const SimulateOptions& options) {
     }
     injections.push_back(*injection);
   }
+  for (const Injection& injection : injections) {
+    if (injection.device != "kill" &&
+        std::ranges::find(mission->devices, injection.device, &descriptor::SimulatedDevice::name) ==
+            mission->devices.end()) {
+      fmt::print(stderr, "hirosco simulate: no device '{}'; the mission has", injection.device);
+      for (const auto& device : mission->devices) fmt::print(stderr, " {}", device.name);
+      fmt::print(stderr, "\n");
+      return exit_usage;
+    }
+    if (injection.device == "kill" && mission->find_subsystem(injection.line) == nullptr) {
+      fmt::print(stderr, "hirosco simulate: no subsystem '{}' to kill; the mission has", injection.line);
+      for (const auto& member : mission->subsystems) fmt::print(stderr, " {}", member.subsystem.name);
+      fmt::print(stderr, "\n");
+      return exit_usage;
+    }
+  }
   File trace{nullptr, &std::fclose};
   if (!options.trace.empty()) {
     trace.reset(std::fopen(options.trace.c_str(), "w"));
@@ -107,11 +124,14 @@ int simulate(const SimulateOptions& options) {
       if (subsystem == "MANIPULATOR") write_trace_line(trace.get(), now, craft);
     });
   const TimePoint end = craft.now() + options.run_for;
+  bool all_taken = true;
   for (const Injection& injection : injections) {
     if (injection.at > craft.now() && injection.at < end) craft.run(injection.at - craft.now());
     if (injection.device == "kill") craft.kill(injection.line);
-    else if (auto* device = craft.device(injection.device); device == nullptr || !device->fault(injection.line))
+    else if (auto* device = craft.device(injection.device); device == nullptr || !device->fault(injection.line)) {
       fmt::print(stderr, "hirosco simulate: device '{}' does not take '{}'\n", injection.device, injection.line);
+      all_taken = false;
+    }
   }
   if (craft.now() < end) craft.run(end - craft.now());
 
@@ -127,7 +147,11 @@ int simulate(const SimulateOptions& options) {
     fmt::print("{} s simulated, {} log records, {} packets, mode {}, {} of {} links up\n", seconds(options.run_for),
                page->records.size(), packets, craft.supervisor().mode().name, craft.supervisor().links().up_count(),
                craft.supervisor().links().defined_count());
-  return craft.supervisor().commissioned() ? exit_ok : exit_finding;
+  if (trace && (std::ferror(trace.get()) != 0 || std::fclose(trace.release()) != 0)) {
+    fmt::print(stderr, "hirosco simulate: {} cannot be written to its end\n", options.trace);
+    return exit_environment;
+  }
+  return all_taken && craft.supervisor().commissioned() ? exit_ok : exit_finding;
 }
 
 }  // namespace hirosco::tools
