@@ -60,11 +60,11 @@ inline descriptor::Mission small_mission() {
   descriptor::Mode open;
   open.name = "open";
   open.id = 1;
-  open.permits = {{.subsystem = "*", .functions = {"*"}, .services = {3, 5, 20}, .at = {}}};
+  open.permits = {{.subsystem = "*", .functions = {"*"}, .services = {3, 5, 20}, .parameters = {}, .at = {}}};
   descriptor::Mode narrow;
   narrow.name = "narrow";
   narrow.id = 2;
-  narrow.permits = {{.subsystem = "ARM", .functions = {"MOVE_TO"}, .services = {}, .at = {}}};
+  narrow.permits = {{.subsystem = "ARM", .functions = {"MOVE_TO"}, .services = {}, .parameters = {}, .at = {}}};
   mission.modes = {open, narrow};
   return mission;
 }
