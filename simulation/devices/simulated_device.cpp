@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace hirosco::simulation {
 namespace {
@@ -61,17 +62,19 @@ Result<> SimulatedDevice::plug() {
 }
 
 void SimulatedDevice::step(TimePoint now) {
-  if (!started_) world_time_ = now;
-  else forgive_pause(now);
-  started_ = true;
+  const bool first = !std::exchange(started_, true);
+  if (!first) forgive_pause(now);
   now_ = now;
   const bool exchanged = receive(now);
+  // The first exchange moves the world by a cycle, as all that follow do.
+  if (first) world_time_ = exchanged ? now - settings_.cycle : now;
   watch(now);
   const std::int64_t due = due_cycles(now, exchanged);
-  for (std::int64_t i = 0; i < due; ++i) advance(settings_.cycle);
+  const Duration cycle = settings_.clock == 1 ? settings_.cycle : milliseconds_of(1e3 * settings_.clock * seconds(settings_.cycle));
+  for (std::int64_t i = 0; i < due; ++i) advance(cycle);
   cycles_ += static_cast<std::uint64_t>(due);
   if (!exchanged) own_cycles_ += static_cast<std::uint64_t>(due);
-  if (due > 0) answer(now);
+  if (due > 0 || exchanged) answer(now);
   send_due(now);
 }
 
@@ -122,14 +125,17 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
 
 /// A pause of this very program (a stopped virtual machine, a debugger) is no time that the device had: real hardware
 /// would have run on, so neither its world nor its watchdog may jump. While it runs it wakes after a cycle by its own
-/// clock, after two while it is driven by exchanges; what is longer was a pause. Woken late by more than half a cycle the
-/// machine starves, and whom it starves first is the subsystem, which waits for this program: the watchdog does not count
-/// such a step at all, for a while.
+/// clock, after two while it is driven by exchanges; what is longer was a pause. Up to half a cycle it was jitter, which
+/// the world catches up with: its clock may not go slow by it. Woken later than that the machine starves, and whom it
+/// starves first is the subsystem, which waits for this program: the watchdog does not count such a step at all, for a
+/// while.
 void SimulatedDevice::forgive_pause(TimePoint now) noexcept {
   const Duration expected = settings_.cycle * (by_own_clock_ ? 1 : 2);
   const Duration pause = now - now_ - expected;
   if (pause <= Duration{0}) return;
-  world_time_ += pause;
+  // The world may be ahead by less than a cycle: then the wake that was planned lay later by that.
+  if (const Duration lost = std::min(pause, now - world_time_ - expected); lost > settings_.cycle / 2)
+    world_time_ += lost;
   if (mode_ == DeviceMode::Off) return;
   watchdog_at_ += pause;
   if (pause <= settings_.cycle / 2 || starved_ >= longest_starvation) return;
@@ -141,20 +147,18 @@ void SimulatedDevice::watch(TimePoint now) noexcept {
   if (mode_ != DeviceMode::Off && now >= watchdog_at_) raise(device_flag::watchdog_tripped, true);
 }
 
-/// One cycle per exchange; without one nothing until a command is overdue by a cycle, then by the clock.
+/// The world's clock is the craft's: it is moved by whole cycles and never away from `now` by more than one. An exchange
+/// moves it by one cycle when the subsystem is as fast as the device, whatever their jitter; by all that is missing when
+/// the subsystem is slower; by none when the own clock was there at the same instant. Without an exchange nothing until a
+/// command is overdue by a cycle, then by the clock.
 std::int64_t SimulatedDevice::due_cycles(TimePoint now, bool exchanged) noexcept {
   const Duration behind = now - world_time_;
-  std::int64_t due = 0;
-  if (exchanged) {
-    due = std::max<std::int64_t>(1, (behind + settings_.cycle / 2) / settings_.cycle);
-    by_own_clock_ = false;
-    world_time_ = now;
-  } else {
-    if (behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;
-    due = behind / settings_.cycle;
-    by_own_clock_ = true;
-    world_time_ += settings_.cycle * due;
-  }
+  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;
+  std::int64_t due = behind / settings_.cycle;
+  if (exchanged && behind > Duration{0}) due = std::max<std::int64_t>(due, 1);
+  if (exchanged && behind <= Duration{0}) due = 0;
+  by_own_clock_ = !exchanged;
+  world_time_ += settings_.cycle * due;
   return std::min(due, most_cycles_at_once);
 }
 

@@ -49,6 +49,8 @@ class SimulatedDevice {
     Duration watchdog{std::chrono::milliseconds{10}};  ///< while commands ask for none
     std::endian byte_order{std::endian::little};  ///< of the payload
     std::uint64_t seed{1};
+    /// How fast its world runs against the craft; 1 is right. A report that cannot see another number shows nothing.
+    double clock{1};
   };
   struct Injection {
     TimePoint at{};

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -261,6 +262,55 @@ TEST(OwnClock, CatchesUpBoundedlyAfterTheProcessWasHeldUp) {
   bench.device.step(bench.now += std::chrono::hours{1});
   EXPECT_LE(bench.device.cycles(), 41U);
   EXPECT_GT(bench.device.next_wake(), bench.now);
+}
+
+/// Over ten seconds of a subsystem's cycles, as the craft steps a device: by its own wakes and at each exchange.
+std::uint64_t cycles_in_ten_seconds(Duration period, Duration jitter) {
+  RobotBench bench;
+  bench.step();
+  const TimePoint start = bench.now;
+  const auto before = bench.device.cycles();
+  bool late = false;
+  for (TimePoint planned = start + period; planned <= start + std::chrono::seconds{10}; planned += period) {
+    const TimePoint exchange = planned + (std::exchange(late, !late) ? jitter : Duration{0});
+    while (bench.device.next_wake() <= exchange) bench.device.step(bench.now = bench.device.next_wake());
+    bench.command(DeviceMode::Active, 1);
+    bench.device.step(bench.now = exchange);
+  }
+  return bench.device.cycles() - before;
+}
+
+TEST(OwnClock, MakesTimeThroughPeriodCyclesWhateverTheRatioOfPeriods) {
+  constexpr double expected = 20'000;
+  for (const int sixteenths : {4, 8, 16, 24, 32, 40, 64, 128, 320})
+    for (const Duration jitter : {Duration{0}, cycle / 8, cycle / 3})
+      EXPECT_NEAR(static_cast<double>(cycles_in_ten_seconds(cycle * sixteenths / 16, jitter)), expected, 1)
+          << sixteenths / 16.0 << " device cycles a period, jitter " << jitter.count() << " ns";
+}
+
+TEST(OwnClock, MovesTheWorldByOneCycleForEachExchangeOfAnEquallyFastSubsystemThatJitters) {
+  RobotBench bench;
+  bench.active();
+  for (int k = 0; k < 1000; ++k) {
+    const auto before = bench.device.cycles();
+    bench.command(DeviceMode::Active, 1);
+    bench.device.step(bench.now += k % 2 == 0 ? cycle * 13 / 10 : cycle * 7 / 10);
+    ASSERT_EQ(bench.device.cycles(), before + 1) << k;
+  }
+}
+
+TEST(OwnClock, AnswersAnExchangeAlsoWhereItHasAlreadyMovedTheWorld) {
+  RobotBench bench;
+  bench.active();
+  bench.device.step(bench.now += 4 * cycle);
+  (void)bench.raw();
+  const auto before = bench.device.cycles();
+  bench.command(DeviceMode::Active, 1);
+  bench.device.step(bench.now);
+  EXPECT_EQ(bench.device.cycles(), before);
+  const auto status = bench.status();
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->head.sequence, 2U);
 }
 
 TEST(Faults, UnplugHangsUpAndPlugComesBack) {

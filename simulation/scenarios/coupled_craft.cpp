@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/scenarios/coupled_craft.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "hirosco/utilities/octets.hpp"
 
@@ -61,6 +63,12 @@ Plan CoupledCraft::plan_of(const CraftOptions& options) {
                                                               const SimulatedDevice::Settings& settings) {
     return std::make_unique<RobotDevice>(flows, address, settings, arm);
   };
+  plan.devices["hirosco-sim-joystick"] = [clock = options.plant.hand_clock](FlowFactory& flows,
+                                                                            const FlowAddress& address,
+                                                                            SimulatedDevice::Settings settings) {
+    settings.clock = clock;
+    return std::make_unique<JoystickDevice>(flows, address, settings);
+  };
   return plan;
 }
 
@@ -70,7 +78,18 @@ CoupledCraft::CoupledCraft(const CraftOptions& options) : flight_{plan_of(option
   joystick_ = &flight_.device<JoystickDevice>("joystick");
   if (!options.friction) robot_->arm().set_friction(false);
   flight_.story().on_telemetry = [this](const pus::TelemetryView& packet) { take(packet); };
+  delay_joystick(options.plant.delay_ms);
   start_ = craft().now();
+}
+
+/// By a cycle at a time: the joystick must not seem silent.
+void CoupledCraft::delay_joystick(double delay_ms) {
+  constexpr double cycle_ms = 1e3 * period_s;
+  for (double reached_ms = 0; reached_ms < delay_ms;) {
+    reached_ms = std::min(reached_ms + cycle_ms, delay_ms);
+    if (!joystick_->fault("delay " + std::to_string(reached_ms))) throw std::runtime_error{"no such delay"};
+    run(10 * period_s);
+  }
 }
 
 void CoupledCraft::hand(const std::string& line) {

@@ -50,6 +50,16 @@ class Report(unittest.TestCase):
     def test_one_percent_of_force_scale_fails_what_the_hand_feels(self):
         self.assertIn("RO3-display-ratio", self.planted("force_scale=1.01"))
 
+    def test_one_percent_of_the_hands_time_fails_when_the_torque_limit_trips(self):
+        code, text, _ = report("--only", "RO8", "--plant", "hand_clock=1.01")
+        self.assertEqual(code, 1, text)
+        self.assertIn("RO8-trip-time", failing_rows(text))
+
+    def test_two_milliseconds_of_delay_fail_when_the_torque_limit_trips(self):
+        code, text, _ = report("--only", "RO8", "--plant", "delay_ms=2")
+        self.assertEqual(code, 1, text)
+        self.assertIn("RO8-trip-time", failing_rows(text))
+
     def test_writes_a_page_whose_plots_are_there_and_well_formed(self):
         with tempfile.TemporaryDirectory() as folder:
             code, text, _ = report("--only", "RO3,RO8", "--out", folder + "/new")

@@ -119,7 +119,7 @@ int read_and_do(int argc, char** argv) {
   report_command->add_option("--faults", faults, "Only the fault cases, each so many times")
       ->check(CLI::Range(1, 100000));
   report_command->add_option("--plant", report_options.plant,
-                             "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=");
+                             "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=, hand_clock=, delay_ms=2");
 
   std::string report_for = "5min";
   report_command->add_flag("--real", report_options.real, "On real processes: cycle times and links of a flight");

@@ -27,6 +27,8 @@ namespace {
   else if (name == "rail") plant.rail = factor;
   else if (name == "mass") plant.mass = factor;
   else if (name == "force_scale") plant.force_scale = factor;
+  else if (name == "hand_clock") plant.hand_clock = factor;
+  else if (name == "delay_ms") plant.delay_ms = factor;
   else return false;
   return true;
 }
@@ -88,8 +90,8 @@ int report(const ReportOptions& options) {
   for (const std::string& text : options.plant) {
     if (plant_one(text, settings.plant)) continue;
     fmt::print(stderr,
-               "hirosco report: --plant '{}' is not NAME=FACTOR with stiffness, rail, mass or force_scale, for example "
-               "mass=1.01\n",
+               "hirosco report: --plant '{}' is not NAME=FACTOR with stiffness, rail, mass, force_scale or hand_clock, nor "
+               "delay_ms=MS; for example mass=1.01\n",
                text);
     return exit_usage;
   }
