@@ -30,8 +30,12 @@ Joints JointController::motor_torque(const Joints& desired_rad, const Measured& 
   for (std::size_t i = 0; i < torque.size(); ++i) {
     const double difference = (desired_rad[i] - last_[i]) / period_s_;
     velocity_[i] += rate_filter * (difference - velocity_[i]);
-    const double u = gains.kp_n_m_per_rad * (desired_rad[i] - measured.motor_position_rad[i]) +
-                     gains.kd_n_m_s_per_rad * (velocity_[i] - measured.motor_velocity_rad_s[i]);
+    const double load = measured.torque_n_m[i];
+    const double pull =
+        std::clamp(gains.kp_n_m_per_rad * (desired_rad[i] - measured.motor_position_rad[i]),
+                   std::min(load, 0.0) - gains.surplus_max_n_m, std::max(load, 0.0) + gains.surplus_max_n_m);
+    const double damping = gains.kd_n_m_s_per_rad * (velocity_[i] - measured.motor_velocity_rad_s[i]);
+    const double u = std::clamp(pull + damping, -gains.effort_max_n_m, gains.effort_max_n_m);
     const double wanted = inertia_shaping * u - (inertia_shaping - 1) * measured.torque_n_m[i];
     torque[i] = std::isfinite(wanted) ? std::clamp(wanted, -torque_max_n_m, torque_max_n_m) : 0;
   }

@@ -25,11 +25,17 @@ struct Measured {
 struct Gains {
   double kp_n_m_per_rad{300};
   double kd_n_m_s_per_rad{24};
+  /// Of the law without its torque feedback: what the joint is loaded with at rest is no more, whatever the gains.
+  double effort_max_n_m{60};
+  /// By how much the position error may ask for more than the joint holds already: what is let go, or loses contact, is
+  /// caught up with slowly.
+  double surplus_max_n_m{60};
 };
 
 /// Position control of a flexible joint with torque feedback:
 ///   u = kp (qd - theta) + kd (qd' - theta'),   tau_m = 4 u - 3 tau_j,
-/// which makes the motor feel a quarter as heavy. qd' is the filtered difference of qd.
+/// which makes the motor feel a quarter as heavy. qd' is the filtered difference of qd. u is kept within the effort of
+/// the gains.
 class JointController {
  public:
   /// `period_s` of the cycle, above 0.

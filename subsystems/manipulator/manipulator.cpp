@@ -4,59 +4,38 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "subsystems/manipulator/control_law.hpp"
+#include "subsystems/manipulator/manipulator_data.hpp"
+#include "subsystems/manipulator/motion.hpp"
 #include "subsystems/manipulator/script.hpp"
 
 namespace hirosco {
 namespace {
 
+using manipulator::ClutchValues;
+using manipulator::CurrentValues;
+using manipulator::GainValues;
 using manipulator::Joints;
+using manipulator::JoystickState;
+using manipulator::RobotInput;
+using manipulator::RobotOutput;
+using manipulator::ScriptValues;
+using manipulator::TorqueVerdict;
+using manipulator::TrajectoryValues;
+
+/// Author's failure codes of manipulator.xml: why a function was refused or ended without its effect.
+constexpr auto goal_not_reached = static_cast<pus::FailureCode>(0x8001);
+constexpr auto too_fast = static_cast<pus::FailureCode>(0x8002);
+constexpr auto torque_tripped = static_cast<pus::FailureCode>(0x8003);
+constexpr auto too_hot = static_cast<pus::FailureCode>(0x8004);
+constexpr auto load_above_limit = static_cast<pus::FailureCode>(0x8005);
+constexpr auto actuators_inhibited = static_cast<pus::FailureCode>(0x8006);
+constexpr auto limits_not_ordered = static_cast<pus::FailureCode>(0x8007);
 
 class Manipulator final : public Subsystem {
-  // Structures of manipulator.xml: same members, same order.
-  struct CurrentValues {
-    std::int32_t state;
-    Joints position_rad;
-    Joints velocity_rad_per_s;
-    Joints torque_n_m;
-    std::array<float, 2> temperature_deg_c;
-    std::uint16_t device_flags;
-  };
-  struct ClutchValues {
-    Joints robot_rad;
-    Joints handle_rad;
-  };
-  struct TrajectoryValues {
-    Joints target_rad;
-    double duration_s;
-    double progress;
-  };
-  struct JoystickState {
-    Joints position_rad;
-    Joints velocity_rad_per_s;
-    std::uint8_t enable;
-  };
-  struct RobotInput {
-    Joints motor_position_rad;
-    Joints motor_velocity_rad_per_s;
-    Joints position_rad;
-    Joints velocity_rad_per_s;
-    Joints torque_n_m;
-    std::array<float, 2> temperature_deg_c;
-    std::uint8_t spring;  ///< hooked, 0: none
-  };
-  struct RobotOutput {
-    Joints torque_n_m;
-    std::uint8_t spring;  ///< to be hooked; the device acts on a change
-  };
-  struct ScriptValues {
-    double speed_m_per_s;
-    double over_press_m;
-    double bump_height_m;
-  };
-
   enum Event : std::uint16_t {
     motion_done = 1001,
     spring_out_of_reach = 1006,
@@ -84,28 +63,34 @@ class Manipulator final : public Subsystem {
     publish("ACTIVE", active_);
     publish("SPRING", spring_);
     publish("SCRIPT", script_values_);
+    publish("GOAL_TOLERANCE", goal_tolerance_);
+    publish("GAINS", gain_values_);
     require_link("JOYSTICK_STATE", joystick_);
     require_link("REMOTE_JOYSTICK", remote_joystick_);
     use_device("ROBOT", robot_);
     on_function("MOVE_TO", [this](double q1, double q2, double duration_s, Call call) {
       return move({q1, q2}, duration_s, call);
     });
-    on_function("HOME", [this](Call call) { return move(home_rad, home_duration_s, call); });
+    on_function("HOME", [this](Call call) {
+      const double shortest_s =
+          manipulator::shortest_duration_s(desired_position_.load(), home_rad, manipulator::path_limits);
+      return move(home_rad, std::max(home_duration_s, shortest_s), call);
+    });
     on_function("HOLD", [this]() -> Outcome {
       if (coupled_) return refused(pus::FailureCode::SetpointOwnedByLink);
-      stop_motion();
+      if (!moving_) return refused(actuators_inhibited);
+      stop_motion(pus::FailureCode::Aborted);
       return ok();
     });
     on_function("HOOK_SPRING", [this](std::uint8_t spring, Call call) { return hook(spring, call); });
     on_function("RELEASE_SPRING", [this](Call call) { return release(call); });
     on_function("RUN_SCRIPT", [this](std::uint8_t script, Call call) { return run_script(script, call); });
-    on_function("SET_GAINS", [this](double kp, double kd) -> Outcome {
-      kp_.store(kp);
-      kd_.store(kd);
-      return ok();
-    });
-    on_function("SET_TORQUE_LIMIT", [this](double limit_n_m) -> Outcome {
-      torque_limit_.store(limit_n_m);
+    on_function("SET_GAINS", [this](double kp, double kd, Call call) { return set_gains(kp, kd, call); });
+    on_function("SET_TORQUE_LIMIT", [this](double limit_n_m) { return set_torque_limit(limit_n_m); });
+    on_function("SET_TEMP_LIMITS", [this](double warning_c, double critical_c, double maximum_c) -> Outcome {
+      if (!(warning_c < critical_c && critical_c < maximum_c)) return refused(limits_not_ordered);
+      temperature_limits_.store(
+          {static_cast<float>(warning_c), static_cast<float>(critical_c), static_cast<float>(maximum_c)});
       return ok();
     });
     return done;
@@ -117,9 +102,10 @@ class Manipulator final : public Subsystem {
     operator_ = remote ? &remote_joystick_ : &joystick_;
     scripted_ = configuration.name == "SCRIPT";
     controller_.emplace(seconds(configuration.sampling));
-    move_.reset();
-    script_call_.reset();
-    spring_call_.reset();
+    for (auto* call : {&move_, &script_call_, &spring_call_, &gains_call_}) call->reset();
+    moving_ = false;
+    told_torque_ = TorqueVerdict::Fine;
+    torque_guard_.reset();
     temperature_ = manipulator::TemperatureVerdict::Fine;
     return ok();
   }
@@ -133,19 +119,24 @@ class Manipulator final : public Subsystem {
   Result<> safe_operational(const Cycle& cycle) noexcept override {
     measure(cycle);
     if (cycle.first) {
-      stop_motion();
+      stop_motion(why_stopped());
       engage();
     }
     rest();
-    control();
+    control(cycle);
+    check_torque(cycle);
     return ok();
   }
 
   Result<> operational(const Cycle& cycle) noexcept override {
     measure(cycle);
-    if (cycle.first) engage();
+    if (cycle.first) {
+      engage();
+      told_torque_ = TorqueVerdict::Fine;
+      torque_guard_.reset();
+    }
     if (!cycle.active) {
-      stop_motion();  // inhibited it could never end
+      stop_motion(why_stopped());  // inhibited it could never end
       rest();
     } else if (coupled_) {
       follow();
@@ -154,17 +145,19 @@ class Manipulator final : public Subsystem {
     } else {
       advance_motion(cycle);
     }
+    if (cycle.active) govern(cycle);
     watch_spring();
-    control();
+    control(cycle);
     check_torque(cycle);
     if (temperature_ >= manipulator::TemperatureVerdict::Critical) inhibit_actuators();
-    active_.store(cycle.active && !limited_ ? 1 : 0);
+    moving_ = cycle.active && told_torque_ == TorqueVerdict::Fine;
+    active_.store(moving_ ? 1 : 0);
     return ok();
   }
 
   Result<> error_operational(const Cycle& cycle) noexcept override {
     measure(cycle);
-    if (cycle.first) stop_motion();
+    if (cycle.first) stop_motion(why_stopped());
     robot_.output() = {};
     return ok();
   }
@@ -177,25 +170,24 @@ class Manipulator final : public Subsystem {
     spring_.store(in.spring);
     tip_force_.store(manipulator::tip_force(geometry_, in.position_rad, in.torque_n_m));
     active_.store(0);
+    moving_ = false;
     check_temperature(cycle);
   }
 
   /// Takes the present position as the reference: entering Operational moves nothing.
   void engage() noexcept {
-    const Joints here = robot_.input().motor_position_rad;
-    limited_ = false;
-    torque_guard_.reset();
-    controller_->reset(here);
-    trajectory_.start(here, here, 0.0);
+    rest();
+    trajectory_.start(asked_, asked_, 0.0);
     following_ = false;
-    set_desired(here);
     engage_clutch();
   }
 
   void rest() noexcept {
-    const Joints here = robot_.input().motor_position_rad;
-    controller_->reset(here);
-    set_desired(here);
+    asked_ = robot_.input().motor_position_rad;
+    controller_->reset(asked_);
+    set_desired(asked_);
+    governor_.reset(desired_position_.load());
+    gains_.reset(wanted_gains());
   }
 
   /// From here the handle moves the setpoint: neither the handle's angle now nor a link that was away makes it jump.
@@ -209,51 +201,97 @@ class Manipulator final : public Subsystem {
     if (enabled && !following_) engage_clutch();
     following_ = enabled;
     if (!enabled) return;  // hold the last setpoint
-    set_desired(clutch_.desired(operator_->value().position_rad, position_scale_.load()));
+    asked_ = clutch_.desired(operator_->value().position_rad, position_scale_.load());
   }
 
   void advance_motion(const Cycle& cycle) noexcept {
-    set_desired(trajectory_.advance(seconds(cycle.period)));
+    asked_ = trajectory_.advance(seconds(cycle.period));
     trajectory_values_.store({trajectory_.target_rad(), trajectory_.duration_s(), trajectory_.progress()});
     if (!move_) return;
     if (!half_reported_ && trajectory_.progress() >= 0.5) {
       half_reported_ = true;
       progress(*move_, 1);
     }
-    if (!trajectory_.done()) return;
-    raise(motion_done);
-    finish(*move_);
-    move_.reset();
+    if (trajectory_.done()) arrive(move_, trajectory_.target_rad(), cycle);
   }
 
-  void set_desired(const Joints& position_rad) noexcept {
-    desired_position_.store({std::clamp(position_rad[0], lowest_rad[0], highest_rad[0]),
-                             std::clamp(position_rad[1], lowest_rad[1], highest_rad[1])});
+  /// The end of a path is not yet the goal: a motion is done when it is measured there.
+  void arrive(std::optional<Call>& call, const Joints& goal_rad, const Cycle& cycle) noexcept {
+    using Verdict = manipulator::Arrival::Verdict;
+    const Verdict verdict = arrival_.judge(robot_.input().position_rad, goal_rad, goal_tolerance_.load(),
+                                           seconds(cycle.period));
+    if (verdict == Verdict::UnderWay) return;
+    if (verdict == Verdict::There) {
+      raise(motion_done);
+      finish(*call);
+    } else {
+      abort(*call, goal_not_reached);
+    }
+    call.reset();
+    hold();
   }
 
-  void control() noexcept {
+  /// Stays where the setpoint is.
+  void hold() noexcept {
+    asked_ = desired_position_.load();
+    trajectory_.start(asked_, asked_, 0.0);
+  }
+
+  [[nodiscard]] static Joints within_range(const Joints& position_rad) noexcept {
+    return {std::clamp(position_rad[0], lowest_rad[0], highest_rad[0]),
+            std::clamp(position_rad[1], lowest_rad[1], highest_rad[1])};
+  }
+
+  [[nodiscard]] manipulator::Gains wanted_gains() const noexcept {
+    const double effort_n_m = torque_hard_.load();
+    return {kp_.load(), kd_.load(), effort_n_m, effort_n_m / 3};
+  }
+
+  /// What is asked for reaches the control law within the bounds of motion.hpp only.
+  void govern(const Cycle& cycle) noexcept {
+    asked_ = within_range(asked_);
+    const auto bounds = manipulator::bounds_for(torque_hard_.load(), gains_.now().kp_n_m_per_rad);
+    set_desired(governor_.advance(asked_, robot_.input().motor_position_rad, bounds, seconds(cycle.period)));
+  }
+
+  void set_desired(const Joints& position_rad) noexcept { desired_position_.store(within_range(position_rad)); }
+
+  void control(const Cycle& cycle) noexcept {
     const RobotInput& in = robot_.input();
     const manipulator::Measured measured{in.motor_position_rad, in.motor_velocity_rad_per_s,
                                          in.position_rad,       in.velocity_rad_per_s,
                                          in.torque_n_m,         in.temperature_deg_c};
+    const manipulator::Gains wanted = wanted_gains();
+    const manipulator::Gains& gains = gains_.advance(wanted, seconds(cycle.period));
+    gain_values_.store({gains.kp_n_m_per_rad, gains.kd_n_m_s_per_rad});
+    if (gains_call_ && gains_.reached(wanted)) {
+      finish(*gains_call_);
+      gains_call_.reset();
+    }
     robot_.output().spring = spring_call_ ? wanted_spring_ : in.spring;
-    robot_.output().torque_n_m =
-        controller_->motor_torque(desired_position_.load(), measured, {kp_.load(), kd_.load()});
+    robot_.output().torque_n_m = controller_->motor_torque(desired_position_.load(), measured, gains);
     desired_velocity_.store(controller_->desired_velocity_rad_s());
   }
 
+  /// Each limit is told once until the next entry into Operational; a higher one whatever a lower one did, and when the
+  /// actuators are inhibited too: what goes on loading the arm then is worse, not better.
   void check_torque(const Cycle& cycle) noexcept {
-    if (!cycle.active) return;
-    const Joints torque = robot_.input().torque_n_m;
     const double soft = torque_limit_.load();
     const double hard = torque_hard_.load();
-    const auto finding = torque_guard_.update(torque, soft, hard);
-    if (finding.verdict == manipulator::TorqueVerdict::Fine || limited_) return;
-    limited_ = true;
+    const auto finding = torque_guard_.update(robot_.input().torque_n_m, soft, hard);
+    const bool is_hard = finding.verdict == TorqueVerdict::Hard;
+    if (finding.verdict <= told_torque_ || (!is_hard && !cycle.active)) return;
+    told_torque_ = finding.verdict;
     inhibit_actuators();
-    const bool is_hard = finding.verdict == manipulator::TorqueVerdict::Hard;
     raise(is_hard ? torque_hard_exceeded : torque_limit_exceeded,
           {static_cast<double>(finding.joint + 1), finding.value_n_m, is_hard ? hard : soft});
+  }
+
+  /// What a function that runs is told when the actuators were taken away from it.
+  [[nodiscard]] pus::FailureCode why_stopped() const noexcept {
+    if (told_torque_ != TorqueVerdict::Fine) return torque_tripped;
+    if (temperature_ >= manipulator::TemperatureVerdict::Critical) return too_hot;
+    return pus::FailureCode::Aborted;
   }
 
   /// Reports each level once on the way up, and again on an entry into Operational that is too early; a level is left
@@ -276,14 +314,20 @@ class Manipulator final : public Subsystem {
 
   Outcome move(const Joints& target_rad, double duration_s, const Call& call) noexcept {
     if (coupled_) return refused(pus::FailureCode::SetpointOwnedByLink);
+    if (!moving_) return refused(actuators_inhibited);
     if (move_ || script_call_) return refused(pus::FailureCode::Busy);
-    trajectory_.start(desired_position_.load(), target_rad, duration_s);
+    const Joints from = desired_position_.load();
+    if (duration_s < manipulator::shortest_duration_s(from, target_rad, manipulator::path_limits))
+      return refused(too_fast);
+    trajectory_.start(from, target_rad, duration_s);
+    arrival_.start();
     move_ = call;
     half_reported_ = false;
     return running;
   }
 
   Outcome hook(std::uint8_t spring, const Call& call) noexcept {
+    if (!moving_) return refused(actuators_inhibited);
     if (spring_call_ || script_call_) return refused(pus::FailureCode::Busy);
     if (spring_.load() != 0) return refused(pus::FailureCode::WrongStatus);
     const double distance_m = manipulator::distance_to_spring(spring, tip_.load());
@@ -296,6 +340,7 @@ class Manipulator final : public Subsystem {
   }
 
   Outcome release(const Call& call) noexcept {
+    if (!moving_) return refused(actuators_inhibited);
     if (spring_call_ || script_call_) return refused(pus::FailureCode::Busy);
     if (spring_.load() == 0) return refused(pus::FailureCode::WrongStatus);
     want_spring(0, call);
@@ -321,13 +366,14 @@ class Manipulator final : public Subsystem {
       spring_call_.reset();
       if (!of_script) return;
       script_call_.reset();
-      trajectory_.start(desired_position_.load(), desired_position_.load(), 0.0);
+      hold();
     }
   }
 
   Outcome run_script(std::uint8_t script, const Call& call) noexcept {
     if (coupled_) return refused(pus::FailureCode::SetpointOwnedByLink);
     if (!scripted_) return refused(pus::FailureCode::NotPermittedNow);
+    if (!moving_) return refused(actuators_inhibited);
     if (move_ || script_call_ || spring_call_) return refused(pus::FailureCode::Busy);
     if (spring_.load() != 0) return refused(pus::FailureCode::WrongStatus);
     const ScriptValues& values = script_values_.load();
@@ -336,37 +382,49 @@ class Manipulator final : public Subsystem {
     script_.start(static_cast<manipulator::Script::Id>(script), manipulator::tip(geometry_, desired_position_.load()),
                   manipulator::tip(geometry_, home_rad), settings);
     script_call_ = call;
+    arrival_.start();
     reported_leg_ = 0;
     return running;
   }
 
   void advance_script(const Cycle& cycle) noexcept {
-    set_desired(manipulator::joints_for(geometry_, script_.advance(seconds(cycle.period))));
+    asked_ = manipulator::joints_for(geometry_, script_.advance(seconds(cycle.period)));
     using Deed = manipulator::Script::Deed;
     if (script_.deed() != Deed::None && !spring_call_)
       want_spring(script_.deed() == Deed::Hook ? std::uint8_t{1} : std::uint8_t{0}, *script_call_);
-    if (script_.done()) {
-      raise(motion_done);
-      finish(*script_call_);
-      script_call_.reset();
-      trajectory_.start(desired_position_.load(), desired_position_.load(), 0.0);
-    } else if (script_.leg() != reported_leg_) {
+    if (script_.leg() != reported_leg_ && !script_.done()) {
       reported_leg_ = script_.leg();
       progress(*script_call_, static_cast<std::uint16_t>(reported_leg_));
     }
+    if (script_.done()) arrive(script_call_, home_rad, cycle);
   }
 
-  void stop_motion() noexcept {
-    trajectory_.start(desired_position_.load(), desired_position_.load(), 0.0);
-    for (auto* call : {&move_, &script_call_}) {
+  void stop_motion(pus::FailureCode why) noexcept {
+    hold();
+    if (script_call_) spring_call_.reset();  // it is the same call
+    for (auto* call : {&move_, &script_call_, &spring_call_}) {
       if (!*call) continue;
-      abort(**call, pus::FailureCode::Aborted);
+      abort(**call, why);
       call->reset();
-      if (call == &script_call_) spring_call_.reset();
     }
-    if (!spring_call_) return;
-    abort(*spring_call_, pus::FailureCode::Aborted);
-    spring_call_.reset();
+  }
+
+  /// The law takes new gains over at a bounded rate: done when they are in force.
+  Outcome set_gains(double kp, double kd, const Call& call) noexcept {
+    if (gains_call_) return refused(pus::FailureCode::Busy);
+    kp_.store(kp);
+    kd_.store(kd);
+    if (!moving_) return ok();  // at rest the law has them at once
+    gains_call_ = call;
+    return running;
+  }
+
+  /// A limit that the arm's present load exceeds already would only stop it.
+  Outcome set_torque_limit(double limit_n_m) noexcept {
+    const Joints& load = robot_.input().torque_n_m;
+    if (!(std::max(std::abs(load[0]), std::abs(load[1])) < limit_n_m)) return refused(load_above_limit);
+    torque_limit_.store(limit_n_m);
+    return ok();
   }
 
   static constexpr Joints lowest_rad{-2.0, 0.2};
@@ -387,6 +445,8 @@ class Manipulator final : public Subsystem {
   Parameter<std::uint8_t> active_;
   Parameter<std::uint8_t> spring_;
   Parameter<ScriptValues> script_values_;
+  Parameter<double> goal_tolerance_;
+  Parameter<GainValues> gain_values_;
   LinkInput<JoystickState> joystick_;
   LinkInput<JoystickState> remote_joystick_;
   const LinkInput<JoystickState>* operator_{&joystick_};  ///< the one of the two that the configuration requires
@@ -395,6 +455,10 @@ class Manipulator final : public Subsystem {
   manipulator::Geometry geometry_;
   std::optional<manipulator::JointController> controller_;
   manipulator::Trajectory trajectory_;
+  manipulator::SetpointGovernor governor_{geometry_};
+  manipulator::GainRamp gains_;
+  manipulator::Arrival arrival_;
+  Joints asked_{};  ///< by path, programme or hand; the setpoint follows within its bounds
   manipulator::Clutch clutch_;
   manipulator::TorqueLimit torque_guard_;
   manipulator::TemperatureVerdict temperature_{};
@@ -405,11 +469,13 @@ class Manipulator final : public Subsystem {
   std::uint8_t wanted_spring_{0};
   int spring_cycles_left_{0};
   std::optional<Call> move_;
+  std::optional<Call> gains_call_;
   bool half_reported_{false};
   bool coupled_{false};
   bool following_{false};
   bool scripted_{false};
-  bool limited_{false};
+  bool moving_{false};  ///< what is put out reaches the actuators
+  TorqueVerdict told_torque_{TorqueVerdict::Fine};
 };
 
 }  // namespace

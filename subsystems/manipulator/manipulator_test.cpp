@@ -82,22 +82,93 @@ struct ManipulatorTest : ::testing::Test {
   }
 };
 
-TEST_F(ManipulatorTest, MoveToReportsHalfWayAndCompletesAtTheEndOfTheMotion) {
+TEST_F(ManipulatorTest, MoveToReportsHalfWayAndCompletesWhenTheArmIsMeasuredAtTheGoal) {
   operate(1);
-  const auto request = rig.call("MOVE_TO", {-0.7, 1.5, 0.1});
-  cycle(90);
+  const auto request = rig.call("MOVE_TO", {-0.75, 1.55, 0.2});
+  cycle(190);
   EXPECT_EQ(rig.outcome(request), "1 3");
   cycle(20);
   EXPECT_EQ(rig.outcome(request), "1 3 5:0001");
-  cycle(100);
+  cycle(200);
+  EXPECT_EQ(rig.outcome(request), "1 3 5:0001") << "the time is over, the arm is not there";
+  position_rad = {-0.754, 1.546};
+  cycle(3);
   EXPECT_EQ(rig.outcome(request), "1 3 5:0001 7");
   EXPECT_EQ(rig.events(1001), 1);
+}
+
+TEST_F(ManipulatorTest, AMotionThatDoesNotArriveFailsInsteadOfCompletingByTime) {
+  operate(1);
+  const auto request = rig.call("MOVE_TO", {-0.75, 1.55, 0.2});
+  cycle(400 + 2000 + 10);
+  EXPECT_EQ(rig.outcome(request), "1 3 5:0001 8:8001");
+  EXPECT_EQ(rig.events(1001), 0);
+  EXPECT_EQ(rig.inhibited(), 0u) << "it holds where it is";
+}
+
+TEST_F(ManipulatorTest, AMotionFasterThanTheArmsLimitsIsRefused) {
+  operate(1);
+  EXPECT_EQ(now("MOVE_TO", {1.0, 1.6, 0.2}), "1 4:8002") << "1.8 rad take 3.375 s at 1 rad/s";
+  EXPECT_EQ(now("MOVE_TO", {1.0, 1.6, 3.37}), "1 4:8002");
+  EXPECT_EQ(now("MOVE_TO", {1.0, 1.6, 3.38}), "1 3");
 }
 
 TEST_F(ManipulatorTest, OneMotionAtATime) {
   operate(1);
   rig.call("MOVE_TO", {-0.7, 1.5, 1.0});
   EXPECT_EQ(now("HOME"), "1 4:0108");
+}
+
+TEST_F(ManipulatorTest, WhatCanHaveNoEffectIsRefused) {
+  operate(1);
+  torque_n_m = {0.0, 13.0};
+  cycle(6);
+  ASSERT_EQ(rig.inhibited(), inhibited_by_author);
+  EXPECT_EQ(now("MOVE_TO", {-0.7, 1.5, 1.0}), "1 4:8006");
+  EXPECT_EQ(now("HOME"), "1 4:8006");
+  EXPECT_EQ(now("HOLD"), "1 4:8006");
+  EXPECT_EQ(now("HOOK_SPRING", {2}), "1 4:8006");
+  EXPECT_EQ(now("RELEASE_SPRING"), "1 4:8006");
+  command(State::SafeOperational);
+  EXPECT_EQ(now("HOLD"), "1 4:000a04") << "nothing moves there that could be held";
+}
+
+TEST_F(ManipulatorTest, AMotionThatTheTorqueLimitEndsSaysSo) {
+  operate(1);
+  const auto request = rig.call("MOVE_TO", {-0.7, 1.5, 1.0});
+  cycle(10);
+  torque_n_m = {0.0, 13.0};
+  cycle(6);
+  EXPECT_EQ(rig.outcome(request), "1 3 8:8003");
+}
+
+TEST_F(ManipulatorTest, NewGainsAreReportedDoneWhenTheLawHasThem) {
+  operate(1);
+  const auto request = rig.call("SET_GAINS", {350, 24});
+  cycle(150);
+  EXPECT_EQ(rig.outcome(request), "1 3");
+  EXPECT_EQ(now("SET_GAINS", {300, 24}), "1 4:0108");
+  cycle(100);
+  EXPECT_EQ(rig.outcome(request), "1 3 7") << "50 N m/rad at 500 a second";
+}
+
+TEST_F(ManipulatorTest, ATorqueLimitBelowThePresentLoadIsRefused) {
+  operate(1);
+  torque_n_m = {0.0, -6.0};
+  cycle(3);
+  EXPECT_EQ(now("SET_TORQUE_LIMIT", {6}), "1 4:8005");
+  EXPECT_EQ(now("SET_TORQUE_LIMIT", {7}), "1 3 7");
+  EXPECT_EQ(rig.inhibited(), 0u);
+}
+
+TEST_F(ManipulatorTest, TemperatureLimitsAscend) {
+  operate(1);
+  EXPECT_EQ(now("SET_TEMP_LIMITS", {70, 55, 80}), "1 4:8007");
+  EXPECT_EQ(now("SET_TEMP_LIMITS", {50, 50, 80}), "1 4:8007");
+  EXPECT_EQ(now("SET_TEMP_LIMITS", {50, 60, 70}), "1 3 7");
+  temperature_deg_c = 65;
+  cycle(3);
+  EXPECT_EQ(rig.events(1011), 1);
 }
 
 TEST_F(ManipulatorTest, HoldAndLeavingOperationalAbortTheMotion) {
@@ -118,7 +189,6 @@ TEST_F(ManipulatorTest, CoupledTheLinkOwnsTheSetpoint) {
   EXPECT_EQ(now("MOVE_TO", {-0.7, 1.5, 1.0}), "1 4:000f");
   EXPECT_EQ(now("HOME"), "1 4:000f");
   EXPECT_EQ(now("HOLD"), "1 4:000f");
-  EXPECT_EQ(now("SET_GAINS", {200, 20}), "1 3 7");
 }
 
 TEST_F(ManipulatorTest, TorqueAboveTheSoftLimitInhibitsAndIsReportedOnceWithJointValueAndLimit) {
@@ -138,6 +208,25 @@ TEST_F(ManipulatorTest, TorqueAboveTheHardLimitIsTheWorseEvent) {
   cycle(10);
   EXPECT_EQ(rig.events(1021), 1);
   EXPECT_EQ(rig.events(1020), 0);
+}
+
+TEST_F(ManipulatorTest, TheHardLimitStaysOnWatchAfterTheSoftOneTripped) {
+  operate(1);
+  torque_n_m = {0.0, 13.0};
+  cycle(6);
+  ASSERT_EQ(rig.events(1020), 1);
+  torque_n_m = {0.0, 16.0};
+  cycle(6);
+  EXPECT_EQ(rig.events(1021), 1) << "inhibited, and loaded further";
+  EXPECT_EQ(rig.events(1020), 1);
+}
+
+TEST_F(ManipulatorTest, TheHardLimitIsOnWatchInSafeOperationalToo) {
+  operate(1);
+  command(State::SafeOperational);
+  torque_n_m = {-16.0, 0.0};
+  cycle(20);
+  EXPECT_EQ(rig.events(1021), 1);
 }
 
 TEST_F(ManipulatorTest, OneDisturbedSampleStopsNothing) {
