@@ -72,15 +72,20 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
   }
   if (decision->reserves_w > 0) power_.reserve(apid, decision->reserves_w, request, now_ + own_request_limit);
   if (asks_only) return answer_query(incoming, *telecommand);
-  if (Member* addressee = member(apid); decision->releases_stop && addressee != nullptr) addressee->release_fence();
   const std::string text = telecommand_text(*telecommand);
   const LogEntry received{.kind = LogKind::TelecommandReceived,
                           .source = incoming.source,
                           .peer = apid,
                           .packet = incoming.packet,
                           .note = std::string_view{text}};
+  const std::uint64_t fences = parts_.guard.fences(apid);
   if (decision->essential) {
-    forward({apid, incoming.packet, incoming.memory, request, 0, true});
+    if (const auto call = called_function(*telecommand); apid == 1 && call && carry_out_at_once(incoming, request, call->name)) {
+      copy_to_ground();
+      static_cast<void>(parts_.log.append(received));
+      return;
+    }
+    forward({apid, incoming.packet, incoming.memory, request, 0, true, false, fences});
     copy_to_ground();
     static_cast<void>(parts_.log.append(received));
     return;
@@ -91,8 +96,8 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
     return reject(incoming, request, pus::FailureNotice{pus::FailureCode::QueueFull});
   // Its own telecommands were not permitted by the mode, so a change of mode does not void them.
   const std::uint32_t mode_epoch = incoming.sender == Sender::Supervisor ? 0 : mode_epoch_;
-  waiting_.push_back(
-      {number, apid, {incoming.packet.begin(), incoming.packet.end()}, incoming.memory, request, mode_epoch, now_});
+  waiting_.push_back({number, apid, {incoming.packet.begin(), incoming.packet.end()}, incoming.memory, request, mode_epoch,
+                      now_, decision->releases_stop, fences});
   forward_durable();
 }
 
@@ -140,7 +145,12 @@ void Supervisor::forward_durable() {
   while (!waiting_.empty() && waiting_.front().number <= parts_.log.durable()) {
     const Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
-    forward({next.apid, next.packet, next.memory, next.request, next.mode_epoch, false});
+    // What was permitted before a fence is void after it: it was permitted for another situation (findings SF4).
+    if (parts_.guard.fences(next.apid) != next.fences) {
+      reject({.packet = next.packet, .memory = {}}, next.request, pus::FailureNotice{pus::FailureCode::NotPermittedNow});
+      continue;
+    }
+    forward({next.apid, next.packet, next.memory, next.request, next.mode_epoch, false, next.releases_stop, next.fences});
   }
 }
 
@@ -170,19 +180,38 @@ void Supervisor::watch_log(TimePoint now) {
 }
 
 void Supervisor::forward(const Outgoing& outgoing) {
-  const auto& [apid, packet, memory, request, mode_epoch, essential] = outgoing;
+  const auto& [apid, packet, memory, request, mode_epoch, essential, releases_stop, fences] = outgoing;
   Channel* channel = channel_of(apid);
+  // The stop is lifted by exactly this telecommand, when it leaves.
+  if (releases_stop && apid != 1 && !parts_.guard.release(apid, fences))
+    return reject({.packet = packet, .memory = {}}, request, pus::FailureNotice{pus::FailureCode::NotPermittedNow});
   const Message message{.kind = MessageKind::Packet, .mode_epoch = mode_epoch, .packet = packet, .memory = memory};
   const bool sent = channel != nullptr && channel->send(message).has_value();
   if (!sent) {
     const auto code = channel == nullptr ? pus::FailureCode::UnknownApid : pus::FailureCode::QueueFull;
     return reject({.packet = packet, .memory = {}}, request, pus::FailureNotice{code});
   }
+  if (const auto telecommand = pus::TelecommandView::parse(packet); apid != 1 && telecommand)
+    outstanding_.forwarded(apid, *telecommand);
   static_cast<void>(parts_.log.append({.kind = LogKind::TelecommandForwarded,
                                        .source = 1,
                                        .peer = apid,
                                        .packet = packet,
                                        .note = essential ? "essential" : ""}));
+}
+
+bool Supervisor::carry_out_at_once(const Incoming&, const pus::Request& request, std::string_view function) {
+  if (function != "SAFE_ALL" && function != "SHUTDOWN") return false;
+  if (function == "SAFE_ALL") stops_.push_back({parts_.guard.stop_all(), request});
+  engine_.verification().accepted(request);
+  engine_.verification().started(request);
+  if (function == "SAFE_ALL") {
+    after_stop("SAFE_ALL");
+  } else {
+    request_shutdown();
+    engine_.verification().completed(request);
+  }
+  return true;
 }
 
 void Supervisor::reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice) {
@@ -261,6 +290,7 @@ void Supervisor::count_rejection(pus::FailureCode code) {
 
 void Supervisor::interpret(std::uint16_t from, const pus::TelemetryView& report) {
   count_failure(report);
+  outstanding_.reported(report);
   // A failure of any stage, or completion: the telecommand is over.
   if (report.service() == 1 && (report.subtype() % 2 == 0 || report.subtype() == 7)) {
     OctetReader reader{report.source_data()};

@@ -18,7 +18,9 @@
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/console.hpp"
+#include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/epoch_file.hpp"
 #include "supervisor/platform/log_store.hpp"
 #include "supervisor/platform/process_launcher.hpp"
 #include "supervisor/supervisor.hpp"
@@ -40,6 +42,7 @@ constexpr Duration log_start_limit = 3s;
 
 struct Options {
   std::filesystem::path mission;
+  std::filesystem::path runtime;  ///< where the guard's socket is; empty: nowhere
   Console::Style style{Console::Style::Text};
 };
 
@@ -48,6 +51,7 @@ struct Options {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word{argv[i]};
     if (word == "--mission" && i + 1 < argc) options.mission = argv[++i];
+    else if (word == "--runtime" && i + 1 < argc) options.runtime = argv[++i];
     else if (word == "--json") options.style = Console::Style::Json;
     else if (word == "--quiet") options.style = Console::Style::Quiet;
   }
@@ -111,7 +115,9 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
-  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  sigset_t blocked = signals;
+  sigaddset(&blocked, SIGUSR1);  // the guard's thread takes it
+  ::pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
   const FileDescriptor signal_descriptor{::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK)};
 
@@ -121,7 +127,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   SystemLauncher launcher;
   const auto strategy = from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);
   auto log_progress = WakeEvent::create();
-  if (!log_progress) return exit_environment;
+  auto guard_found = WakeEvent::create();
+  if (!log_progress || !guard_found) return exit_environment;
   Console console{mission, options.style};
   ThreadedPacketLog::Options log_options;
   log_options.on_progress = [&] { log_progress->notify(); };
@@ -133,10 +140,18 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   const bool realtime = realtime_permitted();
   // The log's and the console's threads exist already: they stay ordinary.
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
+  EpochFile epochs{std::filesystem::path{mission.database.path}.replace_extension(".epoch")};
+  const auto first_epoch = epochs.first(clock.onboard());
+  if (!first_epoch) {
+    fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
+    return exit_environment;
+  }
+  Guard guard{{.clock = clock, .flows = flows, .first_epoch = *first_epoch, .on_finding = [&] { guard_found->notify(); }}};
   Supervisor supervisor{
       {.mission = mission,
        .world = {.clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = {}},
        .launcher = launcher,
+       .guard = guard,
        .log = log,
        .open_database = [&](DatabaseStrategy wanted) -> std::unique_ptr<Database> {
          return make_store(wanted, mission.database.path);
@@ -146,10 +161,16 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
   const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
-  Waker waker{signal_descriptor.get(), log_progress->descriptor(), kept ? keeper_descriptor : -1};
+  Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(), kept ? keeper_descriptor : -1};
   const TimePoint started = clock.now();
   TimePoint next_status = started + status_period;
   supervisor.start();
+  const auto guard_thread = GuardShell::start(guard, clock, options.runtime);
+  if (!guard_thread) {
+    fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text, guard_thread.error().value);
+    launcher.kill_all();
+    return exit_environment;
+  }
   while (!supervisor.finished()) {
     const TimePoint wake = supervisor.step(clock.now());
     waker.follow(supervisor, launcher);
@@ -157,12 +178,14 @@ int serve(const descriptor::Mission& mission, const Options& options) {
       const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;
       if (keeper_gone) waker.forget(keeper_descriptor);  // it would end every wait from now on
       if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
+      if (ready.descriptor == guard_found->descriptor()) guard_found->clear();
       if (ready.descriptor == signal_descriptor.get()) {
         signalfd_siginfo info;
         static_cast<void>(!::read(signal_descriptor.get(), &info, sizeof info));
       }
       if (ready.descriptor == signal_descriptor.get() || keeper_gone) supervisor.request_shutdown();
     }
+    epochs.keep_above(guard.highest_epoch());
     if (clock.now() < next_status) continue;
     next_status += status_period;
     console.show(supervisor, clock.now() - started);

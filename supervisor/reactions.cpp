@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "supervisor/supervision/event_handling/recovery.hpp"
@@ -18,6 +19,12 @@ namespace {
 /// How long a process may live on with its channel closed; what it does then cannot be known.
 constexpr Duration closed_channel_limit = std::chrono::seconds{1};
 
+/// Events of the supervisor that are about a subsystem: the reaction is that subsystem's, where they are raised.
+constexpr std::array about_subsystems{"PROCESS_DIED", "HANG", "POWER_REFUSED", "POWER_LOW", "LOAD_SHED", "RECOVERY_STEP"};
+
+/// What nothing overrides: whoever is gone must be stopped and taken down whatever else runs for it (findings SF5).
+[[nodiscard]] bool is_loss(std::string_view event) { return event == "PROCESS_DIED" || event == "HANG"; }
+
 }  // namespace
 
 void Supervisor::handle_event(std::uint16_t from, const pus::TelemetryView& report) {
@@ -30,15 +37,18 @@ void Supervisor::handle_event(std::uint16_t from, const pus::TelemetryView& repo
   const std::string name = event != subsystem.events.end() ? event->name : std::to_string(id);
   parts_.observer.told(report.time(), subsystem.name + " " + std::string{to_text(severity)} + " " +
                                           describer_.describe_event(from, report.source_data()));
+  if (from == 1) return react_to_own(name, severity);
   if (Member* origin = member(from); origin != nullptr && origin->alive()) react(*origin, name, severity);
 }
 
 void Supervisor::react(Member& origin, std::string_view event, Severity severity) {
   const Reaction reaction = choose_reaction(mission_, {origin.descriptor().name, event, severity, mode_->name});
-  if (reaction.action == descriptor::Action::Log) return;
   if (shutting_down_) return;  // everything is on its way down already
+  if (reaction.restart && event == "PROCESS_DIED" && !restarts_.plan(origin.apid(), *reaction.restart, now_))
+    tell(origin.descriptor().name + " stays down: it died too often", origin.apid());
+  if (reaction.action == descriptor::Action::Log) return;
   // One plan at a time for a subsystem; only something worse overrides it.
-  if (origin.recovering && *origin.recovering >= severity) return;
+  if (origin.recovering && *origin.recovering >= severity && !is_loss(event)) return;
   if (reaction.action == descriptor::Action::ShutDownNetwork) {
     origin.recovering = severity;
     return shut_down_network(origin, reaction.plan);
@@ -60,6 +70,34 @@ void Supervisor::react(Member& origin, std::string_view event, Severity severity
     react(*subject, "RECOVERY_FAILED", Severity::High);
   };
   recover_to(apid, reaction.state, done);
+}
+
+/// The supervisor has no network and no actuators: what a plan asks for concerns all that have.
+void Supervisor::react_to_own(std::string_view event, Severity severity) {
+  if (std::ranges::find(about_subsystems, event) != about_subsystems.end()) return;
+  const Reaction reaction = choose_reaction(
+      mission_, {mission_.supervisor.name, event, severity, mode_->name, RaisedEvent::Origin::Supervisor});
+  if (reaction.action == descriptor::Action::Log || shutting_down_) return;
+  tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event}, 1);
+  if (cancel_commissioning("plan " + std::string{reaction.plan})) failed_ = true;
+  for (Member& subject : members_) {
+    if (!subject.alive() || subject.descriptor().name == mission_.ground.subsystem || subject.recovering) continue;
+    if (reaction.action == descriptor::Action::ShutDownNetwork) {
+      shut_down_network(subject, reaction.plan);
+    } else if (reaction.state != State::SafeOperational || subject.state() == State::Operational) {
+      subject.recovering = severity;
+      recover_to(subject.apid(), reaction.state,
+                 [this, apid = subject.apid(), severity](bool, const std::string&) { recovered(apid, severity); });
+    }
+  }
+}
+
+/// Commissioning goes on with what a recovery takes down as if nothing had happened: it ends with it.
+bool Supervisor::cancel_commissioning(std::string_view why) {
+  if (shutting_down_ || !sequence_.running()) return false;
+  sequence_.cancel();
+  tell("commissioning stopped: " + std::string{why}, 1);
+  return true;
 }
 
 /// One step of a plan: ground is told of it, whatever becomes of it.
@@ -86,9 +124,9 @@ void Supervisor::shut_down_network(Member& origin, std::string_view plan) {
   std::string names;
   for (const std::uint16_t apid : network) names += (names.empty() ? "" : ", ") + name_of(apid);
   // The actuators first, by shared memory: no packet, no queue and no disk is in that way.
-  for (const std::uint16_t apid : network)
-    if (Member* subject = member(apid)) subject->fence();
+  for (const std::uint16_t apid : network) parts_.guard.fence(apid);
   tell("plan " + std::string{plan} + ": network {" + names + "} to ErrorOperational and down", origin.apid());
+  if (cancel_commissioning("plan " + std::string{plan})) failed_ = true;
   for (const std::uint16_t apid : network) {
     Member* subject = member(apid);
     if (subject == nullptr || !subject->alive()) continue;
@@ -114,22 +152,37 @@ void Supervisor::bring_down(Member& subject) {
   recover_to(apid, State::ErrorOperational, to_offline);
 }
 
-void Supervisor::safe_all() {
-  // The ground link has no actuators and is needed now more than ever.
-  const auto concerned = [&](const Member& subject) {
-    return subject.alive() && subject.descriptor().name != mission_.ground.subsystem;
-  };
-  for (Member& subject : members_)
-    if (concerned(subject)) subject.fence();
-  tell("SAFE_ALL: every actuator inhibited", 1);
+void Supervisor::after_stop(std::string_view why) {
+  tell(std::string{why} + ": every actuator inhibited", 1);
   // Commissioning would lift the fences again with its next step.
-  if (!shutting_down_ && sequence_.running()) {
-    sequence_.cancel();
-    tell("commissioning stopped by SAFE_ALL", 1);
-  }
+  cancel_commissioning(why);
   for (Member& subject : members_) {
-    if (!concerned(subject) || subject.state() != State::Operational) continue;
+    // The ground link has no actuators and is needed now more than ever.
+    const bool spared = subject.descriptor().name == mission_.ground.subsystem;
+    if (!subject.alive() || spared || subject.state() != State::Operational) continue;
     command(subject.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+  }
+}
+
+/// What became of a stop is told by who was to stop: the devices where they can be asked.
+void Supervisor::follow_stops() {
+  for (auto pending = stops_.begin(); pending != stops_.end();) {
+    const auto answers = parts_.guard.stop_outcome(pending->stop);
+    if (!answers) return;
+    pus::FailureNotice notice{pus::FailureCode::DeviceError};
+    bool all = true;
+    for (const StopAnswer& answer : *answers) {
+      if (answer.killed)
+        tell(name_of(answer.apid) + " was ended: " + answer.name + " had not stopped in time", answer.apid);
+      if (answer.stopped) continue;
+      all = false;
+      tell(answer.name + " of " + name_of(answer.apid) + " did not confirm that it stopped", answer.apid);
+      if (notice.data().size() + sizeof answer.apid <= pus::FailureNotice::max_data_octets) notice.with(answer.apid);
+    }
+    if (all) tell("everything has stopped", 1);
+    if (pending->request && all) engine_.verification().completed(*pending->request);
+    if (pending->request && !all) engine_.verification().completion_failed(*pending->request, notice);
+    pending = stops_.erase(pending);
   }
 }
 
@@ -141,19 +194,77 @@ void Supervisor::watch_ends(bool all) {
     if (const auto end = parts_.launcher.ended(subject.process())) {
       receive_from(subject);  // its last words
       if (subject.alive()) member_died(subject, *end);
+    } else if (subject.unreadable != subject.unreadable_told) {
+      tell(fmt::format("{}: {} messages could not be read", subject.descriptor().name,
+                       subject.unreadable - std::exchange(subject.unreadable_told, subject.unreadable)),
+           subject.apid());
     } else if (subject.closed_at && now_ > *subject.closed_at + closed_channel_limit) {
       parts_.launcher.kill(subject.process());
     }
   }
 }
 
-void Supervisor::watch_hangs() {
-  for (Member& subject : members_) {
-    if (!subject.alive() || !subject.hang_detected()) continue;
-    engine_.announce("HANG", {static_cast<double>(subject.apid())});
-    tell(subject.descriptor().name + " hangs: its cycle stands still", subject.apid());
-    react(subject, "HANG", Severity::High);
+void Supervisor::take_guard_findings() {
+  for (const GuardFinding& finding : parts_.guard.take_findings()) {
+    if (Member* subject = member(finding.apid); subject != nullptr) {
+      hear_of(*subject, finding.kind);
+      continue;
+    }
+    if (finding.kind == GuardFinding::Kind::StopAsked) {
+      stops_.push_back({parts_.guard.stop_all(), std::nullopt});
+      after_stop("stop by signal or local socket");
+    } else if (finding.kind == GuardFinding::Kind::SupervisorStill) {
+      engine_.announce("SUPERVISOR_STILL");
+      after_stop("the supervisor itself stood still");
+    }
   }
+}
+
+void Supervisor::hear_of(Member& subject, GuardFinding::Kind what) {
+  using enum GuardFinding::Kind;
+  if (!subject.alive()) return;
+  const std::string& name = subject.descriptor().name;
+  switch (what) {
+    case CycleHangs: tell(name + " hangs: its cycle stands still", subject.apid()); break;
+    case ServiceHangs: tell(name + " hangs: its service loop stands still", subject.apid()); break;
+    case PageDamaged: tell(name + " hangs: it has overwritten its vital page", subject.apid()); break;
+    case Back: return tell(name + " moves again", subject.apid());
+    case Killed: return tell(name + " was ended: it did not come back or had not stopped in time", subject.apid());
+    default: return;
+  }
+  engine_.announce("HANG", {static_cast<double>(subject.apid())});
+  react(subject, "HANG", Severity::High);
+}
+
+void Supervisor::restart_due(TimePoint now) {
+  while (const auto apid = restarts_.take_due(now)) {
+    Member* subject = member(*apid);
+    if (subject == nullptr || subject->alive() || shutting_down_) continue;
+    launch(*subject);
+    if (subject->alive() && subject->descriptor().name == mission_.ground.subsystem) restore_ground_link(*subject);
+  }
+}
+
+/// Without the ground link nobody could command anything: it comes back to what its mode asks for by itself.
+void Supervisor::restore_ground_link(Member& subject) {
+  const descriptor::CommissionStep* wanted = nullptr;
+  for (const descriptor::Mode* mode : {mode_, mission_.find_mode(mission_.start_mode)})
+    for (const auto& step : mode != nullptr ? mode->commission : std::vector<descriptor::CommissionStep>{})
+      if (wanted == nullptr && step.subsystem == subject.descriptor().name) wanted = &step;
+  if (wanted == nullptr) return;
+  const descriptor::Subsystem& subsystem = subject.descriptor();
+  const auto* configuration = subsystem.find_configuration(wanted->configuration);
+  std::vector<Sequence::Stage> stages;
+  const auto add = [&](std::string_view function, double argument, std::string text) {
+    stages.push_back({{subsystem.id, subsystem.name, std::string{function}, argument, std::move(text)}});
+  };
+  add("SET_STATE", static_cast<double>(State::PreOperational), "PreOperational");
+  add("CONFIGURE", configuration->id, "configuration " + configuration->name);
+  for (const State state : {State::SafeOperational, State::Operational})
+    if (state <= wanted->state) add("SET_STATE", static_cast<double>(state), std::string{to_text(state)});
+  ground_link_.start(std::move(stages), Sequence::OnFailure::Stop, [this](bool success, const std::string& why) {
+    tell(success ? "the ground link is back" : "the ground link did not come back: " + why);
+  });
 }
 
 // --- power -------------------------------------------------------------------------------------------------------------
@@ -221,12 +332,16 @@ void Supervisor::member_died(Member& subject, const ProcessEnd& end) {
     subject.died();
     return fail_requests_to(apid, "process ended");
   }
+  parts_.guard.forget(apid);
   const std::string how = (end.by_signal ? "signal " : "exit code ") + std::to_string(end.value);
   tell(subject.descriptor().name + " died: " + how, apid);
   engine_.announce("PROCESS_DIED", {static_cast<double>(apid)});
   // The network is what it was before the death: the others are told while the graph still has the links.
   // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();
+  // Whatever it had begun will never be reported by itself (findings LW1).
+  for (const pus::Request& request : outstanding_.take(apid))
+    engine_.verification().completion_failed(request, pus::FailureNotice{pus::FailureCode::OutcomeUnknown});
   react(subject, "PROCESS_DIED", Severity::High);
   links_.forget(apid);
   fail_requests_to(apid, "process died");

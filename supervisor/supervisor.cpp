@@ -12,7 +12,7 @@ namespace hirosco::supervisor {
 namespace {
 
 /// How often processes, hangs and time limits are looked at: the supervisor's own cycle (decision 32).
-constexpr Duration watch_period = Member::observation_period;
+constexpr Duration watch_period = Guard::observation_period;
 constexpr Duration shutdown_limit = 5s;
 constexpr int messages_per_step = 256;
 
@@ -27,6 +27,7 @@ Supervisor::Supervisor(const Parts& parts)
       engine_{*this, mission_.supervisor, parts.world, own_channels_.subsystem_end(), *own_vital_, *own_permit_},
       links_{mission_, parts.world.memory, *this},
       sequence_{*this},
+      ground_link_{*this},
       power_{mission_.power_budget_w},
       describer_{mission_},
       next_sequence_count_{parts.first_sequence_count} {
@@ -47,6 +48,12 @@ Result<Step> Supervisor::software_init() {
   on_function("SET_MODE", [this](double mode) -> Outcome {
     const auto found = std::ranges::find(mission_.modes, static_cast<std::uint8_t>(mode), &descriptor::Mode::id);
     if (found == mission_.modes.end()) return refused(pus::FailureCode::UnknownIdentifier);
+    // A mode whose members are dead is not that mode, whatever it is called (findings SF15).
+    const auto lives = [&](const descriptor::CommissionStep& step) {
+      const auto subject = std::ranges::find(members_, step.subsystem, [](const Member& m) -> const std::string& { return m.descriptor().name; });
+      return subject != members_.end() && subject->alive();
+    };
+    if (!std::ranges::all_of(found->commission, lives)) return refused(pus::FailureCode::WrongStatus);
     set_mode(*found);
     return ok();
   });
@@ -75,33 +82,31 @@ Result<Step> Supervisor::software_init() {
     set_power_budget(budget_w);
     return ok();
   });
-  on_function("SAFE_ALL", [this]() -> Outcome {
-    safe_all();
-    return ok();
-  });
-  on_function("SHUTDOWN", [this]() -> Outcome {
-    request_shutdown();
-    return ok();
-  });
+  // Carried out where they are received (carry_out_at_once): no cycle of the supervisor is in the way of these two.
+  on_function("SAFE_ALL", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
+  on_function("SHUTDOWN", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
   return done;
 }
 
 void Supervisor::start() {
   now_ = parts_.world.clock.now();
+  own_permit_->release();
   own_permit_->mode_epoch.store(mode_epoch_);
   own_permit_->heartbeat.store(1);
+  parts_.guard.beat();
   for (Member& member : members_) {
-    auto launched = parts_.launcher.launch(member.described());
-    if (!launched) {
-      tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
+    const std::string& name = member.descriptor().name;
+    if (const auto guarded = parts_.guard.add(member.described(), name == mission_.ground.subsystem); !guarded) {
+      tell("cannot hold the second inhibit of " + name + "'s devices: " + guarded.error().text, member.apid());
       failed_ = true;
-      continue;
     }
-    member.started(std::move(*launched));
-    member.permit()->mode_epoch.store(mode_epoch_, std::memory_order_release);
-    tell("started " + member.descriptor().name, member.apid());
+    launch(member);
+    for (const auto device : descriptor::actuators_without_enable(member.descriptor()))
+      tell(name + "'s " + std::string{device} + " has no second inhibit: that it has stopped is known from " + name +
+               " only",
+           member.apid());
     for (const auto& changed : member.described().overrides)
-      tell(member.descriptor().name + " begins with " + to_string(changed), member.apid());
+      tell(name + " begins with " + to_string(changed), member.apid());
   }
   // Itself first: the functions of the others' commissioning are its own.
   const auto own = std::string{"SUPERVISOR"};
@@ -117,6 +122,19 @@ void Supervisor::start() {
                     failed_ = true;
                     request_shutdown();
                   });
+}
+
+void Supervisor::launch(Member& member) {
+  auto launched = parts_.launcher.launch(member.described());
+  if (!launched) {
+    tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
+    failed_ = true;
+    return;
+  }
+  parts_.guard.adopt(member.apid(), *launched);
+  member.started(std::move(*launched));
+  member.permit()->mode_epoch.store(mode_epoch_, std::memory_order_release);
+  tell("started " + member.descriptor().name, member.apid());
 }
 
 void Supervisor::begin_commissioning() {
@@ -144,9 +162,16 @@ void Supervisor::begin_commissioning() {
   Sequence::Stage mode{{1, "SUPERVISOR", "SET_MODE", start_mode->id, "mode " + start_mode->name}};
   sequence_.start({pre, configure, link, safe, operational, mode}, Sequence::OnFailure::Stop,
                   [this](bool success, const std::string& why) {
-                    commissioned_ = success;
-                    if (success) return tell("commissioned: mode " + mode_->name);
-                    tell("commissioning stopped: " + why);
+                    std::string missing = why;
+                    // A plan may have taken one down after its own step was done (findings LW2).
+                    for (const auto& step : mission_.find_mode(mission_.start_mode)->commission) {
+                      const Member* subject = member(mission_.find_subsystem(step.subsystem)->subsystem.id);
+                      if (missing.empty() && (subject == nullptr || subject->state() != step.state))
+                        missing = step.subsystem + " is not " + std::string{to_text(step.state)};
+                    }
+                    commissioned_ = success && missing.empty();
+                    if (commissioned_) return tell("commissioned: mode " + mode_->name);
+                    tell("commissioning stopped: " + missing);
                     failed_ = true;
                   });
 }
@@ -186,6 +211,8 @@ void Supervisor::begin_shutdown() {
 
 TimePoint Supervisor::step(TimePoint now) {
   now_ = now;
+  parts_.guard.beat();
+  take_guard_findings();
   const std::uint64_t beat = own_permit_->heartbeat.load(std::memory_order_relaxed) + 1;
   own_permit_->heartbeat.store(beat, std::memory_order_release);
   for (Member& member : members_)
@@ -193,6 +220,7 @@ TimePoint Supervisor::step(TimePoint now) {
 
   for (Member& member : members_) receive_from(member);
   watch_ends(false);
+  follow_stops();
   forward_durable();
   // Its own engine: the same two steps as everybody's, here in one thread.
   TimePoint wake = engine_.service_step(now);
@@ -206,7 +234,7 @@ TimePoint Supervisor::step(TimePoint now) {
   if (now >= next_watch_) {
     next_watch_ = now + watch_period;
     watch_ends(true);
-    watch_hangs();
+    restart_due(now);
     watch_memory();
     observe_power();
     shed_load();
@@ -231,7 +259,16 @@ void Supervisor::receive_from(Member& member) {
   MessageBuffer buffer;
   for (int left = messages_per_step; left > 0 && member.alive(); --left) {
     auto found = member.channel()->receive(buffer);
-    if (!found && !member.closed_at) member.closed_at = now_;
+    if (!found && found.error().code != ErrorCode::Unavailable) {
+      // Damage is no loss: it is counted and told, and what follows is read.
+      ++member.unreadable;
+      continue;
+    }
+    if (!found && !member.closed_at) {
+      // Whoever can be neither commanded nor heard moves nothing any more.
+      member.closed_at = now_;
+      parts_.guard.fence(member.apid());
+    }
     if (!found || found->flow == Flow::None) return;
     const Message& message = found->message;
     const auto header = pus::read_primary_header(message.packet);

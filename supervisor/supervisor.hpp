@@ -20,12 +20,15 @@
 #include "hirosco/pus/describe.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
+#include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launcher.hpp"
 #include "supervisor/platform/packet_log.hpp"
+#include "supervisor/supervision/data_handling/outstanding.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/modes/sequence.hpp"
 #include "supervisor/supervision/realtime_links/link_handling.hpp"
 #include "supervisor/supervision/subsystem_handling/member.hpp"
+#include "supervisor/supervision/subsystem_handling/restarts.hpp"
 
 /// The superior subsystem (paper 4.3). Itself a subsystem with APID 1: its functions are telecommands like any other,
 /// its telemetry takes the same way through permission, log and route.
@@ -49,6 +52,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     const descriptor::Mission& mission;
     World world;
     ProcessLauncher& launcher;
+    Guard& guard;                          ///< stepped by its own thread, or by who steps the supervisor
     PacketLog& log;
     DatabaseOpener open_database;
     Observer& observer;
@@ -115,8 +119,12 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     pus::Request request;
     std::uint32_t mode_epoch{0};     ///< at permission; 0 = not bound to the mode
     bool essential{false};
+    bool releases_stop{false};
+    std::uint64_t fences{0};         ///< of the addressee at permission
   };
   void forward(const Outgoing& outgoing);
+  /// Functions of the supervisor that are carried out where they are received, by no cycle and no queue.
+  bool carry_out_at_once(const Incoming& incoming, const pus::Request& request, std::string_view function);
   void forward_durable();
   void watch_log(TimePoint now);
   void handle_telemetry(std::uint16_t from, Octets packet);
@@ -134,6 +142,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
 
   // event handling
   void react(Member& origin, std::string_view event, descriptor::Severity severity);
+  void react_to_own(std::string_view event, descriptor::Severity severity);
+  bool cancel_commissioning(std::string_view why);
   void shut_down_network(Member& origin, std::string_view plan);
   void bring_down(Member& member);
   void recover_to(std::uint16_t apid, State state, CommandDone done);
@@ -141,7 +151,11 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
 
   // subsystem handling
   void watch_ends(bool all);  ///< or only those whose channel is closed
-  void watch_hangs();
+  void take_guard_findings();
+  void hear_of(Member& member, GuardFinding::Kind what);
+  void launch(Member& member);
+  void restart_due(TimePoint now);
+  void restore_ground_link(Member& member);
   void member_died(Member& member, const ProcessEnd& end);
 
   // power
@@ -154,7 +168,9 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void begin_commissioning();
   void begin_shutdown();
   void set_mode(const descriptor::Mode& mode);
-  void safe_all();
+  /// After everything was stopped: nothing starts it again, and the states follow.
+  void after_stop(std::string_view why);
+  void follow_stops();
   void expire_requests(TimePoint now);
   void fail_requests_to(std::uint16_t apid, const std::string& why);
   void tell(std::string_view line, std::uint16_t subject = 0);
@@ -175,6 +191,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   bool own_cycle_running_{false};
   LinkHandling links_;
   Sequence sequence_;
+  Sequence ground_link_;  ///< brings a restarted ground link back
   PowerLedger power_;
   pus::PacketDescriber describer_;
 
@@ -194,11 +211,20 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     pus::Request request;
     std::uint32_t mode_epoch{0};
     TimePoint since{};
+    bool releases_stop{false};
+    std::uint64_t fences{0};
   };
   std::deque<Waiting> waiting_;
   bool log_failing_{false};
   std::uint64_t told_troubles_{0};   ///< of the log's store
   TimePoint trouble_told_{};
+  Outstanding outstanding_;
+  Restarts restarts_;
+  struct PendingStop {
+    std::uint64_t stop{0};
+    std::optional<pus::Request> request;   ///< empty: asked for by signal or local socket
+  };
+  std::vector<PendingStop> stops_;
 
   TimePoint now_{};
   TimePoint next_watch_{};

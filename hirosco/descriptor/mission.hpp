@@ -76,6 +76,13 @@ struct Mode {
 
 enum class Action : std::uint8_t { Log, SetState, ShutDownNetwork };
 
+/// A subsystem whose process ended is started again: at most `limit` times within `within`, after a pause that doubles.
+struct Restart {
+  std::uint32_t limit{3};
+  Duration within{std::chrono::seconds{60}};
+  Duration pause{std::chrono::milliseconds{100}};
+};
+
 /// A recovery plan: the most specific matching one is taken (subsystem, event, severity, mode).
 struct Plan {
   std::string name;
@@ -85,6 +92,7 @@ struct Plan {
   std::string mode;                  ///< empty = any
   Action action{Action::Log};
   State state{State::SafeOperational};  ///< for SetState
+  std::optional<Restart> restart{};  ///< besides the action: of whoever died
   Location at;
 };
 

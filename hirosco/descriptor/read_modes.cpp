@@ -286,7 +286,8 @@ void MissionReader::read_plan(const xml::Element& element) {
                  read_do(child, plan);
                  action = true;
                },
-               1}});
+               1},
+              {"Restart", [&](const auto& child) { read_restart(child, plan); }, 1}});
   if (!condition) problems_.add(element, "E0106", "<Plan> needs a <When>");
   if (!action) problems_.add(element, "E0106", "<Plan> needs a <Do>");
   if (!plan.name.empty()) plan_names_.add(plan.name, plan.at, problems_, element.name.size() + 1);
@@ -325,6 +326,16 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
                   found == nullptr ? fmt::format("no subsystem has an event {}", in_quotes(plan.event))
                                    : fmt::format("'{}' has no event {}", found->name, in_quotes(plan.event)),
                   did_you_mean(plan.event, known));
+}
+
+void MissionReader::read_restart(const xml::Element& element, Plan& plan) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  Restart restart;
+  restart.limit = attributes.integer_or<std::uint32_t>("limit", 1, 100'000, restart.limit);
+  restart.within = std::chrono::seconds{attributes.integer_or<int>("within_s", 1, 86'400, 60)};
+  restart.pause = std::chrono::milliseconds{attributes.integer_or<int>("pause_ms", 0, 60'000, 100)};
+  plan.restart = restart;
 }
 
 void MissionReader::read_do(const xml::Element& element, Plan& plan) {

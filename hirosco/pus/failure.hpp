@@ -42,6 +42,7 @@ enum class FailureCode : std::uint16_t {
   Timeout = 0x0203,
   Aborted = 0x0204,
   DeviceError = 0x0205,
+  OutcomeUnknown = 0x0206,
 };
 
 /// A failure notice: code and code-specific data.  Realtime: wait-free, trivially copyable.
@@ -110,6 +111,7 @@ struct EnumTexts<pus::FailureCode> {
       {Timeout, "timeout"},
       {Aborted, "aborted"},
       {DeviceError, "device error"},
+      {OutcomeUnknown, "outcome unknown: its addressee died"},
   });
 };
 }  // namespace hirosco

@@ -23,7 +23,7 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State ta
     if (!required_links_attached()) return std::unexpected{pus::FailureNotice{pus::FailureCode::LinkAbsent}};
   }
   if (target == State::ErrorOperational && configuration_ == nullptr) return std::unexpected{wrong_state()};
-  if (target == State::Operational && permit_.stop.load(std::memory_order_acquire) != 0)
+  if (target == State::Operational && !permit_.permits(permit_.epoch.load(std::memory_order_acquire)))
     return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
   if (overrides && way_request_)
     verification_.completion_failed(*way_request_, pus::FailureNotice{pus::FailureCode::Aborted});

@@ -25,7 +25,9 @@ class Threaded {
                    channels_.subsystem_end(),
                    vital_,
                    permit_},
-        cycle_{[this] { run_cycle(); }} {}
+        cycle_{[this] { run_cycle(); }} {
+    permit_.release();
+  }
   ~Threaded() {
     ending_ = true;
     cycle_.join();

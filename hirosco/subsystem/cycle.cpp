@@ -74,8 +74,9 @@ bool CycleLoop::controlling() const noexcept {
 
 void CycleLoop::check_permit() noexcept {
   const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
-  const bool stop = parts_.permit.stop.load(std::memory_order_acquire) != 0;
-  if (stop || (state_ == State::Operational && epoch != entered_epoch_)) inhibit(inhibited_by_stop);
+  const bool stopped = parts_.permit.stop.load(std::memory_order_acquire) != 0;
+  const bool operational = state_ == State::Operational;
+  if (stopped || (operational && (epoch != entered_epoch_ || !parts_.permit.permits(epoch)))) inhibit(inhibited_by_stop);
   permitted_epoch_ = epoch;
   parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);
 }

@@ -67,7 +67,8 @@ int main() {
   SimulatedFlows flows;
   ChannelPair channels;
   VitalPage vital;
-  const PermitPage permit;
+  PermitPage permit;
+  permit.release();
   Counter counter;
   GenericSubsystem subsystem{
       counter, *reading.value, {.clock = clock, .memory = memory, .flows = flows}, channels.subsystem_end(),

@@ -295,7 +295,7 @@ TEST_F(Links, AProvidedSetCarriesItsStatusBesideTheValues) {
   go(State::SafeOperational);
   go(State::Operational);
   EXPECT_EQ(follow(), LinkStatus::Valid);
-  rig.permit.stop = 1;
+  rig.permit.fence();
   EXPECT_EQ(follow(), LinkStatus::Degraded);
   rig.set_state_now(State::ErrorOperational);
   EXPECT_EQ(follow(), LinkStatus::Fault);

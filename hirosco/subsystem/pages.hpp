@@ -10,11 +10,12 @@
 #include "hirosco/pus/packet_counters.hpp"
 
 /// The two pages of shared memory between a subsystem and the supervisor (decision 6). Both sides check magic and
-/// version before use; all fields are single words, so nothing can be torn.
+/// version before use; all fields are single words, so nothing can be torn. What decides over actuators survives damage: no
+/// flip of a single bit permits anything, or turns one state into another (docs/adr/0019).
 namespace hirosco {
 
 inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
-inline constexpr std::uint32_t page_version = 2;
+inline constexpr std::uint32_t page_version = 3;
 
 /// Why the framework inhibits the actuators of a subsystem; bits of VitalPage::inhibited.
 enum Inhibition : std::uint32_t {
@@ -37,16 +38,41 @@ struct IncomingLink {
 /// A configuration may require more sets; those beyond are not told.
 inline constexpr std::size_t told_incoming_links = 8;
 
+/// A number of 16 bits beside its complement: damage shows.  Realtime: wait-free.
+class CheckedWord {
+ public:
+  /// What load() says of a word that is neither: larger than every value.
+  static constexpr std::uint32_t damaged = 0xFFFF'FFFF;
+  CheckedWord(std::uint32_t value = 0) noexcept : word_{coded(value)} {}  // NOLINT: stands for the number
+  CheckedWord& operator=(std::uint32_t value) noexcept {
+    store(value);
+    return *this;
+  }
+  void store(std::uint32_t value, std::memory_order order = std::memory_order_seq_cst) noexcept {
+    word_.store(coded(value), order);
+  }
+  [[nodiscard]] std::uint32_t load(std::memory_order order = std::memory_order_seq_cst) const noexcept {
+    const std::uint32_t word = word_.load(order);
+    return word == coded(word & 0xFFFF) ? word & 0xFFFF : damaged;
+  }
+
+ private:
+  [[nodiscard]] static constexpr std::uint32_t coded(std::uint32_t value) noexcept {
+    return (value & 0xFFFF) | (~value << 16);
+  }
+  std::atomic<std::uint32_t> word_;
+};
+
 /// Written by the subsystem, read by the supervisor.
 struct VitalPage {
   std::uint32_t magic{page_magic};
   std::uint32_t version{page_version};
-  std::atomic<std::uint32_t> state{0};  ///< State
-  std::atomic<std::uint32_t> configuration{0};  ///< id, 0 = none
+  CheckedWord state{0};  ///< State
+  CheckedWord configuration{0};  ///< id, 0 = none
   std::atomic<std::uint32_t> inhibited{0};  ///< bits of Inhibition
   std::atomic<std::uint32_t> seen_epoch{0};  ///< epoch of the permit page at the last cycle
-  std::atomic<std::uint32_t> realtime{0};  ///< 1: SCHED_FIFO granted, 0: the reduced promise holds
-  std::atomic<std::uint32_t> cycling{0};  ///< 1 while the cycle is to run
+  CheckedWord realtime{0};  ///< 1: SCHED_FIFO granted, 0: the reduced promise holds
+  CheckedWord cycling{0};  ///< 1 while the cycle is to run
   std::atomic<std::uint64_t> period_ns{0};
   std::atomic<std::uint64_t> cycles{0};  ///< advances while the cycle runs: hang detection
   std::atomic<std::uint64_t> service_steps{0};  ///< advances while the service loop runs
@@ -61,15 +87,41 @@ struct VitalPage {
   pus::CounterBlock counters;  ///< outlive the process (decision 8b)
 };
 
-/// Written by the supervisor, read by the subsystem every cycle.
+/// The only value of PermitPage::go that lets actuators move under this epoch.
+[[nodiscard]] constexpr std::uint64_t permission_word(std::uint32_t epoch) noexcept {
+  std::uint64_t word = epoch + 0x9E37'79B9'7F4A'7C15;
+  word = (word ^ (word >> 30)) * 0xBF58'476D'1CE4'E5B9;
+  word = (word ^ (word >> 27)) * 0x94D0'49BB'1331'11EB;
+  return word ^ (word >> 31);
+}
+
+/// Written by the supervisor, read by the subsystem every cycle. As it is made it permits nothing.
 struct PermitPage {
   std::uint32_t magic{page_magic};
   std::uint32_t version{page_version};
-  std::atomic<std::uint32_t> epoch{1};  ///< rises with every fence; device frames carry it
-  std::atomic<std::uint32_t> stop{0};  ///< 1: actuators inhibited at the next cycle
+  std::atomic<std::uint32_t> epoch{1};  ///< rises with every fence and every release; device frames carry it
+  std::atomic<std::uint32_t> stop{0};  ///< 1 after a fence, for displays: what decides is `go`
+  std::atomic<std::uint64_t> go{0};  ///< permission_word(epoch): actuators may move; everything else: they may not
   std::atomic<std::uint32_t> mode_epoch{0};  ///< rises with every mode change
   std::atomic<std::uint64_t> heartbeat{0};  ///< advances with every step of the supervisor
   std::atomic<std::uint64_t> stopped_at_cycle{0};  ///< VitalPage::cycles that the supervisor read when it set `stop`
+
+  /// Actuators may move under this epoch.  Realtime: wait-free.
+  [[nodiscard]] bool permits(std::uint32_t under) const noexcept {
+    return go.load(std::memory_order_acquire) == permission_word(under);
+  }
+  /// The writer's two acts. The order of the stores leaves no instant in which an old permission holds for a new epoch.
+  void fence() noexcept {
+    go.store(0, std::memory_order_release);
+    epoch.fetch_add(1, std::memory_order_acq_rel);
+    stop.store(1, std::memory_order_release);
+  }
+  void release() noexcept {
+    go.store(0, std::memory_order_release);
+    const std::uint32_t under = epoch.fetch_add(1, std::memory_order_acq_rel) + 1;
+    stop.store(0, std::memory_order_release);
+    go.store(permission_word(under), std::memory_order_release);
+  }
 };
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free);

@@ -129,31 +129,50 @@ TEST_F(Devices, InputReachesTheAuthorInTheSameCycle) {
 
 TEST_F(Devices, TheStopFlagActsInTheSameCycleAndIsLatched) {
   bring_up(State::Operational);
-  rig.permit.stop = 1;
+  rig.permit.fence();
   const Command stopped = exchange();
   EXPECT_EQ(stopped.value, -1.0);
   EXPECT_EQ(stopped.mode, DeviceMode::Off);
   EXPECT_FALSE(probe.last.active);
   EXPECT_EQ(rig.inhibited(), inhibited_by_stop);
-  rig.permit.stop = 0;
+  rig.permit.release();
   for (int i = 0; i < 5; ++i) EXPECT_EQ(exchange().value, -1.0);
   go(State::SafeOperational);
   EXPECT_EQ(go(State::Operational).value, 5.0);
   EXPECT_EQ(rig.inhibited(), 0u);
 }
 
+TEST_F(Devices, NoFlippedBitOfAFencedPermitPageReachesAnActuator) {
+  bring_up(State::SafeOperational);
+  for (const State state : {State::SafeOperational, State::Operational}) {
+    if (state == State::Operational) {
+      EXPECT_EQ(go(state).mode, DeviceMode::Active);
+    }
+    rig.permit.fence();
+    exchange();
+    for (std::size_t bit = 0; bit < sizeof(PermitPage) * 8; ++bit) {
+      auto* octet = reinterpret_cast<unsigned char*>(&rig.permit) + bit / 8;
+      const auto before = *octet;
+      *octet ^= static_cast<unsigned char>(1U << bit % 8);
+      EXPECT_NE(exchange().mode, DeviceMode::Active) << to_text(state) << " bit " << bit;
+      *octet = before;
+    }
+    rig.permit.release();
+  }
+}
+
 TEST_F(Devices, OperationalIsRefusedWhileTheStopFlagIsSet) {
   bring_up(State::SafeOperational);
-  rig.permit.stop = 1;
+  rig.permit.fence();
   EXPECT_EQ(rig.set_state_now(State::Operational), "1 4:010700");
 }
 
 TEST_F(Devices, AnotherEpochActsInTheSameCycleAndIsLatched) {
   bring_up(State::Operational);
-  rig.permit.epoch.fetch_add(1);
+  rig.permit.release();
   const Command stopped = exchange();
   EXPECT_EQ(stopped.value, -1.0);
-  EXPECT_EQ(stopped.epoch, 2u);
+  EXPECT_EQ(stopped.epoch, 3u);
   EXPECT_EQ(exchange().value, -1.0);
   go(State::SafeOperational);
   EXPECT_EQ(go(State::Operational).value, 5.0);

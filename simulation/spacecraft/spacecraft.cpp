@@ -82,6 +82,8 @@ struct Spacecraft::Member {
   bool stopped{false};
   bool spinning{false};
   bool stuck{false};
+  TimePoint spins_since{};
+  bool realtime_taken{false};
   int strained_cycles{0};
   Duration cycle_takes{0};
   std::optional<supervisor::ProcessEnd> end;
@@ -100,6 +102,26 @@ class ChannelEnd final : public Channel {
  private:
   ChannelPair& pair_;
 };
+
+}  // namespace
+
+/// A simulated process has had the processor only while it spins.
+class Spacecraft::Grip final : public supervisor::ProcessGrip {
+ public:
+  Grip(Spacecraft& craft, std::size_t member) : craft_{craft}, member_{member} {}
+  void take_realtime() noexcept override { craft_.members_[member_]->realtime_taken = true; }
+  Duration processor_time() noexcept override {
+    const Member& member = *craft_.members_[member_];
+    return member.spinning ? craft_.now() - member.spins_since : Duration{0};
+  }
+  void kill() noexcept override { craft_.kill(static_cast<std::uint32_t>(member_ + 1)); }
+
+ private:
+  Spacecraft& craft_;
+  std::size_t member_;
+};
+
+namespace {
 
 template <class Page>
 [[nodiscard]] Mapping mapping_of(const std::shared_ptr<Page>& page) {
@@ -136,10 +158,15 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
     }
   }
   const World world{.clock = clock_, .memory = memory_, .flows = flows_, .realtime = parts.realtime, .explain = {}};
+  guard_.emplace(supervisor::Guard::Parts{.clock = clock_, .flows = flows_, .first_epoch = 1, .on_finding = [this] {
+                                            if (supervisor_wake_ != never) supervisor_wake_ = clock_.now();
+                                          }});
+  guard_wake_ = clock_.now();
   supervisor_ = std::make_unique<supervisor::Supervisor>(supervisor::Supervisor::Parts{
       .mission = parts.mission,
       .world = world,
       .launcher = *this,
+      .guard = *guard_,
       .log = *log_,
       .open_database = parts.open_database ? parts.open_database
                                            : [](supervisor::DatabaseStrategy) -> std::unique_ptr<supervisor::Database> {
@@ -175,6 +202,7 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   launched.vital = mapping_of(member.vital);
   launched.permit = mapping_of(member.permit);
   launched.process = static_cast<std::uint32_t>(members_.size());
+  launched.grip = std::make_shared<Grip>(*this, members_.size() - 1);
   return launched;
 }
 
@@ -198,12 +226,15 @@ void Spacecraft::kill(std::string_view name) {
 }
 
 void Spacecraft::stop(std::string_view name, bool stopped) {
-  if (name == parts_.mission.supervisor.name) supervisor_wake_ = stopped ? never : clock_.now();
+  if (name == parts_.mission.supervisor.name) supervisor_wake_ = guard_wake_ = stopped ? never : clock_.now();
   else if (Member* member = find(name)) member->stopped = stopped;
 }
 
 void Spacecraft::spin(std::string_view name) {
-  if (Member* member = find(name)) member->spinning = true;
+  Member* member = find(name);
+  if (member == nullptr) return;
+  member->spinning = true;
+  member->spins_since = clock_.now();
 }
 
 void Spacecraft::stick(std::string_view name, bool stuck) {
@@ -237,10 +268,10 @@ bool Spacecraft::run_until(const std::function<bool()>& condition, Duration limi
 }
 
 /// Goes to the next thing that is due and does it. At one instant the order is fixed: devices, cycles, service loops,
-/// supervisor, each in mission order. False when nothing is left before `end`.
+/// guard, supervisor, each in mission order. False when nothing is left before `end`.
 bool Spacecraft::advance(TimePoint end) {
   if (supervisor_->finished()) return false;
-  TimePoint next = supervisor_wake_;
+  TimePoint next = std::min(supervisor_wake_, guard_wake_);
   for (const Device& device : devices_) next = std::min(next, device.device->next_wake());
   for (const auto& member : members_) {
     if (!member->engine || member->stopped) continue;
@@ -259,14 +290,17 @@ bool Spacecraft::advance(TimePoint end) {
     if (may_cycle(*member) && member->cycle_wake <= next) step_cycle(*member);
   for (const auto& member : members_)
     if (member->engine && !member->stopped && !member->stuck && member->service_wake <= next) step_service(*member);
+  if (guard_wake_ <= next) guard_wake_ = guard_->step(next);
   if (supervisor_wake_ <= next) supervisor_wake_ = supervisor_->step(next);
   return true;
 }
 
-/// One that spins in a cycle has the processor of all cycles.
+/// One that spins in a cycle has the processor of all cycles as long as it has real-time priority, and makes none.
 bool Spacecraft::may_cycle(const Member& member) const noexcept {
-  const auto spins = [](const auto& other) { return other->engine && !other->stopped && other->spinning && other->cycling; };
-  return member.engine && !member.stopped && std::ranges::none_of(members_, spins);
+  const auto spins = [](const auto& other) {
+    return other->engine && !other->stopped && other->spinning && other->cycling && !other->realtime_taken;
+  };
+  return member.engine && !member.spinning && !member.stopped && std::ranges::none_of(members_, spins);
 }
 
 void Spacecraft::step_device(std::size_t device) { devices_[device].device->step(clock_.now()); }

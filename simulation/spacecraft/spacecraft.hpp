@@ -72,6 +72,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   [[nodiscard]] TimePoint now() const noexcept { return clock_.now(); }
 
   [[nodiscard]] supervisor::Supervisor& supervisor() noexcept { return *supervisor_; }
+  [[nodiscard]] supervisor::Guard& guard() noexcept { return *guard_; }
   [[nodiscard]] SimulatedGround& ground() noexcept { return ground_; }
   [[nodiscard]] SimulatedDevice* device(std::string_view name) noexcept;
   [[nodiscard]] const GenericSubsystem* subsystem(std::string_view name) const noexcept;
@@ -99,6 +100,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
 
  private:
   struct Member;
+  class Grip;
   // ProcessLauncher
   Result<supervisor::LaunchedSubsystem> launch(const descriptor::MissionSubsystem& described) override;
   std::optional<supervisor::ProcessEnd> ended(std::uint32_t process) override;
@@ -124,8 +126,10 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     std::unique_ptr<SimulatedDevice> device;
   };
   std::vector<Device> devices_;
+  std::optional<supervisor::Guard> guard_;
   std::unique_ptr<supervisor::Supervisor> supervisor_;
   TimePoint supervisor_wake_{};
+  TimePoint guard_wake_{};
   std::function<void(std::string_view, TimePoint)> watch_;
   std::uint16_t sequence_{0};  ///< of the ground's telecommands
 };

@@ -10,16 +10,30 @@
 #include "hirosco/data_transfer/memory.hpp"
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
 
 /// How subsystems come to life (architecture, rule 3). Real: one process each; simulated: objects of one process.
 namespace hirosco::supervisor {
+
+/// What can be done to a started process whatever it does itself. After its end nothing happens any more.
+/// Realtime: system calls, bounded. Thread: any.
+class ProcessGrip {
+ public:
+  virtual ~ProcessGrip() = default;
+  /// All its threads lose real-time priority: who waited for the processor gets it.
+  virtual void take_realtime() noexcept = 0;
+  /// Processor time that all its threads have had so far.
+  [[nodiscard]] virtual Duration processor_time() noexcept = 0;
+  virtual void kill() noexcept = 0;
+};
 
 /// What the supervisor holds of a started subsystem.
 struct LaunchedSubsystem {
   std::unique_ptr<Channel> channel;
   Mapping vital;                     ///< read
-  Mapping permit;                    ///< written
+  Mapping permit;                    ///< written; nobody else can map it so any more
   std::uint32_t process{0};          ///< names it to the launcher
+  std::shared_ptr<ProcessGrip> grip; ///< null where a process cannot be gripped
 };
 
 /// How a subsystem's process ended.

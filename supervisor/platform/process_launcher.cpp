@@ -3,7 +3,9 @@
 #include "supervisor/platform/process_launcher.hpp"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -25,6 +27,44 @@ constexpr int permit_number = 5;
 
 [[nodiscard]] FileDescriptor open_statm(const std::string& process) {
   return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
+}
+
+/// Works on a process by its handle, so never on another one that got its number later.
+class LinuxGrip final : public ProcessGrip {
+ public:
+  explicit LinuxGrip(Process process) : process_{std::move(process)} {
+    if (::clock_getcpuclockid(process_.pid(), &clock_) != 0) clock_ = CLOCK_MONOTONIC_COARSE;
+  }
+  void take_realtime() noexcept override {
+    if (!runs()) return;
+    std::error_code failed;
+    const auto tasks = std::filesystem::path{"/proc"} / std::to_string(process_.pid()) / "task";
+    for (const auto& task : std::filesystem::directory_iterator{tasks, failed}) {
+      int thread = 0;
+      const std::string name = task.path().filename();
+      std::from_chars(name.data(), name.data() + name.size(), thread);
+      const sched_param ordinary{};
+      if (thread > 0) static_cast<void>(::sched_setscheduler(thread, SCHED_OTHER, &ordinary));
+    }
+  }
+  Duration processor_time() noexcept override {
+    timespec time{};
+    if (clock_ == CLOCK_MONOTONIC_COARSE || ::clock_gettime(clock_, &time) != 0) return {};
+    return std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
+  }
+  void kill() noexcept override { static_cast<void>(process_.send_signal(SIGKILL)); }
+
+ private:
+  [[nodiscard]] bool runs() noexcept { return process_.send_signal(0).has_value(); }
+  Process process_;
+  clockid_t clock_{};
+};
+
+[[nodiscard]] std::shared_ptr<ProcessGrip> grip_of(const Process& process) {
+  FileDescriptor handle{::fcntl(process.handle().get(), F_DUPFD_CLOEXEC, 0)};
+  if (!handle) return nullptr;
+  auto second = Process::adopt(process.pid(), std::move(handle));
+  return second ? std::make_shared<LinuxGrip>(std::move(*second)) : nullptr;
 }
 
 /// A page in memory of its own, constructed in place.
@@ -59,6 +99,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   if (program.empty()) return fail(ErrorCode::NotFound, "its executable is neither beside this program nor in PATH");
   HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
   HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
+  // The subsystem reads what gates its actuators; from now on nobody can map it otherwise (findings SF13).
+  HIROSCO_TRY(memory_.seal_writers(permit.first));
   HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair());
   ProcessStart start;
   start.executable = program.string();
@@ -75,6 +117,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   launched.vital = std::move(vital.second);
   launched.permit = std::move(permit.second);
   launched.process = next_++;
+  launched.grip = grip_of(process);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
   if (!memory_use_[0]) memory_use_[0] = open_statm("self");
   processes_.emplace(launched.process, std::move(process));

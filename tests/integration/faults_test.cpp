@@ -167,9 +167,7 @@ TEST_F(Faults, AHungJoystickThatGoesOnFindsItselfFenced) {
   press();
   flight.craft().stop("JOYSTICK", true);
   ASSERT_TRUE(flight.run_until_state("MANIPULATOR", State::Offline, 2s));
-  const auto& members = flight.craft().supervisor().members();
-  const auto joystick_member = std::ranges::find(members, std::uint16_t{11}, &supervisor::Member::apid);
-  EXPECT_TRUE(joystick_member->fenced());
+  EXPECT_TRUE(flight.craft().guard().fenced(11));
   int active_cycles = 0;
   flight.craft().on_cycle([&](std::string_view, TimePoint) { active_cycles += joystick->active() ? 1 : 0; });
   flight.craft().stop("JOYSTICK", false);

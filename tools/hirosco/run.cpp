@@ -93,7 +93,7 @@ int run(const RunOptions& options) {
     return exit_environment;
   }
   plan.supervisor.executable = program.string();
-  plan.supervisor.arguments = {"--mission", mission->file.string()};
+  plan.supervisor.arguments = {"--mission", mission->file.string(), "--runtime", folder.string()};
   if (options.json) plan.supervisor.arguments.emplace_back("--json");
   if (options.quiet) plan.supervisor.arguments.emplace_back("--quiet");
   return supervisor::keep(std::move(plan));

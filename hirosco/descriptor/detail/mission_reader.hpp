@@ -69,6 +69,7 @@ class MissionReader {
   void read_recovery(const xml::Element& element);
   void read_plan(const xml::Element& element);
   void read_when(const xml::Element& element, Plan& plan);
+  void read_restart(const xml::Element& element, Plan& plan);
   void read_do(const xml::Element& element, Plan& plan);
   [[nodiscard]] State read_steady_state(Attributes& attributes, State fallback);
   void check_functions(const xml::Attribute& at, const Permit& permit);

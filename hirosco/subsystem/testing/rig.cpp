@@ -40,7 +40,9 @@ Rig::Rig(Subsystem& author, const std::string& descriptor_text, bool realtime)
                  .explain = [this](std::string_view text) { explanations.emplace_back(text); }},
                 channels.subsystem_end(),
                 vital,
-                permit} {}
+                permit} {
+  permit.release();
+}
 
 void Rig::service() {
   if (!supervisor_silent) permit.heartbeat.fetch_add(1);

@@ -59,6 +59,11 @@ constexpr std::uint16_t supervisor_apid = 1;
   });
 }
 
+/// Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (findings SF1).
+[[nodiscard]] bool changes_supervisor(std::uint16_t apid, const CalledFunction& call) {
+  return apid == supervisor_apid && (call.name == "SET_STATE" || call.name == "CONFIGURE");
+}
+
 /// A required link of the configuration in force that is not up (paper 4.3); 0 when the mission has none for the set.
 [[nodiscard]] std::optional<std::uint8_t> absent_link(const descriptor::Subsystem& subsystem,
                                                       const Situation& situation) {
@@ -121,6 +126,8 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   if (service == 17 || service == pus::st129::service_type) return Permitted{.essential = true};
 
   const auto call = called_function(telecommand);
+  if (call && sender != Sender::Supervisor && changes_supervisor(telecommand.apid(), *call))
+    return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
   const descriptor::Function* function = call ? subsystem->find_function(call->name) : nullptr;
   const bool built_in = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
   Permitted permitted;

@@ -14,6 +14,8 @@ namespace {
   if (!plan.mode.empty() && plan.mode != event.mode) return std::nullopt;
   if (!plan.severities.empty() && std::ranges::find(plan.severities, event.severity) == plan.severities.end())
     return std::nullopt;
+  const bool names_it = !plan.event.empty() || !plan.subsystem.empty();
+  if (event.origin == RaisedEvent::Origin::Supervisor && !names_it) return std::nullopt;
   return (plan.event.empty() ? 0 : 8) + (plan.subsystem.empty() ? 0 : 4) + (plan.mode.empty() ? 0 : 2) +
          (plan.severities.empty() ? 0 : 1);
 }
@@ -29,12 +31,13 @@ Reaction choose_reaction(const descriptor::Mission& mission, const RaisedEvent& 
     best = &plan;
     best_score = *score;
   }
-  if (best != nullptr) return {best->name, best->action, best->state};
+  if (best != nullptr) return {best->name, best->action, best->state, best->restart};
+  if (event.origin == RaisedEvent::Origin::Supervisor) return {"default", descriptor::Action::Log, {}, {}};
   switch (event.severity) {
-    case descriptor::Severity::High: return {"default", descriptor::Action::ShutDownNetwork, {}};
+    case descriptor::Severity::High: return {"default", descriptor::Action::ShutDownNetwork, {}, {}};
     case descriptor::Severity::Medium:
-      return {"default", descriptor::Action::SetState, descriptor::State::SafeOperational};
-    default: return {"default", descriptor::Action::Log, {}};
+      return {"default", descriptor::Action::SetState, descriptor::State::SafeOperational, {}};
+    default: return {"default", descriptor::Action::Log, {}, {}};
   }
 }
 

@@ -15,14 +15,18 @@ struct RaisedEvent {
   std::string_view event;            ///< name, or the number as text when the descriptor does not know it
   descriptor::Severity severity{};
   std::string_view mode;
+  enum class Origin : std::uint8_t { Subsystem, Supervisor } origin{Origin::Subsystem};
 };
 
 struct Reaction {
   std::string_view plan;             ///< name, "default" when no plan of the mission matched
   descriptor::Action action{descriptor::Action::Log};
   descriptor::State state{};         ///< for Action::SetState
+  std::optional<descriptor::Restart> restart;  ///< besides
 };
 
+/// Events of the supervisor itself are answered only by plans that name it or the event: no actuator of
+/// its is in danger, and a plan for "everything of medium severity" means the subsystems.
 /// Criteria count in the order event, subsystem, mode, severity; of equally specific plans the first wins.
 [[nodiscard]] Reaction choose_reaction(const descriptor::Mission& mission, const RaisedEvent& event);
 

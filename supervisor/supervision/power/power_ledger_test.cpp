@@ -11,7 +11,7 @@ namespace {
 
 using descriptor::State;
 
-constexpr std::uint16_t robot = 10, handle = 11, camera = 12;
+constexpr std::uint16_t robot = 10, handle = 11, light = 12;
 constexpr pus::Request of_arm{.id = 0x180AC001, .source = 7}, of_hand{.id = 0x180BC001, .source = 7};
 constexpr TimePoint start{}, later = start + 10s;
 
@@ -101,7 +101,7 @@ TEST_F(PowerLedgerTest, ALoweredBudgetTakesNothingAwayButShows) {
   ledger.set_budget(99);
   EXPECT_TRUE(ledger.overdrawn());
   EXPECT_EQ(ledger.reserved_mw(), 100'000U);
-  EXPECT_TRUE(ledger.shortage(camera, 1));
+  EXPECT_TRUE(ledger.shortage(light, 1));
 }
 
 TEST_F(PowerLedgerTest, AnOverdraftIsNewOnceUntilItIsOver) {

@@ -12,7 +12,8 @@
 #include "hirosco/subsystem/states.hpp"
 #include "supervisor/platform/launcher.hpp"
 
-/// One started subsystem as the supervisor sees it: its channel, its two pages, whether it lives and moves.
+/// One started subsystem as the supervisor sees it: its channel, its two pages, whether it lives. Whether it moves, and
+/// whether it may move anything, is the guard's.
 namespace hirosco::supervisor {
 
 class Member {
@@ -34,16 +35,6 @@ class Member {
   [[nodiscard]] std::optional<State> state() const noexcept;
   [[nodiscard]] std::uint8_t configuration() const noexcept;
 
-  /// Actuators inhibited at its next cycle, and what a device hears from it afterwards carries an old epoch.
-  void fence() noexcept;
-  void release_fence() noexcept;
-  [[nodiscard]] bool fenced() const noexcept;
-
-  /// How often hang_detected() is asked.
-  static constexpr Duration observation_period = std::chrono::milliseconds{10};
-  /// True in the observation in which the cycle has stood still for too long.
-  [[nodiscard]] bool hang_detected();
-
   /// A recovery that runs for it: a second event of the same or lower severity does not start another.
   std::optional<descriptor::Severity> recovering;
   /// On its way to Offline with its network; a second reason does not command it again.
@@ -51,12 +42,13 @@ class Member {
   /// Since when its channel is closed. A process that ends closes it a moment before its handle says so; one that
   /// lives on without it can be neither commanded nor heard.
   std::optional<TimePoint> closed_at;
+  /// Messages of it that could not be read, and the last that was told.
+  std::uint32_t unreadable{0};
+  std::uint32_t unreadable_told{0};
 
  private:
   const descriptor::MissionSubsystem* described_;
   LaunchedSubsystem launched_;
-  std::uint64_t last_cycles_{0};
-  std::uint32_t still_steps_{0};
 };
 
 }  // namespace hirosco::supervisor

@@ -20,11 +20,7 @@ struct OwnEnd final : Channel {
 };
 
 struct MemberTest : ::testing::Test {
-  descriptor::Mission mission = [] {
-    auto made = testing::small_mission();
-    made.subsystems[0].subsystem.hang = {20, 200};
-    return made;
-  }();
+  descriptor::Mission mission = testing::small_mission();
   HeapMemory memory;
   Member member{mission.subsystems[0]};
   VitalPage* vital{nullptr};
@@ -43,12 +39,6 @@ struct MemberTest : ::testing::Test {
     permit = new (launched.permit.octets.data()) PermitPage{};
     member.started(std::move(launched));
   }
-  /// In which observation a hang is found, 0 = in none of `limit`.
-  int observations_until_hang(int limit) {
-    for (int i = 1; i <= limit; ++i)
-      if (member.hang_detected()) return i;
-    return 0;
-  }
 };
 
 TEST_F(MemberTest, OneThatNeverStartedHasNothingAndFearsNothing) {
@@ -56,10 +46,6 @@ TEST_F(MemberTest, OneThatNeverStartedHasNothingAndFearsNothing) {
   EXPECT_EQ(member.vital(), nullptr);
   EXPECT_EQ(member.state(), std::nullopt);
   EXPECT_EQ(member.configuration(), 0);
-  member.fence();
-  member.release_fence();
-  EXPECT_FALSE(member.fenced());
-  EXPECT_FALSE(member.hang_detected());
 }
 
 TEST_F(MemberTest, ItsStateIsThatOfTheVitalPage) {
@@ -85,58 +71,12 @@ TEST_F(MemberTest, APageThatIsNotOneIsNotBelieved) {
   EXPECT_EQ(member.state(), std::nullopt);
 }
 
-TEST_F(MemberTest, AFenceStopsAndRaisesTheEpochItsReleaseKeepsTheEpoch) {
-  start();
-  const auto epoch = permit->epoch.load();
-  member.fence();
-  EXPECT_EQ(permit->stop.load(), 1u);
-  EXPECT_GT(permit->epoch.load(), epoch);
-  EXPECT_TRUE(member.fenced());
-  const auto fenced = permit->epoch.load();
-  member.release_fence();
-  EXPECT_FALSE(member.fenced());
-  EXPECT_EQ(permit->epoch.load(), fenced);
-}
-
-TEST_F(MemberTest, ACycleThatStandsStillForTheLimitIsAHangOnce) {
-  start();
-  vital->cycling = 1;
-  vital->realtime = 1;
-  vital->cycles = 5;
-  EXPECT_FALSE(member.hang_detected());
-  EXPECT_EQ(observations_until_hang(1'000), 20);
-  EXPECT_EQ(observations_until_hang(1'000), 0);
-  vital->cycles = 6;
-  EXPECT_FALSE(member.hang_detected());
-  EXPECT_EQ(observations_until_hang(1'000), 20);
-}
-
-TEST_F(MemberTest, WithoutRealtimeTheReducedLimitHolds) {
-  start();
-  vital->cycling = 1;
-  vital->cycles = 5;
-  EXPECT_FALSE(member.hang_detected());
-  EXPECT_EQ(observations_until_hang(1'000), 200);
-}
-
-TEST_F(MemberTest, ACycleThatAdvancesOrRestsIsNoHang) {
-  start();
-  vital->realtime = 1;
-  EXPECT_EQ(observations_until_hang(100), 0);
-  vital->cycling = 1;
-  for (int i = 0; i < 100; ++i) {
-    vital->cycles.fetch_add(1);
-    EXPECT_FALSE(member.hang_detected());
-  }
-}
-
 TEST_F(MemberTest, ADeadOneIsGoneWithItsPages) {
   start();
   member.recovering = descriptor::Severity::High;
   member.died();
   EXPECT_FALSE(member.alive());
   EXPECT_EQ(member.state(), std::nullopt);
-  EXPECT_FALSE(member.fenced());
   start();
   EXPECT_EQ(member.recovering, std::nullopt);
 }

@@ -24,7 +24,8 @@ Result<FileDescriptor> create(const char* label, std::size_t octets) noexcept {
 }
 
 Result<> seal_writers(int descriptor) noexcept {
-  if (::fcntl(descriptor, F_ADD_SEALS, F_SEAL_FUTURE_WRITE) != 0)
+  // Then nobody can add a seal either: who holds the descriptor cannot take anything away from who has it mapped.
+  if (::fcntl(descriptor, F_ADD_SEALS, F_SEAL_FUTURE_WRITE) != 0 || ::fcntl(descriptor, F_ADD_SEALS, F_SEAL_SEAL) != 0)
     return fail(ErrorCode::SystemFailure, "seal writers of memfd", errno);
   return ok();
 }

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/guard/guard_shell.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+namespace hirosco::supervisor {
+namespace {
+
+constexpr std::size_t most_clients = 8;
+constexpr Duration patience = std::chrono::seconds{1};
+
+[[nodiscard]] std::string line_of(const StopAnswer& answer) {
+  if (!answer.stopped) return answer.name + " did not confirm that it stopped\n";
+  return fmt::format("{} stopped {:.0f} ms{}{}\n", answer.name,
+                     std::chrono::duration<double, std::milli>(*answer.stopped).count(),
+                     answer.asked_device ? ", says the device" : "", answer.killed ? ", its subsystem was ended" : "");
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GuardShell>> GuardShell::start(Guard& guard, const Clock& clock,
+                                                      const std::filesystem::path& folder) {
+  HIROSCO_TRY_LET(WakeEvent ending, WakeEvent::create());
+  std::unique_ptr<GuardShell> shell{new GuardShell{guard, clock, std::move(ending)}};
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGUSR1);
+  shell->signals_.reset(::signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK));
+  if (!shell->signals_) return fail(ErrorCode::SystemFailure, "signalfd of the guard", errno);
+  if (!folder.empty()) {
+    HIROSCO_TRY(shell->listen(folder));
+    HIROSCO_TRY(shell->waits_.add(shell->listener_.get()));
+  }
+  HIROSCO_TRY(shell->waits_.add(shell->signals_.get()));
+  HIROSCO_TRY(shell->waits_.add(shell->ending_.descriptor()));
+  HIROSCO_TRY_LET(shell->thread_, Thread::start("guard", [self = shell.get()] { self->run(); }));
+  return shell;
+}
+
+GuardShell::~GuardShell() {
+  ended_.store(true);
+  ending_.notify();
+  thread_.join();
+  if (!socket_path_.empty()) ::unlink(socket_path_.c_str());
+}
+
+Result<> GuardShell::listen(const std::filesystem::path& folder) {
+  socket_path_ = folder / "safe.socket";
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (socket_path_.native().size() >= sizeof address.sun_path)
+    return fail(ErrorCode::OutOfRange, "path of the guard's socket", static_cast<std::int64_t>(socket_path_.native().size()));
+  std::memcpy(address.sun_path, socket_path_.c_str(), socket_path_.native().size());
+  listener_.reset(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  ::unlink(socket_path_.c_str());  // of a flight that was killed; the flight's lock keeps others away
+  if (!listener_ || ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(listener_.get(), static_cast<int>(most_clients)) != 0)
+    return fail(ErrorCode::SystemFailure, "socket of the guard", errno);
+  return ok();
+}
+
+void GuardShell::run() {
+  // Where it is not granted the reduced promise holds, as for the cycles.
+  static_cast<void>(set_fifo_priority(priority));
+  while (!ended_.load()) {
+    const TimePoint wake = guard_.step(clock_.now());
+    answer_clients(clock_.now());
+    const auto ready = waits_.wait(std::max(wake - clock_.now(), Duration{0}));
+    if (!ready) continue;
+    bool asked = false;
+    for (const Ready& entry : *ready) {
+      if (entry.descriptor == listener_.get()) welcome(clock_.now());
+      if (entry.descriptor != signals_.get()) continue;
+      signalfd_siginfo info;
+      while (::read(signals_.get(), &info, sizeof info) > 0) asked = true;
+    }
+    if (asked) guard_.stop_all(GuardFinding::Kind::StopAsked);
+  }
+}
+
+void GuardShell::welcome(TimePoint now) {
+  FileDescriptor socket{::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
+  if (!socket) return;
+  if (clients_.size() == most_clients) clients_.erase(clients_.begin());
+  clients_.push_back({std::move(socket), now + patience, 0});
+}
+
+void GuardShell::hear(Client& client) {
+  std::array<char, 8> words{};
+  const auto octets = ::recv(client.socket.get(), words.data(), words.size(), MSG_DONTWAIT);
+  if (octets < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (octets == 4 && std::memcmp(words.data(), "SAFE", 4) == 0) {
+    client.stop = guard_.stop_all(GuardFinding::Kind::StopAsked);
+    return;
+  }
+  client.socket.reset();
+}
+
+void GuardShell::answer_clients(TimePoint now) {
+  for (Client& client : clients_) {
+    if (client.stop == 0) hear(client);
+    if (!client.socket) continue;
+    if (client.stop == 0) {
+      if (now >= client.until) client.socket.reset();
+      continue;
+    }
+    const auto answers = guard_.stop_outcome(client.stop);
+    if (!answers) continue;
+    for (const StopAnswer& answer : *answers) {
+      const std::string line = line_of(answer);
+      static_cast<void>(::send(client.socket.get(), line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
+    }
+    client.socket.reset();
+  }
+  std::erase_if(clients_, [](const Client& client) { return !client.socket; });
+}
+
+}  // namespace hirosco::supervisor

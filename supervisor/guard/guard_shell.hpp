@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/utilities/os/wait_set.hpp"
+#include "supervisor/guard/guard.hpp"
+
+namespace hirosco::supervisor {
+
+/// The guard's thread, above every cycle, and its own two ways in, neither of which passes the ground link or the
+/// supervisor's loop: signal SIGUSR1, and the local socket `safe.socket` (SOCK_SEQPACKET; "SAFE" is answered with one line
+/// for everybody who was to stop, and the end).
+class GuardShell {
+ public:
+  /// Above all cycles (1 to 89), below the kernel's own.
+  static constexpr int priority = 90;
+  /// An empty `folder`: no socket. SIGUSR1 must be blocked in the process. SystemFailure: socket, thread.
+  [[nodiscard]] static Result<std::unique_ptr<GuardShell>> start(Guard& guard, const Clock& clock,
+                                                                 const std::filesystem::path& folder);
+  ~GuardShell();
+  GuardShell(const GuardShell&) = delete;
+  GuardShell& operator=(const GuardShell&) = delete;
+
+ private:
+  struct Client {
+    FileDescriptor socket;
+    TimePoint until{};           ///< it asks by then or goes
+    std::uint64_t stop{0};       ///< 0: it has not asked yet
+  };
+  GuardShell(Guard& guard, const Clock& clock, WakeEvent ending) : guard_{guard}, clock_{clock}, ending_{std::move(ending)} {}
+  [[nodiscard]] Result<> listen(const std::filesystem::path& folder);
+  void run();
+  void welcome(TimePoint now);
+  void hear(Client& client);
+  void answer_clients(TimePoint now);
+
+  Guard& guard_;
+  const Clock& clock_;
+  std::filesystem::path socket_path_;
+  FileDescriptor signals_;
+  FileDescriptor listener_;
+  std::vector<Client> clients_;
+  WaitSet waits_;
+  WakeEvent ending_;
+  std::atomic<bool> ended_{false};
+  Thread thread_;
+};
+
+}  // namespace hirosco::supervisor

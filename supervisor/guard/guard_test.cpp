@@ -1,0 +1,337 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/guard/guard.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "hirosco/data_transfer/simulated/heap_memory.hpp"
+#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "supervisor/supervision/testing/small_mission.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::arm;
+using testing::camera;
+using testing::hand;
+using Kind = GuardFinding::Kind;
+using namespace std::chrono_literals;
+
+struct FakeProcess final : ProcessGrip {
+  void take_realtime() noexcept override { realtime = false; }
+  Duration processor_time() noexcept override { return had; }
+  void kill() noexcept override { killed = true; }
+  bool realtime{true};
+  bool killed{false};
+  Duration had{};
+};
+
+struct Life {
+  Mapping vital_memory, permit_memory;
+  VitalPage* vital{nullptr};
+  PermitPage* permit{nullptr};
+  std::shared_ptr<FakeProcess> process = std::make_shared<FakeProcess>();
+};
+
+/// ARM with a device that can be asked, HAND without; CAMERA is the ground link and spared.
+struct GuardTest : ::testing::Test {
+  ManualClock clock;
+  SimulatedFlows flows;
+  HeapMemory memory;
+  descriptor::Mission mission = [] {
+    auto made = testing::small_mission();
+    descriptor::Device device;
+    device.name = "MOTOR";
+    device.actuator = true;
+    device.stop_within = 200ms;
+    device.enable = descriptor::Endnode{};
+    device.enable->address = "motor-enable";
+    made.subsystems[0].subsystem.devices = {device};
+    return made;
+  }();
+  Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1000, .on_finding = {}}};
+  std::map<std::uint16_t, Life> lives;
+  std::unique_ptr<DataFlow> motor;
+  EnableCommand told{};
+
+  void SetUp() override {
+    clock.set(TimePoint{10s});
+    for (const auto& described : mission.subsystems)
+      ASSERT_TRUE(guard.add(described, described.subsystem.id == camera));
+    for (const std::uint16_t apid : {arm, hand, camera}) start(apid);
+    motor = flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "motor-enable"}, FlowSide::Device)
+                .value();
+    guard.beat();
+  }
+  void start(std::uint16_t apid) {
+    Life& life = lives[apid] = Life{};
+    const auto page = [&](std::size_t octets) {
+      return memory.map(memory.create("page", octets).value(), Access::ReadWrite).value();
+    };
+    LaunchedSubsystem launched;
+    launched.vital = life.vital_memory = page(sizeof(VitalPage));
+    launched.permit = life.permit_memory = page(sizeof(PermitPage));
+    launched.grip = life.process;
+    life.vital = new (launched.vital.octets.data()) VitalPage{};
+    life.permit = new (launched.permit.octets.data()) PermitPage{};
+    life.vital->realtime = 1;
+    guard.adopt(apid, launched);
+  }
+  void cycling(std::uint16_t apid, State state = State::Operational) {
+    lives[apid].vital->state = static_cast<std::uint32_t>(state);
+    lives[apid].vital->cycling = 1;
+  }
+  /// The guard's steps; who is named in `moves` makes cycles, all make service steps, the motor answers with `output`.
+  void run(Duration span, std::initializer_list<std::uint16_t> moves = {arm, hand, camera},
+           std::optional<DeviceOutput> output = DeviceOutput::Off) {
+    for (const TimePoint end = clock.now() + span; clock.now() < end; clock.advance(Guard::period)) {
+      guard.beat();
+      for (const std::uint16_t apid : moves) ++lives[apid].vital->cycles;
+      for (auto& [apid, life] : lives) ++life.vital->service_steps;
+      static_cast<void>(guard.step(clock.now()));
+      std::array<std::byte, enable_frame_octets> frame;
+      const auto received = motor->receive(frame);
+      if (!received || received->flow != Flow::New) continue;
+      told = read_enable_command(frame).value();
+      if (!output) continue;
+      std::array<std::byte, enable_frame_octets> answer;
+      static_cast<void>(motor->send(
+          *write_enable_status(answer, {.output = *output, .flags = 0, .epoch = 0, .sequence = told.sequence})));
+    }
+  }
+  std::vector<Kind> kinds(std::uint16_t apid) {
+    std::vector<Kind> found;
+    for (const auto& finding : guard.take_findings())
+      if (finding.apid == apid) found.push_back(finding.kind);
+    return found;
+  }
+  [[nodiscard]] bool may_move(std::uint16_t apid) {
+    const PermitPage& page = *lives[apid].permit;
+    return page.permits(page.epoch.load());
+  }
+};
+
+TEST_F(GuardTest, NothingIsPermittedBeforeARelease) {
+  run(20ms);
+  for (const std::uint16_t apid : {arm, hand, camera}) EXPECT_FALSE(may_move(apid));
+  EXPECT_EQ(told.enabled, 0);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  run(20ms);
+  EXPECT_TRUE(may_move(arm));
+  EXPECT_FALSE(may_move(hand));
+  EXPECT_EQ(told.enabled, 1);
+  EXPECT_EQ(told.epoch, lives[arm].permit->epoch.load());
+}
+
+TEST_F(GuardTest, AReleaseThatWasPermittedBeforeAFenceIsVoid) {
+  const auto seen = guard.fences(arm);
+  guard.fence(arm);
+  EXPECT_FALSE(guard.release(arm, seen));
+  EXPECT_FALSE(may_move(arm));
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_TRUE(guard.release(arm, guard.fences(arm)));
+  EXPECT_TRUE(may_move(arm));
+}
+
+TEST_F(GuardTest, EveryFenceReleaseAndNewProcessRaisesTheEpoch) {
+  auto last = lives[arm].permit->epoch.load();
+  EXPECT_GT(last, 1000u);
+  const auto expect_higher = [&] {
+    const auto now = lives[arm].permit->epoch.load();
+    EXPECT_GT(now, last);
+    last = now;
+  };
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  expect_higher();
+  guard.fence(arm);
+  expect_higher();
+  guard.forget(arm);
+  start(arm);
+  expect_higher();
+  EXPECT_EQ(guard.highest_epoch(), last);
+}
+
+TEST_F(GuardTest, APermissionEndsWithTheStayInOperational) {
+  cycling(arm, State::SafeOperational);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  run(20ms);
+  cycling(arm, State::Operational);
+  run(5s);
+  EXPECT_TRUE(may_move(arm));
+  EXPECT_EQ(told.enabled, 1);
+  cycling(arm, State::SafeOperational);
+  run(20ms);
+  EXPECT_FALSE(may_move(arm));
+  EXPECT_EQ(told.enabled, 0);
+}
+
+TEST_F(GuardTest, APermissionThatIsNotUsedLapses) {
+  cycling(arm, State::SafeOperational);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  run(Guard::entry_limit + 10ms);
+  EXPECT_FALSE(may_move(arm));
+}
+
+TEST_F(GuardTest, OneThatStandsStillIsFencedToldAndEndedAfterTheGrace) {
+  cycling(arm);
+  cycling(hand);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  run(50ms);
+  run(190ms, {hand, camera});
+  EXPECT_TRUE(kinds(arm).empty());
+  run(40ms, {hand, camera});
+  EXPECT_THAT(kinds(arm), ElementsAre(Kind::CycleHangs));
+  EXPECT_FALSE(may_move(arm));
+  EXPECT_TRUE(lives[arm].process->realtime) << "it takes nothing from anybody";
+  EXPECT_FALSE(lives[arm].process->killed);
+  run(Guard::grace, {hand, camera});
+  EXPECT_THAT(kinds(arm), ElementsAre(Kind::Killed));
+  EXPECT_TRUE(lives[arm].process->killed);
+  EXPECT_TRUE(kinds(hand).empty());
+}
+
+TEST_F(GuardTest, OneThatComesBackInTimeLivesOnButStaysFenced) {
+  cycling(arm);
+  run(50ms);
+  run(250ms, {hand, camera});
+  EXPECT_THAT(kinds(arm), ElementsAre(Kind::CycleHangs));
+  run(2s);
+  EXPECT_THAT(kinds(arm), ElementsAre(Kind::Back));
+  EXPECT_FALSE(lives[arm].process->killed);
+  EXPECT_TRUE(guard.fenced(arm));
+}
+
+TEST_F(GuardTest, OfThoseThatStandStillTheOneThatHasTheProcessorIsTheCulprit) {
+  cycling(arm);
+  cycling(hand);
+  run(50ms);
+  for (int i = 0; i < 23; ++i) {
+    lives[hand].process->had += 10ms;
+    run(10ms, {camera});
+  }
+  EXPECT_TRUE(kinds(arm).empty());
+  EXPECT_FALSE(lives[hand].process->realtime);
+  EXPECT_TRUE(lives[arm].process->realtime);
+  run(Guard::grace + 50ms, {arm, camera});
+  EXPECT_TRUE(lives[hand].process->killed);
+  EXPECT_FALSE(lives[arm].process->killed);
+}
+
+TEST_F(GuardTest, AServiceLoopThatStandsStillIsAHang) {
+  cycling(arm);
+  run(100ms);
+  for (Duration span{}; span < Guard::service_limit + 50ms; span += Guard::period) {
+    --lives[arm].vital->service_steps;
+    run(Guard::period);
+  }
+  EXPECT_THAT(kinds(arm), ElementsAre(Kind::ServiceHangs));
+  EXPECT_TRUE(guard.fenced(arm));
+}
+
+TEST_F(GuardTest, AVitalPageThatIsOverwrittenIsAHangWhateverIsWritten) {
+  for (std::size_t at = 0; at < offsetof(VitalPage, seen_epoch); at += 4) {
+    if (at >= offsetof(VitalPage, inhibited)) break;
+    start(arm);
+    cycling(arm);
+    run(50ms);
+    static_cast<void>(kinds(arm));
+    reinterpret_cast<std::uint32_t*>(lives[arm].vital)[at / 4] ^= 1U << 3;
+    run(15ms);
+    EXPECT_THAT(kinds(arm), ElementsAre(Kind::PageDamaged)) << at;
+    EXPECT_TRUE(guard.fenced(arm));
+    run(Guard::grace + 10ms);
+    EXPECT_TRUE(lives[arm].process->killed) << at;
+  }
+}
+
+TEST_F(GuardTest, AStopOfEverythingIsAnsweredByTheDevicesAndSparesTheGroundLink) {
+  for (const std::uint16_t apid : {arm, hand, camera}) {
+    cycling(apid);
+    ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  }
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  const auto stop = guard.stop_all();
+  EXPECT_FALSE(may_move(arm));
+  EXPECT_FALSE(may_move(hand));
+  EXPECT_TRUE(may_move(camera));
+  EXPECT_FALSE(guard.stop_outcome(stop));
+  lives[hand].vital->inhibited = inhibited_by_stop;
+  lives[hand].vital->seen_epoch = lives[hand].permit->epoch.load();
+  run(100ms, {arm, hand, camera}, DeviceOutput::Stopping);
+  EXPECT_FALSE(guard.stop_outcome(stop)) << "it is still stopping";
+  run(20ms, {arm, hand, camera}, DeviceOutput::Holding);
+  const auto answers = guard.stop_outcome(stop);
+  ASSERT_TRUE(answers);
+  ASSERT_EQ(answers->size(), 2u);
+  EXPECT_EQ(answers->at(0).name, "MOTOR");
+  EXPECT_TRUE(answers->at(0).asked_device);
+  EXPECT_GE(answers->at(0).stopped.value(), 100ms);
+  EXPECT_EQ(answers->at(1).name, "HAND");
+  EXPECT_LE(answers->at(1).stopped.value(), 10ms);
+}
+
+TEST_F(GuardTest, WhatAMemberSaysOfItselfDoesNotStandForItsDevice) {
+  cycling(arm);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  const auto stop = guard.stop_all();
+  lives[arm].vital->inhibited = inhibited_by_stop;
+  lives[arm].vital->seen_epoch = lives[arm].permit->epoch.load();
+  run(440ms, {arm, hand, camera}, DeviceOutput::Active);
+  EXPECT_FALSE(guard.stop_outcome(stop));
+  EXPECT_FALSE(lives[arm].process->killed);
+  run(20ms, {arm, hand, camera}, DeviceOutput::Active);
+  EXPECT_TRUE(lives[arm].process->killed);
+  run(500ms, {arm, hand, camera}, DeviceOutput::Active);
+  const auto answers = guard.stop_outcome(stop);
+  ASSERT_TRUE(answers);
+  EXPECT_EQ(answers->at(0).stopped, std::nullopt);
+  EXPECT_TRUE(answers->at(0).killed);
+}
+
+TEST_F(GuardTest, ASilentDeviceHasNotStopped) {
+  cycling(arm);
+  run(50ms);
+  const auto stop = guard.stop_all();
+  run(2s, {arm, hand, camera}, std::nullopt);
+  const auto answers = guard.stop_outcome(stop);
+  ASSERT_TRUE(answers);
+  EXPECT_EQ(answers->at(0).stopped, std::nullopt);
+}
+
+TEST_F(GuardTest, StopsInAFloodAllEnd) {
+  run(50ms);
+  std::vector<std::uint64_t> stops;
+  for (int i = 0; i < 200; ++i) {
+    stops.push_back(guard.stop_all());
+    run(Guard::period);
+  }
+  run(50ms);
+  for (const auto stop : stops) EXPECT_TRUE(guard.stop_outcome(stop)) << stop;
+}
+
+TEST_F(GuardTest, ASupervisorThatStandsStillStopsEverythingThatMoves) {
+  for (const std::uint16_t apid : {arm, hand, camera}) {
+    cycling(apid);
+    ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  }
+  run(50ms);
+  EXPECT_EQ(told.enabled, 1);
+  for (Duration span{}; span < Guard::supervisor_limit + 20ms; span += Guard::period) {
+    for (auto& [apid, life] : lives) {
+      ++life.vital->cycles;
+      ++life.vital->service_steps;
+    }
+    static_cast<void>(guard.step(clock.now()));
+    clock.advance(Guard::period);
+  }
+  for (const std::uint16_t apid : {arm, hand, camera}) EXPECT_FALSE(may_move(apid));
+  EXPECT_THAT(kinds(0), ElementsAre(Kind::SupervisorStill));
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

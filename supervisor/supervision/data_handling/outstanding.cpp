@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/outstanding.hpp"
+
+#include <algorithm>
+
+#include "hirosco/utilities/octets.hpp"
+
+namespace hirosco::supervisor {
+
+void Outstanding::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand) {
+  const pus::Request request = pus::request_of(telecommand);
+  if ((request.ack & (pus::ack_acceptance | pus::ack_completion)) == 0 || full()) return;
+  entries_.push_back({apid, request});
+}
+
+void Outstanding::reported(const pus::TelemetryView& report) {
+  if (report.service() != 1) return;
+  OctetReader reader{report.source_data()};
+  const auto id = reader.get<std::uint32_t>();
+  if (!reader.good()) return;
+  const bool failed_progress = report.subtype() == 6;  // the execution may go on
+  const bool final = (report.subtype() % 2 == 0 && !failed_progress) || report.subtype() == 7;
+  const bool accepted = report.subtype() == 1;
+  if (!final && !accepted) return;
+  const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {
+    return entry.apid == report.apid() && entry.request.id == id && entry.request.source == report.destination();
+  });
+  if (found == entries_.end()) return;
+  if (final || (found->request.ack & pus::ack_completion) == 0) entries_.erase(found);
+}
+
+std::vector<pus::Request> Outstanding::take(std::uint16_t apid) {
+  std::vector<pus::Request> taken;
+  std::erase_if(entries_, [&](const Entry& entry) {
+    if (entry.apid != apid) return false;
+    taken.push_back(entry.request);
+    return true;
+  });
+  return taken;
+}
+
+}  // namespace hirosco::supervisor

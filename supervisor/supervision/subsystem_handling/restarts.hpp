@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
+/// than its plan says (findings SF15; reliability 5: a crash loop stays down).
+namespace hirosco::supervisor {
+
+class Restarts {
+ public:
+  /// False: the limit is reached, it stays down.
+  bool plan(std::uint16_t apid, const descriptor::Restart& rule, TimePoint now) {
+    std::vector<TimePoint>& before = history_[apid];
+    std::erase_if(before, [&](TimePoint at) { return now - at >= rule.within; });
+    if (before.size() >= rule.limit) return false;
+    Duration pause = rule.pause;
+    for (std::size_t i = 0; i < before.size() && pause < rule.within; ++i) pause *= 2;
+    before.push_back(now);
+    due_[apid] = now + pause;
+    return true;
+  }
+  /// One that is due now, and no longer planned.
+  [[nodiscard]] std::optional<std::uint16_t> take_due(TimePoint now) {
+    for (auto entry = due_.begin(); entry != due_.end(); ++entry) {
+      if (now < entry->second) continue;
+      const std::uint16_t apid = entry->first;
+      due_.erase(entry);
+      return apid;
+    }
+    return std::nullopt;
+  }
+  void cancel() { due_.clear(); }
+
+ private:
+  std::map<std::uint16_t, std::vector<TimePoint>> history_;
+  std::map<std::uint16_t, TimePoint> due_;
+};
+
+}  // namespace hirosco::supervisor
