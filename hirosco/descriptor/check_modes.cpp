@@ -80,7 +80,9 @@ void MissionReader::check_required(const Mode& mode) {
     const auto [subsystem, configuration] = commissioned_in(mission_, mode, step.subsystem);
     if (configuration == nullptr || step.state == State::PreOperational) continue;
     for (const Requires& set : configuration->requires_) {
-      const auto into_set = [&](const MissionLink& link) { return link.to == step.subsystem && link.requires_ == set.name; };
+      const auto into_set = [&](const MissionLink& link) {
+        return link.to == step.subsystem && link.requires_ == set.name;
+      };
       const bool established = std::ranges::any_of(mode.establish, [&](std::uint8_t id) {
         const auto* link = mission_.find_link(id);
         return link != nullptr && into_set(*link);
@@ -90,9 +92,8 @@ void MissionReader::check_required(const Mode& mode) {
       problems_.add(step.at, "E0321",
                     fmt::format("mode {} brings up no link into '{}.{}', which configuration '{}' requires",
                                 in_quotes(mode.name), step.subsystem, set.name, step.configuration),
-                    known == mission_.links.end()
-                        ? fmt::format("add a <Link> to it, and <Establish> it here")
-                        : fmt::format("add <Establish link=\"{}\"/>", known->id),
+                    known == mission_.links.end() ? fmt::format("add a <Link> to it, and <Establish> it here")
+                                                  : fmt::format("add <Establish link=\"{}\"/>", known->id),
                     11);
     }
   }
@@ -110,6 +111,8 @@ std::string MissionReader::refuse_link(const Mode& mode, const MissionLink& link
   if (required == consumer.configuration->requires_.end())
     return fmt::format("configuration '{}' of '{}' does not require '{}'", consumer.configuration->name, link.to,
                        link.requires_);
+  if (!required->from.empty() && required->from != link.from)
+    return fmt::format("'{}' is required from '{}'", required->name, required->from);
   return mismatch(*producer.subsystem, *provided, *required);
 }
 
@@ -128,10 +131,12 @@ void MissionReader::check_established(const xml::Element& element, const Mode& m
     }
     const auto [before, first] = filled.try_emplace(link->to + "." + link->requires_, link->id);
     if (!first && before->second != link->id)
-      problems_.add(*at, "E0323", fmt::format("links {} and {} both fill '{}'", before->second, link->id, before->first),
+      problems_.add(*at, "E0323",
+                    fmt::format("links {} and {} both fill '{}'", before->second, link->id, before->first),
                     "one link into each required set");
     if (++consumers[link->from + "." + link->provides] == max_consumers + 1)
-      problems_.add(*at, "E0323", fmt::format("'{}.{}' has more than {} consumers", link->from, link->provides, max_consumers),
+      problems_.add(*at, "E0323",
+                    fmt::format("'{}.{}' has more than {} consumers", link->from, link->provides, max_consumers),
                     "a further one would never get a sample");
   }
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ struct SimulatedDevice {
   std::string device;
   std::uint64_t seed{1};
   std::vector<std::pair<std::string, std::string>> settings;
+  std::map<std::string, Location> setting_places;  ///< by name: for those who judge the values
   Location at;
 };
 

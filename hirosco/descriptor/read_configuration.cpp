@@ -43,7 +43,7 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   configuration.at = place(element.at);
   configuration.name = attributes.name();
   configuration.id = attributes.required_integer<std::uint8_t>("id", 1, 255);
-  configuration.priority = attributes.integer_or<int>("priority", 0, 98, 0);
+  configuration.priority = attributes.integer_or<int>("priority", 0, greatest_cycle_priority, 0);
   configuration.sampling = std::chrono::microseconds{
       attributes.required_integer<std::int64_t>("sampling_us", least_sampling_us, max_sampling_us)};
   read_budget(attributes, configuration);
@@ -106,6 +106,7 @@ void SubsystemReader::read_device_use(const xml::Element& element, Configuration
   };
   use.watchdog_us = watchdog("watchdog_ms", use.watchdog_us);
   use.watchdog_reduced_us = watchdog("watchdog_reduced_ms", std::max(use.watchdog_reduced_us, use.watchdog_us));
+  check_watchdogs(element, use, configuration.sampling);
   Unique settings{"setting", "E0201"};
   bool connected = false;
   each_child(element, problems_,
@@ -118,6 +119,14 @@ void SubsystemReader::read_device_use(const xml::Element& element, Configuration
                1}});
   if (!connected) problems_.add(element, "E0106", "<Device> in a configuration needs an <Endnode>");
   configuration.devices.push_back(std::move(use));
+}
+
+void SubsystemReader::check_watchdogs(const xml::Element& element, const DeviceUse& use, Duration sampling) {
+  const auto least_us = std::min(use.watchdog_us, use.watchdog_reduced_us);
+  if (sampling == Duration{} || std::chrono::microseconds{least_us} > sampling) return;
+  problems_.add(element, "E0229",
+                fmt::format("a watchdog of {} us trips between cycles of {} us", least_us, sampling / 1us),
+                "watchdog_ms and watchdog_reduced_ms are longer than the period; 10 and 50 ms unless they are given");
 }
 
 void SubsystemReader::read_setting(const xml::Element& element, DeviceUse& use, Unique& names) {

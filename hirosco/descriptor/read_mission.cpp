@@ -273,6 +273,7 @@ void MissionReader::read_simulated_device(const xml::Element& element) {
                  if (value->value.size() > 256)
                    problems_.add(*value, "E0114", "the value of a setting has at most 256 octets");
                  settings.add(name, place(child.at), problems_, child.name.size() + 1);
+                 device.setting_places.emplace(name, place(value->value_at));
                  device.settings.emplace_back(std::move(name), value->value);
                },
                256}});

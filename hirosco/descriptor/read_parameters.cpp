@@ -124,6 +124,8 @@ void SubsystemReader::read_structure(const xml::Element& element) {
                  problems_.add(child, "E0102", "a structure inside a structure is not possible",
                                "reference its members one by one");
                }}});
+  if (parameter.writable())
+    for (const xml::Element& child : element.children) expect_range(child, "member");
   if (parameter.members.empty()) problems_.add(element, "E0106", "<StructRef> needs at least one <ParamRef>");
   subsystem_.parameters.push_back(std::move(parameter));
 }
@@ -148,6 +150,7 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   read_access(attributes, parameter);
   claim_parameter_id(attributes, parameter.field.type, parameter.id);
   no_children(element, problems_);
+  if (parameter.writable()) expect_range(element, "parameter");
   const bool zero_outside = parameter.field.minimum.value_or(0) > 0 || parameter.field.maximum.value_or(0) < 0;
   if (zero_outside && element.find("init") == nullptr)
     problems_.add(
@@ -157,6 +160,18 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   if (!parameter.field.name.empty())
     parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
   subsystem_.parameters.push_back(std::move(parameter));
+}
+
+void SubsystemReader::expect_range(const xml::Element& element, std::string_view what) {
+  std::string missing;
+  for (const std::string_view limit : {"minimum", "maximum"})
+    if (element.find(limit) == nullptr) missing += fmt::format("{}{}", missing.empty() ? "" : " and ", limit);
+  if (missing.empty()) return;
+  const auto* name = element.find("name");
+  problems_.add(element, "E0228",
+                fmt::format("{} {} can be set from outside and has no {}", what,
+                            in_quotes(name == nullptr ? std::string_view{} : name->value), missing),
+                "say what it may be, with minimum and maximum");
 }
 
 void SubsystemReader::read_access(Attributes& attributes, Parameter& parameter) {

@@ -129,7 +129,10 @@ void SubsystemReader::read_argument(const xml::Element& element, Function& funct
   Attributes attributes{element, problems_};
   Function::Argument argument;
   if (element.find("of") != nullptr) read_range_of(attributes, argument);
-  else argument.field = read_field(attributes, true);
+  else {
+    argument.field = read_field(attributes, true);
+    expect_range(element, "argument");
+  }
   if (const auto fallback = attributes.number("default"))
     if (check_values(problems_, *element.find("default"), argument.field, {*fallback})) argument.fallback = fallback;
   no_children(element, problems_);

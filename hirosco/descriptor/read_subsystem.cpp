@@ -84,6 +84,8 @@ void SubsystemReader::read_head(const xml::Element& root) {
 
 void SubsystemReader::read_resources(const xml::Element& element) {
   const Attributes none{element, problems_};
+  problems_.warn(place(element.at), "E0224", "<Resources> is not built in: it is read and limits nothing", {},
+                 element.name.size() + 1);
   Unique sizes{"pool of blocks of octets", "E0202"};
   each_child(element, problems_,
              {{"Pool",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -15,7 +16,8 @@ using testing::rendered;
 
 std::map<std::filesystem::path, Mission> shipped_missions() {
   std::map<std::filesystem::path, Mission> missions;
-  for (const auto& entry : std::filesystem::directory_iterator{std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions"}) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator{std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions"}) {
     const auto file = entry.path() / "mission.xml";
     if (!std::filesystem::exists(file)) continue;
     auto reading = read_mission(file, file_system());
@@ -26,6 +28,52 @@ std::map<std::filesystem::path, Mission> shipped_missions() {
 }
 
 TEST(ShippedMissions, HaveNoProblem) { EXPECT_GE(shipped_missions().size(), 2U); }
+
+/// Numbers that somebody outside can set, and how many of them have no range. Counted here and not by the reader, so that
+/// a reader that lets one pass does not let it pass twice.
+struct FromOutside {
+  std::size_t count{0};
+  std::string without_range;
+
+  void add(const Subsystem& subsystem, const std::string& where, const Field& field) {
+    ++count;
+    if (!field.minimum || !field.maximum || *field.minimum > *field.maximum)
+      without_range += subsystem.name + " " + where + " " + field.name + "\n";
+  }
+  void add(const Subsystem& subsystem) {
+    for (const Function& function : subsystem.functions)
+      for (const Function::Argument& argument : function.arguments) add(subsystem, function.name, argument.field);
+    for (const Parameter& parameter : subsystem.parameters) {
+      if (!parameter.writable()) continue;
+      if (parameter.members.empty()) add(subsystem, "parameter", parameter.field);
+      for (const Parameter::Member& member : parameter.members) add(subsystem, parameter.field.name, member.field);
+    }
+  }
+};
+
+TEST(ShippedMissions, EveryNumberFromOutsideHasARange) {
+  FromOutside numbers;
+  for (const auto& [file, mission] : shipped_missions()) {
+    numbers.add(mission.supervisor);
+    for (const auto& member : mission.subsystems) numbers.add(member.subsystem);
+  }
+  EXPECT_GE(numbers.count, 15U);
+  EXPECT_EQ(numbers.without_range, "");
+}
+
+TEST(ShippedMissions, AProtectionIsSetByOneFunctionAtMostAndByNoTelecommandForParameters) {
+  for (const auto& [file, mission] : shipped_missions())
+    for (const auto& member : mission.subsystems)
+      for (const Parameter& parameter : member.subsystem.parameters) {
+        if (!parameter.protection) continue;
+        EXPECT_FALSE(parameter.writable()) << member.subsystem.name << " " << parameter.field.name;
+        const auto raises = [&](const Function& function) {
+          return std::ranges::any_of(function.arguments,
+                                     [&](const auto& argument) { return argument.of == parameter.field.name; });
+        };
+        EXPECT_LE(std::ranges::count_if(member.subsystem.functions, raises), 1) << parameter.field.name;
+      }
+}
 
 }  // namespace
 }  // namespace hirosco::descriptor

@@ -227,17 +227,19 @@ struct DeviceUse {
 
 /// Shorter cycles cannot be kept, and somebody else would be told as hung for it.
 inline constexpr Duration least_sampling = std::chrono::microseconds{50};
+/// Above every cycle run the simulated devices and the supervisor's guard, which takes priority from a cycle that hangs.
+inline constexpr int greatest_cycle_priority = 84;
 /// Most values that the arguments of a function have together (pus/st08_function.hpp).
 inline constexpr std::size_t max_argument_values = 8;
 
 struct Configuration {
   std::string name;
   std::uint8_t id{};
-  int priority{0};                   ///< SCHED_FIFO priority of the cycle; 0 = ordinary scheduling
-  Duration sampling{};               ///< period of the cycle
-  Duration budget{};                 ///< most processor time that a cycle takes; 0 = not declared
-  double power_w{0};                 ///< most that it draws from Safe- to Post-Operational; 0 = not accounted
-  CycleLimit overruns{3, 20};        ///< overruns in a row until the overrun event
+  int priority{0};  ///< SCHED_FIFO priority of the cycle; 0 = ordinary scheduling
+  Duration sampling{};  ///< period of the cycle
+  Duration budget{};  ///< most processor time that a cycle takes; 0 = not declared
+  double power_w{0};  ///< most that it draws from Safe- to Post-Operational; 0 = not accounted
+  CycleLimit overruns{3, 20};  ///< overruns in a row until the overrun event
   std::vector<HousekeepingStructure> housekeeping;
   std::vector<Provides> provides;
   std::vector<Requires> requires_;
@@ -246,7 +248,7 @@ struct Configuration {
     ParameterRef parameter;
     std::vector<double> values;
   };
-  std::vector<Initial> initial;      ///< parameter values that this configuration sets
+  std::vector<Initial> initial;  ///< parameter values that this configuration sets
   Location at;
 };
 
@@ -256,25 +258,25 @@ struct Pool {
 };
 struct Resources {
   std::vector<Pool> pools;
-  std::size_t memory_octets{0};      ///< 0 = not limited
+  std::size_t memory_octets{0};  ///< 0 = not limited
   unsigned warning_percent{75};
 };
 
 struct Subsystem {
   std::string name;
-  std::uint16_t id{};                ///< APID
+  std::uint16_t id{};  ///< APID
   std::string description;
-  std::filesystem::path file;        ///< where it was read from
-  std::uint64_t hash{};              ///< FNV-1a 64 of the file's octets
+  std::filesystem::path file;  ///< where it was read from
+  std::uint64_t hash{};  ///< FNV-1a 64 of the file's octets
   Resources resources;
   std::vector<Enumeration> enumerations;
   std::vector<Parameter> parameters;
   std::vector<Event> events;
-  std::vector<Function> functions;   ///< the author's; SET_STATE and CONFIGURE are built in
+  std::vector<Function> functions;  ///< the author's; SET_STATE and CONFIGURE are built in
   std::vector<HousekeepingStructure> housekeeping;  ///< valid in every configuration
   std::vector<Device> devices;
   std::vector<Configuration> configurations;
-  CycleLimit hang{20, 200};          ///< cycles the vital page may stand still
+  CycleLimit hang{20, 200};  ///< cycles the vital page may stand still
 
   [[nodiscard]] const Parameter* find_parameter(std::string_view parameter) const noexcept;
   [[nodiscard]] const Event* find_event(std::string_view event) const noexcept;

@@ -4,19 +4,24 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <fstream>
+#include <set>
 #include <string>
+#include <tuple>
 
 #include "hirosco/descriptor/read.hpp"
+#include "hirosco/xml/reader.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/readiness.hpp"
 
 namespace hirosco::tools {
 namespace {
 
-[[nodiscard]] bool is_mission(const std::string& text) {
-  const auto mission = text.find("<Mission");
-  const auto subsystem = text.find("<Subsystem");
-  return mission != std::string::npos && (subsystem == std::string::npos || mission < subsystem);
+/// By the root element, whatever comments say.
+[[nodiscard]] bool is_mission(std::string_view text) {
+  xml::Reader reader{text};
+  for (auto event = reader.next(); event && event->kind != xml::Event::Kind::Finished; event = reader.next())
+    if (event->kind == xml::Event::Kind::Start) return event->name == "Mission";
+  return false;
 }
 
 void show_subsystem(const descriptor::Subsystem& subsystem) {
@@ -38,43 +43,93 @@ void show_mission(const descriptor::Mission& mission) {
   for (const auto& mode : mission.modes) fmt::print("mode {} ({})\n", mode.name, mode.id);
 }
 
+/// What was found, each once, however many missions name a file.
+class Findings {
+ public:
+  explicit Findings(const CheckOptions& options) : options_{options} {}
+
+  [[nodiscard]] descriptor::FileSource counting() {
+    return [this](const std::filesystem::path& file) -> Result<std::string> {
+      files_.insert(file.lexically_normal());
+      return source_(file);
+    };
+  }
+
+  void add(std::vector<descriptor::Diagnostic> found) {
+    for (auto& problem : found) {
+      if (!seen_.emplace(problem.file.lexically_normal(), problem.at.line, problem.at.column, problem.message).second)
+        continue;
+      ++(problem.grade == descriptor::Grade::Error ? errors_ : warnings_);
+      show(problem);
+    }
+  }
+
+  [[nodiscard]] std::size_t errors() const noexcept { return errors_; }
+
+  void sum_up() const {
+    if (options_.json) return;
+    const auto counted = [](std::size_t count, std::string_view what) {
+      return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+    };
+    const std::string files = counted(files_.size(), "file"), warnings = counted(warnings_, "warning");
+    if (errors_ == 0 && warnings_ == 0) fmt::print("{}, no problem\n", files);
+    else if (errors_ == 0) fmt::print("{}, no error, {}\n", files, warnings);
+    else
+      fmt::print(stderr, "{}, {}, {}; codes are explained in docs/descriptor-errors.md\n", files,
+                 counted(errors_, "error"), warnings);
+  }
+
+ private:
+  void show(const descriptor::Diagnostic& problem) const {
+    if (options_.json)
+      fmt::print(
+          "{{\"file\":\"{}\",\"line\":{},\"column\":{},\"grade\":\"{}\",\"code\":\"{}\",\"message\":\"{}\",\"hint\":\"{"
+          "}\"}}\n",
+          json_text(problem.file.string()), problem.at.line, problem.at.column,
+          problem.grade == descriptor::Grade::Error ? "error" : "warning", problem.code, json_text(problem.message),
+          json_text(problem.hint));
+    else fmt::print(stderr, "{}", descriptor::render(problem, source_, colour_));
+  }
+
+  const CheckOptions& options_;
+  const descriptor::FileSource source_{descriptor::file_system()};
+  const bool colour_{::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr};
+  std::set<std::filesystem::path> files_;
+  std::set<std::tuple<std::filesystem::path, int, int, std::string>> seen_;
+  std::size_t errors_{0};
+  std::size_t warnings_{0};
+};
+
+void check_file(const std::filesystem::path& file, const CheckOptions& options, Findings& findings) {
+  const auto source = findings.counting();
+  const auto text = source(file);
+  if (!text || !is_mission(*text)) {
+    auto reading = descriptor::read_subsystem(file, source);
+    if (options.show && reading.value) show_subsystem(*reading.value);
+    findings.add(std::move(reading.problems));
+    return findings.add(std::move(reading.warnings));
+  }
+  auto reading = descriptor::read_mission(file, source);
+  if (options.show && reading.value) show_mission(*reading.value);
+  findings.add(std::move(reading.problems));
+  findings.add(std::move(reading.warnings));
+  if (!reading.value) return;
+  auto missing = unready(*reading.value, Platform::Processes);
+  for (auto& problem : missing)
+    if (problem.code == "E0401" && !options.fly) problem.grade = descriptor::Grade::Warning;
+  findings.add(std::move(missing));
+}
+
 }  // namespace
 
 int check(const CheckOptions& options) {
-  const auto source = descriptor::file_system();
-  const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-  std::size_t problems = 0;
+  Findings findings{options};
   for (const std::string& name : options.files) {
     const auto file = find_mission(name);
-    const auto text = source(file.empty() ? std::filesystem::path{name} : file);
-    if (!text) {
-      fmt::print(stderr, "hirosco check: cannot read {}\n", name);
-      return exit_environment;
-    }
-    std::vector<descriptor::Diagnostic> found;
-    if (is_mission(*text)) {
-      auto reading = descriptor::read_mission(file.empty() ? std::filesystem::path{name} : file, source);
-      if (options.show && reading.value) show_mission(*reading.value);
-      found = std::move(reading.problems);
-    } else {
-      auto reading = descriptor::read_subsystem(name, source);
-      if (options.show && reading.value) show_subsystem(*reading.value);
-      found = std::move(reading.problems);
-    }
-    for (const auto& problem : found) {
-      if (options.json)
-        fmt::print("{{\"file\":\"{}\",\"line\":{},\"column\":{},\"code\":\"{}\",\"message\":\"{}\",\"hint\":\"{}\"}}\n",
-                   json_text(problem.file.string()), problem.at.line, problem.at.column, problem.code,
-                   json_text(problem.message), json_text(problem.hint));
-      else fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
-    }
-    problems += found.size();
+    check_file(file.empty() ? std::filesystem::path{name} : file, options, findings);
   }
-  if (problems == 0) return exit_ok;
-  if (!options.json)
-    fmt::print(stderr, "{} error{}; codes are explained in docs/descriptor-errors.md\n", problems,
-               problems == 1 ? "" : "s");
-  return exit_finding;
+  findings.sum_up();
+  return findings.errors() == 0 ? exit_ok : exit_finding;
 }
 
 }  // namespace hirosco::tools

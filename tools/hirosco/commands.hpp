@@ -35,6 +35,7 @@ struct CheckOptions {
   std::vector<std::string> files;
   bool json{false};
   bool show{false};                  ///< print what was read
+  bool fly{false};                   ///< what is missing on this computer is an error, not a warning
 };
 int check(const CheckOptions& options);
 

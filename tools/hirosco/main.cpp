@@ -93,6 +93,7 @@ int read_and_do(int argc, char** argv) {
   check_command->add_option("files", check_options.files, "Descriptor or mission files")->required();
   check_command->add_flag("--show", check_options.show, "Print what was read");
   check_command->add_flag("--json", check_options.json, "Problems as JSON, one a line");
+  check_command->add_flag("--fly", check_options.fly, "Also all programs that a mission needs must be here");
 
   SimulateOptions simulate_options;
   std::string simulate_for = "10s";

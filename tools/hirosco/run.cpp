@@ -10,6 +10,7 @@
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/platform/process_launcher.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/readiness.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -56,6 +57,7 @@ namespace {
 int run(const RunOptions& options) {
   const auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
+  if (!ready(*mission, Platform::Processes)) return exit_environment;
   const auto folder = runtime_folder(*mission);
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);

@@ -13,6 +13,7 @@
 #include "simulation/devices/robot_device.hpp"
 #include "simulation/spacecraft/catalogue.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/readiness.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -73,6 +74,7 @@ void write_trace_line(std::FILE* trace, TimePoint now, simulation::Spacecraft& c
 int simulate(const SimulateOptions& options) {
   const auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
+  if (!ready(*mission, Platform::Simulation)) return exit_environment;
   std::vector<Injection> injections;
   for (const std::string& text : options.at) {
     const auto injection = read_injection(text);

@@ -51,6 +51,7 @@ class SubsystemReader {
   void read_configuration(const xml::Element& element);
   void read_budget(Attributes& attributes, Configuration& configuration);
   void read_device_use(const xml::Element& element, Configuration& configuration, Unique& names);
+  void check_watchdogs(const xml::Element& element, const DeviceUse& use, Duration sampling);
   void read_setting(const xml::Element& element, DeviceUse& use, Unique& names);
   [[nodiscard]] Endnode read_endnode(const xml::Element& element);
   [[nodiscard]] Endnode read_address(Attributes& attributes);
@@ -63,6 +64,8 @@ class SubsystemReader {
   void read_structure(const xml::Element& element);
   void read_parameter(const xml::Element& element);
   void read_member(const xml::Element& element, Parameter& structure, Unique& names);
+  /// A number that comes from outside has a range.
+  void expect_range(const xml::Element& element, std::string_view what);
   /// Who may set it: read_only, writable, protection, persistent.
   void read_access(Attributes& attributes, Parameter& parameter);
   void claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id);

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hirosco/descriptor/read.hpp"
+
+namespace hirosco::tools {
+
+/// Where a mission is to fly.
+enum class Platform : std::uint8_t {
+  Processes,   ///< programs beside this one or in PATH
+  Simulation,  ///< objects that are built into this program
+};
+
+/// What a mission names and is not here (E0401), and the settings that a simulated device refuses (E0402). The devices
+/// that this program has are asked themselves, so that no descriptor library knows what a device is.
+[[nodiscard]] std::vector<descriptor::Diagnostic> unready(const descriptor::Mission& mission, Platform platform);
+
+/// Prints what keeps the mission from flying to standard error; true when nothing does.
+[[nodiscard]] bool ready(const descriptor::Mission& mission, Platform platform);
+
+}  // namespace hirosco::tools
