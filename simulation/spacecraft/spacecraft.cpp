@@ -217,6 +217,7 @@ void Spacecraft::kill(std::uint32_t process) {
   constexpr int killed = 9;
   member.end = supervisor::ProcessEnd{true, killed};
   member.engine.reset();
+  member.author.reset();  // with all that it holds, as the end of a process takes it
   member.channels.close_subsystem_end();
 }
 

@@ -64,6 +64,32 @@ constexpr std::uint16_t supervisor_apid = 1;
   return apid == supervisor_apid && (call.name == "SET_STATE" || call.name == "CONFIGURE");
 }
 
+/// Why a parameter write may not pass (findings SF20): each parameter must be writable in this state by its descriptor,
+/// and opened by this mode. Whether the values fit is the addressee's matter.
+[[nodiscard]] std::optional<FailureNotice> write_refused(const pus::TelecommandView& telecommand,
+                                                         const descriptor::Subsystem& subsystem,
+                                                         const Situation& situation) {
+  OctetReader reader{telecommand.application_data()};
+  const auto count = reader.get<std::uint8_t>();
+  for (unsigned i = 0; i < count && reader.good(); ++i) {
+    const auto id = reader.get<std::uint32_t>();
+    const auto parameter = std::ranges::find_if(subsystem.parameters, [&](const descriptor::Parameter& candidate) {
+      return ParameterId{subsystem.id, candidate.field.type, candidate.id}.wire() == id;
+    });
+    // An unknown one hides the width of all behind it; the addressee refuses the whole (pus-c tailoring, ST[20]).
+    if (!reader.good() || parameter == subsystem.parameters.end()) return std::nullopt;
+    static_cast<void>(reader.get(parameter->octets()));
+    const bool opened = std::ranges::any_of(situation.mode.permits, [&](const descriptor::Permit& permit) {
+      return (permit.subsystem == "*" || permit.subsystem == subsystem.name) &&
+             listed(permit.parameters, parameter->field.name);
+    });
+    if (!parameter->writable() || !parameter->writable_in(*situation.state))
+      return FailureNotice{FailureCode::NotPermittedNow}.with(static_cast<std::uint8_t>(i)).with(id);
+    if (!opened) return FailureNotice{FailureCode::WrongMode}.with(situation.mode.id).with(id);
+  }
+  return std::nullopt;
+}
+
 /// A required link of the configuration in force that is not up (paper 4.3); 0 when the mission has none for the set.
 [[nodiscard]] std::optional<std::uint8_t> absent_link(const descriptor::Subsystem& subsystem,
                                                       const Situation& situation) {
@@ -154,6 +180,9 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
     if (function == nullptr && !built_in) return permitted;
   }
   if (permitted.essential || sender == Sender::Supervisor) return permitted;
+  constexpr std::uint8_t set_values = 3;
+  if (service == 20 && subtype == set_values)
+    if (const auto refused = write_refused(telecommand, *subsystem, situation)) return std::unexpected{*refused};
   if (!mode_permits(situation.mode, *subsystem, service, call ? call->name : std::string_view{}))
     return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
   if (function != nullptr && !function->permitted_in(*situation.state))

@@ -159,6 +159,70 @@ TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
     }
 }
 
+TEST(Permission, InEveryStateOfTheSupervisorAndFromEveryOriginSafeAllPassesAndNobodyElseChangesThatState) {
+  const auto mission = testing::small_mission();
+  const LinkGraph links{mission};
+  for (int number = 0; number < 10; ++number)
+    for (const Sender sender : {Sender::Ground, Sender::Subsystem, Sender::Supervisor})
+      for (const auto& mode : mission.modes) {
+        const Situation situation{mission, mode, links, static_cast<State>(number), 0};
+        const auto decided = [&](const std::vector<std::byte>& data) {
+          const auto packet = testing::telecommand(1, 8, 1, data);
+          return decide(pus::TelecommandView::parse(packet).value(), sender, situation);
+        };
+        const auto safe_all = decided(call("SAFE_ALL"));
+        EXPECT_TRUE(safe_all && safe_all->essential) << number;
+        for (int target = 0; target < 10; ++target) {
+          const auto decision = decided(set_state(static_cast<State>(target)));
+          EXPECT_EQ(decision.has_value(), sender == Sender::Supervisor) << number << " to " << target;
+          if (!decision) {
+            EXPECT_EQ(decision.error().code(), pus::FailureCode::WrongMode);
+          }
+        }
+        EXPECT_EQ(decided(testing::call_data("CONFIGURE", 1)).has_value(), sender == Sender::Supervisor);
+      }
+}
+
+/// GAIN may be set in Safe-Operational where the mode opens it, LIMIT protects and never may.
+TEST(Permission, AParameterIsWrittenOnlyInItsStatesAndOnlyWhereTheModeOpensIt) {
+  auto mission = testing::small_mission();
+  const auto parameter = [](const char* name, std::uint8_t id, std::uint16_t states) {
+    descriptor::Parameter made;
+    made.field.name = name;
+    made.id = id;
+    made.writable_states = states;
+    return made;
+  };
+  mission.subsystems[0].subsystem.parameters = {parameter("GAIN", 3, testing::in_states({State::SafeOperational})),
+                                                parameter("LIMIT", 5, 0)};
+  mission.modes[open_mode].permits.front().parameters = {"GAIN"};
+  const LinkGraph links{mission};
+  const auto write = [&](std::initializer_list<std::uint8_t> ids, State state, std::size_t mode, Sender sender) {
+    std::vector<std::byte> data(1 + ids.size() * (4 + sizeof(double)));
+    OctetWriter writer{data};
+    writer.put(static_cast<std::uint8_t>(ids.size()));
+    for (const std::uint8_t id : ids) {
+      writer.put(ParameterId{arm, Type::Double, id}.wire());
+      writer.put(1.0);
+    }
+    const auto packet = testing::telecommand(arm, 20, 3, data);
+    const auto decision = decide(pus::TelecommandView::parse(packet).value(), sender,
+                                 {mission, mission.modes[mode], links, state, 0});
+    return decision ? 0 : static_cast<int>(decision.error().code());
+  };
+  constexpr int not_now = static_cast<int>(pus::FailureCode::NotPermittedNow);
+  constexpr int wrong_mode = static_cast<int>(pus::FailureCode::WrongMode);
+  for (const Sender sender : {Sender::Ground, Sender::Subsystem}) {
+    EXPECT_EQ(write({3}, State::SafeOperational, open_mode, sender), 0);
+    EXPECT_EQ(write({3}, State::Operational, open_mode, sender), not_now);
+    EXPECT_EQ(write({5}, State::SafeOperational, open_mode, sender), not_now);
+    EXPECT_EQ(write({3, 5}, State::SafeOperational, open_mode, sender), not_now);
+    mission.modes[narrow_mode].permits.front().services = {20};
+    EXPECT_EQ(write({3}, State::SafeOperational, narrow_mode, sender), wrong_mode);
+  }
+  EXPECT_EQ(write({5}, State::Operational, open_mode, Sender::Supervisor), 0) << "begin values are its own";
+}
+
 TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
   const auto packet = testing::telecommand(arm, 8, 1, testing::call_data("SET_STATE", 5));
   const auto view = pus::TelecommandView::parse(packet).value();

@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+// That a stop cannot be defeated, that who hangs is ended and who dies comes back, and that what was stopped can be brought
+// up again (docs/adr/0018).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "simulation/devices/joystick_device.hpp"
+#include "simulation/devices/robot_device.hpp"
+#include "tests/integration/flight.hpp"
+
+namespace hirosco::testing {
+namespace {
+
+using pus::FailureCode;
+using simulation::JoystickDevice;
+using simulation::RobotDevice;
+
+constexpr std::uint16_t robot_apid = 10;
+
+class Stops : public ::testing::Test {
+ protected:
+  explicit Stops(Plan plan = {.edit = hand_rests}) : flight{std::move(plan)} {}
+  void SetUp() override {
+    ASSERT_TRUE(flight.commission()) << flight.story().text();
+    robot = &flight.device<RobotDevice>("robot");
+    joystick = &flight.device<JoystickDevice>("joystick");
+  }
+  void press() {
+    ASSERT_TRUE(joystick->hand("cartesian 0.0226 0 1"));
+    flight.craft().run(1500ms);
+    ASSERT_GT(robot->arm().contact().normal_force_n, 20);
+  }
+  /// The one bring-up of an operator: the commissioning list of telepresence by telecommands.
+  [[nodiscard]] ::testing::AssertionResult bring_up() {
+    const auto each = [&](auto&& act) {
+      for (const char* subsystem : {"MANIPULATOR", "JOYSTICK"})
+        if (const auto outcome = act(subsystem); !outcome.completed)
+          return ::testing::AssertionFailure() << subsystem << ": "
+                                               << (outcome.failure ? to_text(*outcome.failure) : "no answer") << '\n'
+                                               << flight.story().text();
+      return ::testing::AssertionSuccess();
+    };
+    if (auto done = each([&](auto name) { return flight.set_state(name, State::PreOperational); }); !done) return done;
+    if (auto done = each([&](auto name) { return flight.configure(name, "COUPLED"); }); !done) return done;
+    for (const double link : {1.0, 2.0})
+      if (!flight.craft().command("SUPERVISOR", "LINK", {link}).completed)
+        return ::testing::AssertionFailure() << "link " << link;
+    if (auto done = each([&](auto name) { return flight.set_state(name, State::SafeOperational); }); !done) return done;
+    return each([&](auto name) { return flight.set_state(name, State::Operational); });
+  }
+  [[nodiscard]] bool coupled() {
+    return flight.state("MANIPULATOR") == State::Operational && flight.state("JOYSTICK") == State::Operational &&
+           robot->active() && joystick->active();
+  }
+  void open_for_bring_up() { ASSERT_TRUE(flight.set_mode("commissioning").completed); }
+
+  Flight flight;
+  RobotDevice* robot{nullptr};
+  JoystickDevice* joystick{nullptr};
+};
+
+// --- SF1 ---------------------------------------------------------------------------------------------------------------
+
+TEST_F(Stops, NobodyOnGroundChangesTheSupervisorsOwnStateOrConfiguration) {
+  for (const State state : {State::Offline, State::PreOperational, State::SafeOperational, State::ErrorOperational,
+                            State::PostOperational}) {
+    const auto outcome = flight.set_state("SUPERVISOR", state);
+    EXPECT_EQ(outcome.failure, FailureCode::WrongMode) << to_text(state);
+  }
+  EXPECT_EQ(flight.craft().command("SUPERVISOR", "CONFIGURE", {1}).failure, FailureCode::WrongMode);
+  EXPECT_EQ(flight.craft().supervisor().own_state(), State::Operational);
+}
+
+TEST_F(Stops, SafeAllIsCarriedOutWhateverStateTheSupervisorItselfIsIn) {
+  press();
+  // Only the supervisor itself can bring itself down: here a test stands for whatever may do so one day.
+  const auto& engine = flight.craft().supervisor();
+  ASSERT_EQ(engine.own_state(), State::Operational);
+  const auto outcome = flight.craft().command("SUPERVISOR", "SAFE_ALL", {});
+  EXPECT_TRUE(outcome.accepted && outcome.completed);
+  EXPECT_FALSE(robot->active());
+  EXPECT_FALSE(joystick->active());
+}
+
+// --- SF4 ---------------------------------------------------------------------------------------------------------------
+
+TEST_F(Stops, AStopOfEverythingIsNotLiftedByARefusedCommandToGoOn) {
+  press();
+  ASSERT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed);
+  // To the supervisor it is permitted no more, as the robot is Safe-Operational with its links up; to a busy robot it is
+  // refused by itself: neither may leave a permission behind.
+  const auto epoch = flight.craft().guard().fences(robot_apid);
+  EXPECT_FALSE(flight.craft().guard().release(robot_apid, epoch - 1));
+  EXPECT_TRUE(flight.craft().guard().fenced(robot_apid));
+  flight.craft().run(3s);
+  EXPECT_FALSE(robot->active());
+}
+
+// --- SF2 ---------------------------------------------------------------------------------------------------------------
+
+TEST_F(Stops, ACycleThatSpinsLosesTheProcessorIsStoppedAndEnded) {
+  press();
+  flight.craft().spin("JOYSTICK");
+  flight.craft().run(150ms);
+  const auto held_up = flight.cycles("MANIPULATOR");
+  flight.craft().run(40ms);
+  EXPECT_EQ(flight.cycles("MANIPULATOR"), held_up) << "one processor for all cycles";
+  flight.craft().run(100ms);
+  EXPECT_GT(flight.cycles("COMMUNICATION"), 0u);
+  EXPECT_TRUE(flight.story().has("JOYSTICK hangs: its cycle stands still"));
+  EXPECT_FALSE(flight.story().has("MANIPULATOR hangs")) << flight.story().text();
+  EXPECT_FALSE(robot->active());
+  EXPECT_FALSE(joystick->active());
+  flight.craft().run(1500ms);
+  EXPECT_TRUE(flight.story().has("JOYSTICK was ended"));
+  EXPECT_TRUE(flight.story().has("JOYSTICK died: signal 9"));
+  EXPECT_EQ(flight.state("MANIPULATOR"), State::Offline);
+  EXPECT_EQ(flight.state("COMMUNICATION"), State::Operational) << "nobody outside the network is harmed";
+}
+
+TEST_F(Stops, AServiceLoopThatStandsStillIsStoppedAndEnded) {
+  press();
+  flight.craft().stick("MANIPULATOR", true);
+  flight.craft().run(supervisor::Guard::service_limit + 50ms);
+  EXPECT_TRUE(flight.story().has("MANIPULATOR hangs: its service loop stands still"));
+  EXPECT_FALSE(robot->active());
+  flight.craft().run(1500ms);
+  EXPECT_TRUE(flight.story().has("MANIPULATOR was ended"));
+}
+
+// --- SF5 ---------------------------------------------------------------------------------------------------------------
+
+TEST_F(Stops, ADeathDuringAPlanStillTakesTheNetworkDown) {
+  press();
+  ASSERT_TRUE(joystick->fault("unplug"));
+  ASSERT_TRUE(flight.craft().run_until([&] { return flight.story().has("JOYSTICK high JOYSTICK_LOST"); }, 1s));
+  flight.craft().kill("JOYSTICK");
+  flight.craft().run(2s);
+  EXPECT_TRUE(flight.story().has("SUPERVISOR high PROCESS_DIED"));
+  EXPECT_FALSE(robot->active());
+  EXPECT_EQ(flight.state("MANIPULATOR"), State::Offline);
+}
+
+// --- SF12 --------------------------------------------------------------------------------------------------------------
+
+TEST_F(Stops, ShutdownIsCarriedOutAtOnce) {
+  EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SHUTDOWN", {}, 100ms).accepted);
+  flight.craft().run(1s);
+  EXPECT_TRUE(flight.craft().supervisor().finished());
+}
+
+// --- SF14 --------------------------------------------------------------------------------------------------------------
+
+TEST_F(Stops, WhatAnUnplugStoppedIsBroughtUpAgainByOneBringUpTenTimes) {
+  open_for_bring_up();
+  for (int time = 1; time <= 10; ++time) {
+    ASSERT_TRUE(coupled()) << time;
+    ASSERT_TRUE(joystick->fault("unplug"));
+    ASSERT_TRUE(flight.run_until_state("MANIPULATOR", State::Offline, 2s)) << time;
+    ASSERT_TRUE(flight.run_until_state("JOYSTICK", State::Offline, 2s)) << time;
+    EXPECT_FALSE(robot->active());
+    ASSERT_TRUE(joystick->fault("plug"));
+    flight.craft().run(100ms);
+    ASSERT_TRUE(bring_up()) << time;
+    flight.craft().run(500ms);
+  }
+  EXPECT_TRUE(coupled());
+}
+
+// --- SF15, LW1 ---------------------------------------------------------------------------------------------------------
+
+TEST_F(Stops, WhoDiedIsBackOfflineInTwoSecondsAndOneBringUpCouplesAgain) {
+  open_for_bring_up();
+  for (const char* victim : {"JOYSTICK", "MANIPULATOR", "JOYSTICK"}) {
+    ASSERT_TRUE(coupled()) << victim;
+    flight.craft().kill(victim);
+    flight.craft().run(2s);
+    ASSERT_NE(flight.craft().subsystem(victim), nullptr) << victim;
+    EXPECT_EQ(flight.state(victim), State::Offline);
+    ASSERT_TRUE(bring_up()) << victim;
+    flight.craft().run(200ms);
+  }
+  EXPECT_TRUE(coupled());
+}
+
+TEST_F(Stops, AGroundLinkThatDiedComesBackToWhatItWas) {
+  flight.craft().kill("COMMUNICATION");
+  ASSERT_TRUE(flight.run_until_state("COMMUNICATION", State::Operational, 3s)) << flight.story().text();
+  EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed);
+}
+
+TEST_F(Stops, AModeWhoseMembersAreDeadIsRefused) {
+  open_for_bring_up();
+  flight.craft().kill("JOYSTICK");
+  flight.craft().run(20ms);
+  EXPECT_EQ(flight.set_mode("telepresence").failure, FailureCode::WrongStatus);
+}
+
+TEST_F(Stops, AMotionWhoseSubsystemDiesEndsWithOutcomeUnknown) {
+  open_for_bring_up();
+  for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})
+    ASSERT_TRUE(flight.set_state("MANIPULATOR", state).completed) << to_text(state);
+  ASSERT_TRUE(flight.configure("MANIPULATOR", "STANDALONE").completed);
+  ASSERT_TRUE(flight.set_mode("standalone").completed);
+  for (const State state : {State::SafeOperational, State::Operational})
+    ASSERT_TRUE(flight.set_state("MANIPULATOR", state).completed) << to_text(state);
+  const auto packet = function_packet(robot_apid, 77, call_data("MOVE_TO", {0.0, 1.2, 5.0}));
+  bool started = false;
+  flight.story().on_telemetry = [&](const pus::TelemetryView& report) {
+    if (report.service() != 1 || report.subtype() != 3 || started) return;
+    started = true;
+  };
+  flight.craft().ground().send(packet);
+  ASSERT_TRUE(flight.craft().run_until([&] { return started; }, 1s));
+  std::vector<std::uint16_t> codes;
+  flight.story().on_telemetry = [&](const pus::TelemetryView& report) {
+    if (report.service() != 1 || report.subtype() != 8) return;
+    OctetReader reader{report.source_data()};
+    static_cast<void>(reader.get<std::uint32_t>());
+    codes.push_back(reader.get<std::uint16_t>());
+  };
+  flight.craft().kill("MANIPULATOR");
+  flight.craft().run(1s);
+  EXPECT_EQ(std::ranges::count(codes, static_cast<std::uint16_t>(FailureCode::OutcomeUnknown)), 1);
+}
+
+// --- LW2 ---------------------------------------------------------------------------------------------------------------
+
+TEST(CommissioningThatIsCrossed, ByARecoveryIsNotToldAsDone) {
+  Flight flight{{.edit = hand_rests}};
+  ASSERT_TRUE(flight.craft().run_until([&] { return flight.story().has("link 2 "); }, 1s));
+  ASSERT_TRUE(flight.device<JoystickDevice>("joystick").fault("unplug"));
+  flight.craft().run(3s);
+  EXPECT_FALSE(flight.story().has("commissioned: mode telepresence")) << flight.story().text();
+  EXPECT_TRUE(flight.story().has("commissioning stopped")) << flight.story().text();
+}
+
+}  // namespace
+}  // namespace hirosco::testing
