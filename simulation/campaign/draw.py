@@ -14,10 +14,11 @@ DEVICE_FAULTS = ["unplug", "silent", "stall", "freeze", "corrupt", "delay"]
 OWN_FAULTS = {"MANIPULATOR": ["temperature", "hook", "release", "friction", "noise", "thermal_accel"], "JOYSTICK": ["hand"]}
 MEMBER_FAULTS = ["kill", "stop", "spin", "stick", "strain"]
 LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
-# The states that last; the others are passed in one instant of virtual time.
-WAY_TO = {OFFLINE: [OFFLINE], PRE: [OFFLINE, PRE], SAFE: [OFFLINE, PRE, "CONFIGURE", "LINKS", SAFE],
-          OPERATIONAL: [OFFLINE, PRE, "CONFIGURE", "LINKS", SAFE, OPERATIONAL], ERROR: [OFFLINE, PRE, "CONFIGURE", ERROR],
-          POST: [OFFLINE, PRE, "CONFIGURE", POST]}
+# The states that last; the others are passed in one instant of virtual time. Down first, whatever state there is.
+DOWN = [SAFE, OFFLINE]
+WAY_TO = {OFFLINE: DOWN, PRE: [*DOWN, PRE], SAFE: [*DOWN, PRE, "CONFIGURE", "LINKS", SAFE],
+          OPERATIONAL: [*DOWN, PRE, "CONFIGURE", "LINKS", SAFE, OPERATIONAL], ERROR: [*DOWN, PRE, "CONFIGURE", ERROR],
+          POST: [*DOWN, PRE, "CONFIGURE", POST]}
 
 
 def commands_of(mission):

@@ -8,7 +8,8 @@
 #include "hirosco/descriptor/read.hpp"
 #include "simulation/campaign/planned_flight.hpp"
 
-/// hirosco-fly-plan MISSION PLAN FOLDER: flies the plan and leaves log.txt, trace.txt and story.txt in the folder.
+/// hirosco-fly-plan MISSION PLAN FOLDER [PLANT]: flies the plan, with a planted defect where one is named, and leaves
+/// log.txt, trace.txt and story.txt in the folder. Without arguments: the names of the plants.
 namespace {
 
 using namespace hirosco;
@@ -17,17 +18,22 @@ using namespace hirosco;
 void write_log(const std::vector<supervisor::LogRecord>& records, const std::filesystem::path& path) {
   std::ofstream file{path};
   for (const auto& record : records)
-    file << fmt::format("{} {} {} {} {} {} {} {} {}\n", record.number, record.stored.time_since_epoch().count(), record.monotonic.time_since_epoch().count(),
-                        to_text(record.kind), record.source, record.peer, record.lost,
-                        record.packet.empty() ? "-" : campaign::hex_of(record.packet), record.note.view());
+    file << fmt::format("{} {} {} {} {} {} {} {} {}\n", record.number, record.stored.time_since_epoch().count(),
+                        record.monotonic.time_since_epoch().count(), to_text(record.kind), record.source, record.peer,
+                        record.lost, record.packet.empty() ? "-" : campaign::hex_of(record.packet), record.note.view());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   constexpr int exit_usage = 2, exit_finding = 1;
-  if (argc != 4) {
-    fmt::print(stderr, "hirosco-fly-plan MISSION PLAN FOLDER\n");
+  if (argc == 1) {
+    for (const auto name : campaign::plant_names()) fmt::print("{}\n", name);
+    return 0;
+  }
+  auto plant = argc == 5 ? campaign::plant_named(argv[4]) : nullptr;
+  if (argc < 4 || argc > 5 || (argc == 5 && plant == nullptr)) {
+    fmt::print(stderr, "hirosco-fly-plan MISSION PLAN FOLDER [PLANT]\n");
     return exit_usage;
   }
   const std::filesystem::path folder{argv[3]};
@@ -43,7 +49,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "hirosco-fly-plan: {} is not a plan (line {})\n", argv[2], plan ? 0 : plan.error().value);
     return exit_usage;
   }
-  campaign::PlannedFlight flight{*reading.value, std::move(*plan)};
+  campaign::PlannedFlight flight{*reading.value, std::move(*plan), std::move(plant)};
   flight.fly();
   write_log(flight.disk().records, folder / "log.txt");
   std::ofstream{folder / "trace.txt"} << flight.trace().text();

@@ -12,7 +12,6 @@
 namespace hirosco::campaign {
 namespace {
 
-
 constexpr Duration ping_every = 250ms;
 const std::string ground = "ground";
 
@@ -34,20 +33,26 @@ void PlannedFlight::Observer::told(OnboardTime, std::string_view line) {
   text += fmt::format("{:.6f} {}\n", now_s, line);
 }
 
-PlannedFlight::PlannedFlight(const descriptor::Mission& mission, FlightPlan plan)
-    : mission_{mission}, plan_{std::move(plan)} {
+PlannedFlight::PlannedFlight(const descriptor::Mission& mission, FlightPlan plan, std::unique_ptr<Plant> plant)
+    : mission_{mission}, plan_{std::move(plan)}, plant_{plant ? std::move(plant) : std::make_unique<Plant>()} {
   if (!plan_.mode.empty()) mission_.start_mode = plan_.mode;
+  if (plant_->edit) plant_->edit(mission_);
+  if (plant_->devices) plant_->devices(devices_);
+  disk_.keeps = plant_->keeps;
   craft_ = std::make_unique<simulation::Spacecraft>(simulation::Spacecraft::Parts{
       .mission = mission_,
       .subsystems = simulation::known_subsystems(),
-      .devices = simulation::known_devices(),
+      .devices = devices_,
       .log = *unused_,
       .observer = observer_,
       .seed = plan_.seed,
       .make_log = [this](const Clock& clock) { return log_on(disk_, clock); },
-      .open_database = [this](supervisor::DatabaseStrategy) { return database_on(disk_); }});
+      .open_database = [this](supervisor::DatabaseStrategy) { return database_on(disk_); },
+      .wrap_channel = plant_->wrap_channel,
+      .tell_end = plant_->tell_end});
+  plant_->craft = craft_.get();
   observer_.craft = craft_.get();
-  trace_ = std::make_unique<WorldTrace>(mission_, *craft_, 100);
+  trace_ = std::make_unique<WorldTrace>(mission_, *craft_, plant_->clock_percent);
   craft_->ground().on_telemetry([this](Octets packet) { received_on_ground(packet); });
 }
 
@@ -62,6 +67,11 @@ void PlannedFlight::fly() {
   trace_->say("end");
 }
 
+void PlannedFlight::look() {
+  if (plant_->each_instant) plant_->each_instant();
+  trace_->look();
+}
+
 /// Pings the supervisor all the time: it has to answer whatever happens (I6).
 void PlannedFlight::run_until(Duration since_start) {
   const TimePoint end = start_of_flight + since_start;
@@ -70,11 +80,11 @@ void PlannedFlight::run_until(Duration since_start) {
     const TimePoint next_ping = craft_->now() - since_ping + ping_every;
     static_cast<void>(craft_->run_until(
         [this] {
-          trace_->look();
+          look();
           return false;
         },
         std::min(next_ping, end) - craft_->now()));
-    trace_->look();
+    look();
     if (craft_->now() == next_ping) send(ground, {.apid = 1, .service = 17, .subtype = 1, .ack = 15}, {});
   }
 }
@@ -89,6 +99,7 @@ void PlannedFlight::run_until(const std::function<bool()>& condition, Duration l
 void PlannedFlight::perform(const Action& action) {
   if (craft_->supervisor().finished()) return;
   const bool done = do_action(action.words);
+  if (plant_->after_action) plant_->after_action(action.words);
   std::string words;
   for (const std::string& word : action.words)
     if (words.size() < 60) words += " " + word;
@@ -170,18 +181,17 @@ bool PlannedFlight::flood(const std::vector<std::string>& words) {
   if (words.size() != 4) return false;
   const auto count = number_of(words[3]);
   if (!count) return false;
-  bool sent = true;
   for (std::uint64_t i = 0; i < *count; ++i) {
     if (words[2] == "valid") {
-      sent = send(words[1], {.apid = 1, .service = 17, .subtype = 1, .ack = 9}, {}) && sent;
+      send(words[1], {.apid = 1, .service = 17, .subtype = 1, .ack = 9}, {});
     } else {
       constexpr std::array damaged{std::byte{0x18}, std::byte{0x01}, std::byte{0xC0}, std::byte{0x00}, std::byte{0x00},
                                    std::byte{0x06}, std::byte{0x2F}, std::byte{0x11}, std::byte{0x01}, std::byte{0x00},
                                    std::byte{0x00}, std::byte{0x00}, std::byte{0x01}};
-      sent = send_packet(words[1], damaged) && sent;
+      send_packet(words[1], damaged);
     }
   }
-  return sent;
+  return true;
 }
 
 bool PlannedFlight::send(const std::string& origin, const Header& header, Octets data) {

@@ -12,6 +12,7 @@
 #include "hirosco/descriptor/mission.hpp"
 #include "simulation/campaign/campaign_log.hpp"
 #include "simulation/campaign/plan.hpp"
+#include "simulation/campaign/plants.hpp"
 #include "simulation/campaign/world_trace.hpp"
 #include "simulation/spacecraft/catalogue.hpp"
 #include "simulation/spacecraft/spacecraft.hpp"
@@ -21,7 +22,8 @@ namespace hirosco::campaign {
 /// One flight of a mission under a plan.
 class PlannedFlight {
  public:
-  PlannedFlight(const descriptor::Mission& mission, FlightPlan plan);
+  /// `plant`: a defect to be found, else null.
+  PlannedFlight(const descriptor::Mission& mission, FlightPlan plan, std::unique_ptr<Plant> plant);
 
   /// Flies it all. Packet log and trace are whole afterwards.
   void fly();
@@ -65,8 +67,12 @@ class PlannedFlight {
   [[nodiscard]] bool call(std::string_view subsystem, std::string_view function, std::optional<double> argument);
   [[nodiscard]] std::uint32_t state(std::string_view name) const;
 
+  void look();
+
   descriptor::Mission mission_;
   FlightPlan plan_;
+  std::unique_ptr<Plant> plant_;
+  simulation::DeviceCatalogue devices_{simulation::known_devices()};
   Disk disk_;
   std::unique_ptr<supervisor::Database> unused_{database_on(disk_)};
   Observer observer_;

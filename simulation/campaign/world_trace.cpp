@@ -10,11 +10,12 @@
 namespace hirosco::campaign {
 namespace {
 
-
 constexpr Duration count_every = 20ms;
 
 [[nodiscard]] double largest_torque_n_m(const simulation::SimulatedDevice& device) {
-  const auto largest = [](const simulation::Vec2& torque) { return std::max(std::abs(torque[0]), std::abs(torque[1])); };
+  const auto largest = [](const simulation::Vec2& torque) {
+    return std::max(std::abs(torque[0]), std::abs(torque[1]));
+  };
   if (const auto* robot = dynamic_cast<const simulation::RobotDevice*>(&device))
     return largest(robot->motor_torque_n_m());
   if (const auto* joystick = dynamic_cast<const simulation::JoystickDevice*>(&device))

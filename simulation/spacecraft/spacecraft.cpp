@@ -133,9 +133,9 @@ template <class Page>
 Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
   // Away from zero, so that spans before the start stay positive.
   clock_.set(TimePoint{1s});
-  log_ = parts.make_log ? parts.make_log(clock_)
-                        : std::make_unique<supervisor::DirectPacketLog>(
-                              clock_, std::make_unique<BorrowedDatabase>(parts.log));
+  log_ = parts.make_log
+             ? parts.make_log(clock_)
+             : std::make_unique<supervisor::DirectPacketLog>(clock_, std::make_unique<BorrowedDatabase>(parts.log));
   for (const auto& described : parts.mission.devices) {
     const auto* subsystem = parts.mission.find_subsystem(described.subsystem);
     const auto make = parts.devices.find(described.executable);
@@ -168,10 +168,8 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       .launcher = *this,
       .guard = *guard_,
       .log = *log_,
-      .open_database = parts.open_database ? parts.open_database
-                                           : [](supervisor::DatabaseStrategy) -> std::unique_ptr<supervisor::Database> {
-        return std::make_unique<supervisor::MemoryDatabase>();
-      },
+      .open_database = parts.open_database ? parts.open_database : [](supervisor::DatabaseStrategy)
+          -> std::unique_ptr<supervisor::Database> { return std::make_unique<supervisor::MemoryDatabase>(); },
       .observer = parts.observer,
       .first_sequence_count = first_count(parts.seed)});
   supervisor_wake_ = clock_.now();
@@ -366,6 +364,11 @@ const GenericSubsystem* Spacecraft::subsystem(std::string_view name) const noexc
 const VitalPage* Spacecraft::vital(std::string_view name) const noexcept {
   const Member* member = find(name);
   return member != nullptr ? member->vital.get() : nullptr;
+}
+
+PermitPage* Spacecraft::permit(std::string_view name) noexcept {
+  Member* member = find(name);
+  return member != nullptr ? member->permit.get() : nullptr;
 }
 
 CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view name,

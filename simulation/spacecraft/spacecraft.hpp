@@ -58,8 +58,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     /// What stands between the supervisor and a member's channel, for faults of that; empty: nothing.
     std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
     /// What the supervisor is told of a member's end; empty: the truth.
-    std::function<std::optional<supervisor::ProcessEnd>(std::string_view member,
-                                                        std::optional<supervisor::ProcessEnd>)>
+    std::function<std::optional<supervisor::ProcessEnd>(std::string_view member, std::optional<supervisor::ProcessEnd>)>
         tell_end{};
   };
   explicit Spacecraft(const Parts& parts);
@@ -77,6 +76,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   [[nodiscard]] SimulatedDevice* device(std::string_view name) noexcept;
   [[nodiscard]] const GenericSubsystem* subsystem(std::string_view name) const noexcept;
   [[nodiscard]] const VitalPage* vital(std::string_view name) const noexcept;
+  [[nodiscard]] PermitPage* permit(std::string_view name) noexcept;
   /// The process ends without a word, as by kill -9.
   void kill(std::string_view name);
   /// The process stands still, as by SIGSTOP, and goes on; the supervisor by its own name.

@@ -8,6 +8,7 @@ from record import meets
 from rules import ground_link_works
 
 PING_US = 200_000
+FLOODED_PING_US = 500_000
 LAST_SECOND_US = 1_000_000
 
 
@@ -35,14 +36,15 @@ def i2_one_final_report(flight, victims):
             continue
         key = record.telecommand.key
         logged.add(key)
-        if record.kind != "telecommand-forwarded" or record.time > late:
+        if record.kind != "telecommand-forwarded" or record.time >= late:
             continue
         wants_end = record.telecommand.ack & 8
         if wants_end and not finals[key] and key not in starts_failed and key not in ended_below:
             yield record.time, f"TC[{record.telecommand.service},{record.telecommand.subtype}] {record.telecommand.function or ''} to " \
                                f"{name_of(flight, record.peer)} has no final report"
+    whole = {sent.key for sent in flight.sent} | logged  # a damaged packet may bear any request id
     for key, number in finals.items():
-        if number > 1:
+        if number > 1 and key in whole:
             yield 0, f"request {key[1]:08x} of source {key[0]} has {number} final reports"
     for sent in flight.sent:
         quiet = sent.origin == "ground" and ground_link_works(flight, victims, sent.time, sent.time + PING_US)
@@ -89,10 +91,12 @@ def i6_ping_is_answered(flight, victims):
     for sent in flight.sent:
         if sent.service != 17 or sent.subtype != 1 or sent.apid != flight.mission.supervisor.apid or sent.origin != "ground":
             continue
-        if sent.time + PING_US >= flight.finished() or not ground_link_works(flight, victims, sent.time, sent.time + PING_US):
+        limit = FLOODED_PING_US if meets(victims["FLOOD"], sent.time, sent.time) else PING_US
+        if sent.time + limit >= flight.finished() or not ground_link_works(flight, victims, sent.time, sent.time + limit):
             continue
-        if answers.get(sent.key[1], flight.end) > sent.time + PING_US:
-            yield sent.time, "a ping of ground to the supervisor was not answered within 200 ms"
+        if answers.get(sent.key[1], flight.end) > sent.time + limit:
+            yield sent.time, f"a ping of ground to the supervisor was not answered within {limit // 1000} ms"
+            break
 
 
 def i8_nothing_unauthorised(flight, victims):

@@ -71,7 +71,7 @@ def is_operational(flight, sent, member):
 def ground_link_works(flight, victims, start, end):
     ground = flight.mission.ground
     return (all(state == OPERATIONAL for state in flight.state[ground].during(start, end)) and
-            not any(meets(victims[name], start - 100_000, end) for name in (ground, "SUPERVISOR", "FLOOD")))
+            not any(meets(victims[name], start - 100_000, end) for name in (ground, "SUPERVISOR")))
 
 
 def networks(flight, time):
@@ -142,7 +142,8 @@ def i9_only_edges_of_the_table(flight, _):
         if record.kind != "event" or subsystem is None or record.report is None or len(record.report.data) != 3:
             continue
         event = int.from_bytes(record.report.data[:2], "big")
-        if event != 0xF000 and subsystem.events.get(event, ("",))[0] != "STATE_CHANGED":
+        # One that fails on arrival is told of as failed.
+        if event not in (0xF000, 0xF001) and subsystem.events.get(event, ("",))[0] not in ("STATE_CHANGED", "STATE_FAILED"):
             continue
         state, previous = record.report.data[2], told.get(record.source)
         if previous is not None and state != previous and (previous, state) not in EDGES and not muted(flight, record.source):
@@ -176,17 +177,22 @@ def i10_commandable_again(flight, victims):
 
 
 def i12_no_operational_without_required_link(flight, victims):
+    """None enters Operational without; who loses one later is inhibited, where its descriptor does not say that it holds."""
+    lag = 2 * STATE_LAG_US
     for member in flight.mission.members:
         for start, end in flight.state[member.name].spans(flight.end, lambda state: state == OPERATIONAL):
             configuration = member.configurations.get(flight.configuration[member.name].at(start))
             for wanted in configuration.requires if configuration else []:
-                if not wanted.required:
-                    continue
                 link = next((i for i, (_, to, name) in flight.mission.links.items() if (to, name) == (member.name, wanted.name)), None)
-                for first, last in flight.links.spans(flight.end, lambda up: link not in up):
-                    first, last = max(first, start) + 2 * STATE_LAG_US, min(last, end)
-                    if first < last and not meets(victims[member.name] + victims["SUPERVISOR"], first - 1, last):
-                        yield first, f"{member.name} is Operational without {wanted.name}"
+                if not wanted.required or meets(victims["SUPERVISOR"], start - lag, start + lag):
+                    continue
+                if not any(link in up for up in flight.links.during(start - lag, start)):
+                    yield start, f"{member.name} entered Operational without {wanted.name}"
+                for first, last in flight.links.spans(flight.end, lambda up: link not in up) if wanted.inhibits else []:
+                    first, last = max(first, start) + lag, min(last, end)
+                    free = [bits for bits in flight.inhibited[member.name].during(first, last) if not bits]
+                    if first < last and free and not meets(victims[member.name], first - lag, last):
+                        yield first, f"{member.name} is Operational and not inhibited without {wanted.name}"
 
 
 def i13_cycles_keep_time(flight, victims):

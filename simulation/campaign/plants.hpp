@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulation/spacecraft/spacecraft.hpp"
+
+/// Defects that the campaign must find, each put in from outside: between the parts, never inside them, so that nothing
+/// of them is in what flies (adr 0039).
+namespace hirosco::campaign {
+
+struct Plant {
+  std::function<void(descriptor::Mission&)> edit{};
+  std::function<void(simulation::DeviceCatalogue&)> devices{};
+  std::function<std::unique_ptr<Channel>(std::string_view, std::unique_ptr<Channel>)> wrap_channel{};
+  std::function<std::optional<supervisor::ProcessEnd>(std::string_view, std::optional<supervisor::ProcessEnd>)> tell_end{};
+  std::function<bool(const supervisor::LogRecord&)> keeps{};
+  std::function<void(const std::vector<std::string>&)> after_action{};
+  std::function<void()> each_instant{};
+  std::uint32_t clock_percent{100};  ///< what the devices' clocks should be, in percent of what they are
+  simulation::Spacecraft* craft{nullptr};  ///< set before the first instant
+
+  [[nodiscard]] double now_s() const;
+};
+
+/// Null: no plant has this name.
+[[nodiscard]] std::unique_ptr<Plant> plant_named(std::string_view name);
+[[nodiscard]] std::vector<std::string_view> plant_names();
+
+}  // namespace hirosco::campaign
