@@ -57,6 +57,7 @@ class SlowLog final : public supervisor::PacketLog {
   void do_switch_to(std::unique_ptr<supervisor::Database> next) override { stored_.switch_to(std::move(next)); }
   [[nodiscard]] supervisor::LogCounters do_counters() const override { return stored_.counters(); }
   [[nodiscard]] std::optional<Error> do_failure() const override { return stored_.failure(); }
+  [[nodiscard]] supervisor::StoreTrouble do_trouble() const override { return stored_.trouble(); }
   [[nodiscard]] OnboardTime do_run() const noexcept override { return stored_.run(); }
 
   struct Waiting {
