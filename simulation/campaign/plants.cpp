@@ -137,7 +137,7 @@ void i8(Plant& plant) {
 void i9(Plant& plant) {
   plant.each_instant = [&plant, done = false]() mutable {
     auto* page = const_cast<VitalPage*>(plant.craft->vital("JOYSTICK"));
-    if (done || plant.now_s() < 3 || page == nullptr || page->state != static_cast<std::uint32_t>(State::Operational)) return;
+    if (done || plant.now_s() < 3 || page == nullptr || page->state.load() != static_cast<std::uint32_t>(State::Operational)) return;
     page->state.store(static_cast<std::uint32_t>(State::HardwareInit));
     done = true;
   };
@@ -229,7 +229,7 @@ void sf4(Plant& plant) {
     held->safe_all_s = -1;
     for (const auto& [member, packet] : held->up) {
       if (!plant.craft->alive(member)) continue;
-      if (PermitPage* page = plant.craft->permit(member)) page->stop.store(0);
+      if (PermitPage* page = plant.craft->permit(member)) page->release();
       static_cast<void>(held->channels[member]->send({.packet = packet}));
     }
   };
