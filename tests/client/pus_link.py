@@ -290,10 +290,16 @@ class Descriptor:
             return values
         raise ValueError(f"{self.name} structure {identifier}: {len(data)} octets, declared are {lengths}")
 
+    def kind_of(self, reference):
+        """The type of a parameter, or of one member as STRUCTURE.MEMBER: an argument may be of it."""
+        *above, name = reference.split(".")
+        inside = self.root if not above else next(s for s in self.root.iter("StructRef") if s.get("name") == above[0])
+        return next(p.get("type") for p in inside.iter("ParamRef") if p.get("name") == name and p.get("type"))
+
     def call(self, name, *values):
         """A call of a declared function with its arguments in declared order."""
         function = next(f for f in self.root.iter("Function") if f.get("name") == name)
-        kinds = [a.get("type") for a in function.iterfind("Argument")]
+        kinds = [a.get("type") or self.kind_of(a.get("of")) for a in function.iterfind("Argument")]
         if len(values) > len(kinds):
             raise ValueError(f"{name} takes {len(kinds)} arguments")
         return Call(name, *((i + 1, kinds[i], value) for i, value in enumerate(values)))
