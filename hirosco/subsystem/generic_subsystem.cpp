@@ -236,6 +236,8 @@ void GenericSubsystem::flush() {
 }
 
 Result<> GenericSubsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
+  // Its own reports come first: telecommands that overtake them would keep them from ever being sent.
+  if (!unsent_.empty()) return fail(ErrorCode::ResourceExhausted, "reports wait for the supervisor");
   return channel_.send({.kind = MessageKind::GroundTelecommand, .link = client, .packet = packet});
 }
 

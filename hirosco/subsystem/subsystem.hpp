@@ -138,7 +138,8 @@ class Subsystem {
   void abort(const Call& call, pus::FailureCode code) noexcept;
 
   // --- in the service loop ----------------------------------------------------------------------------------------
-  /// Sends a telecommand that came from the ground link client `client` to the supervisor.
+  /// Sends a telecommand that came from the ground link client `client` to the supervisor. ResourceExhausted: the
+  /// supervisor is behind; offer it again.
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
   /// Reports an event from the service loop.
   void raise_in_service(std::uint16_t event, std::initializer_list<double> arguments = {});

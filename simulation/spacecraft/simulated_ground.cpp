@@ -17,11 +17,14 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
 
   void step(TimePoint) override {
     while (!uplink_.empty()) {
-      const auto packet = std::move(uplink_.front());
-      uplink_.pop_front();
-      ++counters_.packets;
       constexpr communication::ClientId only_client = 1;
-      traffic_.telecommand(only_client, packet);
+      if (traffic_.telecommand(only_client, uplink_.front()) == communication::Taken::Later) {
+        ++counters_.held_back;
+        return;
+      }
+      ++counters_.packets;
+      counters_.valid_packets += pus::TelecommandView::parse(uplink_.front()) ? 1 : 0;
+      uplink_.pop_front();
     }
   }
   void telemetry(Octets packet) override {

@@ -24,7 +24,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
     std::uint8_t connected;
     std::uint32_t rx;
     std::uint32_t tx;
-    std::uint32_t dropped;
+    std::uint32_t held_back;
     std::uint32_t last_rx_ms;
   };
   struct Clients {
@@ -34,6 +34,11 @@ class Communication final : public Subsystem, private communication::GroundTraff
     std::uint32_t bad_header;
     std::uint32_t bad_length;
     std::uint32_t incomplete;
+    std::uint32_t left;
+    std::uint32_t broken;
+    std::uint32_t refused;
+    std::uint32_t idle_packets;
+    std::uint32_t damaged_packets;
   };
   /// What the joystick on ground sends up, and what it is sent down.
   struct JoystickSet {
@@ -75,6 +80,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
     if (transport_) return ok();  // a ground that reconfigures its own link must not be cut off by that
     HIROSCO_TRY_LET(transport_, open_(*this));
     had_client_ = false;
+    cuts_told_ = {};
     return ok();
   }
 
@@ -105,9 +111,11 @@ class Communication final : public Subsystem, private communication::GroundTraff
     if (transport_) transport_->telemetry(packet);
   }
 
-  void telecommand(communication::ClientId client, Octets packet) override {
+  communication::Taken telecommand(communication::ClientId client, Octets packet) override {
+    // What the supervisor does not take now stays with its client: nothing that was received is lost.
+    if (!submit_ground_telecommand(client, packet)) return communication::Taken::Later;
     last_rx_ = now_;
-    if (!submit_ground_telecommand(client, packet)) ++dropped_;
+    return communication::Taken::Yes;
   }
 
   /// Gathers the counters in the service loop and hands them to the cycle, which alone writes parameters.
@@ -124,16 +132,39 @@ class Communication final : public Subsystem, private communication::GroundTraff
       had_client_ = false;
       raise_in_service(ground_link_lost);
     }
-    if (closed(CloseReason::Slow) > cut_) raise_in_service(client_cut);
-    cut_ = closed(CloseReason::Slow);
+    tell_cuts(now);
     const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(now - last_rx_).count();
     next_link_ = {static_cast<std::uint8_t>(connected), u32(counters.packets), u32(counters.telemetry_packets),
-                  dropped_, last_rx_ == TimePoint{} ? 0U : static_cast<std::uint32_t>(age)};
-    next_clients_ = {u32(counters.admitted),       closed(CloseReason::Slow),
-                     closed(CloseReason::Evicted), closed(CloseReason::Version) + closed(CloseReason::NotTelecommand),
-                     closed(CloseReason::Length),  closed(CloseReason::Incomplete)};
+                  u32(counters.held_back), last_rx_ == TimePoint{} ? 0U : static_cast<std::uint32_t>(age)};
+    next_clients_ = {.accepted = u32(counters.admitted),
+                     .cut_slow = closed(CloseReason::Slow),
+                     .evicted = closed(CloseReason::Evicted),
+                     .bad_header = closed(CloseReason::Version) + closed(CloseReason::NotTelecommand),
+                     .bad_length = closed(CloseReason::Length),
+                     .incomplete = closed(CloseReason::Incomplete),
+                     .left = closed(CloseReason::PeerClosed),
+                     .broken = closed(CloseReason::SocketError),
+                     .refused = u32(counters.refused),
+                     .idle_packets = u32(counters.idle_packets),
+                     .damaged_packets = u32(counters.packets - counters.valid_packets)};
     shared_link_.store(next_link_);
     shared_clients_.store(next_clients_);
+  }
+
+  /// Every connection that the spacecraft ends is told with its reason: at once where it is one, and in a flood as how
+  /// many there were since.
+  void tell_cuts(TimePoint now) {
+    constexpr std::array told{CloseReason::Version,    CloseReason::NotTelecommand, CloseReason::Length,
+                              CloseReason::Incomplete, CloseReason::Slow,           CloseReason::Evicted};
+    if (now < next_cut_told_) return;
+    for (const CloseReason reason : told) {
+      const auto place = static_cast<std::size_t>(reason);
+      const std::uint64_t closed = transport_->counters().closed[place];
+      if (closed == cuts_told_[place]) continue;
+      raise_in_service(client_cut, {static_cast<double>(reason), static_cast<double>(closed - cuts_told_[place])});
+      cuts_told_[place] = closed;
+      next_cut_told_ = now + cuts_period;
+    }
   }
 
   /// The cycle takes over the service loop's newest whole copy.
@@ -167,6 +198,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
   }
 
   static constexpr Duration relay_patience = 100ms;
+  static constexpr Duration cuts_period = 100ms;
 
   OpenGroundTransport open_;
   std::unique_ptr<GroundTransport> transport_;
@@ -191,8 +223,8 @@ class Communication final : public Subsystem, private communication::GroundTraff
   TimePoint now_{};
   TimePoint last_rx_{};
   TimePoint last_client_{};
-  std::uint32_t dropped_{0};
-  std::uint32_t cut_{0};
+  std::array<std::uint64_t, communication::close_reasons> cuts_told_{};
+  TimePoint next_cut_told_{};
   bool had_client_{false};
 };
 

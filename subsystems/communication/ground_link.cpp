@@ -3,43 +3,105 @@
 #include "subsystems/communication/ground_link.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <tuple>
 #include <utility>
 
 namespace hirosco::communication {
+namespace {
 
-void Deframer::collect(Octets& octets, std::size_t wanted) noexcept {
-  const std::size_t count = std::min(wanted - size_, octets.size());
-  std::ranges::copy(octets.first(count), packet_.begin() + static_cast<std::ptrdiff_t>(size_));
-  size_ += count;
-  octets = octets.subspan(count);
-}
+/// Who is silent for so long gives way first.
+constexpr Duration settling = 100ms;
 
-std::optional<CloseReason> Deframer::judge_header() noexcept {
-  const auto header = pus::read_primary_header(Octets{packet_}.first(size_));
-  if (!header || header->version != 0) return CloseReason::Version;
-  if (!header->telecommand) return CloseReason::NotTelecommand;
-  whole_ = pus::announced_octets(packet_);
-  is_idle_ = header->apid == pus::idle_apid;
+/// The reason for which a header is none of a telecommand that may come.
+[[nodiscard]] std::optional<CloseReason> implausible(const pus::PrimaryHeader& header, std::size_t octets) noexcept {
+  if (header.version != 0) return CloseReason::Version;
+  if (!header.telecommand) return CloseReason::NotTelecommand;
   // An idle packet has neither secondary header nor checksum: any length that fits is plausible.
-  if (whole_ > pus::max_telecommand_octets || (!is_idle_ && whole_ < pus::telecommand_overhead_octets))
-    return CloseReason::Length;
+  const std::size_t shortest = header.apid == pus::idle_apid ? 0 : pus::telecommand_overhead_octets;
+  if (octets > pus::max_telecommand_octets || octets < shortest) return CloseReason::Length;
   return std::nullopt;
 }
 
-std::optional<CloseReason> Deframer::check(TimePoint now) noexcept {
-  if (!spoilt_ && size_ != 0 && now - begun_ >= limit_) spoilt_ = CloseReason::Incomplete;
-  return spoilt_;
+}  // namespace
+
+// --- Deframer ----------------------------------------------------------------------------------------------------------
+
+MutableOctets Deframer::room() noexcept {
+  if (spoilt_ || ended_) return {};
+  if (begin_ != 0) {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+  }
+  return MutableOctets{buffer_}.subspan(end_);
+}
+
+void Deframer::put(std::size_t octets, TimePoint now) noexcept {
+  if (spoilt_ || ended_ || octets == 0) return;
+  if (begin_ == end_) begun_ = now;
+  end_ += std::min(octets, capacity - end_);
+  look(now);
+}
+
+void Deframer::end() noexcept {
+  ended_ = true;
+  look(begun_);
+}
+
+void Deframer::pop(TimePoint now) noexcept {
+  if (whole_ == 0) return;
+  begin_ += std::exchange(whole_, 0);
+  begun_ = now;
+  look(now);
+}
+
+void Deframer::look(TimePoint now) noexcept {
+  while (whole_ == 0 && !spoilt_ && begin_ != end_) {
+    const Octets rest = Octets{buffer_}.subspan(begin_, end_ - begin_);
+    const auto header = pus::read_primary_header(rest);
+    if (header) {
+      const std::size_t octets = pus::announced_octets(rest);
+      if (const auto reason = implausible(*header, octets)) return spoil(*reason);
+      if (octets <= rest.size() && header->apid != pus::idle_apid) {
+        whole_ = octets;
+        return;
+      }
+      if (octets <= rest.size()) {
+        ++idle_;
+        begin_ += octets;
+        begun_ = now;
+        continue;
+      }
+    }
+    if (ended_) spoil(CloseReason::Incomplete);
+    return;
+  }
+}
+
+void Deframer::spoil(CloseReason reason) noexcept {
+  spoilt_ = reason;
+  end_ = begin_;
+}
+
+void Deframer::check(TimePoint now) noexcept {
+  const auto limit = deadline();
+  if (limit && now >= *limit) spoil(CloseReason::Incomplete);
 }
 
 std::optional<TimePoint> Deframer::deadline() const noexcept {
-  if (spoilt_ || size_ == 0) return std::nullopt;
+  if (spoilt_ || whole_ != 0 || begin_ == end_) return std::nullopt;
   return begun_ + limit_;
 }
+
+// --- GroundClients -----------------------------------------------------------------------------------------------------
 
 GroundClients::GroundClients(const Limits& limits)
     : limits_{limits},
       clients_(std::clamp<std::size_t>(limits.clients, 1, most_clients), Client{limits.incomplete}),
-      ring_(std::max(limits.backlog_octets, pus::max_telemetry_octets)) {}
+      ring_(std::max(limits.backlog_octets, pus::max_telemetry_octets)) {
+  limits_.reserve = std::min(limits_.reserve, clients_.size() / 8);
+}
 
 GroundClients::Client* GroundClients::find(ClientId client) noexcept {
   return const_cast<Client*>(std::as_const(*this).find(client));
@@ -51,24 +113,54 @@ const GroundClients::Client* GroundClients::find(ClientId client) const noexcept
   return &clients_[place];
 }
 
-GroundClients::Client* GroundClients::free_place() noexcept {
-  const auto place = std::ranges::find(clients_, ClientId{0}, &Client::id);
-  return place == clients_.end() ? nullptr : &*place;
+bool GroundClients::has_free_place(GroundPort port) const noexcept {
+  if (port == GroundPort::TelemetryAndTelecommands && listeners_ >= clients_.size() - limits_.reserve) return false;
+  return counters_.clients < clients_.size();
 }
 
-GroundClients::Client* GroundClients::oldest_silent() noexcept {
-  Client* oldest = nullptr;
-  for (Client& client : clients_)
-    if (client.id != 0 && client.counters.valid_packets == 0 && (oldest == nullptr || client.order < oldest->order))
-      oldest = &client;
-  return oldest;
+GroundClients::Client* GroundClients::free_place(GroundPort port) noexcept {
+  return has_free_place(port) ? &*std::ranges::find(clients_, ClientId{0}, &Client::id) : nullptr;
+}
+
+bool GroundClients::admissible(GroundPort port) const noexcept {
+  if (has_free_place(port)) return true;
+  const auto can_give_way = [&](const Client& client) { return client.id != 0 && !permanent(client, port); };
+  // With nobody at all who ever could, admit() refuses at once: that is an answer, too.
+  return std::ranges::none_of(clients_, can_give_way) ||
+         std::ranges::any_of(clients_, [&](const Client& client) { return can_give_way(client) && !client.waits(); });
+}
+
+/// Whether a newcomer on this port cannot take the client's place, whatever else is taken.
+bool GroundClients::permanent(const Client& client, GroundPort newcomer) const noexcept {
+  const bool listener = client.counters.port == GroundPort::TelemetryAndTelecommands;
+  // The places that listeners may have are all taken by listeners: only one of them can give way to another.
+  const bool listeners_only = newcomer == GroundPort::TelemetryAndTelecommands &&
+                              listeners_ == clients_.size() - limits_.reserve;
+  if (!listener) return listeners_only;
+  return client.counters.valid_packets != 0;
+}
+
+/// Who has had time to speak and did not; then who was quiet for longest. Newcomers have a moment: one that is about to
+/// say something essential must not give way to the next before it could.
+GroundClients::Client* GroundClients::who_gives_way(GroundPort port, TimePoint now) noexcept {
+  const auto rank = [now](const Client& client) {
+    const bool silent = client.counters.valid_packets == 0 && now - client.counters.admitted >= settling;
+    return std::tuple{silent ? 0 : 1, client.counters.heard, client.order};
+  };
+  Client* chosen = nullptr;
+  for (Client& client : clients_) {
+    if (client.id == 0 || client.waits() || permanent(client, port)) continue;
+    if (chosen == nullptr || rank(client) < rank(*chosen)) chosen = &client;
+  }
+  return chosen;
 }
 
 Result<GroundClients::Admission> GroundClients::admit(GroundPort port, TimePoint now) {
   Admission admission;
-  Client* place = free_place();
+  const bool listener = port == GroundPort::TelemetryAndTelecommands;
+  Client* place = free_place(port);
   if (place == nullptr) {
-    place = oldest_silent();
+    place = who_gives_way(port, now);
     if (place == nullptr) {
       ++counters_.refused;
       return fail(ErrorCode::ResourceExhausted, "ground clients", std::ssize(clients_));
@@ -84,36 +176,66 @@ Result<GroundClients::Admission> GroundClients::admit(GroundPort port, TimePoint
   place->read_to = written_;
   place->counters.port = port;
   place->counters.admitted = now;
+  place->counters.heard = now;
+  if (listener) ++listeners_;
   ++counters_.admitted;
   ++counters_.clients;
   admission.client = place->id;
   return admission;
 }
 
-void GroundClients::received(ClientId id, Octets octets, TimePoint now, GroundTraffic& traffic) {
+MutableOctets GroundClients::room(ClientId id) noexcept {
   Client* client = find(id);
-  if (client == nullptr || client->condemned) return;
-  client->counters.octets_received += octets.size();
+  return client == nullptr || client->dismissed ? MutableOctets{} : client->deframer.room();
+}
+
+void GroundClients::received(ClientId id, std::size_t octets, TimePoint now) noexcept {
+  Client* client = find(id);
+  if (client == nullptr || client->dismissed) return;
+  client->counters.octets_received += octets;
   const std::uint64_t idle_before = client->deframer.idle_packets();
-  client->condemned = client->deframer.feed(octets, now, [&](Octets packet) {
-    ++client->counters.packets;
-    ++counters_.packets;
-    if (pus::TelecommandView::parse(packet)) {
-      ++client->counters.valid_packets;
-      ++counters_.valid_packets;
-    }
-    traffic.telecommand(id, packet);
-  });
+  client->deframer.put(octets, now);
   counters_.idle_packets += client->deframer.idle_packets() - idle_before;
+  queue(*client);
+}
+
+void GroundClients::queue(Client& client) noexcept {
+  if (client.queued || !client.waits()) return;
+  client.queued = true;
+  turns_[(first_turn_ + waiting_++) % most_clients] = static_cast<std::uint8_t>(place_of(client.id));
+}
+
+bool GroundClients::hand_over(GroundTraffic& traffic, TimePoint now) {
+  for (int left = packets_per_turn; left > 0 && waiting_ > 0; --left) {
+    Client& client = clients_[turns_[first_turn_]];
+    const Octets packet = client.deframer.front();
+    const bool valid = pus::TelecommandView::parse(packet).has_value();
+    if (traffic.telecommand(client.id, packet) == Taken::Later) {
+      ++counters_.held_back;
+      return false;
+    }
+    client.counters.heard = now;
+    ++client.counters.packets;
+    ++counters_.packets;
+    client.counters.valid_packets += valid ? 1 : 0;
+    counters_.valid_packets += valid ? 1 : 0;
+    const std::uint64_t idle_before = client.deframer.idle_packets();
+    client.deframer.pop(now);
+    counters_.idle_packets += client.deframer.idle_packets() - idle_before;
+    first_turn_ = (first_turn_ + 1) % most_clients;
+    --waiting_;
+    client.queued = false;
+    queue(client);
+  }
+  return waiting_ == 0;
 }
 
 Result<> GroundClients::telemetry(Octets packet) {
   if (packet.size() > ring_.size())
     return fail(ErrorCode::ResourceExhausted, "telemetry longer than the backlog", std::ssize(packet));
-  for (Client& client : clients_) {
-    if (client.id == 0 || client.condemned || client.counters.port != GroundPort::TelemetryAndTelecommands) continue;
-    if (written_ + packet.size() - client.read_to > ring_.size()) client.condemned = CloseReason::Slow;
-  }
+  for (Client& client : clients_)
+    if (client.listens() && written_ + packet.size() - client.read_to > ring_.size())
+      client.dismissed = CloseReason::Slow;
   const std::size_t start = written_ % ring_.size();
   const std::size_t first_part = std::min(packet.size(), ring_.size() - start);
   std::ranges::copy(packet.first(first_part), ring_.begin() + static_cast<std::ptrdiff_t>(start));
@@ -125,8 +247,7 @@ Result<> GroundClients::telemetry(Octets packet) {
 
 Octets GroundClients::output(ClientId id) const noexcept {
   const Client* client = find(id);
-  if (client == nullptr || client->condemned || client->counters.port != GroundPort::TelemetryAndTelecommands)
-    return {};
+  if (client == nullptr || !client->listens()) return {};
   const std::size_t start = client->read_to % ring_.size();
   const std::size_t waiting = static_cast<std::size_t>(written_ - client->read_to);
   return Octets{ring_}.subspan(start, std::min(waiting, ring_.size() - start));
@@ -142,24 +263,48 @@ void GroundClients::sent(ClientId id, std::size_t octets) noexcept {
 std::optional<TimePoint> GroundClients::step(TimePoint now) noexcept {
   std::optional<TimePoint> next;
   for (Client& client : clients_) {
-    if (client.id == 0 || client.condemned) continue;
-    client.condemned = client.deframer.check(now);
+    if (client.id == 0 || client.dismissed) continue;
+    client.deframer.check(now);
     const auto deadline = client.deframer.deadline();
     if (deadline && (!next || *deadline < *next)) next = deadline;
   }
   return next;
 }
 
+void GroundClients::end_input(ClientId id) noexcept {
+  if (Client* client = find(id)) client->deframer.end();
+}
+
+void GroundClients::dismiss(ClientId id, CloseReason reason) noexcept {
+  Client* client = find(id);
+  if (client == nullptr || client->dismissed) return;
+  client->dismissed = reason;
+  client->deframer.end();
+}
+
 std::optional<CloseReason> GroundClients::condemned(ClientId id) const noexcept {
   const Client* client = find(id);
-  return client == nullptr ? std::nullopt : client->condemned;
+  if (client == nullptr || client->waits()) return std::nullopt;
+  if (client->dismissed == CloseReason::Slow) return CloseReason::Slow;
+  return client->deframer.spoilt() ? client->deframer.spoilt() : client->dismissed;
 }
 
 void GroundClients::remove(ClientId id, CloseReason reason) noexcept {
   Client* client = find(id);
   if (client == nullptr) return;
-  ++counters_.closed[std::to_underlying(client->condemned.value_or(reason))];
+  if (client->queued) {
+    // What it left is nobody's any more; only the end of the whole link gets here.
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < waiting_; ++i) {
+      const std::uint8_t place = turns_[(first_turn_ + i) % most_clients];
+      if (place != place_of(id)) turns_[(first_turn_ + kept++) % most_clients] = place;
+    }
+    waiting_ = kept;
+    client->queued = false;
+  }
+  ++counters_.closed[std::to_underlying(condemned(id).value_or(reason))];
   --counters_.clients;
+  if (client->counters.port == GroundPort::TelemetryAndTelecommands) --listeners_;
   client->id = 0;
 }
 

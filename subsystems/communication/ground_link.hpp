@@ -22,44 +22,55 @@ enum class CloseReason : std::uint8_t {
   Version,         ///< header: packet version not 0
   NotTelecommand,  ///< header: a telemetry packet
   Length,          ///< header: shorter or longer than any telecommand
-  Incomplete,      ///< a packet was not complete in time
+  Incomplete,      ///< a packet was not complete in time, or cut off by the end of the stream
   Slow,            ///< did not read its telemetry
   Evicted,         ///< silent, and somebody else needed the place
   SocketError,
 };
 inline constexpr std::size_t close_reasons = 8;
 
-/// Cuts a stream into telecommand packets. An implausible header ends the stream for good: searching for the next
-/// packet could find one that was embedded in another's data, and execute it.
+/// Cuts a stream into telecommand packets and keeps them until somebody takes them. An implausible header ends the
+/// stream for good: searching for the next packet could find one that was embedded in another's data, and execute it.
 /// What is handed on has a plausible header and its announced length; checksum and fields are the receiver's to judge.
 /// Realtime: bounded, does not allocate. Thread: one.
 class Deframer {
  public:
+  /// The longest packet fits, however little of the buffer the one before it left.
+  static constexpr std::size_t capacity = pus::max_telecommand_octets;
+
   explicit Deframer(Duration incomplete_limit = 2s) noexcept : limit_{incomplete_limit} {}
 
-  /// Calls `take(Octets packet)` for each packet that is complete; idle packets are dropped and counted.
-  /// The reason once the stream is spoilt: nothing is taken from it any more.
-  template <class Take>
-  std::optional<CloseReason> feed(Octets octets, TimePoint now, Take&& take);
-  /// Incomplete when a packet has been waited for too long.
-  [[nodiscard]] std::optional<CloseReason> check(TimePoint now) noexcept;
+  /// Where the next octets of the stream belong; empty while it is full of packets that wait, and once it has ended.
+  [[nodiscard]] MutableOctets room() noexcept;
+  /// So many octets were put there.
+  void put(std::size_t octets, TimePoint now) noexcept;
+  /// The stream ends here: what is incomplete stays so.
+  void end() noexcept;
+  /// The oldest whole packet; empty when there is none. Idle packets are dropped and counted.
+  [[nodiscard]] Octets front() const noexcept { return Octets{buffer_}.subspan(begin_, whole_); }
+  /// That packet has been taken.
+  void pop(TimePoint now) noexcept;
+  /// Incomplete when a packet has been waited for too long; not while whole ones before it wait to be taken.
+  void check(TimePoint now) noexcept;
   /// When `check` will say so; empty between packets.
   [[nodiscard]] std::optional<TimePoint> deadline() const noexcept;
+  /// The reason once the stream is spoilt: nothing is taken from it any more.
+  [[nodiscard]] std::optional<CloseReason> spoilt() const noexcept { return spoilt_; }
   [[nodiscard]] std::uint64_t idle_packets() const noexcept { return idle_; }
 
  private:
-  /// Moves octets over until the packet has `wanted` of them.
-  void collect(Octets& octets, std::size_t wanted) noexcept;
-  [[nodiscard]] std::optional<CloseReason> judge_header() noexcept;
+  void look(TimePoint now) noexcept;
+  void spoil(CloseReason reason) noexcept;
 
   Duration limit_;
-  TimePoint begun_{};
-  std::size_t size_{0};
-  std::size_t whole_{0};
+  TimePoint begun_{};      ///< of the incomplete packet in front
+  std::size_t begin_{0};
+  std::size_t end_{0};
+  std::size_t whole_{0};   ///< octets of the whole packet in front, 0 = none
   std::uint64_t idle_{0};
-  bool is_idle_{false};
+  bool ended_{false};
   std::optional<CloseReason> spoilt_{};
-  std::array<std::byte, pus::max_telecommand_octets> packet_{};
+  std::array<std::byte, capacity> buffer_{};
 };
 
 /// Number of a connection, never 0; not given again soon.
@@ -68,21 +79,27 @@ using ClientId = std::uint16_t;
 /// 10015 gives all telemetry and takes telecommands, 10025 takes telecommands only.
 enum class GroundPort : std::uint8_t { TelemetryAndTelecommands, TelecommandsOnly };
 
+/// What becomes of a packet that is offered: it stays with its client until it is taken.
+enum class Taken : std::uint8_t { Yes, Later };
+
 /// Who takes what comes from the ground.
 struct GroundTraffic {
   virtual ~GroundTraffic() = default;
   /// `packet` is valid during the call; it may be damaged in all but its header. May call `telemetry`.
-  virtual void telecommand(ClientId client, Octets packet) = 0;
+  [[nodiscard]] virtual Taken telecommand(ClientId client, Octets packet) = 0;
 };
 
 struct ClientCounters {
   GroundPort port{};
   TimePoint admitted{};
-  std::uint64_t packets{0};  ///< of plausible form
+  TimePoint heard{};           ///< when a packet of it was taken last; at first when it came
+  std::uint64_t packets{0};    ///< of plausible form, and taken
   std::uint64_t valid_packets{0};  ///< whole and undamaged
   std::uint64_t octets_received{0};
   std::uint64_t octets_sent{0};
 };
+/// Every packet that a client sent is one of `packets`, one of `idle_packets`, or the one at which its connection was
+/// `closed` for a reason of its stream; every connection is one of `clients` or one of `closed`.
 struct LinkCounters {
   std::uint64_t clients{0};  ///< connected now
   std::uint64_t admitted{0};
@@ -90,20 +107,24 @@ struct LinkCounters {
   std::uint64_t packets{0};
   std::uint64_t valid_packets{0};
   std::uint64_t idle_packets{0};
+  std::uint64_t held_back{0};  ///< times that a packet was offered and had to stay
   std::uint64_t telemetry_packets{0};
   std::array<std::uint64_t, close_reasons> closed{};  ///< by CloseReason
 };
 
 /// All clients of the link. Telemetry is kept once, in a ring that every client reads at its own pace; who falls behind
-/// by more than the ring is cut, never waited for.
-/// When all places are taken, the oldest client that has never sent a valid packet gives way; a pure listener keeps its
-/// place by one ping. With nobody to evict, the newcomer is refused.
+/// by more than the ring is cut, never waited for. Telecommands are taken in turn, one of each client, and stay with
+/// their client, which is then not read, while nobody takes them: nothing that was received is lost.
+/// When all places are taken, a client that has never sent a valid packet gives way; a pure listener keeps its place by
+/// one ping. Some places are never given to the telemetry port: on the telecommand port a newcomer always gets
+/// in, there the one that was quiet for longest gives way (docs/adr/0028).
 /// Realtime: bounded; memory is taken by the constructor. Thread: one.
 class GroundClients {
  public:
   static constexpr std::size_t most_clients = 256;
   struct Limits {
     std::size_t clients{most_clients};
+    std::size_t reserve{16};                ///< places for the telecommand port alone; at most an eighth of all
     std::size_t backlog_octets{1 << 20};  ///< telemetry that a client may leave unread
     Duration incomplete{2s};
   };
@@ -114,10 +135,17 @@ class GroundClients {
 
   explicit GroundClients(const Limits& limits);
 
+  /// False for the moment when all who could give way have packets that wait.
+  [[nodiscard]] bool admissible(GroundPort port) const noexcept;
   /// ResourceExhausted: refused.
   [[nodiscard]] Result<Admission> admit(GroundPort port, TimePoint now);
-  /// Octets from a client; whole packets go to `traffic`.
-  void received(ClientId client, Octets octets, TimePoint now, GroundTraffic& traffic);
+  /// Where the next octets of a client belong; empty while it is not to be read.
+  [[nodiscard]] MutableOctets room(ClientId client) noexcept;
+  /// So many octets were put there.
+  void received(ClientId client, std::size_t octets, TimePoint now) noexcept;
+  /// Offers what waits, one packet of each client in turn, to `traffic`; at most `packets_per_turn`. True when it ended
+  /// because nothing waits any more.
+  bool hand_over(GroundTraffic& traffic, TimePoint now);
   /// Queues a packet for every client of the telemetry port. ResourceExhausted: longer than the backlog.
   Result<> telemetry(Octets packet);
   /// What may be sent to the client next, as far as it is in one piece; empty when it has everything.
@@ -125,7 +153,11 @@ class GroundClients {
   void sent(ClientId client, std::size_t octets) noexcept;
   /// Finds packets that are overdue; the next time to look.
   std::optional<TimePoint> step(TimePoint now) noexcept;
-  /// The connection is to be closed for this reason; empty while it is welcome.
+  /// The client has ended its sending direction.
+  void end_input(ClientId client) noexcept;
+  /// The client is to go; its packets are handed over before it is condemned.
+  void dismiss(ClientId client, CloseReason reason) noexcept;
+  /// The connection is to be closed for this reason; empty while it is welcome, or has packets that wait.
   [[nodiscard]] std::optional<CloseReason> condemned(ClientId client) const noexcept;
   /// The connection is closed; its own reason goes before `reason`.
   void remove(ClientId client, CloseReason reason) noexcept;
@@ -134,49 +166,44 @@ class GroundClients {
   [[nodiscard]] const LinkCounters& counters() const noexcept { return counters_; }
   /// Index below `most_clients`, unique among present clients.
   [[nodiscard]] static constexpr std::size_t place_of(ClientId client) noexcept { return client % most_clients; }
+  static constexpr int packets_per_turn = 1024;
 
  private:
   struct Client {
     explicit Client(Duration incomplete) noexcept : deframer{incomplete} {}
     ClientId id{0};  ///< 0: free
     std::uint8_t generation{0};
+    bool queued{false};  ///< in turns_
     std::uint64_t order{0};
     std::uint64_t read_to{0};
-    std::optional<CloseReason> condemned{};
+    std::optional<CloseReason> dismissed{};
     ClientCounters counters{};
     Deframer deframer;
+    [[nodiscard]] bool waits() const noexcept { return !deframer.front().empty(); }
+    [[nodiscard]] bool listens() const noexcept {
+      return id != 0 && !dismissed && counters.port == GroundPort::TelemetryAndTelecommands;
+    }
   };
   [[nodiscard]] Client* find(ClientId client) noexcept;
   [[nodiscard]] const Client* find(ClientId client) const noexcept;
-  [[nodiscard]] Client* free_place() noexcept;
-  [[nodiscard]] Client* oldest_silent() noexcept;
+  [[nodiscard]] Client* free_place(GroundPort port) noexcept;
+  [[nodiscard]] bool has_free_place(GroundPort port) const noexcept;
+  [[nodiscard]] Client* who_gives_way(GroundPort port, TimePoint now) noexcept;
+  [[nodiscard]] bool permanent(const Client& client, GroundPort newcomer) const noexcept;
+  void queue(Client& client) noexcept;
 
   Limits limits_;
   std::vector<Client> clients_;
   std::vector<std::byte> ring_;
   std::uint64_t written_{0};
   std::uint64_t next_order_{0};
+  std::size_t listeners_{0};
+  /// Places of those whose packets wait, in the order of their turns.
+  std::array<std::uint8_t, most_clients> turns_{};
+  std::size_t first_turn_{0};
+  std::size_t waiting_{0};
   LinkCounters counters_;
 };
-
-template <class Take>
-std::optional<CloseReason> Deframer::feed(Octets octets, TimePoint now, Take&& take) {
-  while (!spoilt_ && !octets.empty()) {
-    if (size_ == 0) begun_ = now;
-    if (size_ < pus::primary_header_octets) {
-      collect(octets, pus::primary_header_octets);
-      if (size_ < pus::primary_header_octets) break;
-      spoilt_ = judge_header();
-    }
-    if (spoilt_) break;
-    collect(octets, whole_);
-    if (size_ < whole_) break;
-    size_ = 0;
-    if (is_idle_) ++idle_;
-    else take(Octets{packet_}.first(whole_));
-  }
-  return spoilt_;
-}
 
 }  // namespace hirosco::communication
 

@@ -10,8 +10,9 @@ using namespace hirosco;
 using namespace hirosco::communication;
 
 struct Router final : GroundTraffic {
-  void telecommand(ClientId client, Octets packet) override {
+  Taken telecommand(ClientId client, Octets packet) override {
     std::printf("client %u: %zu octets\n", client, packet.size());
+    return Taken::Yes;   // Later: it stays, and its client is not read, until a later step
   }
 };
 

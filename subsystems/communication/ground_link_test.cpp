@@ -41,6 +41,24 @@ struct Sink {
   void operator()(Octets packet) { packets.emplace_back(packet.begin(), packet.end()); }
 };
 
+/// All octets of a stream, whole packets taken as soon as they are there.
+template <class Take>
+std::optional<CloseReason> feed(Deframer& deframer, Octets octets, TimePoint now, Take&& take) {
+  while (!octets.empty() && !deframer.spoilt()) {
+    const MutableOctets room = deframer.room();
+    const std::size_t count = std::min(room.size(), octets.size());
+    std::ranges::copy(octets.first(count), room.begin());
+    deframer.put(count, now);
+    octets = octets.subspan(count);
+    for (; !deframer.front().empty(); deframer.pop(now)) take(deframer.front());
+  }
+  return deframer.spoilt();
+}
+template <class Take>
+std::optional<CloseReason> feed(Deframer&& deframer, Octets octets, TimePoint now, Take&& take) {
+  return feed(deframer, octets, now, take);
+}
+
 TEST(Deframer, CutsPacketsWhereverTheStreamIsDivided) {
   const Packets sent{ping_of(), ping_of(100, 1), ping_of(pus::max_telecommand_octets - 13, 2), ping_of(1, 3)};
   std::vector<std::byte> stream;
@@ -51,7 +69,7 @@ TEST(Deframer, CutsPacketsWhereverTheStreamIsDivided) {
     Sink sink;
     for (std::size_t at = 0; at < stream.size(); at += piece) {
       const Octets octets = Octets{stream}.subspan(at, std::min(piece, stream.size() - at));
-      ASSERT_FALSE(deframer.feed(octets, {}, sink));
+      ASSERT_FALSE(feed(deframer, octets, {}, sink));
     }
     EXPECT_EQ(sink.packets, sent) << piece;
     EXPECT_FALSE(deframer.deadline());
@@ -62,7 +80,7 @@ TEST(Deframer, TakesExactlyThePlausibleLengths) {
   for (std::size_t field = 0; field <= 0xFFFF; ++field) {
     Deframer deframer;
     Sink sink;
-    const auto reason = deframer.feed(header(0x180B, static_cast<std::uint16_t>(field)), {}, sink);
+    const auto reason = feed(deframer, header(0x180B, static_cast<std::uint16_t>(field)), {}, sink);
     const bool plausible = field + 7 >= 13 && field + 7 <= 4096;
     ASSERT_EQ(reason, plausible ? std::nullopt : std::optional{CloseReason::Length}) << field;
     ASSERT_THAT(sink.packets, IsEmpty());
@@ -71,9 +89,9 @@ TEST(Deframer, TakesExactlyThePlausibleLengths) {
 
 TEST(Deframer, EndsTheStreamAtAVersionOrTypeThatIsNoTelecommand) {
   Sink sink;
-  EXPECT_EQ(Deframer{}.feed(header(0x080B, 6), {}, sink), CloseReason::NotTelecommand);
+  EXPECT_EQ(feed(Deframer{}, header(0x080B, 6), {}, sink), CloseReason::NotTelecommand);
   for (unsigned version = 1; version <= 7; ++version)
-    EXPECT_EQ(Deframer{}.feed(header(static_cast<std::uint16_t>(0x180BU | version << 13), 6), {}, sink),
+    EXPECT_EQ(feed(Deframer{}, header(static_cast<std::uint16_t>(0x180BU | version << 13), 6), {}, sink),
               CloseReason::Version);
 }
 
@@ -84,7 +102,7 @@ TEST(Deframer, HandsOnWhateverIsDamagedBehindAPlausibleHeader) {
     damaged[bit / 8] ^= static_cast<std::byte>(0x80 >> bit % 8);
     Deframer deframer;
     Sink sink;
-    const auto reason = deframer.feed(damaged, {}, sink);
+    const auto reason = feed(deframer, damaged, {}, sink);
     const std::size_t announced = pus::announced_octets(damaged);
     if (bit < 3) EXPECT_EQ(reason, CloseReason::Version);
     else if (bit == 3) EXPECT_EQ(reason, CloseReason::NotTelecommand);
@@ -99,8 +117,8 @@ TEST(Deframer, NeverFindsATelecommandInsideASpoiltStream) {
   for (int i = 0; i < 1000; ++i) append(stream, ping_of());
   Deframer deframer;
   Sink sink;
-  EXPECT_TRUE(deframer.feed(stream, {}, sink));
-  EXPECT_EQ(deframer.feed(ping_of(), {}, sink), CloseReason::Length);
+  EXPECT_TRUE(feed(deframer, stream, {}, sink));
+  EXPECT_EQ(feed(deframer, ping_of(), {}, sink), CloseReason::Length);
   EXPECT_THAT(sink.packets, IsEmpty());
 }
 
@@ -109,21 +127,24 @@ TEST(Deframer, GivesAPacketTwoSecondsFromItsFirstOctet) {
   Deframer deframer;
   Sink sink;
   const TimePoint begun{5s};
-  ASSERT_FALSE(deframer.feed(Octets{packet}.first(1), begun, sink));
+  ASSERT_FALSE(feed(deframer, Octets{packet}.first(1), begun, sink));
   EXPECT_EQ(deframer.deadline(), begun + 2s);
   // A trickle of octets does not prolong it.
-  ASSERT_FALSE(deframer.feed(Octets{packet}.subspan(1, 1), begun + 1999ms, sink));
-  EXPECT_FALSE(deframer.check(begun + 1999ms));
-  EXPECT_EQ(deframer.check(begun + 2s), CloseReason::Incomplete);
-  EXPECT_TRUE(deframer.feed(Octets{packet}.subspan(2), begun + 2s, sink));
+  ASSERT_FALSE(feed(deframer, Octets{packet}.subspan(1, 1), begun + 1999ms, sink));
+  deframer.check(begun + 1999ms);
+  EXPECT_FALSE(deframer.spoilt());
+  deframer.check(begun + 2s);
+  EXPECT_EQ(deframer.spoilt(), CloseReason::Incomplete);
+  EXPECT_TRUE(feed(deframer, Octets{packet}.subspan(2), begun + 2s, sink));
   EXPECT_THAT(sink.packets, IsEmpty());
 }
 
 TEST(Deframer, WaitsForEverBetweenPackets) {
   Deframer deframer;
   Sink sink;
-  ASSERT_FALSE(deframer.feed(ping_of(), {}, sink));
-  EXPECT_FALSE(deframer.check(TimePoint{1000h}));
+  ASSERT_FALSE(feed(deframer, ping_of(), {}, sink));
+  deframer.check(TimePoint{1000h});
+  EXPECT_FALSE(deframer.spoilt());
 }
 
 TEST(Deframer, DropsIdlePacketsSilently) {
@@ -132,15 +153,72 @@ TEST(Deframer, DropsIdlePacketsSilently) {
   append(stream, ping_of());
   Deframer deframer;
   Sink sink;
-  EXPECT_FALSE(deframer.feed(stream, {}, sink));
+  EXPECT_FALSE(feed(deframer, stream, {}, sink));
   EXPECT_EQ(sink.packets.size(), 1U);
   EXPECT_EQ(deframer.idle_packets(), 1U);
 }
 
+TEST(Deframer, KeepsWholePacketsUntilTheyAreTakenAndHasNoRoomWhileItIsFullOfThem) {
+  const auto packet = ping_of();
+  std::vector<std::byte> stream;
+  while (stream.size() < 2 * Deframer::capacity) append(stream, packet);
+  Deframer deframer;
+  std::size_t put = 0;
+  for (MutableOctets room = deframer.room(); !room.empty(); room = deframer.room()) {
+    std::ranges::copy(Octets{stream}.subspan(put, room.size()), room.begin());
+    put += room.size();
+    deframer.put(room.size(), {});
+  }
+  EXPECT_EQ(put, Deframer::capacity);
+  // Who is not read because others are behind has not left a packet incomplete.
+  deframer.check(TimePoint{1000h});
+  std::size_t whole = 0;
+  for (; !deframer.front().empty(); deframer.pop(TimePoint{1000h})) ++whole;
+  EXPECT_EQ(whole, put / packet.size());
+  EXPECT_EQ(deframer.deadline(), TimePoint{1000h} + 2s);
+}
+
+TEST(Deframer, SaysOfAPacketThatTheEndOfTheStreamCutsOffThatItIsIncomplete) {
+  const auto packet = ping_of(3);
+  for (std::size_t cut = 0; cut <= packet.size(); ++cut) {
+    auto stream = ping_of();
+    stream.insert(stream.end(), packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(cut));
+    Deframer deframer;
+    std::ranges::copy(stream, deframer.room().begin());
+    deframer.put(stream.size(), {});
+    deframer.end();
+    ASSERT_FALSE(deframer.spoilt()) << "a whole packet comes first";
+    deframer.pop({});
+    if (cut == packet.size()) deframer.pop({});
+    const bool whole = cut == 0 || cut == packet.size();
+    EXPECT_EQ(deframer.spoilt(), whole ? std::nullopt : std::optional{CloseReason::Incomplete}) << cut;
+  }
+}
+
 struct Received final : GroundTraffic {
-  void telecommand(ClientId client, Octets packet) override { all.emplace_back(client, packet.size()); }
+  Taken telecommand(ClientId client, Octets packet) override {
+    if (room == 0) return Taken::Later;
+    --room;
+    all.emplace_back(client, packet.size());
+    return Taken::Yes;
+  }
   std::vector<std::pair<ClientId, std::size_t>> all;
+  std::size_t room{1'000'000};
 };
+
+/// Puts as much as goes; how much that was.
+std::size_t put(GroundClients& clients, ClientId client, Octets octets, TimePoint now = {}) {
+  const MutableOctets room = clients.room(client);
+  const std::size_t count = std::min(room.size(), octets.size());
+  std::ranges::copy(octets.first(count), room.begin());
+  clients.received(client, count, now);
+  return count;
+}
+
+void receive(GroundClients& clients, ClientId client, Octets octets, TimePoint now, GroundTraffic& traffic) {
+  EXPECT_EQ(put(clients, client, octets, now), octets.size());
+  EXPECT_TRUE(clients.hand_over(traffic, now));
+}
 
 ClientId admit(GroundClients& clients, GroundPort port = GroundPort::TelemetryAndTelecommands) {
   const auto admission = clients.admit(port, {});
@@ -195,11 +273,11 @@ TEST(GroundClients, EvictTheOldestSilentClientNeverOneThatHasSpoken) {
   GroundClients clients{{.clients = 3}};
   Received traffic;
   const ClientId honest = admit(clients);
-  clients.received(honest, ping_of(), {}, traffic);
+  receive(clients, honest, ping_of(), {}, traffic);
   const ClientId noisy = admit(clients);
   auto damaged = ping_of();
   damaged.back() ^= std::byte{1};
-  clients.received(noisy, damaged, {}, traffic);
+  receive(clients, noisy, damaged, {}, traffic);
   const ClientId silent = admit(clients);
   EXPECT_EQ(clients.admit(GroundPort::TelecommandsOnly, {})->evicted, noisy);
   EXPECT_EQ(clients.admit(GroundPort::TelecommandsOnly, {})->evicted, silent);
@@ -210,9 +288,103 @@ TEST(GroundClients, EvictTheOldestSilentClientNeverOneThatHasSpoken) {
 TEST(GroundClients, RefuseANewcomerWhenEveryPlaceHasSpoken) {
   GroundClients clients{{.clients = 2}};
   Received traffic;
-  for (int i = 0; i < 2; ++i) clients.received(admit(clients), ping_of(), {}, traffic);
+  for (int i = 0; i < 2; ++i) receive(clients, admit(clients), ping_of(), {}, traffic);
   EXPECT_EQ(admit(clients), 0);
   EXPECT_EQ(clients.counters().refused, 1U);
+}
+
+TEST(GroundClients, KeepWhatNobodyTakesAndReadNoMoreOfWhoSentIt) {
+  GroundClients clients{{}};
+  Received traffic;
+  traffic.room = 0;
+  const ClientId client = admit(clients);
+  std::vector<std::byte> stream;
+  for (std::uint16_t i = 0; i < 3000; ++i) append(stream, ping_of(0, i));
+  Octets rest{stream};
+  for (std::size_t round = 0; !rest.empty() || traffic.all.size() < 3000; ++round) {
+    rest = rest.subspan(put(clients, client, rest));
+    traffic.room = round % 3 == 0 ? 7 : 0;
+    clients.hand_over(traffic, {});
+  }
+  EXPECT_EQ(traffic.all.size(), 3000U);
+  EXPECT_EQ(clients.counters().packets, 3000U);
+  EXPECT_GT(clients.counters().held_back, 0U);
+}
+
+TEST(GroundClients, TakeOnePacketOfEachInTurn) {
+  GroundClients clients{{}};
+  Received traffic;
+  const ClientId flood = admit(clients);
+  const ClientId second = admit(clients, GroundPort::TelecommandsOnly);
+  const ClientId honest = admit(clients);
+  std::vector<std::byte> many;
+  for (std::uint16_t i = 0; i < 300; ++i) append(many, ping_of(0, i));
+  put(clients, flood, many);
+  put(clients, second, many);
+  // Somewhere in the middle of the flood, where nobody takes anything for a while.
+  traffic.room = 101;
+  EXPECT_FALSE(clients.hand_over(traffic, {}));
+  put(clients, honest, ping_of(1));
+  traffic.room = 3;
+  EXPECT_FALSE(clients.hand_over(traffic, {}));
+  EXPECT_EQ(traffic.all.back().first, honest);
+}
+
+TEST(GroundClients, LetGoOfWhoLeavesOnlyWhenAllThatItSentIsTaken) {
+  GroundClients clients{{}};
+  Received traffic;
+  traffic.room = 0;
+  const ClientId client = admit(clients, GroundPort::TelecommandsOnly);
+  auto stream = ping_of();
+  append(stream, ping_of(0, 1));
+  append(stream, {std::byte{0x18}});
+  put(clients, client, stream);
+  clients.dismiss(client, CloseReason::PeerClosed);
+  clients.hand_over(traffic, {});
+  EXPECT_FALSE(clients.condemned(client));
+  traffic.room = 2;
+  clients.hand_over(traffic, {});
+  EXPECT_EQ(traffic.all.size(), 2U);
+  // The third was cut off by its sender.
+  EXPECT_EQ(clients.condemned(client), CloseReason::Incomplete);
+}
+
+TEST(GroundClients, LetNobodyGiveWayWhosePacketsWait) {
+  GroundClients clients{{.clients = 8, .reserve = 1}};
+  Received traffic;
+  traffic.room = 0;
+  std::vector<ClientId> all;
+  for (int i = 0; i < 8; ++i) {
+    all.push_back(admit(clients, GroundPort::TelecommandsOnly));
+    put(clients, all.back(), ping_of());
+  }
+  EXPECT_FALSE(clients.admissible(GroundPort::TelecommandsOnly));
+  EXPECT_FALSE(clients.admissible(GroundPort::TelemetryAndTelecommands));
+  traffic.room = 1;
+  clients.hand_over(traffic, {});
+  EXPECT_TRUE(clients.admissible(GroundPort::TelecommandsOnly));
+  EXPECT_EQ(clients.admit(GroundPort::TelecommandsOnly, {})->evicted, all.front());
+}
+
+TEST(GroundClients, LetANewcomerOfTheTelecommandPortInWhateverElseIsTaken) {
+  GroundClients clients{{.clients = 16, .reserve = 2}};
+  Received traffic;
+  TimePoint now{1s};
+  const auto speak = [&](GroundPort port) {
+    now += 1ms;
+    const auto admission = clients.admit(port, now);
+    if (!admission) return false;
+    receive(clients, admission->client, ping_of(), now, traffic);
+    return true;
+  };
+  // A flood on the telemetry port, each of which has sent a valid packet, takes all but the reserve.
+  int in = 0;
+  for (int i = 0; i < 100; ++i) in += speak(GroundPort::TelemetryAndTelecommands) ? 1 : 0;
+  EXPECT_EQ(in, 14);
+  // On the telecommand port there is always a way in: who was quiet for longest gives way.
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(speak(GroundPort::TelecommandsOnly)) << i;
+  EXPECT_EQ(clients.counters().closed[static_cast<std::size_t>(CloseReason::Evicted)], 98U);
+  EXPECT_EQ(traffic.all.size(), 114U);
 }
 
 TEST(GroundClients, NumberAPlaceAnewForEachClient) {
@@ -222,7 +394,8 @@ TEST(GroundClients, NumberAPlaceAnewForEachClient) {
   const ClientId second = admit(clients);
   EXPECT_NE(first, second);
   Received traffic;
-  clients.received(first, ping_of(), {}, traffic);
+  EXPECT_EQ(put(clients, first, ping_of()), 0U);
+  clients.hand_over(traffic, {});
   EXPECT_THAT(traffic.all, IsEmpty());
   for (int i = 0; i < 1000; ++i) {
     const ClientId next = admit(clients);
@@ -238,13 +411,13 @@ TEST(GroundClients, CountByClientAndByReason) {
   auto two = ping_of();
   append(two, ping_of(3));
   two.back() ^= std::byte{1};
-  clients.received(good, two, {}, traffic);
+  receive(clients, good, two, {}, traffic);
   EXPECT_THAT(traffic.all, ElementsAre(std::pair{good, 13U}, std::pair{good, 16U}));
   EXPECT_EQ(clients.counters_of(good)->packets, 2U);
   EXPECT_EQ(clients.counters_of(good)->valid_packets, 1U);
 
   const ClientId late = admit(clients);
-  clients.received(late, Octets{two}.first(3), TimePoint{1s}, traffic);
+  receive(clients, late, Octets{two}.first(3), TimePoint{1s}, traffic);
   EXPECT_EQ(clients.step(TimePoint{2s}), TimePoint{3s});
   clients.step(TimePoint{3s});
   EXPECT_EQ(clients.condemned(late), CloseReason::Incomplete);

@@ -17,8 +17,8 @@ namespace hirosco::communication {
 namespace {
 
 constexpr int accepts_per_step = 16;
-constexpr int reads_per_step = 4;
-constexpr std::size_t read_octets = 16 * 1024;
+/// Times that everybody who has something to say is read in one step, as much as it may leave unread on board.
+constexpr int rounds_per_step = 4;
 constexpr int listen_backlog = 512;
 // The epoll data of a connection is its ClientId, which is never below most_clients; listeners use the numbers below.
 constexpr std::uint32_t first_client_mark = GroundClients::most_clients;
@@ -83,25 +83,43 @@ std::uint16_t TcpServer::port(GroundPort port) const noexcept {
 
 std::optional<TimePoint> TcpServer::step(TimePoint now) {
   // Those who are in are served before others come in: a flood of newcomers cannot evict who has something to say.
-  serve_ready(now);
-  for (Connection& connection : connections_) {
-    if (connection.client == 0) continue;
-    write_to(connection);
-  }
+  static_cast<void>(clients_.hand_over(traffic_, now));
+  knocking_ = {};
+  for (int round = 0; round < rounds_per_step; ++round)
+    if (!serve_ready(now) || !clients_.hand_over(traffic_, now)) break;
+  if (knocking_[0]) accept_clients(GroundPort::TelemetryAndTelecommands, now);
+  if (knocking_[1]) accept_clients(GroundPort::TelecommandsOnly, now);
+  static_cast<void>(clients_.hand_over(traffic_, now));
   const auto next = clients_.step(now);
   for (Connection& connection : connections_)
-    if (const auto reason = clients_.condemned(connection.client)) close(connection, *reason);
+    if (connection.client != 0) tend(connection);
   return next;
 }
 
-void TcpServer::serve_ready(TimePoint now) {
+/// What is due for a connection after the others had their turn.
+void TcpServer::tend(Connection& connection) {
+  if (const auto reason = clients_.condemned(connection.client)) {
+    clients_.remove(connection.client, *reason);
+    connection = Connection{};
+    return;
+  }
+  if (!connection.socket) return;  // its packets wait, and then it goes
+  write_to(connection);
+  if (const bool held = clients_.room(connection.client).empty(); connection.socket && held != connection.held) {
+    connection.held = held;
+    watch(connection, EPOLL_CTL_MOD);
+  }
+}
+
+/// Whether anything was read.
+bool TcpServer::serve_ready(TimePoint now) {
   std::array<epoll_event, GroundClients::most_clients + 2> events{};
   const int count = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), 0);
-  std::array<bool, 2> knocking{};
+  bool something = false;
   for (int i = 0; i < count; ++i) {
     const epoll_event& event = events[static_cast<std::size_t>(i)];
     if (event.data.u32 < first_client_mark) {
-      knocking[event.data.u32] = true;
+      knocking_[event.data.u32] = true;
       continue;
     }
     Connection& connection = connections_[GroundClients::place_of(static_cast<ClientId>(event.data.u32))];
@@ -110,17 +128,18 @@ void TcpServer::serve_ready(TimePoint now) {
       connection.full = false;
       watch(connection, EPOLL_CTL_MOD);
     }
-    if ((event.events & EPOLLIN) != 0) read_from(connection, now);
-    else if ((event.events & (EPOLLERR | EPOLLHUP)) != 0)
-      close(connection, (event.events & EPOLLERR) != 0 ? CloseReason::SocketError : CloseReason::PeerClosed);
+    // Whoever has gone may have left octets: the end is what reading finds behind them.
+    if ((event.events & (EPOLLIN | EPOLLERR | EPOLLHUP)) != 0 && connection.socket)
+      something = read_from(connection, now) || something;
   }
-  if (knocking[0]) accept_clients(GroundPort::TelemetryAndTelecommands, now);
-  if (knocking[1]) accept_clients(GroundPort::TelecommandsOnly, now);
+  return something;
 }
 
 void TcpServer::accept_clients(GroundPort port, TimePoint now) {
   const int listener = listeners_[std::to_underlying(port)].get();
   for (int i = 0; i < accepts_per_step; ++i) {
+    // Whoever cannot come in now because of packets that wait is better off in the kernel's queue than refused.
+    if (!clients_.admissible(port)) return;
     FileDescriptor socket{::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
     if (!socket && (errno == EMFILE || errno == ENFILE)) return make_room_by_refusing(listener);
     if (!socket && errno != ECONNABORTED && errno != EINTR) return;
@@ -143,26 +162,30 @@ void TcpServer::welcome(FileDescriptor socket, GroundPort port, TimePoint now) {
   const int yes = 1;
   ::setsockopt(connection.socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   watch(connection, EPOLL_CTL_ADD);
-  if (connection.client != 0) read_from(connection, now);
+  if (connection.socket) static_cast<void>(read_from(connection, now));
 }
 
-void TcpServer::read_from(Connection& connection, TimePoint now) {
-  std::array<std::byte, read_octets> buffer;
-  for (int i = 0; i < reads_per_step; ++i) {
-    const ssize_t count = ::recv(connection.socket.get(), buffer.data(), buffer.size(), 0);
-    if (count == 0) return end_of_stream(connection);
-    if (count < 0 && would_block(errno)) return;
-    if (count < 0) return close(connection, errno == ECONNRESET ? CloseReason::PeerClosed : CloseReason::SocketError);
-    clients_.received(connection.client, Octets{buffer}.first(static_cast<std::size_t>(count)), now, traffic_);
-    if (clients_.condemned(connection.client)) return;
+bool TcpServer::read_from(Connection& connection, TimePoint now) {
+  const MutableOctets room = clients_.room(connection.client);
+  if (room.empty()) {
+    // Nothing more comes from it, but its end shows.
+    if (connection.deaf) return end_of_stream(connection), false;
+    return false;
   }
+  const ssize_t count = ::recv(connection.socket.get(), room.data(), room.size(), 0);
+  if (count == 0) return end_of_stream(connection), false;
+  if (count < 0 && would_block(errno)) return false;
+  if (count < 0) return dismiss(connection, errno == ECONNRESET ? CloseReason::PeerClosed : CloseReason::SocketError), false;
+  clients_.received(connection.client, static_cast<std::size_t>(count), now);
+  return true;
 }
 
 void TcpServer::end_of_stream(Connection& connection) {
   const ClientCounters* counters = clients_.counters_of(connection.client);
   // A listener may end its own direction and still want telemetry; when it is gone altogether, writing tells.
-  if (counters == nullptr || counters->port == GroundPort::TelecommandsOnly)
-    return close(connection, CloseReason::PeerClosed);
+  if (counters == nullptr || counters->port == GroundPort::TelecommandsOnly || connection.deaf)
+    return dismiss(connection, CloseReason::PeerClosed);
+  clients_.end_input(connection.client);
   connection.deaf = true;
   watch(connection, EPOLL_CTL_MOD);
 }
@@ -179,23 +202,25 @@ void TcpServer::write_to(Connection& connection) {
       watch(connection, EPOLL_CTL_MOD);
     } else {
       const bool gone = errno == EPIPE || errno == ECONNRESET;
-      return close(connection, gone ? CloseReason::PeerClosed : CloseReason::SocketError);
+      return dismiss(connection, gone ? CloseReason::PeerClosed : CloseReason::SocketError);
     }
   }
 }
 
 void TcpServer::watch(Connection& connection, int operation) {
+  if (!connection.socket) return;
   epoll_event event{};
-  event.events = (connection.deaf ? 0U : static_cast<std::uint32_t>(EPOLLIN)) |
+  event.events = (connection.deaf || connection.held ? 0U : static_cast<std::uint32_t>(EPOLLIN)) |
                  (connection.full ? static_cast<std::uint32_t>(EPOLLOUT) : 0U);
   event.data.u32 = connection.client;
   if (::epoll_ctl(epoll_.get(), operation, connection.socket.get(), &event) != 0)
-    close(connection, CloseReason::SocketError);
+    dismiss(connection, CloseReason::SocketError);
 }
 
-void TcpServer::close(Connection& connection, CloseReason reason) {
-  clients_.remove(connection.client, reason);
-  connection = Connection{};
+/// The connection ends now; its client stays until what it sent has been taken.
+void TcpServer::dismiss(Connection& connection, CloseReason reason) {
+  clients_.dismiss(connection.client, reason);
+  connection.socket.reset();
 }
 
 }  // namespace hirosco::communication

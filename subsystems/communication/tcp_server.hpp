@@ -35,8 +35,9 @@ class TcpServer {
   TcpServer(const TcpServer&) = delete;
   TcpServer& operator=(const TcpServer&) = delete;
 
-  /// Accepts, reads, writes and closes what is due, a bounded amount for each client; never blocks. The next time at
-  /// which it has to be called even when `descriptor()` stays silent.
+  /// Accepts, reads, hands over, writes and closes what is due, a bounded amount for each client; never blocks. The next
+  /// time at which it has to be called even when `descriptor()` stays silent: that of its own limits; while packets wait
+  /// for somebody who takes them, its owner knows best when that may be.
   std::optional<TimePoint> step(TimePoint now);
   /// Queues a packet for all telemetry clients; it leaves with the next `step`. ResourceExhausted: longer than
   /// the backlog.
@@ -54,25 +55,28 @@ class TcpServer {
     FileDescriptor socket;
     bool full{false};  ///< the kernel takes no more for now
     bool deaf{false};  ///< the client has ended its sending direction
+    bool held{false};  ///< not read while its packets wait
   };
 
   TcpServer(const Options& options, GroundTraffic& traffic);
   Result<> listen_on(GroundPort port, const Options& options);
-  void serve_ready(TimePoint now);
+  [[nodiscard]] bool serve_ready(TimePoint now);
   void accept_clients(GroundPort port, TimePoint now);
   void make_room_by_refusing(int listener);
   void welcome(FileDescriptor socket, GroundPort port, TimePoint now);
-  void read_from(Connection& connection, TimePoint now);
+  [[nodiscard]] bool read_from(Connection& connection, TimePoint now);
   void end_of_stream(Connection& connection);
   void write_to(Connection& connection);
   void watch(Connection& connection, int operation);
-  void close(Connection& connection, CloseReason reason);
+  void tend(Connection& connection);
+  void dismiss(Connection& connection, CloseReason reason);
 
   GroundTraffic& traffic_;
   GroundClients clients_;
   FileDescriptor epoll_;
   FileDescriptor spare_;  ///< given up for a moment to refuse a client when descriptors run out
   std::array<FileDescriptor, 2> listeners_;
+  std::array<bool, 2> knocking_{};  ///< somebody wants in, by GroundPort
   std::array<Connection, GroundClients::most_clients> connections_;
 };
 

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <numeric>
 #include <random>
 
 namespace hirosco::communication {
@@ -27,19 +28,23 @@ std::vector<std::byte> telecommand(std::uint16_t count = 0, std::size_t data_oct
 
 /// Answers each valid telecommand with one telemetry packet that carries its count.
 struct Echo final : GroundTraffic {
-  void telecommand(ClientId, Octets packet) override {
+  Taken telecommand(ClientId, Octets packet) override {
+    if (room == 0) return Taken::Later;
+    --room;
     ++packets;
     const auto view = pus::TelecommandView::parse(packet);
-    if (!view) return;
+    if (!view) return Taken::Yes;
     ++valid;
     std::array<std::byte, 64> buffer{};
     const auto answer = pus::write_telemetry(
         buffer, {.apid = 11, .sequence_count = view->sequence_count(), .service = 17, .subtype = 2}, {});
     if (server != nullptr && answer) static_cast<void>(server->telemetry(*answer));
+    return Taken::Yes;
   }
   TcpServer* server{nullptr};
   std::uint64_t packets{0};
   std::uint64_t valid{0};
+  std::uint64_t room{~std::uint64_t{0}};  ///< packets that it takes; then all has to wait
 };
 
 /// A client on a real socket, non-blocking.
@@ -245,7 +250,72 @@ TEST_F(TcpServerTest, ExecutesNoTelecommandWithAFlippedBit) {
     until([&] { return server_->counters().admitted == bit + 1 && server_->counters().clients == 0; });
   }
   EXPECT_EQ(echo_.valid, 0U);
+  // Each of them is in a counter: handed on as a damaged one, idle, or the reason for which its connection ended. One
+  // whose length shrank is in two: what is left of it is the beginning of no other.
+  const LinkCounters& counters = server_->counters();
+  std::uint64_t accounted = counters.packets + counters.idle_packets;
+  for (const auto reason :
+       {CloseReason::Version, CloseReason::NotTelecommand, CloseReason::Length, CloseReason::Incomplete})
+    accounted += closed(reason);
+  std::uint64_t expected = good.size() * 8;
+  for (std::size_t bit = 4 * 8; bit < 6 * 8; ++bit) {
+    auto damaged = good;
+    damaged[bit / 8] ^= static_cast<std::byte>(1 << bit % 8);
+    const std::size_t announced = pus::announced_octets(damaged);
+    if (announced < good.size() && announced >= pus::telecommand_overhead_octets) ++expected;
+  }
+  EXPECT_EQ(accounted, expected);
+  EXPECT_EQ(std::accumulate(counters.closed.begin(), counters.closed.end(), std::uint64_t{0}), counters.admitted);
   expect_service();
+}
+
+TEST_F(TcpServerTest, LosesNothingOfAFloodThatIsTakenHaltinglyFromClientsThatComeAndGo) {
+  echo_.room = 0;
+  constexpr std::uint64_t each = 3000;
+  std::vector<std::byte> stream;
+  for (std::uint16_t i = 0; i < each; ++i) {
+    const auto packet = telecommand(i);
+    stream.insert(stream.end(), packet.begin(), packet.end());
+  }
+  std::uint64_t sent = 0;
+  for (int i = 0; i < 5; ++i) {
+    Client client{port(GroundPort::TelecommandsOnly)};
+    until([&] { return client.connected(); });
+    for (Octets rest{stream}; !rest.empty(); server_->step(now_)) {
+      rest = rest.subspan(client.send(rest));
+      echo_.room = 5;
+    }
+    sent += each;
+    if (i % 2 == 0) client.end_sending();
+  }   // and gone, with most of it unread
+  until([&] {
+    echo_.room = 5;
+    return server_->counters().clients == 0;
+  });
+  EXPECT_EQ(echo_.valid, sent);
+  EXPECT_EQ(server_->counters().packets, sent);
+  EXPECT_EQ(closed(CloseReason::PeerClosed), 5U);
+}
+
+TEST_F(TcpServerTest, DoesNotWakeItsOwnerForWhatHasToWait) {
+  const auto readable = [&] {
+    pollfd wanted{.fd = server_->descriptor(), .events = POLLIN, .revents = 0};
+    return ::poll(&wanted, 1, 0) == 1;
+  };
+  Client client{port()};
+  until_connected(1);
+  echo_.room = 0;
+  std::vector<std::byte> stream;
+  for (std::uint16_t i = 0; i < 2000; ++i) {
+    const auto packet = telecommand(i);
+    stream.insert(stream.end(), packet.begin(), packet.end());
+  }
+  ASSERT_EQ(client.send(stream), stream.size());
+  until([&] { return server_->counters().held_back > 0; });
+  until([&] { return !readable(); });
+  EXPECT_EQ(echo_.packets, 0U);
+  echo_.room = ~std::uint64_t{0};
+  until([&] { return echo_.valid == 2000; });
 }
 
 TEST_F(TcpServerTest, ServesHonestClientsBesideTwoHundredSilentOnes) {
