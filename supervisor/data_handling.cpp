@@ -265,9 +265,8 @@ void Supervisor::handle_telemetry(std::uint16_t from, Octets packet) {
   const auto* ground = mission_.find_subsystem(mission_.ground.subsystem);
   if (ground != nullptr) {
     Member* link = member(ground->subsystem.id);
-    // What the ground link cannot take now is in the log: telemetry never waits for it.
     if (link != nullptr && link->alive() && link->state() != State::Offline)
-      static_cast<void>(link->channel()->send({.packet = packet}));
+      ground_route_.send(*link->channel(), packet, GroundRoute::kind_of(*report), now_);
   }
   interpret(from, *report);
 }

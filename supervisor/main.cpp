@@ -89,7 +89,8 @@ class Waker {
     std::set<int> now;
     for (const Member& member : supervisor.members()) {
       if (!member.alive()) continue;
-      if (!member.closed_at) now.insert(member.channel()->wait_descriptor());  // a closed one ends every wait
+      // A closed one ends every wait, and so does what has to wait in the channel.
+      if (!member.closed_at && supervisor.reads(member)) now.insert(member.channel()->wait_descriptor());
       now.insert(launcher.wait_descriptor(member.process()));
     }
     now.erase(-1);

@@ -15,6 +15,10 @@ namespace {
 constexpr Duration watch_period = Guard::observation_period;
 constexpr Duration shutdown_limit = 5s;
 constexpr int messages_per_step = 256;
+/// Fewer than its own engine and a subsystem work off in one step, with all their reports.
+constexpr int ground_messages_per_step = 32;
+constexpr Duration ground_pace = 1ms;
+constexpr Duration loss_period = 1s;
 
 }  // namespace
 
@@ -219,6 +223,7 @@ TimePoint Supervisor::step(TimePoint now) {
     if (PermitPage* page = member.permit()) page->heartbeat.store(beat, std::memory_order_release);
 
   for (Member& member : members_) receive_from(member);
+  serve_ground_route();
   watch_ends(false);
   follow_stops();
   forward_durable();
@@ -252,12 +257,15 @@ TimePoint Supervisor::step(TimePoint now) {
     finished_ = true;
   }
   if (demand.wanted) wake = std::min(wake, next_cycle_);
+  if (ground_route_.waiting()) wake = std::min(wake, now + ground_pace);
   return std::min(wake, next_watch_);
 }
 
 void Supervisor::receive_from(Member& member) {
   MessageBuffer buffer;
-  for (int left = messages_per_step; left > 0 && member.alive(); --left) {
+  const bool ground_link = is_ground_link(member);
+  for (int left = ground_link ? ground_messages_per_step : messages_per_step; left > 0 && member.alive(); --left) {
+    if (!reads(member)) return;
     auto found = member.channel()->receive(buffer);
     if (!found && found.error().code != ErrorCode::Unavailable) {
       // Damage is no loss: it is counted and told, and what follows is read.
@@ -277,9 +285,9 @@ void Supervisor::receive_from(Member& member) {
       // Before an answer, what was said before it: the copy of the telecommand that it answers.
       receive_from_self();
       handle_telemetry(member.apid(), message.packet);
-    } else if (message.kind == MessageKind::GroundTelecommand &&
-               member.descriptor().name == mission_.ground.subsystem) {
+    } else if (message.kind == MessageKind::GroundTelecommand && ground_link) {
       handle_telecommand({.packet = message.packet, .sender = Sender::Ground, .source = 0, .memory = {}});
+      receive_from_self();  // what it said about that: its own backlog must not overflow in a flood
     } else {
       handle_telecommand(
           {.packet = message.packet, .sender = Sender::Subsystem, .source = member.apid(), .memory = {}});
@@ -294,6 +302,27 @@ void Supervisor::receive_from_self() {
     if (!found || found->flow == Flow::None) return;
     handle_telemetry(1, found->message.packet);
   }
+}
+
+bool Supervisor::is_ground_link(const Member& member) const {
+  return member.descriptor().name == mission_.ground.subsystem;
+}
+
+/// What waits for the ground link goes on as soon as that takes it; what it could not take is told once a second.
+void Supervisor::serve_ground_route() {
+  for (Member& member : members_) {
+    if (!is_ground_link(member)) continue;
+    if (member.alive() && member.state() != State::Offline) ground_route_.flush(*member.channel(), now_);
+    else ground_route_.clear();
+  }
+  const GroundRoute::Lost lost = ground_route_.lost();
+  if (lost == ground_lost_told_ || now_ < next_loss_told_) return;
+  counts_.housekeeping_lost = lost.housekeeping;
+  counts_.reports_lost = lost.reports;
+  engine_.announce("TELEMETRY_LOST", {static_cast<double>(lost.housekeeping - ground_lost_told_.housekeeping),
+                                      static_cast<double>(lost.reports - ground_lost_told_.reports)});
+  ground_lost_told_ = lost;
+  next_loss_told_ = now_ + loss_period;
 }
 
 Channel* Supervisor::channel_of(std::uint16_t apid) {

@@ -23,6 +23,7 @@
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launcher.hpp"
 #include "supervisor/platform/packet_log.hpp"
+#include "supervisor/supervision/data_handling/ground_route.hpp"
 #include "supervisor/supervision/data_handling/outstanding.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/modes/sequence.hpp"
@@ -79,6 +80,10 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   [[nodiscard]] State own_state() const noexcept { return engine_.state(); }
   [[nodiscard]] bool commissioned() const noexcept { return commissioned_; }
   [[nodiscard]] const VitalPage& own_vital() const noexcept { return *own_vital_; }
+  /// False while what a member sends has to wait: its channel is not to wake anybody.
+  [[nodiscard]] bool reads(const Member& member) const {
+    return !is_ground_link(member) || ground_route_.takes_telecommands(now_);
+  }
 
  private:
   // Subsystem
@@ -135,6 +140,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void handle_event(std::uint16_t from, const pus::TelemetryView& report);
   void receive_from(Member& member);
   void receive_from_self();
+  [[nodiscard]] bool is_ground_link(const Member& member) const;
+  void serve_ground_route();
   [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
   [[nodiscard]] Channel* channel_of(std::uint16_t apid);
   [[nodiscard]] Member* member(std::uint16_t apid);
@@ -225,6 +232,9 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     std::optional<pus::Request> request;   ///< empty: asked for by signal or local socket
   };
   std::vector<PendingStop> stops_;
+  GroundRoute ground_route_;
+  GroundRoute::Lost ground_lost_told_{};
+  TimePoint next_loss_told_{};
 
   TimePoint now_{};
   TimePoint next_watch_{};
@@ -249,6 +259,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
     std::uint32_t telecommands{0};
     std::uint32_t telemetry{0};
     std::uint32_t misdirected{0};    ///< packets that claimed another sender's APID
+    std::uint32_t housekeeping_lost{0};  ///< on the way to the ground link, as the next
+    std::uint32_t reports_lost{0};
   };
   Parameter<Counts> counts_parameter_;
   std::array<std::uint32_t, rejection_reasons> rejections_{};

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "hirosco/data_transfer/channel.hpp"
+#include "hirosco/pus/packet.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco::supervisor {
+
+/// What goes to the ground link, in order, however slowly that takes it (docs/adr/0029). Reports wait, and while many of
+/// them do, no further telecommand of the ground is to be read: each would bring more. Housekeeping is dropped first, the
+/// oldest first, for its next sample says more; what is dropped is counted.
+/// Thread: one. Realtime: allocates while the link is behind, never blocks.
+class GroundRoute {
+ public:
+  enum class Kind : std::uint8_t { Report, Housekeeping };
+  struct Limits {
+    std::size_t busy{512};             ///< reports that wait: no telecommand is read
+    std::size_t reports_octets{4 << 20};  ///< of reports; more only comes from who talks without being asked
+    std::size_t housekeeping{256};     ///< packets
+    /// A link that has taken nothing for this long is not waited for with telecommands: it may itself wait for its
+    /// own telemetry to be read.
+    Duration patience{100ms};
+  };
+  struct Lost {
+    std::uint32_t housekeeping{0};
+    std::uint32_t reports{0};
+    friend bool operator==(const Lost&, const Lost&) = default;
+  };
+
+  GroundRoute() : GroundRoute(Limits{}) {}
+  explicit GroundRoute(const Limits& limits) : limits_{limits} {}
+
+  [[nodiscard]] static Kind kind_of(const pus::TelemetryView& packet) noexcept {
+    return packet.service() == 3 && packet.subtype() == 25 ? Kind::Housekeeping : Kind::Report;
+  }
+  /// Sends a packet behind those that wait.
+  void send(Channel& link, Octets packet, Kind kind, TimePoint now);
+  /// Sends what waits, as much as the link takes.
+  void flush(Channel& link, TimePoint now);
+  /// Nobody is there: what waits is in the log only, and counted as lost.
+  void clear() noexcept;
+
+  [[nodiscard]] bool waiting() const noexcept { return !reports_.empty() || !housekeeping_.empty(); }
+  /// Whether a telecommand of the ground may be read now.
+  [[nodiscard]] bool takes_telecommands(TimePoint now) const noexcept {
+    return reports_.size() < limits_.busy || now - moved_ >= limits_.patience;
+  }
+  [[nodiscard]] const Lost& lost() const noexcept { return lost_; }
+
+ private:
+  struct Packet {
+    std::uint64_t order{};
+    std::vector<std::byte> octets;
+  };
+  void keep(Octets packet, Kind kind);
+
+  Limits limits_;
+  std::deque<Packet> reports_;
+  std::deque<Packet> housekeeping_;
+  std::size_t reports_octets_{0};
+  std::uint64_t order_{0};
+  TimePoint moved_{};  ///< when the link took something last, or had nothing to take
+  Lost lost_{};
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/ground_route.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hirosco/data_transfer/simulated/channel_pair.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Kind = GroundRoute::Kind;
+
+class GroundRouteTest : public testing::Test {
+ protected:
+  void send(int number, Kind kind, TimePoint now = {}) {
+    const std::array packet{static_cast<std::byte>(number)};
+    route_.send(channels_.supervisor_end(), packet, kind, now);
+  }
+  /// What the link reads, at most so many packets.
+  std::vector<int> read(std::size_t most = 1000) {
+    std::vector<int> packets;
+    MessageBuffer buffer;
+    while (packets.size() < most) {
+      const auto found = channels_.subsystem_end().receive(buffer);
+      if (!found || found->flow == Flow::None) return packets;
+      packets.push_back(std::to_integer<int>(found->message.packet[0]));
+    }
+    return packets;
+  }
+  void flush(TimePoint now = {}) { route_.flush(channels_.supervisor_end(), now); }
+
+  ChannelPair channels_{2};
+  GroundRoute route_{{.busy = 3, .reports_octets = 6, .housekeeping = 2, .patience = 100ms}};
+};
+
+TEST_F(GroundRouteTest, KeepsTheOrderOfReportsAndHousekeepingWhileTheLinkIsBehind) {
+  for (int i = 1; i <= 6; ++i) send(i, i % 2 == 0 ? Kind::Housekeeping : Kind::Report);
+  std::vector<int> got;
+  while (got.size() < 6) {
+    const auto more = read();
+    ASSERT_FALSE(more.empty());
+    got.insert(got.end(), more.begin(), more.end());
+    flush();
+  }
+  EXPECT_THAT(got, ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_FALSE(route_.waiting());
+  EXPECT_EQ(route_.lost(), GroundRoute::Lost{});
+}
+
+TEST_F(GroundRouteTest, DropsTheOldestHousekeepingAndNoReport) {
+  send(1, Kind::Report);
+  send(2, Kind::Report);   // the channel is full
+  for (int i = 10; i < 20; ++i) send(i, Kind::Housekeeping);
+  send(3, Kind::Report);
+  EXPECT_EQ(route_.lost().housekeeping, 8U);
+  EXPECT_EQ(route_.lost().reports, 0U);
+  EXPECT_THAT(read(), ElementsAre(1, 2));
+  flush();
+  EXPECT_THAT(read(), ElementsAre(18, 19));
+  flush();
+  EXPECT_THAT(read(), ElementsAre(3));
+}
+
+TEST_F(GroundRouteTest, ReadsNoTelecommandWhileReportsWaitAndTheLinkTakesSome) {
+  for (int i = 1; i <= 4; ++i) send(i, Kind::Report);
+  EXPECT_TRUE(route_.takes_telecommands(TimePoint{}));
+  send(5, Kind::Report);
+  EXPECT_FALSE(route_.takes_telecommands(TimePoint{}));
+  read(1);
+  flush(TimePoint{50ms});
+  EXPECT_TRUE(route_.takes_telecommands(TimePoint{50ms}));
+}
+
+TEST_F(GroundRouteTest, ReadsOnWhenTheLinkHasTakenNothingForAWhile) {
+  for (int i = 1; i <= 5; ++i) send(i, Kind::Report, TimePoint{1s});
+  EXPECT_FALSE(route_.takes_telecommands(TimePoint{1s} + 99ms));
+  EXPECT_TRUE(route_.takes_telecommands(TimePoint{1s} + 100ms));
+}
+
+TEST_F(GroundRouteTest, CountsEachReportThatALinkThatIsStuckCannotBeKept) {
+  for (int i = 1; i <= 20; ++i) send(i, Kind::Report);
+  EXPECT_EQ(route_.lost().reports, 20U - 2U - 6U);
+  EXPECT_THAT(read(), ElementsAre(1, 2));
+  route_.clear();
+  EXPECT_EQ(route_.lost().reports, 18U);
+  flush();
+  EXPECT_THAT(read(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
