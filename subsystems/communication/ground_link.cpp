@@ -12,6 +12,9 @@ namespace {
 
 /// Who is silent for so long gives way first.
 constexpr Duration settling = 100ms;
+/// Who sends no more than ten packets at once and twenty in a second sends little.
+constexpr Duration little_period = 50ms;
+constexpr Duration little_burst = 500ms;
 
 /// The reason for which a header is none of a telecommand that may come.
 [[nodiscard]] std::optional<CloseReason> implausible(const pus::PrimaryHeader& header, std::size_t octets) noexcept {
@@ -205,15 +208,42 @@ void GroundClients::queue(Client& client) noexcept {
   turns_[(first_turn_ + waiting_++) % most_clients] = static_cast<std::uint8_t>(place_of(client.id));
 }
 
+bool GroundClients::somebody_catches_up(TimePoint now) noexcept {
+  bool found = false;
+  for (Client& client : clients_) {
+    if (!client.listens()) continue;
+    const std::uint64_t backlog = written_ - client.read_to;
+    if (backlog <= limits_.behind_octets / 2) client.behind_since.reset();
+    const bool begins = !client.behind_since && backlog > limits_.behind_octets;
+    const bool progresses = client.behind_since && client.read_to - client.behind_from >= limits_.progress_octets;
+    if (begins || progresses) {
+      client.behind_since = now;
+      client.behind_from = client.read_to;
+    }
+    found = found || (client.behind_since && now - *client.behind_since < limits_.patience);
+  }
+  return found;
+}
+
 bool GroundClients::hand_over(GroundTraffic& traffic, TimePoint now) {
-  for (int left = packets_per_turn; left > 0 && waiting_ > 0; --left) {
+  const bool held = somebody_catches_up(now);
+  std::size_t passed_over = 0;
+  for (int left = packets_per_turn; left > 0 && waiting_ > passed_over; --left) {
     Client& client = clients_[turns_[first_turn_]];
+    if (held && client.allowance > now + little_burst) {
+      // Its turn comes again when the listener has.
+      first_turn_ = (first_turn_ + 1) % most_clients;
+      turns_[(first_turn_ + waiting_ - 1) % most_clients] = static_cast<std::uint8_t>(place_of(client.id));
+      ++passed_over;
+      continue;
+    }
     const Octets packet = client.deframer.front();
     const bool valid = pus::TelecommandView::parse(packet).has_value();
     if (traffic.telecommand(client.id, packet) == Taken::Later) {
       ++counters_.held_back;
       return false;
     }
+    client.allowance = std::max(client.allowance, now) + little_period;
     client.counters.heard = now;
     ++client.counters.packets;
     ++counters_.packets;

@@ -115,6 +115,9 @@ struct LinkCounters {
 /// All clients of the link. Telemetry is kept once, in a ring that every client reads at its own pace; who falls behind
 /// by more than the ring is cut, never waited for. Telecommands are taken in turn, one of each client, and stay with
 /// their client, which is then not read, while nobody takes them: nothing that was received is lost.
+/// Every telecommand brings reports to all listeners. While one of these is behind and catching up, only clients that
+/// send little have their turn, so that a flood is as fast as the slowest honest listener reads and delays nobody else;
+/// who does not catch up in time is not waited for.
 /// When all places are taken, a client that has never sent a valid packet gives way; a pure listener keeps its place by
 /// one ping. Some places are never given to the telemetry port: on the telecommand port a newcomer always gets
 /// in, there the one that was quiet for longest gives way (docs/adr/0028).
@@ -127,6 +130,9 @@ class GroundClients {
     std::size_t reserve{16};                ///< places for the telecommand port alone; at most an eighth of all
     std::size_t backlog_octets{1 << 20};  ///< telemetry that a client may leave unread
     Duration incomplete{2s};
+    std::size_t behind_octets{64 << 10};  ///< telemetry that a listener has not taken: it is behind
+    Duration patience{1s};               ///< in which a listener that is behind has to take `progress_octets`
+    std::size_t progress_octets{16 << 10};
   };
   struct Admission {
     ClientId client{};
@@ -177,6 +183,9 @@ class GroundClients {
     std::uint64_t order{0};
     std::uint64_t read_to{0};
     std::optional<CloseReason> dismissed{};
+    std::optional<TimePoint> behind_since{};  ///< of a listener: since then it has taken less than progress_octets
+    std::uint64_t behind_from{0};
+    TimePoint allowance{};  ///< who sends little: a packet moves it on by little_period, never more than little_burst ahead
     ClientCounters counters{};
     Deframer deframer;
     [[nodiscard]] bool waits() const noexcept { return !deframer.front().empty(); }
@@ -191,6 +200,7 @@ class GroundClients {
   [[nodiscard]] Client* who_gives_way(GroundPort port, TimePoint now) noexcept;
   [[nodiscard]] bool permanent(const Client& client, GroundPort newcomer) const noexcept;
   void queue(Client& client) noexcept;
+  [[nodiscard]] bool somebody_catches_up(TimePoint now) noexcept;
 
   Limits limits_;
   std::vector<Client> clients_;

@@ -330,6 +330,49 @@ TEST(GroundClients, TakeOnePacketOfEachInTurn) {
   EXPECT_EQ(traffic.all.back().first, honest);
 }
 
+TEST(GroundClients, LetAFloodWaitForAListenerThatCatchesUpAndNobodyElse) {
+  GroundClients clients{{.behind_octets = 1000, .patience = 1s}};
+  Received traffic;
+  const ClientId listener = admit(clients);
+  const ClientId flood = admit(clients, GroundPort::TelecommandsOnly);
+  const ClientId honest = admit(clients, GroundPort::TelecommandsOnly);
+  std::vector<std::byte> many;
+  for (std::uint16_t i = 0; i < 100; ++i) append(many, ping_of(0, i));
+  TimePoint now{10s};
+  receive(clients, flood, many, now, traffic);
+  while (clients.output(listener).size() <= 1000) ASSERT_TRUE(clients.telemetry(ping_of(100)));
+
+  traffic.all.clear();
+  put(clients, flood, many, now);
+  put(clients, honest, ping_of(), now);
+  EXPECT_FALSE(clients.hand_over(traffic, now));
+  EXPECT_THAT(traffic.all, ElementsAre(std::pair{honest, 13U}));
+
+  // Having read half of it is enough.
+  clients.sent(listener, clients.output(listener).size() - 500);
+  EXPECT_TRUE(clients.hand_over(traffic, now));
+  EXPECT_EQ(traffic.all.size(), 101U);
+}
+
+TEST(GroundClients, WaitNoLongerThanTheirPatienceForAListenerThatDoesNotCatchUp) {
+  GroundClients clients{{.behind_octets = 1000, .patience = 1s}};
+  Received traffic;
+  static_cast<void>(admit(clients));
+  const ClientId flood = admit(clients, GroundPort::TelecommandsOnly);
+  std::vector<std::byte> many;
+  for (std::uint16_t i = 0; i < 100; ++i) append(many, ping_of(0, i));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(clients.telemetry(ping_of(100)));
+  const TimePoint now{10s};
+  put(clients, flood, many, now);
+  clients.hand_over(traffic, now);
+  const std::size_t at_first = traffic.all.size();
+  EXPECT_LT(at_first, 100U);
+  clients.hand_over(traffic, now + 400ms);
+  EXPECT_LT(traffic.all.size(), 100U);
+  EXPECT_TRUE(clients.hand_over(traffic, now + 1s));
+  EXPECT_EQ(traffic.all.size(), 100U);
+}
+
 TEST(GroundClients, LetGoOfWhoLeavesOnlyWhenAllThatItSentIsTaken) {
   GroundClients clients{{}};
   Received traffic;

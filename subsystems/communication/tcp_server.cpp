@@ -20,6 +20,8 @@ constexpr int accepts_per_step = 16;
 /// Times that everybody who has something to say is read in one step, as much as it may leave unread on board.
 constexpr int rounds_per_step = 4;
 constexpr int listen_backlog = 512;
+/// Of telemetry in the kernel: what is there is late already, so that little of it may be.
+constexpr int send_buffer_octets = 64 * 1024;
 // The epoll data of a connection is its ClientId, which is never below most_clients; listeners use the numbers below.
 constexpr std::uint32_t first_client_mark = GroundClients::most_clients;
 
@@ -161,6 +163,7 @@ void TcpServer::welcome(FileDescriptor socket, GroundPort port, TimePoint now) {
   connection = Connection{.client = admission->client, .socket = std::move(socket)};
   const int yes = 1;
   ::setsockopt(connection.socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  ::setsockopt(connection.socket.get(), SOL_SOCKET, SO_SNDBUF, &send_buffer_octets, sizeof send_buffer_octets);
   watch(connection, EPOLL_CTL_ADD);
   if (connection.socket) static_cast<void>(read_from(connection, now));
 }

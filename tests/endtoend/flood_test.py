@@ -1,0 +1,306 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Beside any flood of telecommands, valid or damaged, an honest client's SAFE_ALL is carried out and reported, and every
+telecommand that anybody sent is in a report or a counter.
+
+    flood_test.py                          20 times SAFE_ALL beside each flood
+    HIROSCO_SAFE_ALLS=1000 flood_test.py   the long form
+"""
+import binascii
+import collections
+import multiprocessing
+import os
+import select
+import socket
+import struct
+import threading
+import time
+import unittest
+
+import flight
+
+SAFE_ALLS = int(os.environ.get("HIROSCO_SAFE_ALLS", "20"))
+LIMIT_MS = 500.0
+TELEMETRY_PORT, TELECOMMAND_PORT = 10015, 10025
+SUPERVISOR, COMMUNICATION = 1, 2
+ACCEPTANCE, ALL = 1, 15
+HONEST, FLOOD = 0x2F00, 0x2F01           # source ids
+ENDS = {2, 4, 7, 8, 10}
+
+
+def telecommand(apid, count, service=17, data=b"", ack=ALL, source=HONEST):
+    body = struct.pack(">HHHBBBH", 0x1800 | apid, 0xC000 | count, 5 + len(data) + 1, 0x20 | ack, service, 1,
+                       source) + data
+    return body + struct.pack(">H", binascii.crc_hqx(body, 0xFFFF))
+
+
+def safe_all(count):
+    return telecommand(SUPERVISOR, count, 8, b"SAFE_ALL".ljust(16, b"\0") + b"\0")
+
+
+def request_id(packet):
+    return packet[:4]
+
+
+class Honest:
+    """Reads all telemetry as it comes and keeps what is about telecommands."""
+
+    def __init__(self):
+        # What waits in the kernel is late already: who minds that lets little wait there.
+        self.socket = socket.socket()
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 64 * 1024)
+        self.socket.connect(("127.0.0.1", TELEMETRY_PORT))
+        self.socket.settimeout(None)
+        self.count, self.closed, self.gaps = 0, False, 0
+        self.reports = {}                                     # request id -> [(subtype, time)]
+        self.by_source = collections.Counter()                # (destination, subtype) -> number
+        self.housekeeping = {}                                # (apid, structure) -> (number, source data)
+        self.sequence = {}
+        self.arrived = threading.Condition()
+        threading.Thread(target=self.receive, daemon=True).start()
+
+    def receive(self):
+        buffer = b""
+        while True:
+            try:
+                octets = self.socket.recv(1 << 20)
+            except OSError:
+                octets = b""
+            now = time.monotonic()
+            with self.arrived:
+                self.closed = not octets
+                buffer = self.take(buffer + octets, now)
+                self.arrived.notify_all()
+            if not octets:
+                return
+
+    def take(self, buffer, now):
+        at, end = 0, len(buffer)
+        while end - at >= 6:
+            size = 7 + (buffer[at + 4] << 8 | buffer[at + 5])
+            if end - at < size:
+                break
+            apid = (buffer[at] & 7) << 8 | buffer[at + 1]
+            count = (buffer[at + 2] & 0x3F) << 8 | buffer[at + 3]
+            if (self.sequence.get(apid, count - 1) + 1) & 0x3FFF != count:
+                self.gaps += 1
+            self.sequence[apid] = count
+            service, subtype = buffer[at + 7], buffer[at + 8]
+            if service == 1:
+                destination = buffer[at + 11] << 8 | buffer[at + 12]
+                self.by_source[destination, subtype] += 1
+                if destination == HONEST:
+                    self.reports.setdefault(buffer[at + 20:at + 24], []).append((subtype, now))
+            elif (service, subtype) == (3, 25):
+                structure = buffer[at + 20] << 8 | buffer[at + 21]
+                number = self.housekeeping.get((apid, structure), (0, b""))[0]
+                self.housekeeping[apid, structure] = (number + 1, buffer[at + 22:at + size - 2])
+            at += size
+        return buffer[at:]
+
+    def next(self):
+        self.count = (self.count + 1) & 0x3FFF
+        return self.count
+
+    def wait(self, wanted, seconds):
+        with self.arrived:
+            return self.arrived.wait_for(lambda: wanted() or self.closed, seconds) and not self.closed
+
+    def verdict(self, packet, seconds):
+        """{subtype: time} once a final report is there; None when it does not come."""
+        found = lambda: self.reports.get(request_id(packet), [])
+        done = self.wait(lambda: any(subtype in ENDS for subtype, _ in found()), seconds)
+        return dict(found()) if done else None
+
+    def fresh_housekeeping(self, apid, structure):
+        """The structure as it is sampled from now on."""
+        before = self.housekeeping.get((apid, structure), (0, b""))[0]
+        if not self.wait(lambda: self.housekeeping.get((apid, structure), (0, b""))[0] >= before + 2, 10.0):
+            raise AssertionError(f"no housekeeping {structure}")
+        return self.housekeeping[apid, structure][1]
+
+    def link(self):
+        """(RX, {name: number}) as the communication subsystem counts."""
+        data = self.fresh_housekeeping(COMMUNICATION, 4731)
+        names = ("accepted", "slow", "evicted", "bad_header", "bad_length", "incomplete", "left", "broken", "refused",
+                 "idle", "damaged")
+        return struct.unpack_from(">I", data, 1)[0], dict(zip(names, struct.unpack_from(">11I", data, 17)))
+
+    def refused_for_checksum(self):
+        data = self.fresh_housekeeping(SUPERVISOR, 4701)
+        return struct.unpack_from(">17I", data, 1 + 8)[5]
+
+
+# What is thrown. Each runs in a process of its own until it is told to stop; `sent` is how many packets were sent whole.
+
+def flood(blocks, ports, stop, sent):
+    """The same block again and again on every connection, as fast as it goes; at its end all of it has been read."""
+    os.nice(10)                    # what is measured is the spacecraft, not the shortage of our own processors
+    links = [socket.create_connection(("127.0.0.1", port)) for port in ports]
+    rest = {link: memoryview(block) for link, block in zip(links, blocks)}
+    whole = {link: (block, len(block) // 13) for link, block in zip(links, blocks)}
+    for link in links:
+        link.setblocking(False)
+    while links:
+        readable, writable, _ = select.select(links, links, [], 0.2)
+        for link in readable:
+            try:
+                if not link.recv(1 << 20):
+                    raise AssertionError("the flood was cut off")
+            except BlockingIOError:
+                pass
+        for link in writable:
+            try:
+                rest[link] = rest[link][link.send(rest[link]):]
+            except BlockingIOError:
+                continue
+            if rest[link]:
+                continue
+            with sent.get_lock():
+                sent.value += whole[link][1]
+            if not stop.is_set():
+                rest[link] = memoryview(whole[link][0])
+                continue
+            links.remove(link)
+            link.setblocking(True)
+            link.shutdown(socket.SHUT_WR)
+            link.settimeout(30.0)
+            if link.getpeername()[1] == TELECOMMAND_PORT:
+                while link.recv(1 << 20):
+                    pass
+            link.close()
+
+
+def valid_pings(apid):
+    return b"".join(telecommand(apid, count, ack=ACCEPTANCE, source=FLOOD) for count in range(1000))
+
+
+def damaged_pings():
+    return b"".join(packet[:-1] + bytes([packet[-1] ^ 0x55]) for packet in
+                    (telecommand(10, count, source=FLOOD) for count in range(1000)))
+
+
+def one_octet_a_second(stop, number):
+    """Clients that never end a packet; those that are cut off come again."""
+    os.nice(10)
+    packet, links, place = telecommand(10, 0, source=FLOOD), [], 0
+    while not stop.is_set():
+        links += [socket.create_connection(("127.0.0.1", TELECOMMAND_PORT)) for _ in range(number - len(links))]
+        for link in list(links):
+            try:
+                link.send(packet[place % 12:place % 12 + 1])
+            except OSError:
+                link.close()
+                links.remove(link)
+        place += 1
+        stop.wait(1.0)
+
+
+class Beside:
+    """`with Beside(target, *arguments) as sent:` - while the block runs, so does this process."""
+
+    def __init__(self, target, *arguments):
+        self.stop, self.sent = multiprocessing.Event(), multiprocessing.Value("Q", 0)
+        extra = (self.stop, self.sent) if target is flood else (self.stop,)
+        order = (*arguments, *extra) if target is flood else (*extra, *arguments)
+        self.process = multiprocessing.Process(target=target, args=order, daemon=True)
+
+    def __enter__(self):
+        self.process.start()
+        time.sleep(0.5)              # it is a flood by then
+        return self.sent
+
+    def __exit__(self, kind, *_):
+        self.stop.set()
+        self.process.join(60.0)
+        if self.process.is_alive():
+            self.process.kill()
+        if kind is None and self.process.exitcode != 0:
+            raise AssertionError("the flood did not come to its end")
+
+
+class Flood(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.flight = cls.enterClassContext(flight.Flight())
+        cls.flight.wait_commissioned()
+        cls.honest = Honest()
+        cls.honest.socket.sendall(telecommand(SUPERVISOR, cls.honest.next()))     # a listener keeps its place by a ping
+        cls.commander = socket.create_connection(("127.0.0.1", TELECOMMAND_PORT))
+
+    def safe_alls(self, beside):
+        times, missing = [], 0
+        for _ in range(SAFE_ALLS):
+            packet = safe_all(self.honest.next())
+            self.honest.reports.pop(request_id(packet), None)
+            begin, stolen = time.monotonic(), flight.stolen_s()
+            self.commander.sendall(packet)
+            found = self.honest.verdict(packet, 10.0)
+            if found is None or 1 not in found or not ({7, 8} & set(found)):
+                missing += 1
+                continue
+            times.append(max(0.0, (max(found.values()) - begin - (flight.stolen_s() - stolen)) * 1000))
+        times.sort()
+        flight.measure(f"SAFE_ALL beside {beside}: {len(times)} of {SAFE_ALLS} with their reports, "
+                       + (f"median {times[len(times) // 2]:.1f} ms, largest {times[-1]:.1f} ms" if times else "none"))
+        self.assertFalse(self.honest.closed, "the honest client was cut off")
+        self.assertEqual(missing, 0, "SAFE_ALL without acceptance or final report")
+        self.assertLessEqual(times[-1], LIMIT_MS)
+
+    def test_beside_valid_pings_it_is_carried_out_and_each_ping_has_its_report(self):
+        received, _ = self.honest.link()
+        before = dict(self.honest.by_source)
+        begin = time.monotonic()
+        with Beside(flood, [valid_pings(a) for a in (1, 10, 11)], [TELECOMMAND_PORT] * 3) as sent:
+            self.safe_alls("valid pings")
+        took = time.monotonic() - begin
+        rose = lambda subtype: self.honest.by_source[FLOOD, subtype] - before.get((FLOOD, subtype), 0)
+        self.honest.wait(lambda: rose(1) + rose(2) + rose(10) >= sent.value, 20.0)
+        accepted, refused = rose(1), rose(2) + rose(10)
+        self.assertFalse(self.honest.closed)
+        flight.measure(f"{sent.value} pings in {took:.1f} s, {sent.value / took:.0f}/s: {accepted} accepted, {refused} refused")
+        self.assertEqual(accepted + refused, sent.value)
+        self.assertEqual(self.honest.link()[0] - received, sent.value + SAFE_ALLS)
+
+    def test_beside_damaged_packets_it_is_carried_out_and_each_of_them_is_counted(self):
+        checksums, (_, clients) = self.honest.refused_for_checksum(), self.honest.link()
+        with Beside(flood, [damaged_pings()] * 3, [TELECOMMAND_PORT] * 3) as sent:
+            self.safe_alls("damaged packets")
+        self.assertEqual(self.honest.link()[1]["damaged"] - clients["damaged"], sent.value)
+        self.assertEqual(self.honest.refused_for_checksum() - checksums, sent.value)
+
+    def test_beside_clients_of_one_octet_a_second_it_is_carried_out(self):
+        with Beside(one_octet_a_second, 20):
+            self.safe_alls("20 clients of one octet a second")
+
+    def test_three_thousand_pings_in_one_send_have_three_thousand_reports(self):
+        packets = [telecommand(10, self.honest.next()) for _ in range(3000)]
+        for packet in packets:
+            self.honest.reports.pop(request_id(packet), None)
+        self.honest.socket.sendall(b"".join(packets))
+        reports = lambda packet: [subtype for subtype, _ in self.honest.reports.get(request_id(packet), [])]
+        self.honest.wait(lambda: all(ENDS & set(reports(packet)) for packet in packets), 30.0)
+        found = collections.Counter(tuple(reports(packet)) for packet in packets)
+        flight.measure(f"3,000 pings in one send: {dict(found)}")
+        self.assertEqual(found[1, 3, 7] + found[2,], 3000)
+
+    def test_who_cuts_its_packet_off_is_counted_and_told(self):
+        _, before = self.honest.link()
+        start = self.flight.count()
+        with socket.create_connection(("127.0.0.1", TELECOMMAND_PORT)) as link:
+            link.sendall(telecommand(10, 0)[:9])
+        self.flight.wait_told("CLIENT_CUT REASON=incomplete packet", 5.0, start)
+        self.assertEqual(self.honest.link()[1]["incomplete"] - before["incomplete"], 1)
+
+    def test_every_connection_is_counted_once(self):
+        _, counted = self.honest.link()
+        now = 2                       # the honest client's
+        closed = sum(counted[name] for name in ("slow", "evicted", "bad_header", "bad_length", "incomplete", "left",
+                                                "broken"))
+        self.assertEqual(counted["accepted"], closed + now)
+        self.assertEqual(self.honest.gaps, 0, "telemetry was dropped on its way")
+
+
+if __name__ == "__main__":
+    flight.main()
