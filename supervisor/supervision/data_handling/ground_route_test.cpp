@@ -10,11 +10,11 @@
 namespace hirosco::supervisor {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 using Kind = GroundRoute::Kind;
 
-class GroundRouteTest : public testing::Test {
+class GroundRouteTest : public ::testing::Test {
  protected:
   void send(int number, Kind kind, TimePoint now = {}) {
     const std::array packet{static_cast<std::byte>(number)};
