@@ -289,7 +289,9 @@ void Supervisor::count_rejection(pus::FailureCode code) {
 
 void Supervisor::interpret(std::uint16_t from, const pus::TelemetryView& report) {
   count_failure(report);
+  const std::size_t under_way = outstanding_.size();
   outstanding_.reported(report);
+  if (outstanding_.size() < under_way) outstanding_moved_ = now_;
   // A failure of any stage, or completion: the telecommand is over.
   if (report.service() == 1 && (report.subtype() % 2 == 0 || report.subtype() == 7)) {
     OctetReader reader{report.source_data()};

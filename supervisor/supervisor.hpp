@@ -82,7 +82,10 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   [[nodiscard]] const VitalPage& own_vital() const noexcept { return *own_vital_; }
   /// False while what a member sends has to wait: its channel is not to wake anybody.
   [[nodiscard]] bool reads(const Member& member) const {
-    return !is_ground_link(member) || ground_route_.takes_telecommands(now_);
+    if (!is_ground_link(member)) return true;
+    const bool addressees_behind =
+        outstanding_.size() >= most_outstanding && now_ - outstanding_moved_ < outstanding_patience;
+    return !addressees_behind && ground_route_.takes_telecommands(now_);
   }
 
  private:
@@ -226,6 +229,11 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   std::uint64_t told_troubles_{0};   ///< of the log's store
   TimePoint trouble_told_{};
   Outstanding outstanding_;
+  /// With so many under way the ground's next ones wait for a report instead of finding a full channel; but not for
+  /// addressees that stand still.
+  static constexpr std::size_t most_outstanding = 128;
+  static constexpr Duration outstanding_patience = 10ms;
+  TimePoint outstanding_moved_{};
   Restarts restarts_;
   struct PendingStop {
     std::uint64_t stop{0};
