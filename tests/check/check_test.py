@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""`hirosco check` says everything that keeps a mission from flying, before it flies."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+HIROSCO = pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco"
+
+
+def hirosco(*words):
+    done = subprocess.run([HIROSCO, *map(str, words)], capture_output=True, text=True, check=False,
+                          env={**os.environ, "NO_COLOR": "1"})
+    return done.returncode, done.stdout + done.stderr
+
+
+class Check(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="hirosco-check-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        for name in ("missions", "subsystems", "supervisor"):
+            for file in (REPOSITORY / name).rglob("*.xml"):
+                copy = self.folder / file.relative_to(REPOSITORY)
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                copy.write_text(file.read_text())
+
+    def mission(self, name, file="mission.xml", **changes):
+        """The path of a mission of which one file has other words: mission("hello", old="...", new="...")."""
+        mission = self.folder / "missions" / name / "mission.xml"
+        changed = mission if file == "mission.xml" else self.folder / file
+        if changes:
+            text = changed.read_text()
+            self.assertIn(changes["old"], text)
+            changed.write_text(text.replace(changes["old"], changes["new"], 1))
+        return mission
+
+    def expect(self, mission, code, *texts):
+        found, told = hirosco("check", mission)
+        self.assertEqual(found, code, told)
+        for text in texts:
+            self.assertIn(text, told)
+        return told
+
+    def test_success_says_how_many_files(self):
+        self.assertIn("4 files, no problem", self.expect(self.mission("hello"), 0))
+        self.assertIn("1 file, no problem", self.expect(self.folder / "subsystems/hello/hello.xml", 0))
+
+    def test_a_missing_program_is_a_warning_until_it_is_to_fly(self):
+        mission = self.mission("hello", old='"hirosco-hello"', new='"hirosco-hallo"')
+        self.expect(mission, 0, "warning: no program hirosco-hallo for subsystem HELLO", "mission.xml:10:3", "1 warning")
+        self.assertEqual(hirosco("check", "--fly", mission)[0], 1)
+        for command in (("run", mission, "--for", "1s"), ("simulate", mission, "--for", "1s")):
+            code, told = hirosco(*command)
+            self.assertEqual(code, 3, told)
+            self.assertIn("no program hirosco-hallo", told)
+
+    def test_a_device_is_asked_for_its_settings(self):
+        mission = self.mission("rokviss", old='value="wander"', new='value="hold"')
+        told = self.expect(mission, 1, "device joystick does not take 'hand hold'")
+        line = next(n for n, text in enumerate(mission.read_text().splitlines(), 1) if 'value="hold"' in text)
+        self.assertIn(f"mission.xml:{line}:", told)
+        for command in ("run", "simulate"):
+            self.assertEqual(hirosco(command, mission, "--for", "1s")[0], 3)
+        self.assertEqual(hirosco("check", self.mission("rokviss", old='value="hold"', new='value="hold 0 0"'))[0], 0)
+
+    def test_what_cannot_fly_is_refused(self):
+        robot, hand = "subsystems/manipulator/manipulator.xml", "subsystems/joystick/joystick.xml"
+        for file, old, new, code in (
+                (robot, 'sampling_us="500"', 'sampling_us="1"', "sampling_us 1 is out of range"),
+                (robot, '<ParamRef name="TIP_FORCE"', '<ParamRef name="Tip_Force"', "refers to 'TIP_FORCE'"),
+                (hand, 'name="PASSIVITY" id="3"', 'name="force_scale" id="3"', "in case only"),
+                (hand, 'transfer="shared_memory"', 'transfer="serial"', "'serial' is not built in"),
+                (hand, 'methods="shared_memory"', 'methods="udp"', "'udp' is not built in"),
+                (hand, 'kind="latest"', 'kind="queued"', "'queued' is not built in"),
+                (hand, 'watchdog_ms="10"', 'watchdog_ms="0.4"', "trips between cycles"),
+                (hand, '"rokviss-joystick"', '"rokviss-robot"', "'rokviss-robot' is a device's of 'MANIPULATOR'"),
+                ("mission.xml", '<Establish link="2"/>', "", "brings up no link into 'MANIPULATOR.JOYSTICK_STATE'")):
+            with self.subTest(new=new):
+                path = (self.folder / "missions/rokviss/mission.xml") if file == "mission.xml" else self.folder / file
+                before = path.read_text()
+                self.expect(self.mission("rokviss", file, old=old, new=new), 1, code)
+                path.write_text(before)
+
+    def test_all_files_are_judged_at_once(self):
+        first = self.mission("hello", old="<Mission", new="<Mision")
+        second = self.folder / "subsystems/joystick/joystick.xml"
+        second.write_text(second.read_text().replace("</Parameters>", "", 1))
+        code, told = hirosco("check", first, second, self.folder / "none.xml")
+        self.assertEqual(code, 1)
+        for text in ("</Mission> stands where <Mision>, opened in 4:1",
+                     "</Subsystem> stands where <Parameters>, opened in ", "none.xml: error: does not exist"):
+            self.assertIn(text, told)
+
+    def test_what_is_no_file_says_what_it_is(self):
+        pipe, large = self.folder / "pipe.xml", self.folder / "large.xml"
+        os.mkfifo(pipe)
+        large.write_bytes(b" " * (4 * 1024 * 1024 + 1))
+        self.expect(pipe, 1, "is a pipe (FIFO)")
+        self.expect(self.folder, 1, "is a folder")
+        self.expect(large, 1, "is larger than 4 MiB")
+
+    def test_json_has_a_line_for_each(self):
+        mission = self.mission("hello", old='"hirosco-hello"', new='"hirosco-hallo"')
+        code, told = hirosco("check", "--json", mission)
+        self.assertEqual(code, 0)
+        (row,) = map(json.loads, told.splitlines())
+        self.assertEqual((row["grade"], row["code"], row["line"]), ("warning", "E0401", 10))
+
+
+if __name__ == "__main__":
+    unittest.main()
