@@ -15,6 +15,7 @@
 #include "hirosco/data_transfer/flows/system_flow_factory.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/shared_memory.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/console.hpp"
@@ -163,6 +164,17 @@ int serve(const descriptor::Mission& mission, const Options& options) {
 
   const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
   Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(), kept ? keeper_descriptor : -1};
+  const KeeperPage* keeper_page = nullptr;
+  std::atomic<std::uint64_t> unwatched{0};
+  std::atomic<std::uint64_t>* own_beats = &unwatched;
+  auto page_memory = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite);
+  if (kept && page_memory) {
+    auto* page = reinterpret_cast<KeeperPage*>(page_memory->octets().data());
+    keeper_page = page;
+    own_beats = &page->supervisor;
+  }
+  Progress keeper_progress;
+  bool keeper_still = false;
   const TimePoint started = clock.now();
   TimePoint next_status = started + status_period;
   supervisor.start();
@@ -174,6 +186,11 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   }
   while (!supervisor.finished()) {
     const TimePoint wake = supervisor.step(clock.now());
+    own_beats->fetch_add(1, std::memory_order_relaxed);
+    const bool still = keeper_page != nullptr &&
+                       keeper_progress.stands_still(keeper_page->keeper.load(std::memory_order_relaxed), clock.now());
+    if (still && !keeper_still) supervisor.keeper_stands_still();
+    keeper_still = still;
     waker.follow(supervisor, launcher);
     for (const Ready& ready : waker.wait(std::min(wake, next_status) - clock.now())) {
       const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;

@@ -180,6 +180,11 @@ void Supervisor::begin_commissioning() {
                   });
 }
 
+void Supervisor::keeper_stands_still() {
+  tell("the keeper stands still: nobody would end the devices and subsystems if this supervisor died", 1);
+  engine_.announce("KEEPER_STILL");
+}
+
 void Supervisor::request_shutdown() {
   if (shutting_down_) return;
   shutting_down_ = true;

@@ -68,6 +68,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   TimePoint step(TimePoint now);
   /// Orderly shutdown: every subsystem back to Offline, then this one.
   void request_shutdown();
+  /// Whoever started it is alive and does not move: nobody would end what is left after this one.
+  void keeper_stands_still();
   [[nodiscard]] bool finished() const noexcept { return finished_; }
   /// False when commissioning failed or the shutdown was not orderly.
   [[nodiscard]] bool succeeded() const noexcept { return !failed_; }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -15,13 +17,41 @@ namespace hirosco::supervisor {
 /// The supervisor finds the reading end of a pipe here; it is closed when the keeper is gone.
 inline constexpr int keeper_descriptor = 6;
 
+/// Memory in which keeper and supervisor see each other move: one that is alive and stands still is as lost as one that
+/// has died (findings SF18). The supervisor finds it here.
+inline constexpr int keeper_page_descriptor = 7;
+struct KeeperPage {
+  std::atomic<std::uint64_t> keeper{0};
+  std::atomic<std::uint64_t> supervisor{0};
+};
+/// How long either may stand still once it has moved.
+inline constexpr Duration keeper_patience = std::chrono::seconds{3};
+
+/// Looks at one counter of the page from time to time.
+class Progress {
+ public:
+  /// True while it has moved and then stood still for longer than the patience.
+  [[nodiscard]] bool stands_still(std::uint64_t count, TimePoint now) noexcept {
+    if (count != seen_ || count == 0) {
+      seen_ = count;
+      moved_ = now;
+    }
+    return count != 0 && now - moved_ > keeper_patience;
+  }
+
+ private:
+  std::uint64_t seen_{0};
+  TimePoint moved_{};
+};
+
 struct KeeperPlan {
   ProcessStart supervisor;
   std::vector<ProcessStart> devices;
   std::optional<Duration> run_for;  ///< end in order after this time
 };
 
-/// Returns the exit code of the supervisor, 4 when it was ended by a signal. Blocks until everything has ended.
+/// Returns the exit code of the supervisor, 4 when it was ended by a signal or stood still. SIGUSR1 stops everything that
+/// moves. Blocks until everything has ended, the subsystems of a supervisor that died before them included.
 [[nodiscard]] int keep(KeeperPlan plan);
 
 }  // namespace hirosco::supervisor
