@@ -146,6 +146,7 @@ constexpr Mistake mistakes[] = {
     {"E0320", R"(parameters="DES_POSITION")", R"(parameters="@TORQUE_LIMIT")", "writable"},
     {"E0109", R"(parameters="DES_POSITION")", R"(parameters="@ ")"},
     {"E0105", R"( functions="*" services="3 20" parameters="DES_POSITION")", ""},
+    {"E0325", R"(severity="medium" subsystem)", R"(severity="@high low" subsystem)", "leave severity out"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
 };
 // clang-format on

@@ -315,9 +315,13 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
   plan.event = event->value;
   if (!whole() || (subsystem != nullptr && found == nullptr)) return;
   std::vector<std::string_view> known;
+  bool fires = plan.severities.empty();
   const auto add = [&](const Subsystem& candidate) {
-    if (found == nullptr || found == &candidate)
-      for (const Event& e : candidate.events) known.push_back(e.name);
+    if (found != nullptr && found != &candidate) return;
+    for (const Event& e : candidate.events) {
+      known.push_back(e.name);
+      fires = fires || (e.name == plan.event && std::ranges::find(plan.severities, e.severity) != plan.severities.end());
+    }
   };
   add(mission_.supervisor);
   for (const MissionSubsystem& member : mission_.subsystems) add(member.subsystem);
@@ -326,6 +330,10 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
                   found == nullptr ? fmt::format("no subsystem has an event {}", in_quotes(plan.event))
                                    : fmt::format("'{}' has no event {}", found->name, in_quotes(plan.event)),
                   did_you_mean(plan.event, known));
+  else if (!fires)
+    problems_.add(*element.find("severity"), "E0325",
+                  fmt::format("the plan never begins: event {} has another severity", in_quotes(plan.event)),
+                  "leave severity out, or name the event's");
 }
 
 void MissionReader::read_restart(const xml::Element& element, Plan& plan) {
