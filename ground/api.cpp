@@ -14,6 +14,7 @@
 
 #include "ground/json.hpp"
 #include "ground/log_search.hpp"
+#include "ground/story.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -154,6 +155,8 @@ the target hirosco_ground_page. The API works without it; see ground/api/README.
   for (const char* name : {"from", "to", "last", "points", "limit", "before", "housekeeping"})
     if (!target.text(name).value_or("").empty() && !target.number(name))
       return std::string{name} + ": a number is wanted";
+  for (const auto& [name, value] : target.parameters)
+    if (name != "parameter" && target.parameters.count(name) > 1) return name + ": once is enough";
   const std::string severity = target.text("severity").value_or("");
   return severity.empty() || severity_of(severity) != 0 ? "" : "severity: info, low, medium or high is wanted";
 }
@@ -260,15 +263,43 @@ void Api::handle(const HttpRequest& request, std::function<void(HttpResponse)> r
   if (!target) return respond(error(400, "the address is not understood"));
   if (!from_here(request)) return respond(error(403, "Host or Origin is not this station"));
   const bool reading = request.method == "GET" || request.method == "HEAD";
+  if (target->path == "/ws") {
+    const auto refusal = refuse_socket(request);
+    if (refusal && refusal->status == 401) return refuse_token(std::move(respond));
+    return respond(refusal ? *refusal : error(426, "a WebSocket is at /ws"));
+  }
   if (!target->path.starts_with("/api/")) {
     if (!reading) return respond(error(405, "only GET"));
     return respond(page_file(request, target->path));
   }
   const Role role = role_of(request, *target);
-  if (role == Role::Nobody) return respond(error(401, "the token is missing or wrong"));
+  if (role == Role::Nobody) return refuse_token(std::move(respond));
   if (reading) return respond(get(*target));
   if (request.method != "POST") return respond(error(405, "only GET and POST"));
   post(request, *target, role, respond);
+}
+
+void Api::refuse_token(std::function<void(HttpResponse)> respond) {
+  constexpr unsigned free_tries = 5;
+  constexpr std::size_t most_waiting = 16;
+  const HttpResponse refusal = error(401, "the token is missing or wrong");
+  calm_at_ = tick_ + ticks_to_forget;
+  if (++wrong_tokens_ <= free_tries) return respond(refusal);
+  // One after the other, whoever asks. More of them would take the connections that others need.
+  if (late_.size() >= most_waiting) return respond(error(429, "too many wrong tokens"));
+  const std::uint64_t after = late_.empty() ? tick_ : late_.back().tick;
+  late_.push_back({after + ticks_of_delay, [respond = std::move(respond), refusal] { respond(refusal); }});
+}
+
+void Api::tick() {
+  ++tick_;
+  if (tick_ >= calm_at_) wrong_tokens_ = 0;
+  while (!late_.empty() && late_.front().tick <= tick_) {
+    const auto answer = std::move(late_.front().answer);
+    late_.pop_front();
+    answer();
+  }
+  session_.tick();
 }
 
 std::optional<HttpResponse> Api::refuse_socket(const HttpRequest& request) {
@@ -289,7 +320,7 @@ void Api::post(const HttpRequest& request, const Target& target, Role role,
   if (role != Role::Operator) return respond(error(403, "observers do not command"));
   if (session_.in_replay(header(request, "x-client"))) return respond(error(409, "this page replays the past"));
   const json body = parsed_request(request.body);
-  if (!body.is_object()) return respond(error(400, "a JSON object is wanted"));
+  if (!body.is_object()) return respond(error(400, "a JSON object is wanted, with each key once"));
   if (target.path == "/api/commands") return respond(outcome(session_.command(body), 202));
   const auto later = [respond](const Answered<json>& result) { respond(outcome(result)); };
   if (target.path == "/api/commands/preview") return session_.preview(body, later);
@@ -315,7 +346,9 @@ HttpResponse Api::get(const Target& target) {
   if (path == "/api/history") return history(target);
   if (path == "/api/export.csv") return csv(target);
   if (path == "/api/timeline") return answer(timeline(target));
-  if (path == "/api/why") return answer(why());
+  if (path == "/api/why")
+    return answer(newest_story(session_.catalogue(), session_.archive(),
+                               target.number("to") ? onboard_time(*target.number("to")) : OnboardTime::max()));
   if (path == "/api/log") return answer(log(target));
   constexpr double usual_limit = 200;
   Archive::Filter filter{.span = {}, .text = target.text("text").value_or(""), .newest_first = true};
@@ -473,40 +506,6 @@ json Api::log(const Target& target) {
   if (target.number("housekeeping").value_or(0.0) != 0.0) query.housekeeping = Archive::Housekeeping::Included;
   query.limit = static_cast<std::size_t>(std::clamp(target.number("limit").value_or(usual_lines), 1.0, most_lines));
   return search_log(session_.catalogue(), session_.archive(), query);
-}
-
-/// The last group of events of medium and high severity, with what happened around it: injected faults, state changes,
-/// recovery steps, in order of time.
-json Api::why() {
-  constexpr Duration same_story = std::chrono::seconds{3};
-  constexpr Duration before = std::chrono::seconds{2};
-  Archive& archive = session_.archive();
-  const auto severe = archive.events(
-      {.span = {}, .severity = static_cast<int>(descriptor::Severity::Medium), .text = {}, .limit = 1000});
-  json causes = json::array();
-  if (severe.empty()) return {{"causes", causes}};
-  Span span{severe.front().t, severe.front().t + same_story};
-  for (const auto& event : severe)
-    if (span.from - event.t <= same_story) span.from = event.t;
-  span.from -= before;
-  std::vector<std::pair<OnboardTime, std::string>> story;
-  for (const auto& fault : archive.faults(span))
-    story.emplace_back(fault.t, "injected: " + fault.device + " " + fault.line);
-  const auto events = archive.events({.span = span, .text = {}, .limit = 1000, .newest_first = false});
-  const OnboardTime first = span.from + before;
-  for (const auto& event : events) {
-    const bool cause = event.severity >= static_cast<int>(descriptor::Severity::Medium);
-    if (event.t < first && !cause) continue;
-    const auto severity = to_text(static_cast<descriptor::Severity>(event.severity));
-    story.emplace_back(event.t, cause ? fmt::format("{} reports {}: {}", event.subsystem, severity, event.text)
-                                      : fmt::format("{}: {}", event.subsystem, event.text));
-  }
-  for (const auto& change : archive.changes(span))
-    if (change.kind == "link" && change.t > span.from)
-      story.emplace_back(change.t, fmt::format("link {} {}", change.name, change.value));
-  std::ranges::stable_sort(story, {}, &std::pair<OnboardTime, std::string>::first);
-  for (const auto& [t, text] : story) causes.push_back({{"t", json_time(t)}, {"text", text}});
-  return {{"causes", std::move(causes)}};
 }
 
 HttpResponse Api::page_file(const HttpRequest& request, const std::string& path) const {

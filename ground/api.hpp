@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -55,25 +57,37 @@ class Api final : public Application {
   void link_up() override { session_.link_up(); }
   void link_down() override { session_.link_down(); }
   [[nodiscard]] bool link_received(Octets octets) override { return session_.receive(octets); }
-  void tick() override { session_.tick(); }
+  void tick() override;
 
  private:
   enum class Role { Nobody, Observer, Operator };
   [[nodiscard]] Role role_of(const HttpRequest& request, const Target& target) const;
   [[nodiscard]] bool from_here(const HttpRequest& request) const;
+  /// 401; from the sixth wrong token in a minute on each is answered a second after the one before. What keeps guessers out is the length of
+  /// the token; this keeps them from taking the processor, and shows. Right ones never wait.
+  void refuse_token(std::function<void(HttpResponse)> respond);
   void post(const HttpRequest& request, const Target& target, Role role,
             const std::function<void(HttpResponse)>& respond);
   [[nodiscard]] HttpResponse get(const Target& target);
   [[nodiscard]] HttpResponse history(const Target& target);
   [[nodiscard]] HttpResponse csv(const Target& target);
   [[nodiscard]] nlohmann::json timeline(const Target& target);
-  [[nodiscard]] nlohmann::json why();
   [[nodiscard]] nlohmann::json log(const Target& target);
   [[nodiscard]] Span span_of(const Target& target, double last_s) const;
   [[nodiscard]] HttpResponse page_file(const HttpRequest& request, const std::string& path) const;
 
+  struct Late {
+    std::uint64_t tick{0};
+    std::function<void()> answer;
+  };
+  static constexpr std::uint64_t ticks_of_delay = 20, ticks_to_forget = 60 * ticks_of_delay;
+
   Session& session_;
   Options options_;
+  std::uint64_t tick_{0};
+  std::uint64_t calm_at_{0};  ///< wrong tokens before it count
+  unsigned wrong_tokens_{0};
+  std::deque<Late> late_;
 };
 
 /// GET /api/mission.

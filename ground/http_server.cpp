@@ -71,6 +71,19 @@ class Server;
   return std::nullopt;
 }
 
+/// The answer to a head whose body cannot be told from the next request, or that expects what we do not do; empty: read on.
+[[nodiscard]] std::optional<HttpResponse> unanswerable(const http::request<http::string_body>& request) {
+  const auto encodings = request.count(http::field::transfer_encoding);
+  const bool chunked = encodings == 1 && beast::iequals(request[http::field::transfer_encoding], "chunked");
+  if (encodings != 0 && !chunked) return brief(501, "of the transfer encodings chunked is known, alone");
+  if (encodings != 0 && request.version() < 11) return brief(400, "HTTP/1.0 has no transfer encodings");
+  if (encodings != 0 && request.count(http::field::content_length) != 0) return brief(400, "two lengths of one body");
+  const auto expected = request.count(http::field::expect);
+  if (expected > 1 || (expected == 1 && !beast::iequals(request[http::field::expect], "100-continue")))
+    return brief(417, "of what may be expected 100-continue is known");
+  return std::nullopt;
+}
+
 /// One WebSocket. Lives while the server lists it or a handler of it is pending.
 class SocketPeer final : public Peer, public std::enable_shared_from_this<SocketPeer> {
  public:
@@ -108,14 +121,22 @@ class Connection final : public std::enable_shared_from_this<Connection> {
   [[nodiscard]] const std::optional<std::chrono::steady_clock::time_point>& waits_since() const { return waits_since_; }
 
  private:
+  /// Tells who waits for it that the body may come.
+  void encourage();
+  void read_body();
+  void unread(Failure failed);
   void handle();
   void respond(const HttpResponse& response);
+  /// The last answer on this connection: what follows is not known to be a request.
+  void refuse(const HttpResponse& refusal);
 
   Server& server_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{most_header_octets + HttpServer::most_body_octets};
   std::optional<http::request_parser<http::string_body>> parser_;
   std::optional<http::response<http::string_body>> response_;
+  std::optional<http::response<http::empty_body>> go_on_;
+  bool last_{false};
   std::optional<std::chrono::steady_clock::time_point> waits_since_;
 };
 
@@ -254,11 +275,39 @@ void Connection::read() {
   parser_->body_limit(HttpServer::most_body_octets);
   stream_.expires_after(request_limit);
   waits_since_ = std::chrono::steady_clock::now();
-  http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Failure failed, std::size_t) {
-    self->waits_since_.reset();
-    if (!failed) return self->handle();
-    if (const auto refusal = unreadable(failed)) self->respond(*refusal);
+  http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](Failure failed, std::size_t) {
+    if (failed) return self->unread(failed);
+    if (const auto refusal = unanswerable(self->parser_->get())) return self->refuse(*refusal);
+    self->encourage();
   });
+}
+
+void Connection::encourage() {
+  const auto& request = parser_->get();
+  if (parser_->is_done() || request.version() < 11 || request.count(http::field::expect) == 0) return read_body();
+  go_on_.emplace(http::status::continue_, 11);
+  http::async_write(stream_, *go_on_, [self = shared_from_this()](Failure failed, std::size_t) {
+    if (!failed) self->read_body();
+  });
+}
+
+void Connection::read_body() {
+  http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](Failure failed, std::size_t) {
+    if (failed) return self->unread(failed);
+    self->waits_since_.reset();
+    self->handle();
+  });
+}
+
+void Connection::unread(Failure failed) {
+  if (const auto refusal = unreadable(failed)) refuse(*refusal);
+  else waits_since_.reset();
+}
+
+void Connection::refuse(const HttpResponse& refusal) {
+  waits_since_.reset();
+  last_ = true;
+  respond(refusal);
 }
 
 void Connection::drop() {
@@ -269,7 +318,8 @@ void Connection::drop() {
 void Connection::handle() {
   const HttpRequest request = plain(parser_->get());
   if (websocket::is_upgrade(parser_->get())) {
-    if (const auto refusal = server_.application().refuse_socket(request)) return respond(*refusal);
+    const auto answer_late = [self = shared_from_this()](const HttpResponse& response) { self->respond(response); };
+    if (server_.application().refuse_socket(request)) return server_.application().handle(request, answer_late);
     if (server_.peers.size() >= HttpServer::most_peers) return respond(brief(503, "too many pages are open"));
     return std::make_shared<SocketPeer>(server_, std::move(stream_))->accept(parser_->release());
   }
@@ -279,7 +329,7 @@ void Connection::handle() {
 }
 
 void Connection::respond(const HttpResponse& response) {
-  const bool keep = parser_->is_done() && parser_->keep_alive();
+  const bool keep = !last_ && parser_->is_done() && parser_->keep_alive();
   const unsigned version = parser_->is_header_done() ? parser_->get().version() : 11;
   response_ = boxed(response, version, keep);
   if (parser_->is_header_done() && parser_->get().method() == http::verb::head) response_->body().clear();

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "hirosco/utilities/time.hpp"
 
@@ -41,16 +43,23 @@ namespace hirosco::ground {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string{};
 }
 
-/// What a client sent; discarded when it is no JSON or nests deeper than any request: each level of a copy takes stack.
+/// What a client sent; discarded when it is no JSON, names a key twice in one object (two readers could mean different ones), or nests
+/// deeper than any request: each level of a copy takes stack.
 [[nodiscard]] inline nlohmann::json parsed_request(const std::string& text) {
+  using Event = nlohmann::json::parse_event_t;
   constexpr int deepest = 16;
-  bool shallow = true;
-  const auto watch = [&shallow](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
-    shallow = shallow && depth <= deepest;
-    return shallow;
+  bool good = true;
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  const auto watch = [&](int depth, Event event, const nlohmann::json& parsed) {
+    good = good && depth <= deepest;
+    if (!good) return false;
+    if (event == Event::object_start) keys.emplace_back();
+    if (event == Event::object_end) keys.pop_back();
+    if (event == Event::key) good = keys.back().insert(parsed.get<std::string>()).second;
+    return good;
   };
   auto request = nlohmann::json::parse(text, watch, false);
-  return shallow ? std::move(request) : nlohmann::json{nlohmann::json::value_t::discarded};
+  return good ? std::move(request) : nlohmann::json{nlohmann::json::value_t::discarded};
 }
 
 /// Octets that are no UTF-8 are replaced instead of thrown about.

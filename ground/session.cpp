@@ -47,8 +47,13 @@ constexpr std::uint16_t supervisor_source = 1;
 /// One value of an argument: a number, or the name of an entry of its enumeration.
 [[nodiscard]] Answered<double> value_of(const json& given, const std::vector<descriptor::EnumerationText>& texts,
                                         const std::string& argument) {
+  // A whole number that a double does not hold would be sent as its neighbour.
+  constexpr std::uint64_t largest_exact = std::uint64_t{1} << 53;
+  const bool inexact = (given.is_number_unsigned() && given.get<std::uint64_t>() > largest_exact) ||
+                       (!given.is_number_unsigned() && given.is_number_integer() &&
+                        given.get<std::int64_t>() < -static_cast<std::int64_t>(largest_exact));
+  if (inexact) return refuse(400, argument + ": whole numbers are sent exactly up to 2^53 only");
   if (given.is_number()) return given.get<double>();
-  if (given.is_boolean()) return given.get<bool>() ? 1.0 : 0.0;
   if (given.is_string())
     for (const auto& entry : texts)
       if (lower_case(entry.text) == lower_case(given.get<std::string>())) return static_cast<double>(entry.value);

@@ -24,6 +24,73 @@ TEST_F(GroundStation, ARequestThatNestsDeeperThanAnyIsRefused) {
   EXPECT_THAT(answer.body, HasSubstr("a JSON object is wanted"));
 }
 
+/// The answer to a POST of octets that json::dump() would not write.
+struct Posts : GroundStation {
+  ground::HttpResponse post(const std::string& body) {
+    ground::HttpResponse answer;
+    api.handle({"POST", "/api/commands/preview", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer t"}}, body},
+               [&](ground::HttpResponse response) { answer = std::move(response); });
+    return answer;
+  }
+  ground::HttpResponse value(const std::string& text) {
+    return post(R"({"subsystem":"JOYSTICK","function":"SET_FORCE_SCALE","arguments":{"SCALE":)" + text + "}}");
+  }
+  ground::Api api{station.session(), {.token = "t", .observer_token = {}, .page = {}, .transitions = {}}};
+};
+
+TEST_F(Posts, AKeyThatStandsTwiceIsRefusedBecauseTwoReadersCouldMeanTwoThings) {
+  for (const char* body : {R"({"subsystem":"SUPERVISOR","function":"PING","function":"SAFE_ALL"})",
+                           R"({"subsystem":"JOYSTICK","subsystem":"SUPERVISOR","function":"PING"})",
+                           R"({"subsystem":"JOYSTICK","function":"SET_FORCE_SCALE","arguments":{"SCALE":0.01,"SCALE":0.1}})",
+                           R"({"subsystem":"JOYSTICK","function":"PING","arguments":{},"arguments":{}})"}) {
+    const auto answer = post(body);
+    EXPECT_EQ(answer.status, 400U) << body;
+    EXPECT_THAT(answer.body, HasSubstr("each key once"));
+  }
+  const auto fine = R"({"function":"PING","subsystem":"JOYSTICK","arguments":{},"more":[{"a":1},{"a":1}]})";
+  EXPECT_NE(post(fine).status, 400U) << "the same key in two objects is none twice";
+}
+
+TEST_F(Posts, ANumberIsANumber) {
+  for (const char* text : {"true", "false", "\"0.05\"", "[0.05, 0.05]", "{\"v\": 0.05}", "1e400", "0x1", "NaN", "null",
+                           "18446744073709551615", "9007199254740993", "-9007199254740993"})
+    EXPECT_EQ(value(text).status, 400U) << text;
+}
+
+TEST_F(GroundStation, WrongTokensAreAnsweredLaterAndLaterAndRightOnesAtOnce) {
+  ground::Api api{station.session(), {.token = "t", .observer_token = {}, .page = {}, .transitions = {}}};
+  std::vector<unsigned> answers;
+  const auto ask = [&](const char* token) {
+    api.handle({"GET", "/api/status", {{"host", "127.0.0.1:8080"}, {"authorization", std::string{"Bearer "} + token}}, ""},
+               [&](const ground::HttpResponse& response) { answers.push_back(response.status); });
+  };
+  const auto pass = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) api.tick();
+  };
+  for (int i = 0; i < 8; ++i) ask("wrong");
+  EXPECT_EQ(answers, std::vector<unsigned>(5, 401U)) << "somebody may mistype";
+  pass(19);
+  EXPECT_EQ(answers.size(), 5U);
+  ask("t");
+  EXPECT_EQ(answers.back(), 200U) << "who has the right one does not wait for who has not";
+  pass(1);
+  EXPECT_EQ(answers.size(), 7U);
+  pass(40);
+  EXPECT_EQ(answers.size(), 9U) << "one each second, however many ask";
+  for (int i = 0; i < 200; ++i) ask("wrong");
+  EXPECT_EQ(std::ranges::count(answers, 429U), 200 - 16) << "what waits has an end";
+  pass(20 * 90);
+  answers.clear();
+  ask("wrong");
+  EXPECT_EQ(answers.size(), 1U) << "a minute of calm is forgiveness";
+}
+
+TEST_F(GroundStation, AParameterOfAnAddressThatStandsTwiceIsRefused) {
+  EXPECT_EQ(station.ask("GET", "/api/events?to=1&to=2").status, 400U);
+  EXPECT_EQ(station.ask("GET", "/api/export.csv?parameter=MANIPULATOR.TIP_FORCE[0]&parameter=MANIPULATOR.TIP_FORCE[1]").status,
+            200U);
+}
+
 TEST_F(GroundStation, WhatIsNoNumberOrSeverityIsNamedInsteadOfIgnored) {
   const auto error = [&](const char* target) {
     const auto answer = station.ask("GET", target);

@@ -81,6 +81,53 @@ class Attack(unittest.TestCase):
         head = self.head("POST", "/api/commands", **{"Content-Length": str(len(deep))})
         self.assertIn(" 400 ", self.answer_to(head + deep))
 
+    def answers_to(self, octets):
+        """Everything that comes back until the gateway closes."""
+        with socket.create_connection(("127.0.0.1", self.gateway.port)) as client:
+            client.settimeout(10.0)
+            client.sendall(octets)
+            answer = b""
+            try:
+                while part := client.recv(65536):
+                    answer += part
+            except ConnectionResetError:
+                pass  # it closed on what it had not read
+            return answer
+
+    def test_a_body_never_becomes_the_next_request(self):
+        hidden = self.head("POST", "/api/commands", **{"Content-Length": "2"}) + b"{}"
+        chunked = b"%x\r\n" % len(hidden) + hidden + b"\r\n0\r\n\r\n"
+        length = str(len(hidden))
+        cases = (({"Transfer-Encoding": "identity"}, hidden, 501), ({"Transfer-Encoding": "gzip"}, hidden, 501),
+                 ({"Transfer-Encoding": "xchunked"}, chunked, 501), ({"Transfer-Encoding": "gzip, chunked"}, chunked, 501),
+                 ({"Transfer-Encoding": "chunked, identity"}, chunked, 501),
+                 ({"Transfer-Encoding": "chunked\r\nTransfer-Encoding: identity"}, chunked, 501),
+                 ({"Transfer-Encoding": "chunked", "Content-Length": length}, chunked, 400),
+                 ({"Content-Length": length, "Transfer-Encoding": "chunked"}, chunked, 400),
+                 ({"Content-Length": f"{length}\r\nContent-Length: 0"}, hidden, 400),
+                 ({"Content-Length": f"{length}, {length}"}, hidden, 400), ({"Content-Length": "+2"}, hidden, 400),
+                 ({"Content-Length": "-1"}, hidden, 400), ({"Content-Length": "0x10"}, hidden, 400),
+                 ({"Content-Length": "18446744073709551617"}, hidden, 400),
+                 ({"Transfer-Encoding": "chunked"}, b"-1\r\n" + hidden, 400))
+        for headers, body, status in cases:
+            with self.subTest(**headers):
+                answer = self.answers_to(self.head("POST", "/api/commands", **headers) + body)
+                self.assertEqual(answer.count(b"HTTP/1.1 "), 1, answer)
+                self.assertIn(f" {status} ".encode(), answer.split(b"\r\n")[0])
+        self.assertEqual(self.gateway.request("/api/status")["link"]["tx"], 0)
+
+    def test_who_asks_whether_the_body_may_come_is_answered(self):
+        body = b'{"subsystem":"NOBODY","function":"PING"}'
+        with socket.create_connection(("127.0.0.1", self.gateway.port)) as client:
+            client.settimeout(10.0)
+            client.sendall(self.head("POST", "/api/commands", Expect="100-continue", **{"Content-Length": str(len(body))}))
+            self.assertTrue(client.recv(4096).startswith(b"HTTP/1.1 100 "))
+            client.sendall(body)
+            self.assertIn(b" 400 ", client.recv(4096).split(b"\r\n")[0])
+        self.assertIn(" 417 ", self.answer_to(self.head("POST", "/api/commands", Expect="tea", **{"Content-Length": "2"})))
+        self.assertIn(" 413 ", self.answer_to(self.head("POST", "/api/commands", Expect="100-continue",
+                                                        **{"Content-Length": "70000"})))
+
     def test_no_socket_is_opened_for_a_foreign_page(self):
         upgrade = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
                    "Sec-WebSocket-Version": "13"}

@@ -247,21 +247,62 @@ TEST_F(GroundStation, AnArgumentThatDoesNotFitIsNamedAndNothingIsSent) {
   EXPECT_EQ(station.get("/api/commands")["commands"].size(), 0U);
 }
 
-TEST_F(GroundStation, WhyTellsTheChainFromTheFaultToTheStop) {
+TEST_F(GroundStation, WhyTellsTheCauseFirstThenWhatItBroughtAbout) {
   commission();
   EXPECT_EQ(station.get("/api/why")["causes"].size(), 0U);
+  for (int step = 0; step < 30; ++step) {
+    EXPECT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "hand target 0.01 0"}})["answer"], "ok");
+    station.run(50ms);
+  }
   EXPECT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}})["answer"], "ok");
   station.run(2s);
-  std::string story;
   const json why = station.get("/api/why");
+  std::string story;
   for (const json& cause : why["causes"]) story += cause["text"].get<std::string>() + "\n";
   std::size_t at = 0;
-  for (const char* part :
-       {"injected: joystick unplug", "JOYSTICK reports high: JOYSTICK_LOST",
-        "MANIPULATOR: STATE_CHANGED STATE=ErrorOperational", "MANIPULATOR: STATE_CHANGED STATE=Offline"}) {
+  for (const char* part : {"Fault injected: joystick unplug", "JOYSTICK lost its device",
+                           "MANIPULATOR and JOYSTICK: plan network-down wants Error-Operational",
+                           "MANIPULATOR and JOYSTICK → Error-Operational", "MANIPULATOR and JOYSTICK → Offline"}) {
     at = story.find(part, at);
     ASSERT_NE(at, std::string::npos) << part << " in\n" << story;
   }
+  EXPECT_EQ(story.find("hand"), std::string::npos) << "what the hand did before has nothing to do with it:\n" << story;
+  EXPECT_LE(why["causes"].size(), 9U) << story;
+  EXPECT_TRUE(why["causes"][0]["after_ms"].is_null()) << "nobody on board saw the cable go";
+  EXPECT_EQ(why["causes"][1]["after_ms"], 0.0);
+  EXPECT_EQ(why["causes"][1]["severity"], "high");
+  EXPECT_EQ(why["severity"], "high");
+  EXPECT_EQ(why["plan"], "network-down");
+  EXPECT_EQ(why["mode"], "telepresence");
+  EXPECT_THAT(why["title"].get<std::string>(), ::testing::StartsWith("JOYSTICK lost its device"));
+  EXPECT_THAT(why["title"].get<std::string>(), ::testing::EndsWith("JOYSTICK and MANIPULATOR were stopped."));
+  EXPECT_THAT(why["detail"].get<std::string>(), ::testing::ContainsRegex("JOYSTICK and MANIPULATOR went Offline within [0-9.]+ ms, by plan network-down"));
+  EXPECT_THAT(why["detail"].get<std::string>(), ::testing::HasSubstr("COMMUNICATION"));
+  EXPECT_EQ(station.get("/api/why?to=1")["causes"].size(), 0U) << "a replay of before knows nothing of it";
+}
+
+TEST_F(GroundStation, WhyFoldsTheStepsOfAHandThatTrippedTheLimit) {
+  commission();
+  for (int step = 0; step < 20; ++step) {
+    station.post("/api/faults", {{"device", "joystick"}, {"line", "hand cartesian 0.06 0 0.2"}});
+    station.run(50ms);
+  }
+  station.run(1s);
+  const json why = station.get("/api/why");
+  ASSERT_GE(why["causes"].size(), 2U);
+  EXPECT_THAT(why["causes"][0]["text"].get<std::string>(), ::testing::ContainsRegex("^The hand moved .[0-9]+ steps.$"));
+  EXPECT_THAT(why["title"].get<std::string>(), ::testing::StartsWith("MANIPULATOR: torque limit exceeded (joint "));
+  EXPECT_THAT(why["title"].get<std::string>(), ::testing::HasSubstr("limit 12 N m"));
+  EXPECT_EQ(why["plan"], "to-safe");
+  EXPECT_EQ(why["severity"], "medium");
+}
+
+TEST_F(GroundStation, WhyTellsOfASafeAllToo) {
+  commission();
+  EXPECT_EQ(station.command("SUPERVISOR", "SAFE_ALL")["stage"], "completed");
+  const json why = station.get("/api/why");
+  EXPECT_THAT(why["title"].get<std::string>(), ::testing::StartsWith("SAFE ALL"));
+  EXPECT_EQ(why["causes"].size(), 1U);
 }
 
 TEST_F(GroundStation, AStalledPageLosesHousekeepingNotEventsAndTheOthersNothing) {

@@ -47,7 +47,7 @@ void Station::cut_link() {
 void Station::run(Duration span) {
   for (Duration done{0}; done < span; done += 50ms) {
     flight_.craft().run(std::min<Duration>(50ms, span - done));
-    session_->tick();
+    api_->tick();
   }
 }
 

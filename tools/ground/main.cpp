@@ -72,11 +72,16 @@ using Options = std::map<std::string, std::string>;
   const HttpRequest request{"GET", "/api/why", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer -"}}, {}};
   api.handle(request, [&](const HttpResponse& response) {
     if (json) return fmt::print("{}\n", response.body);
-    const auto causes = nlohmann::json::parse(response.body)["causes"];
-    if (causes.empty()) fmt::print("nothing has stopped, as far as the archive tells\n");
-    for (const auto& cause : causes)
-      fmt::print("{:9.3f} s  {}\n", cause["t"].get<double>() - causes[0]["t"].get<double>(),
-                 tools::json_text(cause["text"].get<std::string>()));
+    const auto story = nlohmann::json::parse(response.body);
+    if (story["causes"].empty()) return fmt::print("nothing has stopped, as far as the archive tells\n");
+    const auto words = [&](const char* name) { return tools::json_text(story[name].get<std::string>()); };
+    fmt::print("{}\n{}\n\n", words("title"), words("detail"));
+    for (const auto& cause : story["causes"]) {
+      const bool timed = cause["after_ms"].is_number();
+      fmt::print("{:>12}  {:6}  {}\n", timed ? fmt::format("{:+.1f} ms", cause["after_ms"].get<double>()) : "before",
+                 cause["severity"].get<std::string>(), tools::json_text(cause["text"].get<std::string>()));
+    }
+    fmt::print("\nWhat to do: {}\n", words("advice"));
   });
   return tools::exit_ok;
 }

@@ -150,7 +150,9 @@ const server = createServer(async (request, response) => {
       const words = (query.get('text') ?? '').toLowerCase().split(/\s+/).filter(Boolean);
       return {packets: lines.filter((one) => words.every((word) => one.text.toLowerCase().includes(word))).slice(0, +(query.get('limit') ?? 200)), before: null};
     },
-    '/api/why': () => ({causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one) => ({t: one.t, text: `${one.subsystem} reports ${one.name}`}))}),
+    // Told, and stopped nobody: no banner over the tests of everything else.
+    '/api/why': () => ({t: now - 60, title: 'Something happened.', detail: '', advice: 'Look into it.', plan: 'note', mode: status().mode, severity: 'medium', stopped: [],
+      causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one, i) => ({t: one.t, after_ms: i, severity: 'high', text: `${one.subsystem} reports ${one.name}`}))}),
     '/api/faults': () => {
       if (body.line === 'burst') for (let i = 0; i < burst_events; ++i) tell({...list.find((one) => one.type === 'event'), t: now, id: 3, text: `burst ${i}`});
       injections = [...injections, {t: now, device: body.device, line: body.line, answer: 'ok'}];

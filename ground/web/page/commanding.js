@@ -3,8 +3,8 @@
 //
 // Everything that goes up passes here: telecommands by the supervisor, faults by the simulated devices' own sockets.
 import {signal} from '@preact/signals';
-import {post} from './api.js';
-import {commands, mission, outcome_of, replay, status, status_of, subsystem_of, with_report} from './store.js';
+import {get, post} from './api.js';
+import {commands, mission, now_s, outcome_of, replay, status, status_of, subsystem_of, with_report} from './store.js';
 
 /// Short words at the lower edge for what was sent without a form.
 export const toasts = signal([]);
@@ -127,6 +127,7 @@ const wait_after_step_ms = 250;
 /// Sends what brings `mode` up, one after the other; the first refusal ends it. `told(steps)` hears of every change of a step's `stage`;
 /// `stopped()` true ends it before the next. Resolves with the steps.
 export async function bring_up(mode, told = () => {}, stopped = () => false) {
+  const began_s = now_s();
   const steps = commissioning_steps(mode).map((step) => ({...step, stage: 'waiting'}));
   for (const step of steps) {
     if (stopped()) break;
@@ -136,12 +137,21 @@ export async function bring_up(mode, told = () => {}, stopped = () => false) {
     const outcome = await send(step.subsystem, step.function, step.arguments).then(finished)
         .catch((error) => ({stage: 'failed', reason: error.message}));
     Object.assign(step, outcome);
+    if (step.stage === 'failed') step.reason = await true_reason(step, began_s);
     told(steps);
     if (step.stage === 'failed') break;
     // The supervisor tells of everybody's states five times a second: the next step asks what is needed still.
     await new Promise((resolve) => setTimeout(resolve, wait_after_step_ms));
   }
   return steps;
+}
+
+/// What took the network down while it came up says more than that a step is not permitted in the state that this left.
+async function true_reason({reason, code}, began_s) {
+  await new Promise((resolve) => setTimeout(resolve, wait_after_step_ms));
+  const refusal = reason ?? `code ${code}`;
+  const story = await get('/api/why').catch(() => null);
+  return story?.causes?.length && story.t > began_s ? `${story.title} (${refusal})` : refusal;
 }
 
 const is_on = (name, state) => state_name(status_of(name)?.state) === state;

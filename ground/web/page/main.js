@@ -11,6 +11,7 @@ import {FaultsDrawer} from './parts/faults.js';
 import {Header} from './parts/header.js';
 import {Icon} from './parts/icons.js';
 import {ReplayBar} from './parts/replay_bar.js';
+import {StopBanner} from './parts/stop_banner.js';
 import {live, mission, now_s, problem, start} from './store.js';
 import {Tour, tour_from_url} from './tour.js';
 import {Commands} from './views/commands.js';
@@ -76,6 +77,7 @@ function Page() {
   return html`
     <${Header} on_faults=${() => { faults_open.value = !faults_open.value; }} faults_open=${faults_open.value} />
     <${ReplayBar} />
+    <${StopBanner} />
     <nav aria-label="views">${Object.entries(views).map(([name, [title]]) => html`<a href=${`#/${name}`} class=${name === view ? 'on' : ''}
       aria-current=${name === view ? 'page' : undefined} title=${title}><${Icon} name=${name} /><span>${title}</span></a>`)}</nav>
     ${problem.value ? html`<p class="problem" role="alert">${problem.value}</p>` : null}

@@ -86,12 +86,23 @@ export function freshness(name) {
   return {age_s, stale: age_s > Math.max(2, 3 * period_s) * Math.max(1, replay.value?.speed ?? 1)};
 }
 
+/// By the browser's own clock: when the gateway said anything, and when the newest packet of the spacecraft came. Its last word on
+/// how old that is does not grow when the gateway, or a tunnel to it, stands still.
+let message_ms = -Infinity, packet_ms = -Infinity;
+const silent_s = 2;
+function take_age(age_s) {
+  if (Number.isFinite(age_s)) packet_ms = Math.max(packet_ms, performance.now() - 1000 * age_s);
+}
+
 export const link = computed(() => {
   slow.value;
   if (!gateway.value.connected) return {state: 'gateway', age_s: (performance.now() - gateway.value.since_ms) / 1000};
   const reported = status.value?.link;
   if (!reported) return {state: 'waiting', age_s: Infinity};
-  return {state: reported.connected ? 'up' : 'down', age_s: reported.age_s ?? Infinity,
+  const unheard_s = (performance.now() - message_ms) / 1000;
+  const age_s = Math.max(unheard_s, (performance.now() - packet_ms) / 1000);
+  const silent = unheard_s > silent_s || (reported.connected && age_s > silent_s);
+  return {state: silent ? 'silent' : reported.connected ? 'up' : 'down', age_s,
     rx: reported.rx, tx: reported.tx, lost: reported.lost ?? 0, damaged: reported.damaged ?? 0,
     archive_failures: reported.archive_failures ?? 0};
 });
@@ -156,6 +167,7 @@ let counted = 0;
 const event_key = (event) => `${event.t}/${event.apid ?? event.subsystem}/${event.id}/${event.text}`;
 
 function take(list) {
+  message_ms = performance.now();
   const fresh_events = [];
   let reports = commands.value;
   let newest_status = null;
@@ -172,6 +184,7 @@ function take(list) {
       values_came = true;
     } else if (message.type === 'status') {
       heard(message.t);
+      take_age(message.link?.age_s);
       newest_status = message;
     } else if (message.type === 'event') {
       fresh_events.push({...message, key: event_key(message)});
@@ -236,6 +249,8 @@ async function really_fetch_present() {
     const {values: set, ...rest} = await get('/api/status');
     if (!replay.value) {
       heard(rest.t);
+      message_ms = performance.now();
+      take_age(rest.link?.age_s);
       batch(() => {
         status.value = rest;
         take_values(set ?? {}, rest.t);

@@ -2,28 +2,36 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useRef, useState} from 'preact/hooks';
 import {say, send_and_say} from '../commanding.js';
-import {age_text, clock_text, date_text} from '../format.js';
+import {age_text, clock_text, date_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {link, mission, mode_of, now_s, operator, replay, see_events, slow, subsystem_of, unseen} from '../store.js';
+import {fallen} from '../stop.js';
 import {Severity} from './icons.js';
 
 const hold_ms = 800;
 
 const link_words = {
-  up: 'LINK UP', down: 'NO SPACECRAFT', gateway: 'NO GATEWAY', waiting: 'WAITING',
+  up: 'LINK UP', silent: 'LINK SILENT', down: 'NO SPACECRAFT', gateway: 'NO GATEWAY', waiting: 'WAITING',
 };
 
 function LinkState() {
   const {state, age_s, rx, tx, lost, damaged, archive_failures} = link.value;
   const replaying = replay.value !== null;
-  const late = state === 'up' && age_s > 2;
   const unkept = archive_failures > 0;
-  const look = replaying ? 'amber' : state === 'up' && !late && !unkept ? 'good' : 'bad';
-  const words = replaying ? 'ARCHIVE' : late ? 'LINK SILENT' : unkept ? 'NOT ARCHIVED' : link_words[state];
+  const look = replaying ? 'amber' : state === 'up' && !unkept ? 'good' : 'bad';
+  const words = replaying ? 'ARCHIVE' : state === 'up' && unkept ? 'NOT ARCHIVED' : link_words[state];
   const title = rx === undefined ? words : `${rx} packets received, ${lost} lost, ${damaged} damaged, ${tx} sent${
       unkept ? `; the archive failed ${archive_failures} times: is the disk full or the file damaged?` : ''}`;
   return html`<span class=${`pill link ${look}`} title=${title} data-test="link"><i class="lamp" />${words}<small>${replaying ? 'not live' :
-      state === 'gateway' ? `for ${age_text(age_s)}` : `age ${age_text(age_s)}`}</small></span>`;
+      state === 'gateway' || state === 'silent' ? `for ${age_text(age_s)}` : `age ${age_text(age_s)}`}</small></span>`;
+}
+
+/// The mode, and whether it is true: what its members have fallen from is no telepresence any more.
+function Mode() {
+  const down = fallen.value;
+  const words = down.map((one) => `${one.subsystem} is ${state_text(one.state)}`).join(', ');
+  return html`<span class=${`pill mode ${down.length ? 'bad' : ''}`} data-test="mode" title=${words || 'every member is where this mode has it'}><small>mode</small><b>${
+    mode_of.value.name}</b>${down.length ? html`<em data-test="mode-stopped">stopped</em>` : null}</span>`;
 }
 
 function Clock() {
@@ -72,7 +80,7 @@ export function Header({on_faults, faults_open}) {
     <a class="brand" href="#/overview"><img src="icon.svg" alt="" width="22" height="22" />HIROSCO</a>
     <span class="pill"><small>mission</small><b>${mission.value?.name ?? '…'}</b>${
       mission.value?.simulated ? html`<small class="simulated">simulated</small>` : null}</span>
-    <span class="pill mode" data-test="mode"><small>mode</small><b>${mode_of.value.name}</b></span>
+    <${Mode} />
     <${LinkState} />
     <${Clock} />
     <a class=${`pill count ${high ? 'has' : ''}`} href="#/events?severity=high" onClick=${see_events} title="not looked at in the last hour; a click shows them"><${Severity} severity="high" />${high} high</a>

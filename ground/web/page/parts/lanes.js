@@ -105,7 +105,7 @@ export function Lanes({window_s = 120, big = false}) {
     <title>${one.subsystem} ${one.name} ${clock_text(one.t)}</title></path>`)});
   const faults = data.faults ?? [];
   if (faults.length || big) {
-    lanes.push({label: 'faults', body: faults.filter((one) => one.t >= from && !/^hand (hold|cartesian)/.test(one.line)).map((one) => html`
+    lanes.push({label: 'faults', body: faults.filter((one) => one.t >= from && !/^hand (target|hold|cartesian)/.test(one.line)).map((one) => html`
       <path class="mark fault" transform=${`translate(${x(one.t)} ${lane_height / 2})`} d="M2-6L-4 2H0L-2 6L5-2H1z"><title>${one.device} ${one.line}</title></path>`)});
   }
 

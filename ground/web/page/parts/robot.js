@@ -4,10 +4,11 @@ import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {asset} from '../api.js';
 import {fault} from '../commanding.js';
-import {number_text} from '../format.js';
+import {age_text, number_text} from '../format.js';
 import {html} from '../html.js';
 import {target_line} from './hand.js';
-import {fast, freshness, mission, operator, replay, slow, values} from '../store.js';
+import {fallen_text, inhibited_text} from '../stop.js';
+import {columns, fast, freshness, mission, operator, replay, slow, status_of, values} from '../store.js';
 
 /// models/NAME/scene.json of the mission; null when there is none, undefined while it is not known.
 export const scene_of_mission = signal(undefined);
@@ -66,6 +67,20 @@ function Readout({description}) {
   </div>`;
 }
 
+/// What the picture alone would not say: that it is old, and that nothing there can move.
+function Verdict({description}) {
+  slow.value;
+  const parameter = Object.values(description.robots[0]?.joints ?? {})[0];
+  const {age_s, stale} = freshness(parameter);
+  const name = columns.value.get(parameter)?.subsystem;
+  const inhibited = inhibited_text(status_of(name));
+  const why = fallen_text(name) || inhibited;
+  const silent = !replay.value && stale && Number.isFinite(age_s);
+  if (!why && !silent) return null;
+  return html`<div class=${`inhibited ${why && !silent ? '' : 'old'}`} data-test="robot-verdict"><b>${silent && !why ? 'OLD DATA' : 'ACTUATORS INHIBITED'}</b>
+    <span>${why}${why && silent ? ' · ' : ''}${silent ? `last pose, ${age_text(age_s)} old` : ''}</span></div>`;
+}
+
 export function Robot() {
   const node = useRef(null);
   const view = useRef(null);
@@ -121,8 +136,9 @@ export function Robot() {
         <small>models/${mission.value?.name.toLowerCase()}/scene.json would be shown here.</small></p>` : null}
       ${problem ? html`<p class="empty">${problem}</p>` : null}
     </div>
+    ${description ? html`<${Verdict} description=${description} />` : null}
     ${description ? html`<${Readout} description=${description} />
       <div class="key"><span><i class="solid" />measured</span><span><i class="ghost" />commanded</span>${
-        hand && !replay.value ? html`<span>drag the blue handle or the fingertip</span>` : null}</div>` : null}
+        hand && operator.value && !replay.value ? html`<span>drag the blue handle or the fingertip</span>` : null}</div>` : null}
   </div>`;
 }

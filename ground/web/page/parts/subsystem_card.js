@@ -3,6 +3,7 @@
 import {state_name, state_names} from '../commanding.js';
 import {duration_text, rate_text, state_text} from '../format.js';
 import {html} from '../html.js';
+import {fallen_text, inhibited_text, is_switched_off} from '../stop.js';
 import {link, replay, slow, status_of, subsystem_of} from '../store.js';
 
 export const state_look = (state) => ({Operational: 'good', SafeOperational: 'amber', PreOperational: 'amber',
@@ -24,8 +25,6 @@ export function configuration_of(name) {
 
 export const waits_text = (waits) => Array.isArray(waits) ? waits.join(', ') : waits ? String(waits) : '';
 
-export const inhibited_text = (now) => Array.isArray(now?.inhibited) ? now.inhibited.join(', ') : now?.inhibited ? 'yes' : '';
-
 export function is_known() {
   return link.value.state === 'up' || replay.value !== null;
 }
@@ -44,11 +43,13 @@ export function SubsystemCard({name, chosen}) {
     now.missed ? `${now.missed} missed` : null,
     now.memory_kb ? `${(now.memory_kb / 1024).toFixed(1)} MB` : null,
   ].filter(Boolean);
-  return html`<a class=${`card ${chosen ? 'chosen' : ''} ${is_known() ? '' : 'stale'}`} href=${`#/subsystems/${name}`}
+  const stopped = fallen_text(name);
+  return html`<a class=${`card ${chosen ? 'chosen' : ''} ${stopped ? 'fallen' : ''} ${is_known() ? '' : 'stale'}`} href=${`#/subsystems/${name}`}
     data-test=${`subsystem-${name}`}>
-    <div class="row"><b>${name} <small>${configuration?.name ?? ''}</small></b><span class=${`state ${state_look(state)}`}>${state_text(state)}</span></div>
+    <div class="row"><b>${name} <small>${configuration?.name ?? ''}</small></b><span class=${`state ${stopped ? 'bad' : state_look(state)}`}>${state_text(state)}</span></div>
     <${StateStrip} state=${state} />
-    <div class="row facts"><span title=${facts.join(', ')}>${facts.join(' · ')}</span></div>
+    ${stopped ? html`<div class="notice bad" data-test=${`stopped-${name}`}>${stopped}</div>` :
+      html`<div class="row facts"><span title=${facts.join(', ')}>${is_switched_off(name) ? 'switched off' : facts.join(' · ')}</span></div>`}
     ${inhibited_text(now) ? html`<div class="notice bad">actuators inhibited: ${inhibited_text(now)}</div>` : null}
     ${waits ? html`<div class="notice amber">waits for ${waits}</div>` : null}
   </a>`;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-import {useEffect, useState} from 'preact/hooks';
+import {useState} from 'preact/hooks';
 import {get} from '../api.js';
 import {clock_text} from '../format.js';
 import {html} from '../html.js';
@@ -8,22 +8,18 @@ import {EventTable, event_text} from '../parts/event_list.js';
 import {Severity} from '../parts/icons.js';
 import {LogSearch} from '../parts/log_search.js';
 import {Panel} from '../parts/panel.js';
-import {counts, events, gateway, mission, replay} from '../store.js';
+import {Chain} from '../parts/stop_banner.js';
+import {story} from '../stop.js';
+import {counts, events, mission, replay} from '../store.js';
 
 const severities = ['high', 'medium', 'low', 'info'];
 
-export function Why() {
-  const [answer, set_answer] = useState(null);
-  // Something of weight came: the chain may be another one.
-  const reason = counts.value.high + counts.value.medium;
-  useEffect(() => {
-    let over = false;
-    get('/api/why').then((found) => over || set_answer(found.causes ?? []), () => over || set_answer([]));
-    return () => { over = true; };
-  }, [reason, gateway.value.connected]);
-  return html`<${Panel} title="Why did it stop?" area="why" hint="hirosco why">
-    ${answer?.length ? html`<ol class="why" data-test="why">${answer.map((cause) => html`<li><span class="time">${clock_text(cause.t, 3)}</span>${cause.text}</li>`)}</ol>` :
-      html`<p class="empty">${answer ? 'Nothing has stopped.' : '…'}</p>`}</${Panel}>`;
+export function Why({area = 'why', tools}) {
+  const told = story.value;
+  return html`<${Panel} title="Why did it stop?" area=${area} hint="hirosco why" tools=${tools}>
+    ${told ? html`<p class="why_title">${told.title}</p><p class="about">${clock_text(told.t, 3)} ${told.detail ?? ''}</p>
+      <${Chain} causes=${told.causes} />
+      <p class="why_advice"><b>What to do</b> ${told.advice}</p>` : html`<p class="empty">Nothing has stopped.</p>`}</${Panel}>`;
 }
 
 export function Events({query}) {

@@ -10,6 +10,8 @@ import {Legend, TimePlot} from '../parts/plot.js';
 import {Robot, scene_of_mission} from '../parts/robot.js';
 import {SubsystemCard} from '../parts/subsystem_card.js';
 import {html} from '../html.js';
+import {stop} from '../stop.js';
+import {Why} from './events.js';
 import {Values} from './subsystems.js';
 import {columns, events, mission} from '../store.js';
 
@@ -78,7 +80,8 @@ export function Overview() {
       href=${`#/plots?p=${plots[i].map(encodeURIComponent).join('+')}`}>
       <${Legend} names=${plots[i]} brief /><${TimePlot} names=${plots[i]} window_s=${30} /></${Panel}>` :
       html`<${Panel} title="plot" area=${`plot_${i}`} href="#/plots"><p class="empty">${none}</p></${Panel}>`)}
-    <${Panel} title="Events" area="events" href="#/events"><${EventTable} list=${events.value} most=${40} /></${Panel}>
+    ${stop.value ? html`<${Why} area="events" tools=${html`<a class="chip" href="#/events">All events</a>`} />` :
+      html`<${Panel} title="Events" area="events" href="#/events"><${EventTable} list=${events.value} most=${40} /></${Panel}>`}
     <${Panel} title="Timeline" hint="click to replay from there" area="timeline" href="#/timeline"><${Lanes} window_s=${120} /></${Panel}>
   </main>`;
 }

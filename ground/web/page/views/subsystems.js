@@ -6,7 +6,8 @@ import {age_text, duration_text, number_text, rate_text, state_text, unit_text, 
 import {html} from '../html.js';
 import {Panel} from '../parts/panel.js';
 import {StateDiagram} from '../parts/state_diagram.js';
-import {SubsystemCard, configuration_of, inhibited_text, state_look, waits_text} from '../parts/subsystem_card.js';
+import {SubsystemCard, configuration_of, state_look, waits_text} from '../parts/subsystem_card.js';
+import {inhibited_text} from '../stop.js';
 import {columns, freshness, link, mission, mode_of, operator, replay, slow, status_of, subsystem_of, values} from '../store.js';
 
 /// "Bring telepresence up": every step with its verdict; the first refusal stops it.
@@ -36,10 +37,10 @@ function Commissioning() {
         Bring ${mode.name} up</button>
       ${running ? html`<button class="quiet" onClick=${() => { stop.current = true; }}>stop</button>` : null}
     </div>
+    ${failed ? html`<p class="permission no" data-test="commission-failed">Stopped at “${failed.text}”: ${failed.reason ?? `code ${failed.code}`}</p>` : null}
     ${steps.length ? html`<ol class="steps" data-test="steps">${steps.map((step) => html`<li class=${step.stage.replace(' ', '_')}>
       <i>${sign[step.stage] ?? '…'}</i><span>${step.text}</span><em>${step.stage === 'failed' ? step.reason ?? `code ${step.code}` :
         ['completed', 'waiting'].includes(step.stage) ? '' : step.stage}</em></li>`)}</ol>` : null}
-    ${failed ? html`<p class="permission no">Stopped at “${failed.text}”: ${failed.reason ?? `code ${failed.code}`}</p>` : null}
     ${done ? html`<p class="permission yes" data-test="commissioned">✓ ${mode.name} is up</p>` : null}
   </${Panel}>`;
 }

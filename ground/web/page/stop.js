@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// What stopped and why, latched until somebody has seen it. The words are the gateway's (GET /api/why), the same as `hirosco why`.
+import {computed, effect, signal} from '@preact/signals';
+import {get} from './api.js';
+import {bring_up, state_name} from './commanding.js';
+import {commands, events, gateway, mission, mode_of, replay, status, status_of, subsystem_of} from './store.js';
+
+/// The newest story, whatever became of it since; null while none is known.
+export const story = signal(null);
+
+const kept = 'hirosco-stop-acknowledged';
+const seen_until = signal(Number(sessionStorage.getItem(kept) ?? -Infinity));
+export function acknowledge() {
+  if (!story.value) return;
+  seen_until.value = story.value.t;
+  sessionStorage.setItem(kept, String(story.value.t));
+}
+
+/// When this flight began, by the cycles of its supervisor: what an earlier one left in the archive stops nobody.
+function flight_began_s() {
+  const supervisor = mission.value?.subsystems.find((one) => one.id === 1);
+  const now = supervisor && status_of(supervisor.name);
+  const rate_hz = supervisor?.configurations.find((one) => one.name === now?.configuration)?.sampling_hz ?? supervisor?.configurations[0]?.sampling_hz;
+  return now?.cycles && rate_hz ? status.value.t - now.cycles / rate_hz - 2 : -Infinity;
+}
+
+/// The story that nobody has acknowledged yet; null in a replay, which has its own time.
+export const stop = computed(() => {
+  const told = story.value;
+  if (!told || replay.value || !(told.t > seen_until.value) || told.t < flight_began_s()) return null;
+  return told.stopped?.length || told.severity === 'high' ? told : null;
+});
+
+async function look() {
+  const found = await get('/api/why', {to: replay.value?.at}).catch(() => null);
+  if (found) story.value = found.causes?.length ? found : null;
+}
+
+/// What stopped comes in several packets, the states and links of housekeeping last.
+const looks_after_ms = [100, 600, 1500, 4000];
+let timers = [];
+function look_again() {
+  for (const timer of timers) clearTimeout(timer);
+  timers = looks_after_ms.map((after_ms) => setTimeout(look, after_ms));
+}
+const newest_of_weight = computed(() => events.value.find((event) => event.severity === 'high' || event.severity === 'medium')?.key ?? '');
+const newest_safe_all = computed(() => {
+  const found = commands.value.find((one) => one.function === 'SAFE_ALL');
+  return found ? `${found.id} ${found.stages.length}` : '';
+});
+effect(() => {
+  newest_of_weight.value;
+  newest_safe_all.value;
+  if (gateway.value.connected || replay.value) look_again();
+});
+
+/// Members of the present mode that are not where it has them, or whose actuators are inhibited: [{subsystem, state, wanted}].
+export const fallen = computed(() => (mode_of.value.commission ?? []).flatMap((member) => {
+  const now = status_of(member.subsystem);
+  if (!now) return [];
+  const state = state_name(now.state);
+  const lower = state !== member.state || (Array.isArray(now.inhibited) && now.inhibited.length > 0);
+  return lower ? [{subsystem: member.subsystem, state, wanted: member.state}] : [];
+}));
+
+const reasons = {
+  stop: 'stopped by SAFE ALL or by the supervisor', link: 'a link that it requires is missing', device: 'its device is lost',
+  author: 'its own protection tripped', failure: 'its cycle failed', supervisor: 'the supervisor does not answer',
+};
+/// Why the actuators of a subsystem are inhibited, in words; empty when they are not.
+export function inhibited_text(now) {
+  const bits = Array.isArray(now?.inhibited) ? now.inhibited : [];
+  const protection = () => {
+    const event = events.value.find((one) => one.subsystem === now.name && (one.severity === 'high' || one.severity === 'medium'));
+    return event ? `${reasons.author}: ${event.name.toLowerCase().replaceAll('_', ' ')}` : reasons.author;
+  };
+  return bits.map((bit) => bit === 'author' ? protection() : reasons[bit] ?? bit).join(', ');
+}
+
+/// Why a subsystem is not where its mode has it.
+export function fallen_text(name) {
+  const told = story.value;
+  if (!fallen.value.some((one) => one.subsystem === name)) return '';
+  if (told?.stopped?.includes(name)) return `stopped by plan ${told.plan}: ${told.title.split('. ')[0].replace(/\.$/, '')}`;
+  if (told?.stopped?.includes('all')) return 'stopped by SAFE ALL';
+  return `mode ${mode_of.value.name} has it ${state_name(fallen.value.find((one) => one.subsystem === name).wanted)}`;
+}
+
+/// Progress of a bring-up that the banner began: its steps, null before.
+export const rising = signal(null);
+export async function bring_up_again() {
+  const told = story.value;
+  const mode = mission.value.modes.find((one) => one.name === told?.mode && one.commission?.length) ??
+    mission.value.modes.find((one) => one.name === mission.value.start_mode);
+  if (!mode || rising.value?.running) return;
+  rising.value = {running: true, steps: [], mode: mode.name};
+  const steps = await bring_up(mode, (list) => { rising.value = {running: true, steps: [...list], mode: mode.name}; });
+  const failed = steps.find((step) => step.stage === 'failed');
+  rising.value = {running: false, steps, failed, mode: mode.name};
+  if (failed) return;
+  acknowledge();
+  rising.value = null;
+}
+
+export const is_switched_off = (name) => state_name(status_of(name)?.state) === 'Offline' && !fallen.value.some((one) => one.subsystem === name) &&
+  Boolean(subsystem_of(name));
