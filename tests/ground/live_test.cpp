@@ -284,10 +284,10 @@ TEST_F(GroundStation, WhyTellsTheCauseFirstThenWhatItBroughtAbout) {
 TEST_F(GroundStation, WhyFoldsTheStepsOfAHandThatTrippedTheLimit) {
   commission();
   for (int step = 0; step < 20; ++step) {
-    station.post("/api/faults", {{"device", "joystick"}, {"line", "hand cartesian 0.06 0 0.2"}});
+    station.post("/api/faults", {{"device", "joystick"}, {"line", "hand ramp 0.065 0 0.04"}});
     station.run(50ms);
   }
-  station.run(1s);
+  station.run(2s);
   const json why = station.get("/api/why");
   ASSERT_GE(why["causes"].size(), 2U);
   EXPECT_THAT(why["causes"][0]["text"].get<std::string>(), ::testing::ContainsRegex("^The hand moved .[0-9]+ steps.$"));

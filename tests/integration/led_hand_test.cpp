@@ -142,9 +142,9 @@ TEST_F(LedHand, OfItsOwnMindGivesWayTooAfterTheClutchWasEngagedElsewhere) {
   }
 }
 
-TEST_F(LedHand, IsNeededBecauseAHandThatGoesWhereAPointerLeapsTripsTheLimit) {
-  ASSERT_TRUE(joystick().hand("cartesian 0.06 0 0.3"));
-  flight.craft().run(1s);
+TEST_F(LedHand, IsNeededBecauseAHandThatPressesOnTripsTheLimit) {
+  ASSERT_TRUE(joystick().hand("ramp 0.065 0 0.04"));
+  flight.craft().run(2s);
   EXPECT_EQ(flight.state("MANIPULATOR"), State::SafeOperational);
 }
 

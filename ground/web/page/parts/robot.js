@@ -77,7 +77,7 @@ function Verdict({description}) {
   const why = fallen_text(name) || inhibited;
   const silent = !replay.value && stale && Number.isFinite(age_s);
   if (!why && !silent) return null;
-  return html`<div class=${`inhibited ${why && !silent ? '' : 'old'}`} data-test="robot-verdict"><b>${silent && !why ? 'OLD DATA' : 'ACTUATORS INHIBITED'}</b>
+  return html`<div class=${`inhibited ${why ? '' : 'old'}`} data-test="robot-verdict"><b>${silent && !why ? 'OLD DATA' : 'ACTUATORS INHIBITED'}</b>
     <span>${why}${why && silent ? ' · ' : ''}${silent ? `last pose, ${age_text(age_s)} old` : ''}</span></div>`;
 }
 

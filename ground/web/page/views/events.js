@@ -14,10 +14,10 @@ import {counts, events, mission, replay} from '../store.js';
 
 const severities = ['high', 'medium', 'low', 'info'];
 
-export function Why({area = 'why', tools}) {
+export function Why({area = 'why', tools, brief = false}) {
   const told = story.value;
-  return html`<${Panel} title="Why did it stop?" area=${area} hint="hirosco why" tools=${tools}>
-    ${told ? html`<p class="why_title">${told.title}</p><p class="about">${clock_text(told.t, 3)} ${told.detail ?? ''}</p>
+  return html`<${Panel} title="Why did it stop?" area=${area} hint=${brief ? null : 'hirosco why'} tools=${tools}>
+    ${told ? html`${brief ? null : html`<p class="why_title">${told.title}</p><p class="about">${clock_text(told.t, 3)} ${told.detail ?? ''}</p>`}
       <${Chain} causes=${told.causes} />
       <p class="why_advice"><b>What to do</b> ${told.advice}</p>` : html`<p class="empty">Nothing has stopped.</p>`}</${Panel}>`;
 }

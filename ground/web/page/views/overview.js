@@ -80,7 +80,7 @@ export function Overview() {
       href=${`#/plots?p=${plots[i].map(encodeURIComponent).join('+')}`}>
       <${Legend} names=${plots[i]} brief /><${TimePlot} names=${plots[i]} window_s=${30} /></${Panel}>` :
       html`<${Panel} title="plot" area=${`plot_${i}`} href="#/plots"><p class="empty">${none}</p></${Panel}>`)}
-    ${stop.value ? html`<${Why} area="events" tools=${html`<a class="chip" href="#/events">All events</a>`} />` :
+    ${stop.value ? html`<${Why} area="events" brief tools=${html`<a class="chip" href="#/events">All events</a>`} />` :
       html`<${Panel} title="Events" area="events" href="#/events"><${EventTable} list=${events.value} most=${40} /></${Panel}>`}
     <${Panel} title="Timeline" hint="click to replay from there" area="timeline" href="#/timeline"><${Lanes} window_s=${120} /></${Panel}>
   </main>`;
