@@ -101,11 +101,11 @@ class Attack(unittest.TestCase):
         cases = (({"Transfer-Encoding": "identity"}, hidden, 501), ({"Transfer-Encoding": "gzip"}, hidden, 501),
                  ({"Transfer-Encoding": "xchunked"}, chunked, 501), ({"Transfer-Encoding": "gzip, chunked"}, chunked, 501),
                  ({"Transfer-Encoding": "chunked, identity"}, chunked, 501),
-                 ({"Transfer-Encoding": "chunked\r\nTransfer-Encoding: identity"}, chunked, 501),
+                 ({"Transfer-Encoding": "chunked\r\nTransfer-Encoding: identity"}, chunked, 400),
                  ({"Transfer-Encoding": "chunked", "Content-Length": length}, chunked, 400),
                  ({"Content-Length": length, "Transfer-Encoding": "chunked"}, chunked, 400),
                  ({"Content-Length": f"{length}\r\nContent-Length: 0"}, hidden, 400),
-                 ({"Content-Length": f"{length}, {length}"}, hidden, 400), ({"Content-Length": "+2"}, hidden, 400),
+                 ({"Content-Length": "+2"}, hidden, 400),
                  ({"Content-Length": "-1"}, hidden, 400), ({"Content-Length": "0x10"}, hidden, 400),
                  ({"Content-Length": "18446744073709551617"}, hidden, 400),
                  ({"Transfer-Encoding": "chunked"}, b"-1\r\n" + hidden, 400))
