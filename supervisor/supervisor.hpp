@@ -231,10 +231,10 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   std::uint64_t told_troubles_{0};   ///< of the log's store
   TimePoint trouble_told_{};
   Outstanding outstanding_;
-  /// With so many under way the ground's next ones wait for a report instead of finding a full channel; but not for
-  /// addressees that stand still.
+  /// With so many under way the ground's next ones wait for a report instead of finding a full channel; but hardly for
+  /// addressees that stand still: SAFE_ALL may be behind them.
   static constexpr std::size_t most_outstanding = 128;
-  static constexpr Duration outstanding_patience = 10ms;
+  static constexpr Duration outstanding_patience = 1ms;
   TimePoint outstanding_moved_{};
   Restarts restarts_;
   struct PendingStop {

@@ -137,8 +137,8 @@ bool GroundClients::admissible(GroundPort port) const noexcept {
 bool GroundClients::permanent(const Client& client, GroundPort newcomer) const noexcept {
   const bool listener = client.counters.port == GroundPort::TelemetryAndTelecommands;
   // The places that listeners may have are all taken by listeners: only one of them can give way to another.
-  const bool listeners_only = newcomer == GroundPort::TelemetryAndTelecommands &&
-                              listeners_ == clients_.size() - limits_.reserve;
+  const bool listeners_only =
+      newcomer == GroundPort::TelemetryAndTelecommands && listeners_ == clients_.size() - limits_.reserve;
   if (!listener) return listeners_only;
   return client.counters.valid_packets != 0;
 }

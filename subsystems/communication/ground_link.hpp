@@ -127,11 +127,11 @@ class GroundClients {
   static constexpr std::size_t most_clients = 256;
   struct Limits {
     std::size_t clients{most_clients};
-    std::size_t reserve{16};                ///< places for the telecommand port alone; at most an eighth of all
+    std::size_t reserve{16};  ///< places for the telecommand port alone; at most an eighth of all
     std::size_t backlog_octets{1 << 20};  ///< telemetry that a client may leave unread
     Duration incomplete{2s};
     std::size_t behind_octets{64 << 10};  ///< telemetry that a listener has not taken: it is behind
-    Duration patience{1s};               ///< in which a listener that is behind has to take `progress_octets`
+    Duration patience{1s};  ///< in which a listener that is behind has to take `progress_octets`
     std::size_t progress_octets{16 << 10};
   };
   struct Admission {
@@ -185,7 +185,8 @@ class GroundClients {
     std::optional<CloseReason> dismissed{};
     std::optional<TimePoint> behind_since{};  ///< of a listener: since then it has taken less than progress_octets
     std::uint64_t behind_from{0};
-    TimePoint allowance{};  ///< who sends little: a packet moves it on by little_period, never more than little_burst ahead
+    TimePoint
+        allowance{};  ///< who sends little: a packet moves it on by little_period, never more than little_burst ahead
     ClientCounters counters{};
     Deframer deframer;
     [[nodiscard]] bool waits() const noexcept { return !deframer.front().empty(); }

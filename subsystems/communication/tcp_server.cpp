@@ -178,7 +178,8 @@ bool TcpServer::read_from(Connection& connection, TimePoint now) {
   const ssize_t count = ::recv(connection.socket.get(), room.data(), room.size(), 0);
   if (count == 0) return end_of_stream(connection), false;
   if (count < 0 && would_block(errno)) return false;
-  if (count < 0) return dismiss(connection, errno == ECONNRESET ? CloseReason::PeerClosed : CloseReason::SocketError), false;
+  if (count < 0)
+    return dismiss(connection, errno == ECONNRESET ? CloseReason::PeerClosed : CloseReason::SocketError), false;
   clients_.received(connection.client, static_cast<std::size_t>(count), now);
   return true;
 }

@@ -287,7 +287,7 @@ TEST_F(TcpServerTest, LosesNothingOfAFloodThatIsTakenHaltinglyFromClientsThatCom
     }
     sent += each;
     if (i % 2 == 0) client.end_sending();
-  }   // and gone, with most of it unread
+  }  // and gone, with most of it unread
   until([&] {
     echo_.room = 5;
     return server_->counters().clients == 0;
@@ -368,7 +368,7 @@ TEST_F(TcpServerTest, SurvivesNoise) {
     until([&] { return noisy.connected(); });
     std::vector<std::byte> noise(1 + random() % 9000);
     for (std::byte& octet : noise) octet = static_cast<std::byte>(random());
-    if (i % 2 == 0) {   // deeper than the first octets
+    if (i % 2 == 0) {  // deeper than the first octets
       noise[0] = std::byte{0x18};
       if (noise.size() > 5) noise[4] = static_cast<std::byte>(random() % 16);
     }

@@ -137,7 +137,12 @@ class Honest:
 def flood(blocks, ports, stop, sent):
     """The same block again and again on every connection, as fast as it goes; at its end all of it has been read."""
     os.nice(10)                    # what is measured is the spacecraft, not the shortage of our own processors
-    links = [socket.create_connection(("127.0.0.1", port)) for port in ports]
+    links = []
+    for port in ports:
+        links.append(socket.socket())
+        links[-1].setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 64 * 1024)
+        links[-1].connect(("127.0.0.1", port))
+    silent = {link for link, port in zip(links, ports) if port == TELECOMMAND_PORT}
     rest = {link: memoryview(block) for link, block in zip(links, blocks)}
     whole = {link: (block, len(block) // 13) for link, block in zip(links, blocks)}
     for link in links:
@@ -166,9 +171,8 @@ def flood(blocks, ports, stop, sent):
             link.setblocking(True)
             link.shutdown(socket.SHUT_WR)
             link.settimeout(30.0)
-            if link.getpeername()[1] == TELECOMMAND_PORT:
-                while link.recv(1 << 20):
-                    pass
+            while link in silent and link.recv(1 << 20):
+                pass
             link.close()
 
 

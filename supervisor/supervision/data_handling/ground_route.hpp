@@ -20,9 +20,9 @@ class GroundRoute {
  public:
   enum class Kind : std::uint8_t { Report, Housekeeping };
   struct Limits {
-    std::size_t busy{512};             ///< reports that wait: no telecommand is read
+    std::size_t busy{512};  ///< reports that wait: no telecommand is read
     std::size_t reports_octets{4 << 20};  ///< of reports; more only comes from who talks without being asked
-    std::size_t housekeeping{256};     ///< packets
+    std::size_t housekeeping{256};  ///< packets
     /// A link that has taken nothing for this long is not waited for with telecommands: it may itself wait for its
     /// own telemetry to be read.
     Duration patience{100ms};
