@@ -44,6 +44,9 @@ class Joystick final : public Subsystem {
   /// Hands: 0 simulated, 1 commanded, 2 a person's.
   static constexpr std::uint8_t commanded_hand = 1;
 
+  /// An author's failure code of joystick.xml: what is asked for could have no effect.
+  static constexpr auto actuators_inhibited = static_cast<pus::FailureCode>(0x8001);
+
   enum Event : std::uint16_t { force_clipped = 1103, passivity_active = 1104 };
 
   Result<Step> software_init() override {
@@ -63,6 +66,7 @@ class Joystick final : public Subsystem {
     on_function("CENTRE", [this]() { return show({0.0, 0.0}); });
     on_function("SET_HAND", [this](std::uint8_t hand) -> Outcome { return lay_on(hand); });
     on_function("HAND", [this](double angle_1, double angle_2) -> Outcome {
+      if (!acting_) return refused(actuators_inhibited);
       if (handle_.output().hand != commanded_hand) return refused(pus::FailureCode::WrongStatus);
       handle_.output().intent_rad = {angle_1, angle_2};
       return ok();
@@ -104,6 +108,7 @@ class Joystick final : public Subsystem {
   Result<> operational(const Cycle& cycle) noexcept override {
     if (cycle.first) restart();
     measure(cycle, torque());
+    acting_ = cycle.active;
     enable_.store(cycle.active ? 1 : 0);
     return ok();
   }
@@ -120,6 +125,7 @@ class Joystick final : public Subsystem {
   }
 
   Outcome lay_on(std::uint8_t hand) noexcept {
+    if (!acting_) return refused(actuators_inhibited);
     const HandleInput& in = handle_.input();
     if ((in.hands >> hand & 1) == 0) return refused(pus::FailureCode::NotPermittedNow);  // this device has no such hand
     if (hand == commanded_hand && handle_.output().hand != hand) handle_.output().intent_rad = in.position_rad;
@@ -161,12 +167,14 @@ class Joystick final : public Subsystem {
     current_.store({static_cast<std::int32_t>(cycle.state), in.position_rad, in.velocity_rad_per_s,
                     cycle.active ? torque_n_m : Axes{}});
     peer_.store({peer_link_->value().position_rad, peer_link_->value().torque_n_m, peer_link_->age_cycles()});
+    acting_ = false;
     enable_.store(0);
     hand_.store(in.hand);
   }
 
   Outcome show(const Axes& torque_n_m) noexcept {
     if (coupled_) return refused(pus::FailureCode::SetpointOwnedByLink);
+    if (!acting_) return refused(actuators_inhibited);
     commanded_ = torque_n_m;
     return ok();
   }
@@ -190,6 +198,7 @@ class Joystick final : public Subsystem {
   joystick::DisplayLaw* law_{nullptr};  ///< one of the two
   Axes commanded_{};
   bool coupled_{false};
+  bool acting_{false};  ///< what is put out reaches the handle
   bool clipped_{false};
   bool passive_{false};
 };

@@ -87,6 +87,16 @@ TEST_F(JoystickTest, StandaloneShowsTheCommandedTorque) {
   EXPECT_EQ(shown_n_m, (std::array{0.0, 0.0}));
 }
 
+TEST_F(JoystickTest, WhatCanHaveNoEffectIsRefused) {
+  operate(1);
+  rig.permit.fence();
+  cycle(3);
+  ASSERT_NE(rig.inhibited(), 0u);
+  EXPECT_EQ(now("DISPLAY_TORQUE", {0.5, -0.25}).substr(0, 8), "1 4:8001");
+  EXPECT_EQ(now("SET_HAND", {1}).substr(0, 8), "1 4:8001");
+  EXPECT_EQ(now("HAND", {0.1, 0.1}).substr(0, 8), "1 4:8001");
+}
+
 TEST_F(JoystickTest, CoupledShowsTheRobotsTorqueAgainstTheHandAndScaled) {
   operate(2);
   robot_torque_n_m = {10.0, -5.0};

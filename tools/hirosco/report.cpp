@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "simulation/scenarios/rokviss_corners.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/report_page.hpp"
 #include "tools/hirosco/report_real.hpp"
@@ -73,6 +74,22 @@ namespace {
   return all ? exit_ok : exit_finding;
 }
 
+/// "limits=100" among what is planted: the limits that the manipulator's law keeps to.
+[[nodiscard]] int report_corners(const ReportOptions& options, const std::filesystem::path& mission) {
+  simulation::CornerSettings settings{.mission = mission, .seed = options.seed};
+  constexpr std::string_view limits = "limits=";
+  for (const std::string& text : options.plant) {
+    char* end = nullptr;
+    if (text.starts_with(limits)) settings.planted_limit_n_m = std::strtod(text.c_str() + limits.size(), &end);
+    if (end != nullptr && *end == '\0' && settings.planted_limit_n_m > 0) continue;
+    fmt::print(stderr, "hirosco report: --corners can be given --plant limits=N_M, for example limits=100\n");
+    return exit_usage;
+  }
+  const simulation::CornerTable table = simulation::fly_corners(settings);
+  fmt::print("{}", table.text());
+  return table.beyond() == 0 ? exit_ok : exit_finding;
+}
+
 }  // namespace
 
 int report(const ReportOptions& options) {
@@ -81,6 +98,7 @@ int report(const ReportOptions& options) {
     fmt::print(stderr, "hirosco report: no mission '{}'\n", options.mission);
     return exit_finding;
   }
+  if (options.corners) return report_corners(options, mission);
   const auto table = simulation::ExpectedTable::read(mission.parent_path() / "expected.csv");
   if (!table) {
     fmt::print(stderr, "hirosco report: {}\n", table.error());
