@@ -15,12 +15,11 @@ HERE = pathlib.Path(__file__).resolve().parent
 WORK = pathlib.Path(os.environ["HIROSCO_BROWSER_WORK"])
 PAGE = pathlib.Path(os.environ["HIROSCO_PAGE"])
 PAGE_WORK = pathlib.Path(os.environ["HIROSCO_PAGE_WORK"])
-SKIPPED = 77
 
 
 def skip(reason):
-    print(f"skipped: {reason}")
-    sys.exit(SKIPPED)
+    """As skipped if the reason, one of tools/skip_reason, is true here; else as failed."""
+    sys.exit(subprocess.run([HERE.parents[1] / "tools/skip_reason", reason], check=False).returncode)
 
 
 def install():
@@ -32,18 +31,18 @@ def install():
     if stamp.exists() and stamp.read_text() == wanted:
         return
     if subprocess.run(["npm", "ci", "--prefer-offline", "--fetch-retries=1"], cwd=WORK, capture_output=True).returncode:
-        skip("npm could not fetch playwright-core and axe-core")
+        skip("no-package-index-of-node")
     stamp.write_text(wanted)
 
 
 def main():
     for tool in ("node", "npm"):
         if not shutil.which(tool):
-            skip(f"no {tool} here")
+            skip("no-node")
     if not os.environ.get("HIROSCO_CHROMIUM") and not shutil.which("chromium"):
-        skip("no chromium here (apt install chromium fonts-dejavu-core)")
+        skip("no-chromium")
     if not (PAGE / "index.html").exists():
-        skip("the page was not built")
+        skip("no-package-index-of-node")
     WORK.mkdir(parents=True, exist_ok=True)
     install()
     # The development server stays beside the page's packages, ws among them.

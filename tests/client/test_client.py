@@ -21,8 +21,8 @@ try:
     from spacepackets.ecss.req_id import RequestId
     from spacepackets.ecss.tc import InvalidTcCrc16Error
 except ImportError:
-    print("test_client: no spacepackets here (pip install -r tests/client/requirements.txt), skipped")
-    sys.exit(77)
+    print("test_client: no spacepackets here (pip install -r tests/client/requirements.txt)", file=sys.stderr)
+    sys.exit(1)
 
 import ground_client
 import hostile

@@ -15,7 +15,6 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 REQUIREMENTS = HERE / "requirements.txt"
 NEEDED = "import spacepackets, fastcrc"
-SKIPPED = 77
 
 
 def works(python):
@@ -49,8 +48,8 @@ def main():
         sys.exit(2)
     python, reason = interpreter(sys.argv[1])
     if python is None:
-        print(f"skipped: no library spacepackets ({reason})")
-        sys.exit(SKIPPED)
+        reasons = HERE.parents[1] / "tools/skip_reason"
+        sys.exit(subprocess.run([reasons, "no-package-index-of-python", reason], check=False).returncode)
     script = HERE / sys.argv[2]
     os.execv(python, [python, "-B", str(script), *sys.argv[3:]])
 

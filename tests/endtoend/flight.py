@@ -28,14 +28,12 @@ ROKVISS = REPOSITORY / "missions/rokviss/mission.xml"
 HELLO = REPOSITORY / "missions/hello/mission.xml"
 PORT = 10015
 MANIPULATOR, JOYSTICK = 10, 11
-SKIPPED = 77
 MARK = "HIROSCO_TEST_FLIGHT"      # in the environment of every process of a flight, orphans included
 
 
-def skip(reason):
-    """Ends the test program as skipped (ctest's SKIP_RETURN_CODE)."""
-    print(f"skipped: {reason}")
-    sys.exit(SKIPPED)
+def skip(reason, detail=""):
+    """Ends the test program as skipped if `reason`, one of tools/skip_reason, is true here; else as failed."""
+    sys.exit(subprocess.run([REPOSITORY / "tools/skip_reason", reason, str(detail)], check=False).returncode)
 
 
 def main():

@@ -35,5 +35,5 @@ class ForeignGround(unittest.TestCase):
 if __name__ == "__main__":
     python, reason = with_library.interpreter(pathlib.Path(flight.BINARIES).parent / "foreign_client")
     if python is None:
-        flight.skip(f"no library spacepackets ({reason})")
+        flight.skip("no-package-index-of-python", reason)
     flight.main()

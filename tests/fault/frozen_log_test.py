@@ -28,7 +28,7 @@ class FrozenDisk:
             self._do("mkfs.ext4", "-q", str(self.image))
             self._do("mount", "-o", "loop", str(self.image), str(self.mounted_at))
         except (OSError, subprocess.CalledProcessError) as problem:
-            flight.skip(f"no file system can be mounted here: {problem}")
+            flight.skip("no-loop-mount", problem)
         return self
 
     def __exit__(self, *_):
@@ -92,5 +92,5 @@ class FrozenLog(unittest.TestCase):
 
 if __name__ == "__main__":
     if os.geteuid() != 0:
-        flight.skip("only root can mount a file system of its own")
+        flight.skip("no-loop-mount")
     flight.main()

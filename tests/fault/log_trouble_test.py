@@ -35,7 +35,7 @@ class LogTrouble(unittest.TestCase):
             disk.mkdir()
             if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=6m", "none", str(disk)], capture_output=True,
                               check=False).returncode != 0:
-                self.skipTest("no file system can be mounted here")
+                flight.skip("no-mount")
             try:
                 with flight.Flight(folder=folder) as rokviss:
                     rokviss.wait_commissioned()

@@ -86,5 +86,5 @@ if __name__ == "__main__":
     if len(sys.argv) > 1:
         SECONDS = float(sys.argv.pop(1))
     if not shutil.which("stress-ng"):
-        flight.skip("no stress-ng")
+        flight.skip("no-stress-ng")
     flight.main()
