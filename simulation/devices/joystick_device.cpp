@@ -82,7 +82,7 @@ void JoystickDevice::take_from_person() noexcept {
 
 void JoystickDevice::advance(Duration cycle) noexcept {
   const double limit = handle_.parameters().torque_max_n_m;
-  applied_ = mode() == DeviceMode::Active ? commanded_ : Vec2{};
+  applied_ = output() == DeviceOutput::Active ? commanded_ : Vec2{};
   raise(device_flag::torque_saturated, std::abs(applied_[0]) > limit || std::abs(applied_[1]) > limit);
   for (double& torque : applied_) torque = std::clamp(torque, -limit, limit);
   if (hand_ == Hand::Person && stick_) take_from_person();

@@ -13,7 +13,7 @@ namespace hirosco::simulation {
 /// To the subsystem: POSITION DOUBLE[2], VELOCITY DOUBLE[2] (rad, rad/s), HAND UINT8 (whose hand is on it), HANDS UINT8
 /// (those that there are, one bit each). From it: TORQUE DOUBLE[2] (N m), HAND UINT8, INTENT DOUBLE[2] (rad, of a commanded
 /// hand). A person's hand is there after the line "stick PATH" or "stick auto"; when its stick is unplugged, so is this
-/// device.
+/// device. Its only declared stop is to drop: a hand holds it.
 class JoystickDevice final : public SimulatedDevice {
  public:
   static constexpr std::size_t sensor_octets = 34;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,16 +41,46 @@ void RobotDevice::ask_for(std::uint8_t spring) noexcept {
   else if (!arm_.hooked_spring()) static_cast<void>(arm_.hook_spring(std::size_t{spring} - 1));
 }
 
+/// Of the joints' own electronics, which know motor rate and joint torque: damped and giving way at first, so that nothing
+/// that is pressed or hooked is torn at; towards the end the load of that moment is held, damped still.
+Vec2 RobotDevice::coming_to_rest() noexcept {
+  constexpr double damping_n_m_s = 24, soft_n_m_per_rad = 600, torque_feedback = 3;  // motor inertia seen as a quarter, as in service
+  const ArmState& state = arm_.state();
+  const Vec2 joint = arm_.joint_torque_n_m();
+  Vec2 drive = -damping_n_m_s * state.motor_rad_s;
+  if (stop_left() <= settings().stop_within / 2) drive = drive + gripping(joint, soft_n_m_per_rad);
+  return (1 + torque_feedback) * drive - torque_feedback * joint;
+}
+
+/// As friction does: carries the load that was there when it gripped, gives way elastically, slips beyond its torque.
+Vec2 RobotDevice::gripping(const Vec2& load_n_m, double stiffness_n_m_per_rad) noexcept {
+  const Vec2& motor = arm_.state().motor_rad;
+  if (!gripped_rad_) gripped_rad_ = motor + 1 / stiffness_n_m_per_rad * load_n_m;
+  Vec2 torque = stiffness_n_m_per_rad * (*gripped_rad_ - motor);
+  for (double& held : torque) held = std::clamp(held, -brake_torque_n_m, brake_torque_n_m);
+  gripped_rad_ = motor + 1 / stiffness_n_m_per_rad * torque;
+  return torque;
+}
+
 void RobotDevice::advance(Duration cycle) noexcept {
+  constexpr double brake_n_m_per_rad = 4000, brake_damping_n_m_s = 100;
+  const DeviceOutput held_before = std::exchange(output_before_, output());
   const double limit = arm_.parameters().joint.torque_max_n_m;
-  applied_ = {};
-  if (mode() == DeviceMode::Active) applied_ = commanded_;
-  // Drives in short circuit: heavily damped, no torque at rest.
-  constexpr double braking_n_m_s = 60;
-  if (mode() == DeviceMode::Stop) applied_ = -braking_n_m_s * arm_.state().motor_rad_s;
+  applied_ = brake_ = {};
+  switch (output()) {
+    case DeviceOutput::Off: break;
+    case DeviceOutput::Active: applied_ = commanded_; break;
+    case DeviceOutput::Stopping: applied_ = coming_to_rest(); break;
+    case DeviceOutput::Holding:
+      if (held_before != DeviceOutput::Holding) gripped_rad_.reset();
+      brake_ = gripping(arm_.joint_torque_n_m(), brake_n_m_per_rad) - brake_damping_n_m_s * arm_.state().motor_rad_s;
+      for (double& torque : brake_) torque = std::clamp(torque, -brake_torque_n_m, brake_torque_n_m);
+      break;
+  }
+  if (output() == DeviceOutput::Off || output() == DeviceOutput::Active) gripped_rad_.reset();
   raise(device_flag::torque_saturated, std::abs(applied_[0]) > limit || std::abs(applied_[1]) > limit);
   for (double& torque : applied_) torque = std::clamp(torque, -limit, limit);
-  arm_.step(applied_, cycle);
+  arm_.step(applied_ + brake_, cycle);
   const Vec2& celsius = arm_.temperature_c();
   raise(device_flag::over_temperature, std::max(celsius[0], celsius[1]) >= over_temperature_c);
 }
@@ -121,9 +152,12 @@ std::string RobotDevice::do_truth() const {
   const Vec2 torque = arm_.joint_torque_n_m();
   return fmt::format(
       "tip_x={:.6f} tip_y={:.6f} force={:.4f} penetration_mm={:.5f} torque_1={:.5f} torque_2={:.5f} "
-      "temperature_1={:.2f} temperature_2={:.2f} motor_1={:.4f} motor_2={:.4f} flags={}",
+      "temperature_1={:.2f} temperature_2={:.2f} motor_1={:.4f} motor_2={:.4f} brake_1={:.4f} brake_2={:.4f} "
+      "motor_angle_1={:.6f} motor_angle_2={:.6f} "
+      "output={} flags={}",
       tip[0], tip[1], contact.normal_force_n, 1e3 * contact.penetration_m, torque[0], torque[1],
-      arm_.temperature_c()[0], arm_.temperature_c()[1], applied_[0], applied_[1], flags());
+      arm_.temperature_c()[0], arm_.temperature_c()[1], applied_[0], applied_[1], brake_[0],
+      brake_[1], arm_.state().motor_rad[0], arm_.state().motor_rad[1], static_cast<int>(output()), flags());
 }
 
 }  // namespace hirosco::simulation

@@ -18,7 +18,8 @@ struct RobotSensors {
 /// TORQUE DOUBLE[2], TEMPERATURE FLOAT[2], SPRING UINT8 (rad, rad/s, N m, C; the spring that is hooked, 0: none).
 /// From it: TORQUE DOUBLE[2] of the motors, SPRING UINT8: a change of it hooks or releases, and hooks nothing that is not
 /// within reach of the tip.
-/// Stop mode: the drives brake by themselves; Off: no torque (the arm has no brakes).
+/// Has every declared stop. A controlled one damps and gives way by the joints' own sensors, then holds what load is left;
+/// after it, and to hold at once, the brakes grip. They slip beyond brake_torque_n_m.
 /// Faults besides the common ones:
 ///   temperature JOINT C | hook SPRING | release | friction on|off | noise N_M | thermal_accel FACTOR
 ///   (joints and springs count from 1)
@@ -26,6 +27,7 @@ class RobotDevice final : public SimulatedDevice {
  public:
   static constexpr std::size_t sensor_octets = 5 * 16 + 2 * 4 + 1;
   static constexpr std::size_t command_octets = 17;
+  static constexpr double brake_torque_n_m = 30;
 
   RobotDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {}, const ArmParameters& arm = {},
               const RobotSensors& sensors = {});
@@ -33,8 +35,9 @@ class RobotDevice final : public SimulatedDevice {
   /// World truth: tip, contact, joint torque, temperature.
   [[nodiscard]] const TwoJointArm& arm() const noexcept { return arm_; }
   [[nodiscard]] TwoJointArm& arm() noexcept { return arm_; }
-  /// What the motors did in the last cycle.
+  /// What the motors did in the last cycle, and what the brakes.
   [[nodiscard]] const Vec2& motor_torque_n_m() const noexcept { return applied_; }
+  [[nodiscard]] const Vec2& brake_n_m() const noexcept { return brake_; }
 
  private:
   void ask_for(std::uint8_t spring) noexcept;
@@ -43,6 +46,9 @@ class RobotDevice final : public SimulatedDevice {
   void write_sensors(OctetWriter& payload) noexcept override;
   [[nodiscard]] Result<> do_fault(const Words& words) override;
   [[nodiscard]] std::string do_truth() const override;
+  [[nodiscard]] bool can(Stop) const noexcept override { return true; }
+  [[nodiscard]] Vec2 coming_to_rest() noexcept;
+  [[nodiscard]] Vec2 gripping(const Vec2& load_n_m, double stiffness_n_m_per_rad) noexcept;
 
   TwoJointArm arm_;
   RobotSensors sensors_;
@@ -50,6 +56,9 @@ class RobotDevice final : public SimulatedDevice {
   Vec2 commanded_{};
   std::uint8_t spring_asked_{0};
   Vec2 applied_{};
+  Vec2 brake_{};
+  DeviceOutput output_before_{DeviceOutput::Off};
+  std::optional<Vec2> gripped_rad_;  ///< where it is held without load
 };
 
 }  // namespace hirosco::simulation

@@ -57,6 +57,10 @@ SimulatedDevice::SimulatedDevice(FlowFactory& flows, FlowAddress address, const 
 
 Result<> SimulatedDevice::plug() {
   if (flow_ != nullptr) return ok();
+  if (!can(settings_.stop)) return fail(ErrorCode::InvalidArgument, "a stop that this device does not have");
+  if (settings_.enable) {
+    HIROSCO_TRY_LET(enable_flow_, flows_.open(*settings_.enable, FlowSide::Device));
+  }
   HIROSCO_TRY_LET(flow_, flows_.open(address_, FlowSide::Device));
   return ok();
 }
@@ -65,23 +69,30 @@ void SimulatedDevice::step(TimePoint now) {
   const bool first = !std::exchange(started_, true);
   if (!first) forgive_pause(now);
   now_ = now;
+  receive_enable(now);
   const bool exchanged = receive(now);
   // The first exchange moves the world by a cycle, as all that follow do.
   if (first) world_time_ = exchanged ? now - settings_.cycle : now;
   watch(now);
+  choose_output(now);
   const std::int64_t due = due_cycles(now, exchanged);
   const Duration cycle = settings_.clock == 1 ? settings_.cycle : milliseconds_of(1e3 * settings_.clock * seconds(settings_.cycle));
-  for (std::int64_t i = 0; i < due; ++i) advance(cycle);
+  for (std::int64_t i = 0; i < due; ++i) {
+    advance(cycle);
+    count_down(cycle);
+  }
   cycles_ += static_cast<std::uint64_t>(due);
   if (!exchanged) own_cycles_ += static_cast<std::uint64_t>(due);
   if (due > 0 || exchanged) answer(now);
   send_due(now);
+  answer_enable();
 }
 
 TimePoint SimulatedDevice::next_wake() const noexcept {
   if (!started_) return now_;
   TimePoint wake = world_time_ + settings_.cycle * (by_own_clock_ ? 1 : 2);
   if (mode_ != DeviceMode::Off && !watchdog_tripped()) wake = std::min(wake, watchdog_at_);
+  if (output_ == DeviceOutput::Active && settings_.enable) wake = std::min(wake, enable_until_);
   if (delayed_count_ > 0) wake = std::min(wake, delayed_[delayed_first_].due);
   return wake;
 }
@@ -106,14 +117,23 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
     raise(device_flag::old_epoch_refused, true);
     return false;
   }
-  if (command.mode == DeviceMode::Active && !take(OctetReader{command.payload, settings_.byte_order})) {
+  // An epoch that the supervisor's side has not named yet: heard and answered, not obeyed. Taken over, a wrong one would
+  // shut out all that come later.
+  if (settings_.enable && command.epoch > (enable_ ? enable_->epoch : 0)) {
+    sequence_ = command.sequence;
+    mode_ = DeviceMode::Off;
+    return true;
+  }
+  // An expired watchdog trips before a late command of the same epoch can hide it.
+  watch(now);
+  const bool latched = watchdog_tripped() && command.epoch == epoch_;
+  const bool obeyed = command.mode == DeviceMode::Active && !latched && enabled(command.epoch, now);
+  if (obeyed && !take(OctetReader{command.payload, settings_.byte_order})) {
     ++damaged_commands_;
     return false;
   }
   raise(device_flag::old_epoch_refused, false);
-  // An expired watchdog trips before a late command of the same epoch can hide it.
-  watch(now);
-  if (command.epoch > epoch_) raise(device_flag::watchdog_tripped, false);
+  raise(device_flag::watchdog_tripped, latched);
   epoch_ = command.epoch;
   sequence_ = command.sequence;
   mode_ = command.mode;
@@ -121,6 +141,62 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
   const Duration wanted = std::chrono::microseconds{command.watchdog_us};
   watchdog_at_ = now + (command.watchdog_us == 0 ? settings_.watchdog : std::min(wanted, longest_watchdog));
   return true;
+}
+
+void SimulatedDevice::receive_enable(TimePoint now) noexcept {
+  if (enable_flow_ == nullptr) return;
+  std::array<std::byte, max_device_frame_octets> buffer;
+  const auto received = enable_flow_->receive(buffer);
+  if (!received || received->flow != Flow::New) return;
+  const auto command = read_enable_command(Octets{buffer}.first(std::min(received->octets, buffer.size())));
+  if (!command) {
+    ++damaged_commands_;
+    return;
+  }
+  enable_asked_ = command->sequence;
+  // A repetition is no sign of life, and nobody goes back to what was given before.
+  if (enable_ && (command->sequence == enable_->sequence || command->epoch < enable_->epoch)) return;
+  enable_ = *command;
+  enable_until_ = now + settings_.enable_limit;
+}
+
+bool SimulatedDevice::enabled(std::uint32_t epoch, TimePoint now) const noexcept {
+  if (!settings_.enable) return true;
+  return enable_flow_ != nullptr && enable_ && enable_->enabled == 1 && enable_->epoch == epoch && now < enable_until_;
+}
+
+/// Latches what was taken away from a moving device: a motion may not go on by itself when the enable comes back.
+void SimulatedDevice::choose_output(TimePoint now) noexcept {
+  const bool given = enabled(epoch_, now);
+  const bool wanted = mode_ == DeviceMode::Active && !watchdog_tripped();
+  if (given && wanted) {
+    output_ = DeviceOutput::Active;
+    return;
+  }
+  if (output_ == DeviceOutput::Active && wanted) raise(device_flag::watchdog_tripped, true);
+  if (output_ != DeviceOutput::Active) return;
+  stop_left_ = settings_.stop == Stop::Controlled ? settings_.stop_within : Duration{0};
+  switch (settings_.stop) {
+    case Stop::Drop: output_ = DeviceOutput::Off; return;
+    case Stop::Hold: output_ = DeviceOutput::Holding; return;
+    case Stop::Controlled: output_ = stop_left_ > Duration{0} ? DeviceOutput::Stopping : DeviceOutput::Holding; return;
+  }
+}
+
+void SimulatedDevice::count_down(Duration cycle) noexcept {
+  if (output_ != DeviceOutput::Stopping) return;
+  stop_left_ -= cycle;
+  if (stop_left_ <= Duration{0}) output_ = DeviceOutput::Holding;
+}
+
+void SimulatedDevice::answer_enable() noexcept {
+  const auto asked = std::exchange(enable_asked_, std::nullopt);
+  if (!asked || enable_flow_ == nullptr) return;
+  std::array<std::byte, enable_frame_octets> buffer;
+  const auto status =
+      write_enable_status(buffer, {.output = output_, .flags = flags_, .epoch = epoch_, .sequence = *asked});
+  // Nobody listening is no matter of a device's.
+  if (status) (void)enable_flow_->send(*status);
 }
 
 /// A pause of this very program (a stopped virtual machine, a debugger) is no time that the device had: real hardware
@@ -136,11 +212,13 @@ void SimulatedDevice::forgive_pause(TimePoint now) noexcept {
   // The world may be ahead by less than a cycle: then the wake that was planned lay later by that.
   if (const Duration lost = std::min(pause, now - world_time_ - expected); lost > settings_.cycle / 2)
     world_time_ += lost;
+  enable_until_ += pause;
   if (mode_ == DeviceMode::Off) return;
   watchdog_at_ += pause;
   if (pause <= settings_.cycle / 2 || starved_ >= longest_starvation) return;
   starved_ += expected;
   watchdog_at_ += expected;
+  enable_until_ += expected;
 }
 
 void SimulatedDevice::watch(TimePoint now) noexcept {
@@ -217,6 +295,7 @@ Result<> SimulatedDevice::apply_fault(const Words& words) {
     if (what == "plug") return plug();
     if (what != "unplug") return ok();
     flow_.reset();
+    enable_flow_.reset();
     delayed_count_ = 0;
     return ok();
   }

@@ -13,6 +13,7 @@
 
 #include "hirosco/data_transfer/data_flow.hpp"
 #include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/enable_frame.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -39,11 +40,21 @@ class Words {
 /// A device as its subsystem meets it: answers each command frame with a status frame, keeps a watchdog of its own,
 /// fences old epochs, and can be made to fail. Pure logic, stepped from outside: by the exchange of frames, and by the
 /// clock once a command is overdue by a cycle, so that the world does not freeze when its subsystem dies (decision 29).
-/// Watchdog: armed by the first command that is not Off. When it trips the output is off, latched, until a command with a
+/// Watchdog: armed by the first command that is not Off. When it trips the device stops, latched, until a command with a
 /// higher epoch arrives (decision 7).
+/// With an enable endnode (enable_frame.hpp) payloads reach the motors only while the newest enable command says so, names
+/// the epoch of the subsystem's frames and is young enough; frames of an epoch that none has named are not obeyed. Whoever
+/// takes a moving device's command away, by mode, silence or enable, makes it carry out its declared stop by itself; one
+/// whose enable was taken away moves again only with a higher epoch.
 /// Realtime: step() is bounded and does not allocate while plugged. Thread: one.
 class SimulatedDevice {
  public:
+  /// What it does by itself when its command is taken away.
+  enum class Stop : std::uint8_t {
+    Drop,  ///< no force at once
+    Controlled,  ///< comes to rest within `stop_within`, then holds
+    Hold,  ///< holds where it is
+  };
   struct Settings {
     Duration cycle{std::chrono::microseconds{500}};
     Duration watchdog{std::chrono::milliseconds{10}};  ///< while commands ask for none
@@ -51,6 +62,10 @@ class SimulatedDevice {
     std::uint64_t seed{1};
     /// How fast its world runs against the craft; 1 is right. A report that cannot see another number shows nothing.
     double clock{1};
+    Stop stop{Stop::Drop};
+    Duration stop_within{0};  ///< of Stop::Controlled
+    std::optional<FlowAddress> enable{};  ///< endnode of its second inhibit; none: the subsystem's frames suffice
+    Duration enable_limit{hirosco::enable_limit};  ///< an older enable command counts as withdrawn
   };
   struct Injection {
     TimePoint at{};
@@ -61,7 +76,7 @@ class SimulatedDevice {
   SimulatedDevice(const SimulatedDevice&) = delete;
   SimulatedDevice& operator=(const SimulatedDevice&) = delete;
 
-  /// Opens the flow (the device's side). `flows` must outlive the device.
+  /// Opens the flows (the device's side). `flows` must outlive the device. InvalidArgument: it has no such stop.
   [[nodiscard]] Result<> plug();
   [[nodiscard]] bool plugged() const noexcept { return flow_ != nullptr; }
 
@@ -80,8 +95,9 @@ class SimulatedDevice {
 
   [[nodiscard]] std::uint16_t flags() const noexcept { return flags_; }
   [[nodiscard]] bool watchdog_tripped() const noexcept { return (flags_ & device_flag::watchdog_tripped) != 0; }
+  [[nodiscard]] DeviceOutput output() const noexcept { return output_; }
   /// True while payloads of commands reach the motors.
-  [[nodiscard]] bool active() const noexcept { return mode_ == DeviceMode::Active && !watchdog_tripped(); }
+  [[nodiscard]] bool active() const noexcept { return output_ == DeviceOutput::Active; }
   /// Cycles that the world has moved, and how many of them the own clock drove.
   [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_; }
   [[nodiscard]] std::uint64_t own_cycles() const noexcept { return own_cycles_; }
@@ -96,7 +112,8 @@ class SimulatedDevice {
   void raise(std::uint16_t flag, bool on) noexcept {
     flags_ = static_cast<std::uint16_t>(on ? flags_ | flag : flags_ & ~flag);
   }
-  [[nodiscard]] DeviceMode mode() const noexcept { return watchdog_tripped() ? DeviceMode::Off : mode_; }
+  /// Of Stop::Controlled, while output() is Stopping: what is left of its time.
+  [[nodiscard]] Duration stop_left() const noexcept { return stop_left_; }
   [[nodiscard]] std::endian byte_order() const noexcept { return settings_.byte_order; }
 
  private:
@@ -106,7 +123,7 @@ class SimulatedDevice {
     TimePoint due{};
   };
 
-  /// Moves the world by one cycle under the last accepted payload; mode() tells what to do with it.
+  /// Moves the world by one cycle under the last accepted payload; output() tells what to do with it.
   virtual void advance(Duration cycle) noexcept = 0;
   /// Takes the payload of an accepted active command. Malformed: wrong size.
   [[nodiscard]] virtual Result<> take(OctetReader payload) noexcept = 0;
@@ -114,9 +131,16 @@ class SimulatedDevice {
   /// A fault line of the device's own. InvalidArgument: not known here either.
   [[nodiscard]] virtual Result<> do_fault(const Words& words) = 0;
   [[nodiscard]] virtual std::string do_truth() const = 0;
+  /// Which stops it has.
+  [[nodiscard]] virtual bool can(Stop stop) const noexcept { return stop == Stop::Drop; }
 
   [[nodiscard]] bool receive(TimePoint now) noexcept;
   [[nodiscard]] bool accept(const DeviceCommand& command, TimePoint now) noexcept;
+  void receive_enable(TimePoint now) noexcept;
+  [[nodiscard]] bool enabled(std::uint32_t epoch, TimePoint now) const noexcept;
+  void choose_output(TimePoint now) noexcept;
+  void count_down(Duration cycle) noexcept;
+  void answer_enable() noexcept;
   void forgive_pause(TimePoint now) noexcept;
   void watch(TimePoint now) noexcept;
   [[nodiscard]] std::int64_t due_cycles(TimePoint now, bool exchanged) noexcept;
@@ -130,6 +154,7 @@ class SimulatedDevice {
   FlowAddress address_;
   Settings settings_;
   std::unique_ptr<DataFlow> flow_;
+  std::unique_ptr<DataFlow> enable_flow_;
 
   bool peer_gone_{false};
   bool started_{false};
@@ -145,6 +170,11 @@ class SimulatedDevice {
   std::uint32_t sequence_{0};
   std::uint16_t flags_{0};
   TimePoint watchdog_at_{TimePoint::max()};
+  std::optional<EnableCommand> enable_;  ///< newest that counts
+  TimePoint enable_until_{};
+  std::optional<std::uint32_t> enable_asked_;  ///< not yet answered
+  DeviceOutput output_{DeviceOutput::Off};
+  Duration stop_left_{};
   Duration starved_{};  ///< steps since the last command that the watchdog does not count
 
   TimePoint silent_until_{};
