@@ -31,6 +31,10 @@ constexpr Duration control_period = std::chrono::milliseconds{10};
 
 // Numbers of descriptor::Transfer, which ranks above the flows that this program opens.
 const std::map<std::string, std::uint8_t> transfers{{"shared_memory", 0}, {"unix", 2}, {"udp", 3}};
+const std::map<std::string, std::endian> byte_orders{{"little", std::endian::little}, {"big", std::endian::big}};
+const std::map<std::string, SimulatedDevice::Stop> stops{{"drop", SimulatedDevice::Stop::Drop},
+                                                         {"controlled", SimulatedDevice::Stop::Controlled},
+                                                         {"hold", SimulatedDevice::Stop::Hold}};
 
 struct Options {
   std::uint8_t transfer{0};
@@ -38,6 +42,11 @@ struct Options {
   std::string control;
   std::uint64_t seed{1};
   std::int64_t cycle_us{500};
+  std::endian byte_order{std::endian::little};
+  SimulatedDevice::Stop stop{SimulatedDevice::Stop::Drop};
+  std::int64_t stop_within_ms{0};
+  std::uint8_t enable_transfer{0};
+  std::string enable_address;
   std::vector<std::string> settings;
 };
 
@@ -49,6 +58,13 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
   app.add_option("--control", options.control, "Path of the control socket");
   app.add_option("--seed", options.seed, "Seed of all that is random");
   app.add_option("--cycle-us", options.cycle_us, "Device cycle")->check(CLI::Range(100, 100'000));
+  app.add_option("--byte-order", options.byte_order, "Of the payload")->transform(CLI::CheckedTransformer{byte_orders});
+  app.add_option("--stop", options.stop, "What it does by itself when its command is taken away")
+      ->transform(CLI::CheckedTransformer{stops});
+  app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")->check(CLI::Range(0, 60'000));
+  app.add_option("--enable-transfer", options.enable_transfer, "Means of transfer of the second inhibit")
+      ->transform(CLI::CheckedTransformer{transfers});
+  app.add_option("--enable-address", options.enable_address, "Its address; without one there is none");
   app.add_option("--set", options.settings, "NAME=VALUE, carried out at the start");
   try {
     app.parse(argc, argv);
@@ -129,7 +145,13 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
   if (const auto code = read_options(argc, argv, name, options)) return *code;
   hold_back_ending_signals();
   SystemFlowFactory flows;
-  const SimulatedDevice::Settings settings{.cycle = std::chrono::microseconds{options.cycle_us}, .seed = options.seed};
+  SimulatedDevice::Settings settings{.cycle = std::chrono::microseconds{options.cycle_us},
+                                     .byte_order = options.byte_order,
+                                     .seed = options.seed,
+                                     .stop = options.stop,
+                                     .stop_within = std::chrono::milliseconds{options.stop_within_ms}};
+  if (!options.enable_address.empty()) settings.enable = {options.enable_transfer, options.enable_address};
+  if (!realtime_permitted()) settings.enable_limit = enable_limit_reduced;
   const auto device = make(flows, {options.transfer, options.address}, settings);
   ControlSocket control;
   if (const auto ready = prepare(*device, control, options); !ready) {

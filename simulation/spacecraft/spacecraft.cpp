@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "hirosco/pus/st08_function.hpp"
+#include "simulation/devices/described_device.hpp"
 
 namespace hirosco::simulation {
 namespace {
@@ -137,25 +138,26 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
              ? parts.make_log(clock_)
              : std::make_unique<supervisor::DirectPacketLog>(clock_, std::make_unique<BorrowedDatabase>(parts.log));
   for (const auto& described : parts.mission.devices) {
-    const auto* subsystem = parts.mission.find_subsystem(described.subsystem);
     const auto make = parts.devices.find(described.executable);
-    if (subsystem == nullptr || make == parts.devices.end()) continue;
-    for (const auto& configuration : subsystem->subsystem.configurations) {
-      const auto use = std::ranges::find_if(configuration.devices, [&](const auto& candidate) {
-        return subsystem->subsystem.devices[candidate.device].name == described.device;
-      });
-      if (use == configuration.devices.end()) continue;
-      SimulatedDevice::Settings settings;
-      settings.cycle = configuration.sampling;
-      settings.seed = described.seed * 1000 + parts.seed;
-      auto device =
-          make->second(flows_, {static_cast<std::uint8_t>(use->endnode.transfer), use->endnode.address}, settings);
-      if (!device->plug()) break;
-      // Settings of a simulated device are lines of its fault script: <Setting name="hand" value="wander"/>.
-      for (const auto& [name, value] : described.settings) static_cast<void>(device->fault(name + " " + value));
-      devices_.push_back({&described, std::move(device)});
-      break;
+    if (make == parts.devices.end()) continue;
+    auto wanted = described_device(parts.mission, described);
+    const auto told = [&](std::string_view why) {
+      parts.observer.told(clock_.onboard(), "no simulated device " + described.name + ": " + std::string{why});
+    };
+    if (!wanted) {
+      told(wanted.error());
+      continue;
     }
+    wanted->settings.seed = described.seed * 1000 + parts.seed;
+    if (!parts.realtime) wanted->settings.enable_limit = enable_limit_reduced;
+    auto device = make->second(flows_, wanted->address(), wanted->settings);
+    if (const auto plugged = device->plug(); !plugged) {
+      told(plugged.error().text);
+      continue;
+    }
+    // Settings of a simulated device are lines of its fault script: <Setting name="hand" value="wander"/>.
+    for (const auto& [name, value] : described.settings) static_cast<void>(device->fault(name + " " + value));
+    devices_.push_back({&described, std::move(device)});
   }
   const World world{.clock = clock_, .memory = memory_, .flows = flows_, .realtime = parts.realtime, .explain = {}};
   guard_.emplace(supervisor::Guard::Parts{.clock = clock_, .flows = flows_, .first_epoch = 1, .on_finding = [this] {

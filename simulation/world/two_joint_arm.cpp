@@ -132,10 +132,35 @@ void TwoJointArm::step(const Vec2& motor_torque_n_m, Duration span) noexcept {
   const double h = seconds(span) / static_cast<double>(sub_steps);
   Numbers x{state_.motor_rad[0], state_.motor_rad[1], state_.motor_rad_s[0], state_.motor_rad_s[1],
             state_.link_rad[0],  state_.link_rad[1],  state_.link_rad_s[0],  state_.link_rad_s[1]};
-  for (std::int64_t i = 0; i < sub_steps; ++i)
-    x = runge_kutta_4(x, h, [&](const Numbers& at) { return derivative(at, applied); });
+  for (std::int64_t i = 0; i < sub_steps; ++i) {
+    const int pieces = pieces_of(x, h);
+    for (int piece = 0; piece < pieces; ++piece)
+      x = runge_kutta_4(x, h / pieces, [&](const Numbers& at) { return derivative(at, applied); });
+  }
   state_ = {{x[0], x[1]}, {x[2], x[3]}, {x[4], x[5]}, {x[6], x[7]}};
   heat(applied, seconds(span));
+}
+
+/// Friction of a pressed finger is the stiffest part: near rest it damps the sliding motion at a rate of mu N / (v0 m), m
+/// the mass of the arm as felt along the rail. A step has to stay below a part of that time, or a sticking finger creeps.
+int TwoJointArm::pieces_of(const Numbers& x, double h) const noexcept {
+  constexpr double largest_share = 0.5;
+  constexpr double most_pieces = 32;  // so that a cycle is bounded: beyond 1 kN at 125 us
+  const ContourParameters& contour = parameters_.contour;
+  const Vec2 link{x[4], x[5]};
+  const Vec2 tip = tip_of(parameters_, link);
+  if (contour.friction == 0 || tip[0] + contour.finger_radius_m < contour.rail_x_m - contour.bump_height_m) return 1;
+  const Mat2 jacobian = jacobian_of(parameters_, link);
+  const Vec2 velocity = times(jacobian, {x[6], x[7]});
+  const Contact contact = contact_at(contour, tip, velocity);
+  const double deeper_n = contour.stiffness_n_per_m * std::hypot(velocity[0], velocity[1]) * h;
+  const double normal_n = contact.normal_force_n + (contact.penetration_m > 0 ? deeper_n : 0);
+  if (normal_n <= 0) return 1;
+  // Along y, as if there were no bump: its slope of at most 38 degrees changes what is felt by less than the share's reserve.
+  const Vec2 along = transposed_times(jacobian, {0, 1});
+  const double felt_per_kg = dot(along, solve(mass_matrix(parameters_, link), along));
+  const double rate = contour.friction * normal_n / contour.friction_speed_m_s * felt_per_kg;
+  return static_cast<int>(std::clamp(std::ceil(h * rate / largest_share), 1.0, most_pieces));
 }
 
 void TwoJointArm::heat(const Vec2& motor_torque_n_m, double span_s) noexcept {

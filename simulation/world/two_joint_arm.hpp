@@ -90,7 +90,8 @@ struct Contact {
   Vec2 force_n{};  ///< on the tip, friction included
 };
 
-/// Steps by Runge-Kutta with sub-steps of at most `largest_sub_step`; the same bits from the same inputs.
+/// Steps by Runge-Kutta with sub-steps of at most `largest_sub_step`, shorter the harder the finger presses: 31 us at 140 N;
+/// the same bits from the same inputs.
 /// Realtime: bounded by the span, no allocation. Thread: one.
 class TwoJointArm {
  public:
@@ -131,6 +132,7 @@ class TwoJointArm {
  private:
   using Numbers = std::array<double, 8>;
   [[nodiscard]] Numbers derivative(const Numbers& x, const Vec2& motor_torque_n_m) const noexcept;
+  [[nodiscard]] int pieces_of(const Numbers& x, double h) const noexcept;
   [[nodiscard]] Vec2 tip_force(const Vec2& tip, const Vec2& velocity) const noexcept;
   [[nodiscard]] Vec2 spring_force_at(const Vec2& tip) const noexcept;
   void heat(const Vec2& motor_torque_n_m, double seconds) noexcept;

@@ -161,6 +161,28 @@ TEST(TwoJointArm, IsPulledByAStretchedSpringAlongIt) {
   EXPECT_EQ(arm.spring_force_n(), (Vec2{}));
 }
 
+/// Pressed by constant motor torques for a second, with a pull along the rail of a tenth of what friction holds; the way
+/// along the rail in the second half of it.
+double creep_m(double press_n, Duration largest_sub_step) {
+  ArmParameters parameters;
+  parameters.largest_sub_step = largest_sub_step;
+  TwoJointArm arm{parameters};
+  const Vec2 torque = transposed_times(arm.jacobian(), {press_n, 0.015 * press_n});
+  constexpr Duration cycle = std::chrono::microseconds{500};
+  for (int k = 0; k < 1000; ++k) arm.step(torque, cycle);
+  const double before = arm.tip_m()[1];
+  for (int k = 0; k < 1000; ++k) arm.step(torque, cycle);
+  return arm.tip_m()[1] - before;
+}
+
+TEST(TwoJointArm, AFingerThatSticksDoesNotCreepForTheStepSizesSakeHoweverHardItPresses) {
+  for (const double press_n : {40.0, 150.0, 250.0, 370.0}) {
+    const double as_flown = creep_m(press_n, ArmParameters{}.largest_sub_step);
+    const double converged = creep_m(press_n, std::chrono::microseconds{2});
+    EXPECT_NEAR(as_flown, converged, 2e-6) << press_n << " N, m in half a second";
+  }
+}
+
 TEST(Contact, PushesWithStiffnessTimesDepthAndMoreWhenClosing) {
   const Contact rest = contact_at(flat_rail(), {0.341, -0.02}, {});
   EXPECT_NEAR(rest.penetration_m, 0.001, 1e-15);

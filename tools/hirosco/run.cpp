@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "simulation/devices/described_device.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/platform/process_launcher.hpp"
 #include "tools/hirosco/commands.hpp"
@@ -22,31 +23,24 @@ namespace {
   return {};
 }
 
-[[nodiscard]] const descriptor::Endnode* endnode_of(const descriptor::Mission& mission,
-                                                    const descriptor::SimulatedDevice& device) {
-  const auto* member = mission.find_subsystem(device.subsystem);
-  if (member == nullptr) return nullptr;
-  for (const auto& configuration : member->subsystem.configurations)
-    for (const auto& use : configuration.devices)
-      if (member->subsystem.devices[use.device].name == device.device) return &use.endnode;
-  return nullptr;
-}
-
 [[nodiscard]] std::optional<ProcessStart> device_start(const descriptor::Mission& mission,
                                                        const descriptor::SimulatedDevice& device,
                                                        const std::filesystem::path& folder) {
   const auto program = supervisor::find_program(device.executable);
-  const auto* endnode = endnode_of(mission, device);
-  if (program.empty() || endnode == nullptr) {
+  const auto made = simulation::described_device(mission, device);
+  if (!made) {
+    fmt::print(stderr, "hirosco run: no simulated device {}: {}\n", device.name, made.error());
+    return std::nullopt;
+  }
+  if (program.empty()) {
     fmt::print(stderr, "hirosco run: no program {} for the simulated device {}\n", device.executable, device.name);
     return std::nullopt;
   }
   ProcessStart start;
   start.executable = program.string();
-  start.arguments = {"--transfer", std::string{to_text(endnode->transfer)},
-                     "--address",  endnode->address,
-                     "--seed",     std::to_string(device.seed),
-                     "--control",  (folder / device.name).string()};
+  start.arguments = made->arguments();
+  start.arguments.insert(start.arguments.end(), {"--seed", std::to_string(device.seed), "--control",
+                                                 (folder / device.name).string()});
   for (const auto& [name, value] : device.settings)
     start.arguments.insert(start.arguments.end(), {"--set", name + "=" + value});
   return start;
