@@ -151,6 +151,25 @@ TEST(Enable, IsAnsweredWhateverTheSubsystemDoes) {
   EXPECT_TRUE(bench.status()) << "also one of an old epoch, which changes nothing";
 }
 
+TEST(Enable, IsHeardAgainAfterTheDeviceWasUnpluggedAndPlugged) {
+  Guarded bench{actuator(SimulatedDevice::Stop::Drop)};
+  for (std::uint32_t epoch = 1; epoch <= 10; ++epoch) {
+    bench.give(1, epoch);
+    bench.command(DeviceMode::Active, epoch, {5, 0});
+    bench.step();
+    ASSERT_EQ(bench.device.motor_torque_n_m()[0], 5) << epoch;
+    ASSERT_TRUE(bench.status()) << epoch;
+    ASSERT_TRUE(bench.device.fault("unplug"));
+    bench.give(1, epoch);
+    bench.step();
+    ASSERT_EQ(bench.device.motor_torque_n_m()[0], 0) << epoch;
+    ASSERT_FALSE(bench.status()) << epoch;
+    ASSERT_TRUE(bench.device.fault("plug"));
+    bench.frames.reset();
+    bench.frames = bench.flows.open(frames_at, FlowSide::Subsystem).value();
+  }
+}
+
 TEST(Enable, ADeviceWithoutItsEndnodeBehavesAsBefore) {
   auto settings = actuator(SimulatedDevice::Stop::Drop);
   settings.enable.reset();

@@ -58,7 +58,7 @@ SimulatedDevice::SimulatedDevice(FlowFactory& flows, FlowAddress address, const 
 Result<> SimulatedDevice::plug() {
   if (flow_ != nullptr) return ok();
   if (!can(settings_.stop)) return fail(ErrorCode::InvalidArgument, "a stop that this device does not have");
-  if (settings_.enable) {
+  if (settings_.enable && enable_flow_ == nullptr) {
     HIROSCO_TRY_LET(enable_flow_, flows_.open(*settings_.enable, FlowSide::Device));
   }
   HIROSCO_TRY_LET(flow_, flows_.open(address_, FlowSide::Device));
@@ -147,7 +147,8 @@ void SimulatedDevice::receive_enable(TimePoint now) noexcept {
   if (enable_flow_ == nullptr) return;
   std::array<std::byte, max_device_frame_octets> buffer;
   const auto received = enable_flow_->receive(buffer);
-  if (!received || received->flow != Flow::New) return;
+  // Unplugged it hears nothing. The flow stays open: its other end is never opened a second time.
+  if (!received || received->flow != Flow::New || flow_ == nullptr) return;
   const auto command = read_enable_command(Octets{buffer}.first(std::min(received->octets, buffer.size())));
   if (!command) {
     ++damaged_commands_;
@@ -162,7 +163,7 @@ void SimulatedDevice::receive_enable(TimePoint now) noexcept {
 
 bool SimulatedDevice::enabled(std::uint32_t epoch, TimePoint now) const noexcept {
   if (!settings_.enable) return true;
-  return enable_flow_ != nullptr && enable_ && enable_->enabled == 1 && enable_->epoch == epoch && now < enable_until_;
+  return enable_ && enable_->enabled == 1 && enable_->epoch == epoch && now < enable_until_;
 }
 
 /// Latches what was taken away from a moving device: a motion may not go on by itself when the enable comes back.
@@ -191,7 +192,7 @@ void SimulatedDevice::count_down(Duration cycle) noexcept {
 
 void SimulatedDevice::answer_enable() noexcept {
   const auto asked = std::exchange(enable_asked_, std::nullopt);
-  if (!asked || enable_flow_ == nullptr) return;
+  if (!asked || flow_ == nullptr) return;
   std::array<std::byte, enable_frame_octets> buffer;
   const auto status =
       write_enable_status(buffer, {.output = output_, .flags = flags_, .epoch = epoch_, .sequence = *asked});
@@ -295,7 +296,7 @@ Result<> SimulatedDevice::apply_fault(const Words& words) {
     if (what == "plug") return plug();
     if (what != "unplug") return ok();
     flow_.reset();
-    enable_flow_.reset();
+    enable_.reset();
     delayed_count_ = 0;
     return ok();
   }

@@ -144,7 +144,7 @@ void TwoJointArm::step(const Vec2& motor_torque_n_m, Duration span) noexcept {
 /// Friction of a pressed finger is the stiffest part: near rest it damps the sliding motion at a rate of mu N / (v0 m), m
 /// the mass of the arm as felt along the rail. A step has to stay below a part of that time, or a sticking finger creeps.
 int TwoJointArm::pieces_of(const Numbers& x, double h) const noexcept {
-  constexpr double largest_share = 0.5;
+  constexpr double largest_share = 0.9;
   constexpr double most_pieces = 32;  // so that a cycle is bounded: beyond 1 kN at 125 us
   const ContourParameters& contour = parameters_.contour;
   const Vec2 link{x[4], x[5]};

@@ -168,10 +168,10 @@ double creep_m(double press_n, Duration largest_sub_step) {
   parameters.largest_sub_step = largest_sub_step;
   TwoJointArm arm{parameters};
   const Vec2 torque = transposed_times(arm.jacobian(), {press_n, 0.015 * press_n});
-  constexpr Duration cycle = std::chrono::microseconds{500};
-  for (int k = 0; k < 1000; ++k) arm.step(torque, cycle);
+  constexpr Duration half_ms = std::chrono::microseconds{500};
+  for (int k = 0; k < 1000; ++k) arm.step(torque, half_ms);
   const double before = arm.tip_m()[1];
-  for (int k = 0; k < 1000; ++k) arm.step(torque, cycle);
+  for (int k = 0; k < 1000; ++k) arm.step(torque, half_ms);
   return arm.tip_m()[1] - before;
 }
 
