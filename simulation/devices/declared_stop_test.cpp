@@ -161,7 +161,7 @@ TEST(Enable, IsHeardAgainAfterTheDeviceWasUnpluggedAndPlugged) {
     ASSERT_TRUE(bench.status()) << epoch;
     ASSERT_TRUE(bench.device.fault("unplug"));
     bench.give(1, epoch);
-    bench.step();
+    for (int k = 0; k < 3; ++k) bench.step();
     ASSERT_EQ(bench.device.motor_torque_n_m()[0], 0) << epoch;
     ASSERT_FALSE(bench.status()) << epoch;
     ASSERT_TRUE(bench.device.fault("plug"));
