@@ -104,6 +104,24 @@ void print_usage(const descriptor::Function& function) {
   return std::nullopt;
 }
 
+[[nodiscard]] bool is_essential(const descriptor::Subsystem& subsystem, const std::string& name) {
+  return std::ranges::any_of(subsystem.functions, [&](const descriptor::Function& function) {
+    return function.essential && lower_case(function.name) == lower_case(name);
+  });
+}
+
+/// As far from the port for telemetry as in the mission, which may be flown on other ports.
+[[nodiscard]] std::uint16_t telecommand_port(const descriptor::Mission& mission, std::uint16_t telemetry_port) {
+  const auto port_of = [](const std::string& address) {
+    int port = 0;
+    const std::size_t digits = address.rfind(':') + 1;
+    std::from_chars(address.data() + digits, address.data() + address.size(), port);
+    return port;
+  };
+  return static_cast<std::uint16_t>(telemetry_port + port_of(mission.ground.telecommand) -
+                                    port_of(mission.ground.telemetry));
+}
+
 /// Prints one verification report; true when it was the last of the request.
 [[nodiscard]] bool print_report(const pus::TelemetryView& report, double after_ms, bool json, bool& success) {
   OctetReader reader{report.source_data()};
@@ -159,7 +177,14 @@ int telecommand(const TelecommandOptions& options) {
                                               .subtype = 1,
                                               .source = source},
                                              data);
-  if (!packet || !connection->send(*packet)) {
+  // What is essential gets in by the telecommand port whoever fills the other one (docs/adr/0028); without that port the
+  // connection for the reports has to do.
+  auto own =
+      is_essential(*subsystem, options.function)
+          ? GroundConnection::open(options.connection.address, telecommand_port(*mission, options.connection.port))
+          : Result<GroundConnection>{fail(ErrorCode::NotFound, "not essential")};
+  GroundConnection& way = own ? *own : *connection;
+  if (!packet || !way.send(*packet)) {
     fmt::print(stderr, "hirosco tc: the telecommand could not be sent\n");
     return exit_environment;
   }
