@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+// Pings over both hops, ground link to supervisor to subsystem and back, with permission and log, against a bare forwarder
+// that moves the same packets in batches. Ground and subsystem are processes of their own that do nothing else.
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <new>
+
+#include "bench/figures.hpp"
+#include "hirosco/data_transfer/flows/sealed_memory.hpp"
+#include "hirosco/data_transfer/flows/socket_channel.hpp"
+#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/descriptor/read.hpp"
+#include "hirosco/pus/packet.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+#include "supervisor/supervisor.hpp"
+
+namespace hirosco::bench {
+namespace {
+
+constexpr std::uint16_t ground_apid = 2;
+constexpr std::uint16_t echo_apid = 10;
+constexpr int outstanding = 64;
+constexpr int pings = 20'000;
+constexpr int warm_up = 2'000;
+constexpr int repeats = 5;
+
+/// What a round of pings came to, in memory that the ground shares.
+struct Round {
+  double per_second{};
+  Figures round_trip_us{};
+};
+
+void wait_for(int descriptor) {
+  pollfd wanted{.fd = descriptor, .events = POLLIN, .revents = 0};
+  ::poll(&wanted, 1, 100);
+}
+
+/// The ground's process: keeps `outstanding` pings under way and takes each answer by its count.
+Round ping(SocketChannel& channel, const Clock& clock) {
+  std::array<TimePoint, 16'384> sent{};
+  std::vector<std::int64_t> took;
+  took.reserve(pings);
+  int begun = 0;
+  int ended = 0;
+  TimePoint start{};
+  MessageBuffer buffer;
+  std::array<std::byte, 64> octets{};
+  while (ended < warm_up + pings) {
+    while (begun - ended < outstanding && begun < warm_up + pings) {
+      const auto count = static_cast<std::uint16_t>(begun % 16'384);
+      const auto packet = pus::write_telecommand(
+          octets, {.apid = echo_apid, .sequence_count = count, .ack = 0, .service = 17, .subtype = 1, .source = 7}, {});
+      sent[count] = clock.now();
+      if (!channel.send({.kind = MessageKind::GroundTelecommand, .link = 1, .packet = *packet})) break;
+      ++begun;
+    }
+    const auto found = channel.receive(buffer);
+    if (!found) std::_Exit(1);
+    if (found->flow == Flow::None) {
+      wait_for(channel.wait_descriptor());
+      continue;
+    }
+    const auto report = pus::TelemetryView::parse(found->message.packet);
+    if (!report || report->service() != 17 || report->apid() != echo_apid) continue;  // housekeeping, copies
+    const TimePoint now = clock.now();
+    if (ended == warm_up) start = now;
+    if (ended >= warm_up) took.push_back((now - sent[report->sequence_count()]).count());
+    ++ended;
+  }
+  return {pings / seconds(clock.now() - start), figures_of(took, 1e-3)};
+}
+
+/// The subsystem's process: answers each ping with its count.
+[[noreturn]] void echo(SocketChannel& channel, const Clock& clock) {
+  MessageBuffer buffer;
+  std::array<std::byte, 64> octets{};
+  for (;;) {
+    const auto found = channel.receive(buffer);
+    if (!found) std::_Exit(0);
+    if (found->flow == Flow::None) {
+      wait_for(channel.wait_descriptor());
+      continue;
+    }
+    const auto ping = pus::TelecommandView::parse(found->message.packet);
+    if (!ping) continue;
+    const auto answer = pus::write_telemetry(octets,
+                                             {.apid = echo_apid,
+                                              .sequence_count = ping->sequence_count(),
+                                              .service = 17,
+                                              .subtype = 2,
+                                              .destination = ping->source(),
+                                              .time = clock.onboard()},
+                                             {});
+    while (!channel.send({.packet = *answer})) ::usleep(50);
+  }
+}
+
+/// Both ends of a channel, one of which is a child's.
+struct Ends {
+  std::pair<FileDescriptor, FileDescriptor> pair{SocketChannel::make_pair().value()};
+};
+
+class Children {
+ public:
+  ~Children() {
+    for (const pid_t child : children_) {
+      ::kill(child, SIGKILL);
+      ::waitpid(child, nullptr, 0);
+    }
+  }
+  template <class Work>
+  void start(Work work) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+      work();
+      std::_Exit(0);
+    }
+    children_.push_back(child);
+  }
+  /// The first one has ended.
+  [[nodiscard]] bool first_ended() { return ::waitpid(children_.front(), nullptr, WNOHANG) > 0; }
+
+ private:
+  std::vector<pid_t> children_;
+};
+
+/// Hands out what was prepared before the processes began.
+class Prepared final : public supervisor::ProcessLauncher {
+ public:
+  explicit Prepared(SealedMemory& memory) : memory_{memory} {}
+  void offer(std::uint16_t apid, FileDescriptor end) { ends_[apid] = std::move(end); }
+  [[nodiscard]] Result<supervisor::LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override {
+    supervisor::LaunchedSubsystem launched;
+    launched.vital = memory_.map(memory_.create("vital", sizeof(VitalPage)).value(), Access::ReadWrite).value();
+    launched.permit = memory_.map(memory_.create("permit", sizeof(PermitPage)).value(), Access::ReadWrite).value();
+    auto* vital = ::new (launched.vital.octets.data()) VitalPage;
+    ::new (launched.permit.octets.data()) PermitPage;
+    vital->state.store(static_cast<std::uint32_t>(descriptor::State::PreOperational));
+    launched.channel = std::make_unique<SocketChannel>(std::move(ends_[subsystem.subsystem.id]));
+    launched.process = subsystem.subsystem.id;
+    return launched;
+  }
+  [[nodiscard]] std::optional<supervisor::ProcessEnd> ended(std::uint32_t) override { return std::nullopt; }
+  void kill(std::uint32_t) override {}
+
+ private:
+  SealedMemory& memory_;
+  std::map<std::uint16_t, FileDescriptor> ends_;
+};
+
+struct Silent final : supervisor::Observer {
+  void told(OnboardTime, std::string_view) override {}
+};
+
+[[nodiscard]] descriptor::Mission mission_of(const std::filesystem::path& repository) {
+  const auto source = descriptor::file_system();
+  auto reading = descriptor::read_mission(repository / "missions/rokviss/mission.xml", source);
+  if (!reading.value) std::exit(1);
+  descriptor::Mission mission = std::move(*reading.value);
+  // Nothing is commissioned and nothing has devices: ground and subsystem are stand-ins.
+  mission.start_mode.clear();
+  for (auto& member : mission.subsystems) member.subsystem.configurations.clear();
+  return mission;
+}
+
+/// The product: the supervisor between ground and subsystem.
+Round routed(const std::filesystem::path& repository, const SystemClock& clock) {
+  SealedMemory memory;
+  SystemFlowFactory flows;
+  const MemoryHandle figures = memory.create("figures", sizeof(Round)).value();
+  const Mapping shared = memory.map(figures, Access::ReadWrite).value();
+  Ends ground, echoing;
+  Children children;
+  Prepared launcher{memory};
+  children.start([&] {
+    SocketChannel channel{std::move(ground.pair.second)};
+    ::new (shared.octets.data()) Round{ping(channel, clock)};
+  });
+  children.start([&] {
+    SocketChannel channel{std::move(echoing.pair.second)};
+    echo(channel, clock);
+  });
+  ground.pair.second.reset();
+  echoing.pair.second.reset();
+  launcher.offer(ground_apid, std::move(ground.pair.first));
+  launcher.offer(echo_apid, std::move(echoing.pair.first));
+  const auto folder = std::filesystem::temp_directory_path() / ("hirosco-routing-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  {
+    const descriptor::Mission mission = mission_of(repository);
+    Silent silent;
+    supervisor::ThreadedPacketLog log{
+        clock, supervisor::open_database(supervisor::DatabaseStrategy::Sqlite, folder / "log.db").value(), {}};
+    supervisor::Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1, .on_finding = {}}};
+    supervisor::Supervisor craft{
+        {.mission = mission,
+         .world = {.clock = clock, .memory = memory, .flows = flows, .realtime = false, .explain = {}},
+         .launcher = launcher,
+         .guard = guard,
+         .log = log,
+         .open_database = [](supervisor::DatabaseStrategy) -> std::unique_ptr<supervisor::Database> { return nullptr; },
+         .observer = silent}};
+    craft.start();
+    while (!children.first_ended()) {
+      guard.step(clock.now());
+      const TimePoint wake = craft.step(clock.now());
+      std::array<pollfd, 2> waits{};
+      std::size_t used = 0;
+      for (const auto& member : craft.members())
+        if (member.alive() && (member.apid() == ground_apid || member.apid() == echo_apid) && craft.reads(member))
+          waits[used++] = {.fd = member.channel()->wait_descriptor(), .events = POLLIN, .revents = 0};
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(wake - clock.now()).count();
+      ::poll(waits.data(), used, static_cast<int>(std::clamp<std::int64_t>(left, 0, 10)));
+    }
+  }
+  std::filesystem::remove_all(folder);
+  return *reinterpret_cast<const Round*>(shared.octets.data());
+}
+
+/// Moves what waits from one socket to another, many packets in one call.
+void forward(int from, int to) {
+  constexpr int batch = 32;
+  static std::array<std::array<std::byte, 4104>, batch> room;
+  std::array<iovec, batch> parts;
+  std::array<mmsghdr, batch> messages{};
+  for (std::size_t i = 0; i < batch; ++i) {
+    parts[i] = {room[i].data(), room[i].size()};
+    messages[i].msg_hdr.msg_iov = &parts[i];
+    messages[i].msg_hdr.msg_iovlen = 1;
+  }
+  const int got = ::recvmmsg(from, messages.data(), batch, MSG_DONTWAIT, nullptr);
+  for (int i = 0; i < got; ++i)
+    parts[static_cast<std::size_t>(i)].iov_len = messages[static_cast<std::size_t>(i)].msg_len;
+  for (int done = 0; done < got;) {
+    const int sent =
+        ::sendmmsg(to, messages.data() + done, static_cast<unsigned>(got - done), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent > 0) done += sent;
+    else ::usleep(50);
+  }
+}
+
+/// What nobody can be quicker than who does nothing: the same packets, only moved.
+Round forwarded(const SystemClock& clock) {
+  SealedMemory memory;
+  const Mapping shared = memory.map(memory.create("figures", sizeof(Round)).value(), Access::ReadWrite).value();
+  Ends ground, echoing;
+  Children children;
+  children.start([&] {
+    SocketChannel channel{std::move(ground.pair.second)};
+    ::new (shared.octets.data()) Round{ping(channel, clock)};
+  });
+  children.start([&] {
+    SocketChannel channel{std::move(echoing.pair.second)};
+    echo(channel, clock);
+  });
+  const int one = ground.pair.first.get();
+  const int other = echoing.pair.first.get();
+  while (!children.first_ended()) {
+    std::array<pollfd, 2> waits{pollfd{.fd = one, .events = POLLIN, .revents = 0},
+                                pollfd{.fd = other, .events = POLLIN, .revents = 0}};
+    ::poll(waits.data(), waits.size(), 10);
+    if (waits[0].revents != 0) forward(one, other);
+    if (waits[1].revents != 0) forward(other, one);
+  }
+  return *reinterpret_cast<const Round*>(shared.octets.data());
+}
+
+int run(const std::filesystem::path& repository) {
+  const SystemClock clock;
+  Series ours{"hirosco", {}};
+  Series bare{"forwarder", {}};
+  std::vector<double> our_rates, bare_rates, ratios;
+  for (int i = 0; i < repeats; ++i) {
+    const Round mine = routed(repository, clock);
+    const Round other = forwarded(clock);
+    if (mine.per_second <= 0 || other.per_second <= 0) return 1;
+    ours.repeats.push_back(mine.round_trip_us);
+    bare.repeats.push_back(other.round_trip_us);
+    our_rates.push_back(mine.per_second);
+    bare_rates.push_back(other.per_second);
+    ratios.push_back(other.per_second / mine.per_second);
+  }
+  std::printf("Routing: %d pings to a subsystem and back, %d under way, median of %d\n", pings, outstanding, repeats);
+  std::printf("%-28s %10.0f pings/s, with permission and log\n", "hirosco", median(our_rates));
+  std::printf("%-28s %10.0f pings/s, batches of a bare socket\n", "forwarder", median(bare_rates));
+  std::printf("%-28s %10.2f\n", "forwarder / hirosco", median(ratios));
+  ours.print("us there and back");
+  bare.print("us there and back");
+  return 0;
+}
+
+}  // namespace
+}  // namespace hirosco::bench
+
+int main(int argc, char** argv) { return hirosco::bench::run(argc > 1 ? argv[1] : "."); }
