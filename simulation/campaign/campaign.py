@@ -118,7 +118,7 @@ class Campaign:
                     print(f"{row:<28}" + "".join(f"{columns[row].get(name, '-'):>17}" for name in names))
 
 
-def main():
+def parse(words=None):
     default = HERE.parents[1] / "build" / "release" / "bin" / "hirosco-fly-plan"
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("mission")
@@ -133,7 +133,11 @@ def main():
     parser.add_argument("--plant", help="fly with this planted defect")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--fly-plan", default=os.environ.get("HIROSCO_FLY_PLAN", str(default)))
-    arguments = parser.parse_args()
+    return parser.parse_args(words)
+
+
+def main():
+    arguments = parse()
     if arguments.plan:
         result = Pilot(arguments.mission, arguments.fly_plan, arguments.plant).fly(pathlib.Path(arguments.plan).read_text(), arguments.out)
         for invariant, seconds, text in result["violations"]:

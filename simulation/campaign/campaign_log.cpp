@@ -16,13 +16,19 @@ class FaultyDatabase final : public supervisor::Database {
 
  private:
   Result<> do_append(std::span<const LogRecord> batch) override {
-    constexpr int input_output_error = 5, no_space_left = 28, no_such_file = 2;
-    switch (disk_.fault) {
-      case DiskFault::Failing: return fail(ErrorCode::SystemFailure, "input/output error", input_output_error);
-      case DiskFault::Full: return fail(ErrorCode::SystemFailure, "no space left on device", no_space_left);
-      case DiskFault::Deleted: return fail(ErrorCode::SystemFailure, "the file is gone", no_such_file);
-      case DiskFault::None: break;
+    trouble_.present = disk_.fault != DiskFault::None;
+    if (trouble_.present) {
+      // As the real store answers: nothing counts as durable, the same records come again.
+      if (noted_ != disk_.fault) ++trouble_.count;
+      noted_ = disk_.fault;
+      trouble_.fault = disk_.fault == DiskFault::Full      ? supervisor::StoreFault::Full
+                       : disk_.fault == DiskFault::Deleted ? supervisor::StoreFault::Deleted
+                                                           : supervisor::StoreFault::Damaged;
+      trouble_.error = {ErrorCode::Unavailable, "the disk takes nothing"};
+      trouble_.text = "the disk takes nothing";
+      return fail(trouble_.error);
     }
+    noted_ = DiskFault::None;
     for (const LogRecord& record : batch)
       if (!disk_.keeps || disk_.keeps(record)) disk_.records.push_back(record);
     return ok();
@@ -31,8 +37,11 @@ class FaultyDatabase final : public supervisor::Database {
     return supervisor::LogPage{disk_.records, 0};
   }
   [[nodiscard]] std::string_view do_strategy() const noexcept override { return "memory"; }
+  [[nodiscard]] supervisor::StoreTrouble do_trouble() const override { return trouble_; }
 
   Disk& disk_;
+  DiskFault noted_{DiskFault::None};
+  supervisor::StoreTrouble trouble_{};
 };
 
 class SlowLog final : public supervisor::PacketLog {

@@ -270,10 +270,26 @@ class Draw:
             if r.random() < 0.6:
                 self.bring_up(time + r.uniform(0.5, 3))
 
+    def strike_in_use(self):
+        """Both ends of the network are up, ground silences events or commands SAFE_ALL in a hurry, then something breaks."""
+        r, mission = self.random, self.mission
+        acting = [m for m in mission.members if m.name != mission.ground]
+        time = self.bring_up(r.uniform(0.5, FINALE_S - 4))
+        victim = r.choice(acting)
+        if r.random() < 0.5:
+            for event in victim.events:
+                self.add(time + 0.05, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
+        fault = r.choice(["fault unplug", "kill", "stop", "SAFE_ALL"])
+        if fault == "SAFE_ALL":
+            return self.telecommand(time + 0.02, "ground", mission.supervisor, "SAFE_ALL", b"SAFE_ALL".ljust(16, b"\0") + bytes([0]))
+        return self.fault(time + 0.5, fault, victim.name)
+
     def text(self):
         if self.wanted_commands or self.wanted_faults:
             self.aim()
         self.roam()
+        if self.random.random() < 0.5:
+            self.strike_in_use()
         self.lines.sort(key=lambda line: line[0])
         head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}"]
         return "\n".join(head + [f"{time:.6f} {words}" for time, words in self.lines]) + "\n"

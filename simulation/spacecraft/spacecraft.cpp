@@ -192,8 +192,13 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
                     .flows = flows_,
                     .realtime = parts_.realtime,
                     .explain = [this](std::string_view text) { parts_.observer.told(clock_.onboard(), text); }};
+  const Member* before = nullptr;
+  for (const auto& earlier : members_)
+    if (earlier->described->subsystem.id == described.subsystem.id) before = earlier.get();
   members_.push_back(std::make_unique<Member>(described, std::move(author), world));
   Member& member = *members_.back();
+  // Counts outlive the process (decision 8b).
+  if (before != nullptr) member.vital->counters = before->vital->counters;
   member.service_wake = clock_.now();
   supervisor::LaunchedSubsystem launched;
   launched.channel = std::make_unique<ChannelEnd>(member.channels);

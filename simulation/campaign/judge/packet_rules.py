@@ -42,7 +42,8 @@ def i2_one_final_report(flight, victims):
         if wants_end and not finals[key] and key not in starts_failed and key not in ended_below:
             yield record.time, f"TC[{record.telecommand.service},{record.telecommand.subtype}] {record.telecommand.function or ''} to " \
                                f"{name_of(flight, record.peer)} has no final report"
-    whole = {sent.key for sent in flight.sent} | logged  # a damaged packet may bear any request id
+    # A damaged packet may bear any request id.
+    whole = {sent.key for sent in flight.sent} | {r.telecommand.key for r in flight.log if r.kind == "telecommand-forwarded"}
     for key, number in finals.items():
         if number > 1 and key in whole:
             yield 0, f"request {key[1]:08x} of source {key[0]} has {number} final reports"

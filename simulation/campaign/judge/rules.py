@@ -46,6 +46,9 @@ def i4_safe_all_stops_everything(flight, victims):
             continue
         done = next((r.time for r in flight.log if r.report and r.report.service == 1 and r.report.subtype == 7
                      and r.report.request_key == sent.key), None)
+        asked = next((r for r in flight.log if r.telecommand and r.telecommand.key == sent.key), None)
+        if asked and asked.kind != "telecommand-refused" and not asked.telecommand.ack & 8:
+            done = asked.time  # nobody asked for its report
         if done is None or done > sent.time + SAFE_ALL_US:
             refused = next((r.time for r in flight.log if r.kind == "telecommand-refused" and r.telecommand
                             and r.telecommand.key == sent.key), None)
