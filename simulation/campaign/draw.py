@@ -279,8 +279,11 @@ class Draw:
         if r.random() < 0.5:
             for event in victim.events:
                 self.add(time + 0.05, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
-        fault = r.choice(["fault unplug", "kill", "stop", "SAFE_ALL"])
-        if fault == "SAFE_ALL":
+        fault = r.choice(["fault unplug", "kill", "stop", "SAFE_ALL", "SUPERVISOR"])
+        if fault == "SUPERVISOR":  # may anybody change the state of the supervisor itself?
+            for state in (ERROR, POST):
+                self.telecommand(time, "ground", mission.supervisor, "SET_STATE", b"SET_STATE".ljust(16, b"\0") + bytes([1, 1, state]))
+        if fault in ("SAFE_ALL", "SUPERVISOR"):
             return self.telecommand(time + 0.02, "ground", mission.supervisor, "SAFE_ALL", b"SAFE_ALL".ljust(16, b"\0") + bytes([0]))
         return self.fault(time + 0.5, fault, victim.name)
 
@@ -288,8 +291,7 @@ class Draw:
         if self.wanted_commands or self.wanted_faults:
             self.aim()
         self.roam()
-        if self.random.random() < 0.5:
-            self.strike_in_use()
+        self.strike_in_use()
         self.lines.sort(key=lambda line: line[0])
         head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}"]
         return "\n".join(head + [f"{time:.6f} {words}" for time, words in self.lines]) + "\n"
