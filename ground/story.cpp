@@ -47,7 +47,9 @@ constexpr Duration answer_delay = 500ms;
 
 [[nodiscard]] std::string milliseconds(Duration span) {
   const double ms = 1e3 * seconds(span);
-  return ms < 10 ? fmt::format("{:.1f} ms", ms) : ms < 1000 ? fmt::format("{:.0f} ms", ms) : fmt::format("{:.1f} s", ms / 1e3);
+  return ms < 10     ? fmt::format("{:.1f} ms", ms)
+         : ms < 1000 ? fmt::format("{:.0f} ms", ms)
+                     : fmt::format("{:.1f} s", ms / 1e3);
 }
 
 /// One line of the story. Lines of one `kind` are told in one, with all their `names`.
@@ -64,8 +66,8 @@ class Teller {
   Teller(const Catalogue& catalogue, Archive& archive) : catalogue_{catalogue}, archive_{archive} {}
 
   [[nodiscard]] json tell(OnboardTime to) {
-    const auto severe = archive_.events(
-        {.span = {{}, to}, .severity = static_cast<int>(Severity::Medium), .text = {}, .limit = 1000});
+    const auto severe =
+        archive_.events({.span = {{}, to}, .severity = static_cast<int>(Severity::Medium), .text = {}, .limit = 1000});
     const auto safe_all = newest_safe_all(to);
     if (severe.empty() && !safe_all) return {{"causes", json::array()}};
     if (safe_all && (severe.empty() || severe.front().t < safe_all->t)) return told_by_hand(*safe_all);
@@ -94,11 +96,19 @@ class Teller {
     begin_ = command.t;
     mode_ = mode_at(begin_);
     const std::string title = "SAFE ALL: the actuators of all subsystems are inhibited.";
-    const json cause{{"t", json_time(begin_)}, {"after_ms", 0.0}, {"severity", "high"},
+    const json cause{{"t", json_time(begin_)},
+                     {"after_ms", 0.0},
+                     {"severity", "high"},
                      {"text", "SAFE ALL by " + command.sender + ", " + command.stage}};
-    return {{"t", json_time(begin_)}, {"title", title}, {"detail", "By telecommand of " + command.sender + "."},
-            {"advice", "Bring " + mode_ + " up again when all is clear."}, {"plan", nullptr}, {"mode", mode_},
-            {"severity", "high"}, {"stopped", json::array({"all"})}, {"causes", json::array({cause})}};
+    return {{"t", json_time(begin_)},
+            {"title", title},
+            {"detail", "By telecommand of " + command.sender + "."},
+            {"advice", "Bring " + mode_ + " up again when all is clear."},
+            {"plan", nullptr},
+            {"mode", mode_},
+            {"severity", "high"},
+            {"stopped", json::array({"all"})},
+            {"causes", json::array({cause})}};
   }
 
   [[nodiscard]] std::string mode_at(OnboardTime t) {
@@ -117,21 +127,26 @@ class Teller {
         ++steps_of_hand;
         continue;
       }
-      found.push_back({.t = {}, .kind = "fault", .names = {}, .text = fmt::format("Fault injected: {} {}", fault.device, fault.line)});
+      found.push_back({.t = {},
+                       .kind = "fault",
+                       .names = {},
+                       .text = fmt::format("Fault injected: {} {}", fault.device, fault.line)});
     }
     // The hand is of interest where nothing else was done.
     if (found.empty() && steps_of_hand > 0)
-      found.push_back({.t = {},
-                       .kind = "hand",
-                       .names = {},
-                       .text = steps_of_hand == 1 ? "The hand moved" : fmt::format("The hand moved ({} steps)", steps_of_hand)});
+      found.push_back(
+          {.t = {},
+           .kind = "hand",
+           .names = {},
+           .text = steps_of_hand == 1 ? "The hand moved" : fmt::format("The hand moved ({} steps)", steps_of_hand)});
     lines_.insert(lines_.end(), found.begin(), found.end());
   }
 
   void tell_events(OnboardTime to) {
     const OnboardTime end = std::min(to, begin_ + 4 * same_story);
     OnboardTime last = begin_;
-    for (const auto& event : archive_.events({.span = {begin_, end}, .text = {}, .limit = 1000, .newest_first = false})) {
+    for (const auto& event :
+         archive_.events({.span = {begin_, end}, .text = {}, .limit = 1000, .newest_first = false})) {
       if (event.t - last > same_story) break;
       const auto severity = static_cast<Severity>(event.severity);
       const auto values = json::parse(event.values, nullptr, false);
@@ -144,13 +159,18 @@ class Teller {
         finally_[event.subsystem] = *state;
         down_ = std::max(down_, event.t);
         if (*state > State::ErrorOperational) continue;  // passed through
-        lines_.push_back({event.t, severity, "state " + std::string{to_text(*state)}, {event.subsystem},
+        lines_.push_back({event.t,
+                          severity,
+                          "state " + std::string{to_text(*state)},
+                          {event.subsystem},
                           " → " + state_words(to_text(*state))});
       } else if (event.name == "RECOVERY_STEP") {
         const auto state = state_in(values);
         const auto apid = number_in(values, "APID");
         if (!state || !apid) continue;
-        lines_.push_back({event.t, severity, "plan " + std::string{to_text(*state)},
+        lines_.push_back({event.t,
+                          severity,
+                          "plan " + std::string{to_text(*state)},
                           {catalogue_.name_of(static_cast<std::uint16_t>(*apid))},
                           fmt::format(": plan {} wants {}", plan(), state_words(to_text(*state)))});
       } else if (severity >= Severity::Medium) {
@@ -210,7 +230,8 @@ class Teller {
     const auto* subsystem = catalogue_.find(std::string_view{event.subsystem});
     if (subsystem == nullptr || !event.name.ends_with(ending)) return {};
     const std::string name = event.name.substr(0, event.name.size() - ending.size());
-    const bool known = std::ranges::find(subsystem->devices, name, &descriptor::Device::name) != subsystem->devices.end();
+    const bool known =
+        std::ranges::find(subsystem->devices, name, &descriptor::Device::name) != subsystem->devices.end();
     return known ? name : std::string{};
   }
 
@@ -262,7 +283,8 @@ class Teller {
         told.push_back(line);
         continue;
       }
-      if (std::ranges::find(same->names, line.names.front()) == same->names.end()) same->names.push_back(line.names.front());
+      if (std::ranges::find(same->names, line.names.front()) == same->names.end())
+        same->names.push_back(line.names.front());
       if (line.kind.starts_with("state ")) same->t = std::max(same->t, line.t);
     }
     std::ranges::stable_sort(told, {}, [](const Line& line) { return line.t.value_or(OnboardTime{}); });
@@ -309,11 +331,15 @@ class Teller {
     const std::string device = lost_device(cause_);
     const std::string advice =
         (device.empty() ? "Look into it" : "Mend or plug in the device " + device) + ", then bring " + mode + " up.";
-    return {{"t", json_time(begin_)},   {"title", std::move(title)},
-            {"detail", detail},         {"advice", advice},
-            {"plan", plan()},           {"mode", mode},
+    return {{"t", json_time(begin_)},
+            {"title", std::move(title)},
+            {"detail", detail},
+            {"advice", advice},
+            {"plan", plan()},
+            {"mode", mode},
             {"severity", to_text(static_cast<Severity>(cause_.severity))},
-            {"stopped", stopped},       {"causes", causes_json()}};
+            {"stopped", stopped},
+            {"causes", causes_json()}};
   }
 
   const Catalogue& catalogue_;

@@ -53,7 +53,7 @@ class JoystickDevice final : public SimulatedDevice {
   std::unique_ptr<Stick> stick_;
   Hand hand_{Hand::Simulated};
   LedHand led_hand_{LedHand::Limits{}};
-  bool led_{false};       ///< by led_hand_
+  bool led_{false};  ///< by led_hand_
   bool wandered_{false};  ///< before the hand was commanded
   Vec2 intent_rad_{};
   Vec2 commanded_{};

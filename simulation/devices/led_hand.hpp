@@ -48,7 +48,8 @@ class LedHand {
       double& angle = wish_.angle_rad[i];
       // Slows down towards the target within what the acceleration allows.
       const double fastest = calm * limits_.rate_rad_s[i];
-      const double wanted = std::clamp((target_rad_[i] - angle) * limits_.acceleration_rad_s2 / limits_.rate_rad_s[i], -fastest, fastest);
+      const double wanted =
+          std::clamp((target_rad_[i] - angle) * limits_.acceleration_rad_s2 / limits_.rate_rad_s[i], -fastest, fastest);
       const double change = limits_.acceleration_rad_s2 * span_s;
       rate += std::clamp(wanted - rate, -change, change);
       const double free = angle + rate * span_s;

@@ -134,8 +134,8 @@ void JoystickHandle::step(const Vec2& torque_n_m, Duration span) noexcept {
         // The wish stands still within a sub-step: 125 us against motions of seconds.
         double torque = motor[i] - p.friction_n_m_s * at[2 + i];
         if (p.hand_on)
-          torque += pull_n_m(wish.angle_rad[i] - at[i]) +
-                    p.hand_damping_n_m_s_per_rad * (wish.rate_rad_s[i] - at[2 + i]);
+          torque +=
+              pull_n_m(wish.angle_rad[i] - at[i]) + p.hand_damping_n_m_s_per_rad * (wish.rate_rad_s[i] - at[2 + i]);
         const double beyond = at[i] - std::clamp(at[i], -p.range_rad, p.range_rad);
         if (beyond != 0) torque -= p.stop_n_m_per_rad * beyond + p.stop_n_m_s_per_rad * at[2 + i];
         rate[2 + i] = torque / inertia;

@@ -39,10 +39,11 @@ struct Posts : GroundStation {
 };
 
 TEST_F(Posts, AKeyThatStandsTwiceIsRefusedBecauseTwoReadersCouldMeanTwoThings) {
-  for (const char* body : {R"({"subsystem":"SUPERVISOR","function":"PING","function":"SAFE_ALL"})",
-                           R"({"subsystem":"JOYSTICK","subsystem":"SUPERVISOR","function":"PING"})",
-                           R"({"subsystem":"JOYSTICK","function":"SET_FORCE_SCALE","arguments":{"SCALE":0.01,"SCALE":0.1}})",
-                           R"({"subsystem":"JOYSTICK","function":"PING","arguments":{},"arguments":{}})"}) {
+  for (const char* body :
+       {R"({"subsystem":"SUPERVISOR","function":"PING","function":"SAFE_ALL"})",
+        R"({"subsystem":"JOYSTICK","subsystem":"SUPERVISOR","function":"PING"})",
+        R"({"subsystem":"JOYSTICK","function":"SET_FORCE_SCALE","arguments":{"SCALE":0.01,"SCALE":0.1}})",
+        R"({"subsystem":"JOYSTICK","function":"PING","arguments":{},"arguments":{}})"}) {
     const auto answer = post(body);
     EXPECT_EQ(answer.status, 400U) << body;
     EXPECT_THAT(answer.body, HasSubstr("each key once"));
@@ -61,8 +62,9 @@ TEST_F(GroundStation, WrongTokensAreAnsweredLaterAndLaterAndRightOnesAtOnce) {
   ground::Api api{station.session(), {.token = "t", .observer_token = {}, .page = {}, .transitions = {}}};
   std::vector<unsigned> answers;
   const auto ask = [&](const char* token) {
-    api.handle({"GET", "/api/status", {{"host", "127.0.0.1:8080"}, {"authorization", std::string{"Bearer "} + token}}, ""},
-               [&](const ground::HttpResponse& response) { answers.push_back(response.status); });
+    api.handle(
+        {"GET", "/api/status", {{"host", "127.0.0.1:8080"}, {"authorization", std::string{"Bearer "} + token}}, ""},
+        [&](const ground::HttpResponse& response) { answers.push_back(response.status); });
   };
   const auto pass = [&](int ticks) {
     for (int i = 0; i < ticks; ++i) api.tick();
@@ -87,7 +89,8 @@ TEST_F(GroundStation, WrongTokensAreAnsweredLaterAndLaterAndRightOnesAtOnce) {
 
 TEST_F(GroundStation, AParameterOfAnAddressThatStandsTwiceIsRefused) {
   EXPECT_EQ(station.ask("GET", "/api/events?to=1&to=2").status, 400U);
-  EXPECT_EQ(station.ask("GET", "/api/export.csv?parameter=MANIPULATOR.TIP_FORCE[0]&parameter=MANIPULATOR.TIP_FORCE[1]").status,
+  EXPECT_EQ(station.ask("GET", "/api/export.csv?parameter=MANIPULATOR.TIP_FORCE[0]&parameter=MANIPULATOR.TIP_FORCE[1]")
+                .status,
             200U);
 }
 

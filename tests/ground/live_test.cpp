@@ -276,7 +276,9 @@ TEST_F(GroundStation, WhyTellsTheCauseFirstThenWhatItBroughtAbout) {
   EXPECT_EQ(why["mode"], "telepresence");
   EXPECT_THAT(why["title"].get<std::string>(), ::testing::StartsWith("JOYSTICK lost its device"));
   EXPECT_THAT(why["title"].get<std::string>(), ::testing::EndsWith("JOYSTICK and MANIPULATOR were stopped."));
-  EXPECT_THAT(why["detail"].get<std::string>(), ::testing::ContainsRegex("JOYSTICK and MANIPULATOR went Offline within [0-9.]+ ms, by plan network-down"));
+  EXPECT_THAT(
+      why["detail"].get<std::string>(),
+      ::testing::ContainsRegex("JOYSTICK and MANIPULATOR went Offline within [0-9.]+ ms, by plan network-down"));
   EXPECT_THAT(why["detail"].get<std::string>(), ::testing::HasSubstr("COMMUNICATION"));
   EXPECT_EQ(station.get("/api/why?to=1")["causes"].size(), 0U) << "a replay of before knows nothing of it";
 }
