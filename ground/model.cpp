@@ -227,7 +227,11 @@ void Model::take_event(const pus::TelemetryView& packet, Heard& heard) {
                                : std::vector<descriptor::Event>::const_iterator{};
   if (known && described != (*found)->events.end()) {
     event.name = described->name;
-    for (const auto& argument : described->arguments)
+    for (const auto& argument : described->arguments) {
+      if (argument.text) {
+        values[argument.name] = pus::text_of(reader.get(argument.octets()));
+        continue;
+      }
       for (std::uint16_t i = 0; i < argument.count; ++i) {
         const double number = get_number(reader, argument.type);
         if (!reader.good()) break;
@@ -238,6 +242,7 @@ void Model::take_event(const pus::TelemetryView& packet, Heard& heard) {
           take_state(static_cast<std::size_t>(found - catalogue_.subsystems().begin()),
                      static_cast<descriptor::State>(number), packet.time(), heard);
       }
+    }
   }
   event.text = describer_.describe_event(packet.apid(), packet.source_data()).substr(0, longest_text);
   event.values = to_string(values);

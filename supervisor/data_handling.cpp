@@ -299,7 +299,6 @@ void Supervisor::interpret(std::uint16_t from, const pus::TelemetryView& report)
     if (reader.good()) power_.ended({id, report.destination(), 0});
   }
   if (report.service() == 1 && report.destination() == own_source) handle_verification(report);
-  if (report.service() == 5 && report.subtype() >= 1 && report.subtype() <= 4) handle_event(from, report);
   if (report.service() == pus::st128::service_type) links_.handle(from, report);
 }
 

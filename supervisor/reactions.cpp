@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "hirosco/pus/event_message.hpp"
 #include "supervisor/supervision/event_handling/recovery.hpp"
 #include "supervisor/supervisor.hpp"
 
@@ -27,18 +28,23 @@ constexpr std::array about_subsystems{"PROCESS_DIED", "HANG", "POWER_REFUSED", "
 
 }  // namespace
 
-void Supervisor::handle_event(std::uint16_t from, const pus::TelemetryView& report) {
-  OctetReader reader{report.source_data()};
-  const auto id = reader.get<std::uint16_t>();
-  if (!reader.good()) return;
-  const auto severity = static_cast<Severity>(report.subtype());
+/// Events are heard here and nowhere else: whether ST[05] reports one to ground is no matter of recovery (adr 0020).
+void Supervisor::handle_event(std::uint16_t from, Octets message) {
+  const auto event = pus::read_event_message(message);
+  if (!event) {
+    ++counts_.misdirected;
+    return;
+  }
   const descriptor::Subsystem& subsystem = from == 1 ? mission_.supervisor : mission_.find_subsystem(from)->subsystem;
-  const auto event = std::ranges::find(subsystem.events, id, &descriptor::Event::id);
-  const std::string name = event != subsystem.events.end() ? event->name : std::to_string(id);
-  parts_.observer.told(report.time(), subsystem.name + " " + std::string{to_text(severity)} + " " +
-                                          describer_.describe_event(from, report.source_data()));
-  if (from == 1) return react_to_own(name, severity);
-  if (Member* origin = member(from); origin != nullptr && origin->alive()) react(*origin, name, severity);
+  const auto declared = std::ranges::find(subsystem.events, event->id, &descriptor::Event::id);
+  const std::string name = declared != subsystem.events.end() ? declared->name : std::to_string(event->id);
+  const std::string text = subsystem.name + " " + std::string{to_text(event->severity)} + " " +
+                           describer_.describe_event(from, message.subspan(pus::event_message_id_at));
+  // A report is in the log as the packet that it is.
+  if (event->reported == pus::Reported::Yes) parts_.observer.told(parts_.world.clock.onboard(), text);
+  else tell(text, from);
+  if (from == 1) return react_to_own(name, event->severity);
+  if (Member* origin = member(from); origin != nullptr && origin->alive()) react(*origin, name, event->severity);
 }
 
 void Supervisor::react(Member& origin, std::string_view event, Severity severity) {

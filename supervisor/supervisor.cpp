@@ -284,6 +284,11 @@ void Supervisor::receive_from(Member& member) {
     }
     if (!found || found->flow == Flow::None) return;
     const Message& message = found->message;
+    if (message.kind == MessageKind::Event) {
+      receive_from_self();
+      handle_event(member.apid(), message.packet);
+      continue;
+    }
     const auto header = pus::read_primary_header(message.packet);
     if (!header) continue;
     if (!header->telecommand) {
@@ -305,7 +310,8 @@ void Supervisor::receive_from_self() {
   for (int left = messages_per_step; left > 0; --left) {
     auto found = own_channels_.supervisor_end().receive(buffer);
     if (!found || found->flow == Flow::None) return;
-    handle_telemetry(1, found->message.packet);
+    if (found->message.kind == MessageKind::Event) handle_event(1, found->message.packet);
+    else handle_telemetry(1, found->message.packet);
   }
 }
 

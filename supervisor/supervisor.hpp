@@ -142,7 +142,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void count_failure(const pus::TelemetryView& report);
   void count_rejection(pus::FailureCode code);
   void handle_verification(const pus::TelemetryView& report);
-  void handle_event(std::uint16_t from, const pus::TelemetryView& report);
+  void handle_event(std::uint16_t from, Octets message);
   void receive_from(Member& member);
   void receive_from_self();
   [[nodiscard]] bool is_ground_link(const Member& member) const;

@@ -120,6 +120,7 @@ struct Value {
   add("maximum", field.maximum);
   add("default", value.fallback);
   if (!value.texts.empty()) text += ", texts=" + pairs(value.texts);
+  if (field.text) text += ", words=True";
   if (value.offset != 0) text += fmt::format(", offset={}", value.offset);
   return text + ")";
 }
@@ -277,12 +278,12 @@ class SubsystemClass {
     const bool structure = !values.empty();
     if (!structure) values.push_back(value_of(parameter.field));
     add_get(name, ParameterId{subsystem_.id, parameter.field.type, parameter.id}, values);
-    if (!structure && !parameter.read_only) add_set(name, values.front());
+    if (!structure && parameter.writable()) add_set(name, values.front());
     for (std::size_t i = 0; i < parameter.members.size(); ++i) {
       const auto& member = parameter.members[i];
       const std::string whole = name + "." + member.field.name;
       add_get(whole, ParameterId{subsystem_.id, member.field.type, member.id}, {values[i]});
-      if (!parameter.read_only) add_set(whole, values[i]);
+      if (parameter.writable()) add_set(whole, values[i]);
     }
   }
 

@@ -152,6 +152,7 @@ class Field:
     default: Optional[float] = None
     texts: Tuple[Tuple[int, str], ...] = ()
     offset: int = 0               # of a column: in the source data of its report
+    words: bool = False           # the octets are text up to the first zero
 
     @property
     def octets(self) -> int:
@@ -165,6 +166,8 @@ class Field:
         return struct.pack(f">{self.count}{FORMATS[self.type]}", *(self._checked(one) for one in values))
 
     def decode(self, data: bytes, offset: int) -> Any:
+        if self.words:
+            return data[offset:offset + self.octets].split(b"\0")[0].decode("ascii", "replace")
         values = struct.unpack_from(f">{self.count}{FORMATS[self.type]}", data, offset)
         return values[0] if self.count == 1 else values
 
@@ -356,6 +359,8 @@ def failure_parameters(code: int, data: bytes) -> Dict[str, Any]:
     form = ">" + "".join(letter for _, letter in shape)
     if code == 0x101 and len(data) == 1 + FUNCTION_NAME_OCTETS:
         return {"index": data[0], "name": data[1:].rstrip(b"\0").decode("ascii", "replace")}
+    if len(data) >= 10 and data[0] == 0xFF:
+        return {"reason": data[10:].decode("ascii", "replace"), "number": int.from_bytes(data[2:10], "big", signed=True)}
     if len(data) != struct.calcsize(form):
         return {"data": data.hex()}
     return dict(zip((name for name, _ in shape), struct.unpack(form, data)))

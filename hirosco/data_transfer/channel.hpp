@@ -18,10 +18,11 @@ inline constexpr std::size_t max_packet_octets = 4096;
 enum class MessageKind : std::uint8_t {
   Packet = 1,       ///< a space packet: to a subsystem a telecommand (or telemetry for the ground link), from it any
   GroundTelecommand = 2,  ///< from the communication subsystem only: a telecommand that came from ground
+  Event = 3,  ///< from a subsystem: it raised an event (pus/event_message.hpp), reported to ground or not
 };
 
 /// One message of the control channel between a subsystem and the supervisor: one space packet and, where the packet is
-/// a link attachment, the handle of the link's memory.
+/// a link attachment, the handle of the link's memory; or one event.
 struct Message {
   MessageKind kind{MessageKind::Packet};
   std::uint32_t mode_epoch{0};  ///< supervisor's mode epoch at permission (decision 27)

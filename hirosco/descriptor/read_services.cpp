@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include "hirosco/descriptor/detail/subsystem_reader.hpp"
+#include "hirosco/descriptor/framework_events.hpp"
 
 namespace hirosco::descriptor::detail {
 namespace {
@@ -67,17 +70,48 @@ void SubsystemReader::read_event(const xml::Element& element) {
   Event event;
   event.at = place(element.at);
   event.name = attributes.name();
-  event.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
+  const bool of_framework = element.find("id") == nullptr;
+  event.id = attributes.integer_or<std::uint16_t>("id", 1, framework_event::first - 1, 0);
   if (attributes.required("severity") != nullptr) event.severity = attributes.one_of("severity", Severity::Info);
   Unique names{"argument name", "E0201"};
   each_child(element, problems_,
              {{"Argument", [&](const xml::Element& child) { read_plain_field(child, event.arguments, names); },
                max_arguments}});
+  std::size_t octets = 0;
+  for (const Field& argument : event.arguments) octets += argument.octets();
+  if (octets > max_event_octets)
+    problems_.add(element, "E0215", fmt::format("event '{}' takes {} octets in one report", event.name, octets),
+                  fmt::format("at most {}", max_event_octets));
   if (!event.name.empty()) event_names_.add(event.name, event.at, problems_, element.name.size() + 1);
+  // Without an id it can only be one of the framework's; those are known when the whole descriptor is.
+  if (of_framework) {
+    framework_severities_.push_back({&element, std::move(event)});
+    return;
+  }
   if (event.id != 0)
     event_ids_.add(std::to_string(event.id), place(element.find("id")->value_at), problems_,
                    element.find("id")->value.size());
   subsystem_.events.push_back(std::move(event));
+}
+
+/// An author may change the severity of a framework's event, nothing else of it.
+void SubsystemReader::imply_framework_events() {
+  const std::size_t own = subsystem_.events.size();
+  add_framework_events(subsystem_);
+  const auto implied = std::span{subsystem_.events}.subspan(own);
+  for (const Event& event : std::span{subsystem_.events}.first(own))
+    if (std::ranges::find(implied, event.name, &Event::name) != implied.end())
+      problems_.add(event.at, "E0213", fmt::format("event '{}' is built in: every subsystem has it", event.name),
+                    "leave it out, or give it a severity only: no id, no arguments", 6);
+  for (const auto& [element, wanted] : framework_severities_) {
+    const auto found = std::ranges::find(implied, wanted.name, &Event::name);
+    if (found == implied.end())
+      problems_.add(*element, "E0105", "<Event> needs the attribute 'id'",
+                    "only an event that every subsystem has is known without it");
+    else if (!wanted.arguments.empty())
+      problems_.add(*element, "E0213", fmt::format("event '{}' is built in with its arguments", wanted.name));
+    else found->severity = wanted.severity;
+  }
 }
 
 void SubsystemReader::read_function(const xml::Element& element) {

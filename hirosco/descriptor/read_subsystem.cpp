@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <charconv>
 #include <utility>
 
 #include "hirosco/descriptor/detail/subsystem_reader.hpp"
@@ -62,6 +63,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                               {"Enumeration", [this](const auto& element) { read_enumeration(element); }},
                               {"Device", [this](const auto& element) { read_device(element); }, 255},
                               {"Hang", [this](const auto& element) { read_hang(element); }, 1},
+                              {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
                               {"Configuration", later(configurations), max_configurations}};
   Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_};
   const std::vector<Child> service_rows = service_children(services);
@@ -71,6 +73,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   for (const xml::Element* element : services_elements)
     std::ranges::find(service_rows, element->name, &Child::name)->read(*element);
   for (const xml::Element* element : configurations) read_configuration(*element);
+  imply_framework_events();
   check_enumerations();
   check_addresses();
   return std::move(subsystem_);
@@ -113,6 +116,29 @@ void SubsystemReader::read_memory(const xml::Element& element) {
                     "a number of octets, or with KiB, MiB or GiB");
   }
   subsystem_.resources.warning_percent = attributes.integer_or<unsigned>("warning", 1, 100, 75);
+}
+
+void SubsystemReader::read_failure(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  FailureName failure;
+  failure.name = attributes.name();
+  if (!failure.name.empty()) failure_names_.add(failure.name, place(element.at), problems_, element.name.size() + 1);
+  const auto* code = attributes.required("code");
+  if (code == nullptr) return;
+  std::string_view digits = code->value;
+  const bool hexadecimal = digits.starts_with("0x");
+  if (hexadecimal) digits.remove_prefix(2);
+  unsigned number = 0;
+  const auto [end, error] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), number, hexadecimal ? 16 : 10);
+  if (error != std::errc{} || end != digits.data() + digits.size())
+    return problems_.add(*code, "E0111", in_quotes(code->value) + " is not a failure code", "for example 0x8001");
+  if (number < 0x8000 || number > 0xFFFF)
+    return problems_.add(*code, "E0112", "failure code " + code->value + " is out of range", "0x8000 to 0xFFFF");
+  failure.code = static_cast<std::uint16_t>(number);
+  failure_codes_.add(std::to_string(number), place(code->value_at), problems_, code->value.size());
+  subsystem_.failures.push_back(std::move(failure));
 }
 
 void SubsystemReader::read_hang(const xml::Element& element) {

@@ -61,6 +61,7 @@ struct Field {
   std::optional<double> maximum;     ///< inclusive, in `unit`
   std::string enumeration;           ///< name of an Enumeration; empty = none
   Location at;
+  bool text{false};                  ///< the octets are words up to the first zero; of the framework's events only
   [[nodiscard]] std::size_t octets() const noexcept { return octets_of(type) * count; }
 };
 
@@ -262,6 +263,12 @@ struct Resources {
   unsigned warning_percent{75};
 };
 
+/// A failure code of the author's own, 0x8000 to 0xFFFF.
+struct FailureName {
+  std::uint16_t code{};
+  std::string name;
+};
+
 struct Subsystem {
   std::string name;
   std::uint16_t id{};  ///< APID
@@ -271,8 +278,9 @@ struct Subsystem {
   Resources resources;
   std::vector<Enumeration> enumerations;
   std::vector<Parameter> parameters;
-  std::vector<Event> events;
+  std::vector<Event> events;  ///< the author's, then the framework's (framework_events.hpp)
   std::vector<Function> functions;  ///< the author's; SET_STATE and CONFIGURE are built in
+  std::vector<FailureName> failures;
   std::vector<HousekeepingStructure> housekeeping;  ///< valid in every configuration
   std::vector<Device> devices;
   std::vector<Configuration> configurations;

@@ -50,6 +50,10 @@ class ParameterCell {
   /// Shows the live value to the other threads.  Realtime: wait-free. Thread: the writer's.
   void commit() noexcept { parameter_detail::publish(*sequence_, words_, live_.data(), live_.size()); }
 
+  /// How often a value was shown: who has written in between, and whether, is seen from it.  Realtime: wait-free.
+  /// Thread: any.
+  [[nodiscard]] std::uint64_t stores() const noexcept { return sequence_->load(std::memory_order_relaxed) / 2; }
+
   /// Copies a whole value as last committed. False when the size is not octets(), or when the writer was in the way
   /// max_attempts times: it never waits for a writer.  Realtime: bounded. Thread: any.
   [[nodiscard]] bool snapshot(MutableOctets native) const noexcept;

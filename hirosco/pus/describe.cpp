@@ -23,6 +23,11 @@ namespace {
 void append_field(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
                   OctetReader& reader) {
   text.append(" ").append(field.name).append("=");
+  if (field.text) {
+    const std::string words = text_of(reader.get(field.octets()));
+    text.append("'").append(words).append("'");
+    return;
+  }
   for (std::uint16_t i = 0; i < field.count; ++i) {
     const double value = get_number(reader, field.type);
     if (i != 0) text.append(",");
@@ -54,6 +59,16 @@ constexpr std::array<std::string_view, 11> stages{
     "not routed"};
 
 }  // namespace
+
+std::string text_of(Octets octets) {
+  std::string text;
+  for (const std::byte octet : octets) {
+    const auto c = std::to_integer<unsigned char>(octet);
+    if (c == 0) break;
+    text += c < ' ' || c >= 0x7F ? '?' : static_cast<char>(c);
+  }
+  return text;
+}
 
 const descriptor::Subsystem* PacketDescriber::find(std::uint16_t apid) const {
   if (apid == mission_->supervisor.id) return &mission_->supervisor;
@@ -115,8 +130,10 @@ std::string PacketDescriber::describe_telemetry(const TelemetryView& telemetry) 
     text.append(" #").append(std::to_string(id & 0x3FFF));
     if (telemetry.subtype() == 5 || telemetry.subtype() == 6)
       text.append(" step ").append(std::to_string(reader.get<std::uint16_t>()));
-    if (telemetry.subtype() % 2 == 0)
-      text.append(": ").append(to_text(static_cast<FailureCode>(reader.get<std::uint16_t>())));
+    if (telemetry.subtype() % 2 == 0) {
+      const auto code = reader.get<std::uint16_t>();
+      text.append(": ").append(describe_failure(telemetry.apid(), code, reader.rest()));
+    }
   } else if (telemetry.service() == 5 && telemetry.subtype() >= 1 && telemetry.subtype() <= 4) {
     text.append(" ").append(to_text(static_cast<descriptor::Severity>(telemetry.subtype())));
     text.append(" ").append(describe_event(telemetry.apid(), telemetry.source_data()));
@@ -126,6 +143,22 @@ std::string PacketDescriber::describe_telemetry(const TelemetryView& telemetry) 
     const auto telecommand = TelecommandView::parse(telemetry.source_data());
     text.append(" copy of ").append(telecommand ? describe_telecommand(*telecommand) : "a damaged telecommand");
   }
+  return text;
+}
+
+std::string PacketDescriber::describe_failure(std::uint16_t apid, std::uint16_t code, Octets data) const {
+  std::string text{to_text(static_cast<FailureCode>(code))};
+  if (code >= first_own_failure_code) {
+    const auto* subsystem = find(apid);
+    text = "code " + std::to_string(code);
+    if (subsystem != nullptr)
+      for (const auto& failure : subsystem->failures)
+        if (failure.code == code) text = failure.name;
+  }
+  const auto reason = reason_in(data);
+  if (!reason) return text;
+  text.append(" '").append(text_of(std::as_bytes(std::span{reason->text}))).append("'");
+  if (reason->number != 0) text.append(" ").append(std::to_string(reason->number));
   return text;
 }
 

@@ -10,6 +10,9 @@
 /// Packets in words, by the descriptors of a mission: for logs, consoles and tools. Never for decisions.
 namespace hirosco::pus {
 
+/// Words in octets of a fixed number: up to the first zero, what is not printable ASCII as '?'.
+[[nodiscard]] std::string text_of(Octets octets);
+
 class PacketDescriber {
  public:
   /// `mission` outlives the describer.
@@ -19,6 +22,8 @@ class PacketDescriber {
   [[nodiscard]] std::string describe(Octets packet) const;
   /// "TORQUE_LIMIT_EXCEEDED JOINT=2 VALUE=12.1 N m LIMIT=12 N m" of the source data of TM[5,x].
   [[nodiscard]] std::string describe_event(std::uint16_t apid, Octets source_data) const;
+  /// "SENSOR_BROKEN 'no answer' 42": a failure code of a report of service 1 from `apid`, and its data.
+  [[nodiscard]] std::string describe_failure(std::uint16_t apid, std::uint16_t code, Octets data) const;
   /// Name of the subsystem, "APID 77" when the mission has none.
   [[nodiscard]] std::string name_of(std::uint16_t apid) const;
 

@@ -4,9 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
 
 #include "hirosco/utilities/enum_text.hpp"
 #include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
 
 namespace hirosco::pus {
 
@@ -45,10 +49,22 @@ enum class FailureCode : std::uint16_t {
   OutcomeUnknown = 0x0206,
 };
 
+/// Codes from here on are the author's own: its descriptor names them (<Failure>).
+inline constexpr std::uint16_t first_own_failure_code = 0x8000;
+
+/// Why something failed, in the words and with the number of whoever refused it.
+struct Reason {
+  ErrorCode kind{ErrorCode::Internal};
+  std::int64_t number{0};
+  std::string_view text{};
+};
+
 /// A failure notice: code and code-specific data.  Realtime: wait-free, trivially copyable.
 class FailureNotice {
  public:
-  static constexpr std::size_t max_data_octets = 18;
+  /// Of a reason's words; longer ones are cut.
+  static constexpr std::size_t max_reason_text_octets = 64;
+  static constexpr std::size_t max_data_octets = 1 + 1 + 8 + max_reason_text_octets;
   FailureNotice() = default;
   explicit FailureNotice(FailureCode code) noexcept : code_{code} {}
   /// Appends a number of the failure data, big-endian.
@@ -65,6 +81,16 @@ class FailureNotice {
     size_ = static_cast<std::uint8_t>(size_ + writer.size());
     return *this;
   }
+  /// Data of a failure that an author gave words or a number: 0xFF (no instruction has this index), kind of error u8,
+  /// number i64, words.
+  FailureNotice& because(const Reason& reason) noexcept {
+    const std::string_view text = reason.text.substr(0, max_reason_text_octets);
+    return with(reason_mark)
+        .with(static_cast<std::uint8_t>(reason.kind))
+        .with(reason.number)
+        .with(std::as_bytes(std::span{text}));
+  }
+  static constexpr std::uint8_t reason_mark = 0xFF;
   [[nodiscard]] FailureCode code() const noexcept { return code_; }
   [[nodiscard]] Octets data() const noexcept { return Octets{data_}.first(size_); }
 
@@ -73,6 +99,22 @@ class FailureNotice {
   std::array<std::byte, max_data_octets> data_{};
   std::uint8_t size_{0};
 };
+
+/// The reason in the data of a failure; nothing where they are numbers of another kind.
+[[nodiscard]] inline std::optional<Reason> reason_in(Octets data) noexcept {
+  OctetReader reader{data};
+  const auto mark = reader.get<std::uint8_t>();
+  const auto kind = reader.get<std::uint8_t>();
+  Reason reason;
+  reason.number = reader.get<std::int64_t>();
+  if (!reader.good() || mark != FailureNotice::reason_mark || kind > static_cast<std::uint8_t>(ErrorCode::Internal))
+    return std::nullopt;
+  const Octets words = reader.rest();
+  if (words.size() > FailureNotice::max_reason_text_octets) return std::nullopt;
+  reason.kind = static_cast<ErrorCode>(kind);
+  reason.text = {reinterpret_cast<const char*>(words.data()), words.size()};
+  return reason;
+}
 
 }  // namespace hirosco::pus
 

@@ -20,11 +20,7 @@ constexpr std::size_t max_auxiliary_octets = max_telemetry_octets - telemetry_ov
 EventService::EventService(const std::vector<descriptor::Event>& events, Verification& verification,
                            TelemetrySink& sink)
     : verification_{verification}, sink_{sink} {
-  for (const auto& event : events) {
-    std::size_t octets = 0;
-    for (const auto& argument : event.arguments) octets += argument.octets();
-    events_.push_back({event.id, event.severity, octets, true});
-  }
+  for (const auto& event : events) events_.push_back({event.id, event.severity, octets_of(event), true});
 }
 
 Result<> EventService::raise(std::uint16_t event_id, Octets auxiliary_data) {
@@ -108,6 +104,21 @@ Result<Octets> encode_arguments(const descriptor::Event& event, std::span<const 
   if (!writer.good())
     return fail(ErrorCode::ResourceExhausted, "event buffer", static_cast<std::int64_t>(buffer.size()));
   return writer.written();
+}
+
+Octets fill_arguments(const descriptor::Event& event, std::span<const double> values, MutableOctets buffer) noexcept {
+  OctetWriter writer{buffer};
+  std::size_t next = 0;
+  for (const auto& argument : event.arguments)
+    for (std::size_t i = 0; i < argument.count; ++i, ++next)
+      put_number(writer, argument.type, next < values.size() ? values[next] : 0.0);
+  return writer.written();
+}
+
+std::size_t octets_of(const descriptor::Event& event) noexcept {
+  std::size_t octets = 0;
+  for (const auto& argument : event.arguments) octets += argument.octets();
+  return octets;
 }
 
 }  // namespace hirosco::pus

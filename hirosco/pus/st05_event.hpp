@@ -51,4 +51,11 @@ class EventService final : public Service {
 [[nodiscard]] Result<Octets> encode_arguments(const descriptor::Event& event, std::span<const double> values,
                                               MutableOctets buffer) noexcept;
 
+/// The same for whoever cannot refuse: values that are missing are 0, those too many are left out. The buffer has room for
+/// octets_of(event).  Realtime: bounded.
+[[nodiscard]] Octets fill_arguments(const descriptor::Event& event, std::span<const double> values,
+                                    MutableOctets buffer) noexcept;
+/// Octets of an event's auxiliary data.
+[[nodiscard]] std::size_t octets_of(const descriptor::Event& event) noexcept;
+
 }  // namespace hirosco::pus

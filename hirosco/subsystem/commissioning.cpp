@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
 /// The state machine of the generic subsystem: commands, phases of transient states, configurations.
@@ -17,6 +18,8 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State ta
   const bool overrides = way_ && target == State::ErrorOperational && is_cyclic(state_) &&
                          is_cyclic(way_->states[way_at_]) && way_->states[way_at_] != State::ErrorOperational;
   if (way_ && !overrides) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
+  // Nothing is begun on what a cycle that never came to rest may still be using.
+  if (release_owed_) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
   if (!route(state_, target)) return std::unexpected{wrong_state()};
   if (target == State::SafeOperational && state_ == State::PreOperational) {
     if (configuration_ == nullptr) return std::unexpected{wrong_state()};
@@ -43,7 +46,7 @@ void GenericSubsystem::go(State target, std::optional<pus::Request> request) {
 void GenericSubsystem::advance(TimePoint now) {
   // A cycle that hangs confirms nothing: the request ends all the same, and the next command is heard.
   if (way_ && awaiting_cycle_ && now > phase_deadline_)
-    fail_transition(way_->states[way_at_], "time limit of the cycle");
+    fail_transition(way_->states[way_at_], {ErrorCode::Timeout, "time limit of the cycle"});
   // Several transient states may be done in one step; each round either arrives somewhere or waits.
   for (int rounds = 0; way_ && !awaiting_cycle_ && rounds < 8; ++rounds)
     if (!run_phase(way_->states[way_at_], now)) return;
@@ -63,12 +66,13 @@ bool GenericSubsystem::run_phase(State next, TimePoint now) {
   if (is_transient(next) && state_ != next) arrive_transient(next);
   const Result<Step> outcome = enter_transient(next);
   if (!outcome) {
-    fail_transition(next, outcome.error().text);
+    const Error& error = outcome.error();
+    fail_transition(next, {error.code, error.text, error.value});
     return true;
   }
   if (*outcome == Step::Again) {
     if (now <= phase_deadline_) return false;
-    fail_transition(next, "time limit");
+    fail_transition(next, {ErrorCode::Timeout, "time limit"});
     return true;
   }
   arrive(next);
@@ -89,11 +93,7 @@ Result<Step> GenericSubsystem::enter_transient(State next) {
     case State::HardwareDeinit: return author_.hardware_deinit();
     case State::SoftwareDeinit: {
       HIROSCO_TRY_LET(const Step step, author_.software_deinit());
-      if (step == Step::Done) {
-        dictionary_.unpublish_all();
-        link_ports_.clear();
-        device_ports_.clear();
-      }
+      if (step == Step::Done && !release_owed_) forget_introduction();
       return step;
     }
     default: return done;
@@ -101,15 +101,19 @@ Result<Step> GenericSubsystem::enter_transient(State next) {
 }
 
 Result<Step> GenericSubsystem::initialise_software() {
-  HIROSCO_TRY_LET(const Step step, author_.software_init());
-  if (step == Step::Again) return again;
+  const auto step = author_.software_init();
+  if (step && *step == Step::Again) return again;
+  if (!step) mistake(step.error().text);
   if (dictionary_.index_of("CYCLE_STATS")) publish("CYCLE_STATS", cycle_.statistics());
   if (dictionary_.index_of("CYCLE_TIMES")) publish("CYCLE_TIMES", cycle_.times());
   if (dictionary_.index_of("LINK_STATS")) publish("LINK_STATS", cycle_.link_statistics());
-  std::string missing;
-  if (latched_problem_.empty() && !dictionary_.all_published(missing))
-    latched_problem_ = "parameters declared but not published: " + missing;
-  if (!latched_problem_.empty()) return fail(ErrorCode::Mismatch, latched_problem_.c_str());
+  if (step) check_introduction();
+  if (!problems_.empty()) {
+    problems_text_ = problems_.front();
+    const Error said =
+        step ? Error{ErrorCode::Mismatch, "", static_cast<std::int64_t>(problems_.size())} : step.error();
+    return fail(said.code, problems_text_.c_str(), said.value);
+  }
   HIROSCO_TRY(dictionary_.initialise());
   return done;
 }
@@ -121,19 +125,29 @@ Result<Step> GenericSubsystem::leave_cycle() {
     wanted_.store(false, std::memory_order_release);
     vital_.cycling.store(0, std::memory_order_release);
   }
-  if (parked_ticket_.load(std::memory_order_acquire) != rest_ticket_.load(std::memory_order_relaxed)) return again;
+  if (!cycle_rests()) return again;
   take_cycle_reports();
-  release_configuration();
+  if (configuration_ != nullptr) release_configuration();
   return author_.post_operational();
 }
 
-void GenericSubsystem::release_configuration() {
+/// What the service loop holds of a configuration: links are told as gone, calls get their final report.
+void GenericSubsystem::end_configuration() {
   for (const auto& [link, end] : link_ends_) {
     // An announced end is not a stale link: consumers make themselves safe without an alarm.
     if (end.role == pus::st128::Role::Producer) end.link->writer.set_status(LinkStatus::Stopping);
     link_service_.report_detached(link, end.role);
   }
+  for (auto& [link, end] : link_ends_) leaving_links_.push_back(std::move(end.link));
   link_ends_.clear();
+  for (const pus::Request& open : open_calls_)
+    verification_.completion_failed(open, pus::FailureNotice{pus::FailureCode::Aborted});
+  open_calls_.clear();
+}
+
+/// Gives back all of a configuration. The cycle rests: nothing of it is in use.
+void GenericSubsystem::release_configuration() {
+  end_configuration();
   leaving_links_.clear();
   CycleCommand forgotten;
   while (handover_.commands.try_pop(forgotten)) {
@@ -141,9 +155,6 @@ void GenericSubsystem::release_configuration() {
     if (forgotten.kind == CommandKind::Function)
       verification_.start_failed(forgotten.request, pus::FailureNotice{pus::FailureCode::Aborted});
   }
-  for (const pus::Request& open : open_calls_)
-    verification_.completion_failed(open, pus::FailureNotice{pus::FailureCode::Aborted});
-  open_calls_.clear();
   writes_.apply(dictionary_);
   cycle_.release();
   housekeeping_service_.reset();
@@ -153,25 +164,48 @@ void GenericSubsystem::release_configuration() {
   vital_.inhibited.store(0, std::memory_order_relaxed);
 }
 
+bool GenericSubsystem::cycle_rests() const noexcept {
+  return !wanted_.load(std::memory_order_relaxed) &&
+         parked_ticket_.load(std::memory_order_acquire) == rest_ticket_.load(std::memory_order_relaxed);
+}
+
+/// A cycle that did not come to rest in time still uses its configuration: that is given back when it has.
+void GenericSubsystem::release_late() {
+  if (!release_owed_ || !cycle_rests()) return;
+  release_owed_ = false;
+  take_cycle_reports();
+  release_configuration();
+  if (state_ == State::Offline) forget_introduction();
+}
+
 void GenericSubsystem::arrive(State state) {
   state_ = state;
   vital_.state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
   phase_entered_ = false;
-  announce("STATE_CHANGED", {static_cast<double>(state)});
+  const double entered = static_cast<double>(state);
+  raise_in_service(descriptor::framework_event::state_changed, {&entered, 1});
   if (++way_at_ < way_->size) return;
   if (way_request_) verification_.completed(*way_request_);
   way_.reset();
   way_request_.reset();
 }
 
-void GenericSubsystem::fail_transition(State at, const char* why) {
-  if (world_.explain) world_.explain(descriptor_.name + ": " + std::string{to_text(at)} + " failed: " + why);
-  announce("STATE_FAILED", {static_cast<double>(at)});
+void GenericSubsystem::fail_transition(State at, const Failure& why) {
+  if (world_.explain) world_.explain(descriptor_.name + ": " + std::string{to_text(at)} + " failed: " + why.text);
+  // Ground hears the first mistake and how many there are; the author each, on a line of its own.
+  for (std::size_t i = 1; i < problems_.size() && at == State::SoftwareInit && world_.explain; ++i)
+    world_.explain(descriptor_.name + ": SoftwareInit failed: " + problems_[i]);
+  raise_failure(descriptor::framework_event::state_failed, static_cast<std::uint8_t>(at), why);
   if (way_request_)
-    verification_.completion_failed(*way_request_, pus::FailureNotice{pus::FailureCode::ExecutionError});
+    verification_.completion_failed(
+        *way_request_, pus::FailureNotice{pus::FailureCode::ExecutionError}.because({why.code, why.number, why.text}));
   way_request_.reset();
   way_.reset();
   const auto target = failure_target(at);
+  if (at == State::PostOperational && configuration_ != nullptr) {
+    end_configuration();
+    release_owed_ = true;
+  }
   if (!target) {
     // A deinit that fails cannot stop the way down: what is left is given back by the end of the process.
     if (at == State::HardwareDeinit || at == State::SoftwareDeinit || at == State::PostOperational) go_down_from(at);
@@ -191,7 +225,7 @@ void GenericSubsystem::go_down_from(State failed) {
                                                          : State::Offline;
   Route way;
   for (auto state = std::ranges::find(down, first); state != down.end(); ++state) way.states[way.size++] = *state;
-  latched_problem_.clear();
+  problems_.clear();
   way_ = way;
   way_at_ = 0;
   phase_entered_ = false;
@@ -216,62 +250,68 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_configuration(
     verification_.completed(request);
     return {};
   }
-  if (const std::string problem = apply_configuration(*wanted); !problem.empty()) {
-    if (world_.explain) world_.explain(descriptor_.name + ": CONFIGURE " + wanted->name + " failed: " + problem);
+  if (const auto problem = apply_configuration(*wanted)) {
+    if (world_.explain) world_.explain(descriptor_.name + ": CONFIGURE " + wanted->name + " failed: " + problem->text);
     release_configuration();
-    announce("CONFIGURATION_FAILED", {static_cast<double>(id)});
-    verification_.completion_failed(request, pus::FailureNotice{pus::FailureCode::ExecutionError});
+    raise_failure(descriptor::framework_event::configuration_failed, id, *problem);
+    verification_.completion_failed(request, pus::FailureNotice{pus::FailureCode::ExecutionError}.because(
+                                                 {problem->code, problem->number, problem->text}));
     return {};
   }
   verification_.completed(request);
   return {};
 }
 
-std::string GenericSubsystem::apply_configuration(const descriptor::Configuration& configuration) {
+std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::Configuration& configuration) {
+  const auto mismatch = [](std::string text) { return Failure{ErrorCode::Mismatch, std::move(text)}; };
+  const auto of = [](const std::string& whose, const Error& error) {
+    return Failure{error.code, whose + error.text, error.value};
+  };
   configuration_ = &configuration;
   for (const auto& initial : configuration.initial) {
     const int member = initial.parameter.member ? static_cast<int>(*initial.parameter.member) : -1;
     if (!dictionary_.set_from_doubles(initial.parameter.parameter, member, initial.values))
-      return "initial value of " + initial.parameter.text;
+      return mismatch("initial value of " + initial.parameter.text);
   }
   CyclePlan plan;
   plan.configuration = &configuration;
+  const auto sets = descriptor::required_sets(descriptor_);
   for (const auto& wanted : configuration.requires_) {
     const auto port = link_ports_.find(wanted.name);
-    if (port == link_ports_.end()) return "no port for the required set " + wanted.name;
+    if (port == link_ports_.end()) return mismatch("no port for the required set " + wanted.name);
     if (const auto difference = layout_difference(port->second->layout(), wanted.fields); !difference.empty())
-      return "required set " + wanted.name + ": " + difference;
+      return mismatch("required set " + wanted.name + ": " + difference);
     plan.inputs.emplace_back(wanted, port->second, world_.realtime);
-    plan.input_stale_events.push_back(event_id(wanted.name + "_STALE"));
+    const auto set = std::ranges::find(sets, wanted.name) - sets.begin();
+    plan.input_stale_events.push_back(descriptor::framework_event::set_stale(static_cast<std::size_t>(set)));
   }
   for (const auto& provided : configuration.provides) plan.outputs.emplace_back(descriptor_, provided, dictionary_);
   for (const auto& use : configuration.devices) {
     const descriptor::Device& device = descriptor_.devices[use.device];
     const auto port = device_ports_.find(device.name);
-    if (port == device_ports_.end()) return "no port for the device " + device.name;
+    if (port == device_ports_.end()) return mismatch("no port for the device " + device.name);
     if (const auto difference = DeviceSlot::difference(device, *port->second); !difference.empty())
-      return "device " + device.name + ": " + difference;
+      return mismatch("device " + device.name + ": " + difference);
     auto flow =
         world_.flows.open({static_cast<std::uint8_t>(use.endnode.transfer), use.endnode.address}, FlowSide::Subsystem);
-    if (!flow) return "device " + device.name + ": " + flow.error().text;
+    if (!flow) return of("device " + device.name + ": ", flow.error());
     plan.devices.emplace_back(device, use, *port->second, std::move(*flow), world_.realtime);
-    plan.device_lost_events.push_back(event_id(device.name + "_LOST"));
+    plan.device_lost_events.push_back(descriptor::framework_event::device_lost(use.device));
   }
-  plan.overrun_event = event_id("CYCLE_OVERRUNS");
   sampler_ = std::make_unique<pus::HousekeepingSampler>();
   pus::TelemetrySink& sink = *this;
   housekeeping_service_ = std::make_unique<pus::HousekeepingService>(descriptor_, *sampler_, verification_, sink);
   for (const auto& structures : {descriptor_.housekeeping, configuration.housekeeping})
-    if (const auto loaded = housekeeping_service_->load(structures); !loaded) return loaded.error().text;
+    if (const auto loaded = housekeeping_service_->load(structures); !loaded) return of("", loaded.error());
   plan.sampler = sampler_.get();
-  if (const auto configured = author_.configure(configuration); !configured) return configured.error().text;
+  if (const auto configured = author_.configure(configuration); !configured) return of("", configured.error());
   cycle_.prepare(std::move(plan));
   vital_.configuration.store(configuration.id, std::memory_order_relaxed);
   vital_.period_ns.store(static_cast<std::uint64_t>(configuration.sampling.count()), std::memory_order_relaxed);
   ++generation_;
   vital_.cycling.store(1, std::memory_order_release);
   wanted_.store(true, std::memory_order_release);
-  return {};
+  return std::nullopt;
 }
 
 }  // namespace hirosco

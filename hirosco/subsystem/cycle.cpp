@@ -6,8 +6,10 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <utility>
 
-#include "hirosco/parameter/number.hpp"
+#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/pus/st05_event.hpp"
 
 namespace hirosco {
 namespace {
@@ -25,7 +27,13 @@ std::size_t bin_of(Duration span) noexcept {
 
 }  // namespace
 
-CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {}
+CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {
+  std::size_t largest = 0;
+  for (const auto& event : parts_.descriptor.events) largest = std::max(largest, pus::octets_of(event));
+  event_buffer_.resize(largest);
+  own_writes_octets_ = parts_.descriptor.parameters.size();
+  own_writes_ = std::make_unique<std::atomic<std::uint8_t>[]>(own_writes_octets_);
+}
 
 void CycleLoop::prepare(CyclePlan plan) {
   plan_ = std::move(plan);
@@ -34,6 +42,9 @@ void CycleLoop::prepare(CyclePlan plan) {
   first_ = true;
   inhibited_ = 0;
   count_ = 0;
+  heartbeat_ = parts_.permit.heartbeat.load(std::memory_order_acquire);
+  silent_cycles_ = 0;
+  silence_limit_ = supervisor_silence_cycles(plan_.configuration->sampling);
   overruns_in_a_row_ = 0;
   overruns_ = 0;
   latency_max_ns_ = 0;
@@ -43,6 +54,13 @@ void CycleLoop::prepare(CyclePlan plan) {
   statistics_.store({});
   times_parameter_.store({});
   link_statistics_.store({});
+  watched_.clear();
+  for (std::size_t i = 0; i < own_writes_octets_; ++i) {
+    own_writes_[i].store(0, std::memory_order_relaxed);
+    const ParameterCell* cell = parts_.dictionary.cell(i);
+    if (parts_.descriptor.parameters[i].writable() && cell != nullptr)
+      watched_.push_back({cell, 0, static_cast<std::uint16_t>(i)});
+  }
   for (IncomingLink& page : parts_.vital.incoming) page.link.store(0, std::memory_order_relaxed);
 }
 
@@ -50,10 +68,13 @@ void CycleLoop::release() { plan_ = {}; }
 
 TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const TimePoint started = parts_.clock.now();
+  listen_to_supervisor();
   check_permit();
   take_commands();
   read_inputs(started);
+  note_stores();
   run_node(planned);
+  note_own_writes();
   write_outputs(planned);
   if (plan_.sampler != nullptr) plan_.sampler->tick(*this, *this);
   ++count_;
@@ -77,8 +98,23 @@ void CycleLoop::check_permit() noexcept {
   const bool stopped = parts_.permit.stop.load(std::memory_order_acquire) != 0;
   const bool operational = state_ == State::Operational;
   if (stopped || (operational && (epoch != entered_epoch_ || !parts_.permit.permits(epoch)))) inhibit(inhibited_by_stop);
+  if (silent_cycles_ > silence_limit_) inhibit(inhibited_by_supervisor);
   permitted_epoch_ = epoch;
   parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);
+}
+
+/// Once a cycle, and in the cycle: a service loop that is stuck or starved must not keep the actuators going when nobody is
+/// left to stop them.
+void CycleLoop::listen_to_supervisor() noexcept {
+  const std::uint64_t heartbeat = parts_.permit.heartbeat.load(std::memory_order_acquire);
+  if (std::exchange(heartbeat_, heartbeat) != heartbeat) {
+    silent_cycles_ = 0;
+    return;
+  }
+  if (silent_cycles_ > silence_limit_) return;
+  if (++silent_cycles_ <= silence_limit_) return;
+  const double cycles = silent_cycles_;
+  raise(descriptor::framework_event::supervisor_silent, {&cycles, 1});
 }
 
 void CycleLoop::take_commands() noexcept {
@@ -92,8 +128,8 @@ void CycleLoop::take_commands() noexcept {
       case CommandKind::EnterState: enter(static_cast<State>(command->index)); break;
       case CommandKind::AttachInput: plan_.inputs[command->index].attach(command->link); break;
       case CommandKind::DetachInput:
-        if (AttachedLink* link = plan_.inputs[command->index].detach())
-          report(ReportKind::InputDetached, command->index, {}, link);
+        plan_.inputs[command->index].detach(command->link);
+        report(ReportKind::InputDetached, command->index, {}, command->link);
         break;
       case CommandKind::AttachOutput: static_cast<void>(plan_.outputs[command->index].attach(command->link)); break;
       case CommandKind::DetachOutput:
@@ -107,9 +143,7 @@ void CycleLoop::take_commands() noexcept {
 void CycleLoop::run_function(const CycleCommand& command) noexcept {
   const Outcome outcome = functions_[command.index].handler(command.arguments, Call{command.request});
   switch (outcome.kind) {
-    case Outcome::Kind::Refused:
-      report(ReportKind::Refused, static_cast<std::uint16_t>(outcome.code), command.request);
-      return;
+    case Outcome::Kind::Refused: fail_call(ReportKind::Refused, outcome.code, command.request, outcome.reason); return;
     case Outcome::Kind::Running: report(ReportKind::Started, 0, command.request); return;
     case Outcome::Kind::Done:
       report(ReportKind::Started, 0, command.request);
@@ -119,6 +153,9 @@ void CycleLoop::run_function(const CycleCommand& command) noexcept {
 }
 
 void CycleLoop::enter(State state) noexcept {
+  // A node that failed is not healed by an entry that was on its way already: the way down follows (SF10).
+  if (state == State::Operational && (inhibited_ & inhibited_by_failure) != 0)
+    return report(ReportKind::EntryRefused, static_cast<std::uint16_t>(state), {});
   state_ = state;
   first_ = true;
   if (state == State::Operational) {
@@ -145,7 +182,11 @@ void CycleLoop::read_inputs(TimePoint started) noexcept {
     DeviceSlot& device = plan_.devices[i];
     device.read(controlling());
     if (!device.alive() && controlling()) inhibit(inhibited_by_device);
-    if (device.just_lost()) raise(plan_.device_lost_events[i], {});
+    if (!device.just_lost()) continue;
+    const DeviceSlot::Loss loss = device.loss();
+    const std::array arguments{static_cast<double>(loss.reason), static_cast<double>(loss.silent_cycles),
+                               static_cast<double>(loss.damaged), static_cast<double>(loss.wrong_size)};
+    raise(plan_.device_lost_events[i], arguments);
   }
 }
 
@@ -167,7 +208,20 @@ void CycleLoop::run_node(TimePoint planned) noexcept {
   }
   if (result || state_ == State::ErrorOperational || (inhibited_ & inhibited_by_failure) != 0) return;
   inhibit(inhibited_by_failure);
-  report(ReportKind::NodeFailed, static_cast<std::uint16_t>(state_), {});
+  const AuthorsError failure{result.error()};
+  answer({.kind = ReportKind::NodeFailed, .index = static_cast<std::uint16_t>(state_)},
+         std::as_bytes(std::span{&failure, 1}));
+}
+
+void CycleLoop::note_stores() noexcept {
+  for (Watched& watched : watched_) watched.stores = watched.cell->stores();
+}
+
+void CycleLoop::note_own_writes() noexcept {
+  for (const Watched& watched : watched_) {
+    const std::uint8_t own = watched.cell->stores() != watched.stores ? 1 : 0;
+    own_writes_[watched.parameter].store(own, std::memory_order_relaxed);
+  }
 }
 
 LinkStatus CycleLoop::link_status() const noexcept {
@@ -219,7 +273,7 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   else if (!starved) ++overruns_in_a_row_;
   if (overrun && !starved && overruns_in_a_row_ == (parts_.realtime ? limit.realtime : limit.reduced)) {
     const double row = overruns_in_a_row_;
-    raise(plan_.overrun_event, {&row, 1});
+    raise(descriptor::framework_event::cycle_overruns, {&row, 1});
   }
 
   statistics_.store({static_cast<std::uint32_t>(overruns_), static_cast<float>(execution_max_ns_) * 1e-3F,
@@ -232,25 +286,47 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   vital.latency_max_ns.store(latency_max_ns_, std::memory_order_relaxed);
   vital.execution_max_ns.store(execution_max_ns_, std::memory_order_relaxed);
   vital.execution_mean_ns.store(static_cast<std::uint32_t>(execution_mean_ns_), std::memory_order_relaxed);
-  vital.lost_reports.store(static_cast<std::uint32_t>(parts_.handover.reports.dropped()), std::memory_order_relaxed);
+  vital.lost_reports.store(static_cast<std::uint32_t>(parts_.handover.dropped()), std::memory_order_relaxed);
   vital.cycles.fetch_add(1, std::memory_order_release);
 }
 
 void CycleLoop::raise(std::uint16_t event, std::span<const double> arguments) noexcept {
-  if (event == 0) return;
   const auto& events = parts_.descriptor.events;
   const auto found = std::ranges::find(events, event, &descriptor::Event::id);
   if (found == events.end()) return;
-  OctetWriter writer{event_buffer_};
-  for (std::size_t i = 0; i < found->arguments.size(); ++i)
-    put_number(writer, found->arguments[i].type, i < arguments.size() ? arguments[i] : 0.0);
-  const CycleReport head{.kind = ReportKind::Event, .index = event};
-  static_cast<void>(parts_.handover.reports.try_write(octets_of_report(head), writer.written()));
+  const Octets auxiliary = pus::fill_arguments(*found, arguments, event_buffer_);
+  CycleReport head{.kind = ReportKind::Event, .index = event};
+  // A lost device or a stale link is told whatever the author raises besides.
+  if (event >= descriptor::framework_event::first) return answer(head, auxiliary);
+  RecordRing& ring = parts_.handover.events;
+  if (found->severity < descriptor::Severity::Medium && ring.used() > ring.capacity() / 2) {
+    parts_.handover.lost_remarks.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  head.number = ++report_number_;
+  static_cast<void>(ring.try_write(octets_of_report(head), auxiliary));
 }
 
 void CycleLoop::report(ReportKind kind, std::uint16_t index, const pus::Request& request, AttachedLink* link) noexcept {
-  const CycleReport head{.kind = kind, .index = index, .request = request, .link = link};
-  static_cast<void>(parts_.handover.reports.try_write(octets_of_report(head)));
+  answer({.kind = kind, .index = index, .request = request, .link = link});
+}
+
+void CycleLoop::fail_call(ReportKind kind, pus::FailureCode code, const pus::Request& request,
+                          const Error& why) noexcept {
+  const AuthorsError error{why};
+  answer({.kind = kind, .index = static_cast<std::uint16_t>(code), .request = request},
+         std::as_bytes(std::span{&error, 1}));
+}
+
+void CycleLoop::answer(CycleReport head, Octets payload) noexcept {
+  RecordRing& answers = parts_.handover.answers;
+  // Progress is all that an author can have without end: it never takes the last half.
+  if (head.kind == ReportKind::Progressed && answers.used() > answers.capacity() / 2) {
+    parts_.handover.lost_progress.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  head.number = ++report_number_;
+  static_cast<void>(answers.try_write(octets_of_report(head), payload));
 }
 
 std::size_t CycleLoop::sample(std::uint16_t parameter, int member, MutableOctets big_endian) noexcept {
@@ -258,10 +334,7 @@ std::size_t CycleLoop::sample(std::uint16_t parameter, int member, MutableOctets
 }
 
 MutableOctets CycleLoop::reserve(std::size_t octets) noexcept {
-  // The other half is for events and for reports that somebody waits for: housekeeping is what can be lost.
-  RecordRing& reports = parts_.handover.reports;
-  if (reports.used() > reports.capacity() / 2) return {};
-  reserved_ = reports.try_reserve(sizeof(CycleReport) + octets);
+  reserved_ = parts_.handover.housekeeping.try_reserve(sizeof(CycleReport) + octets);
   return reserved_.empty() ? MutableOctets{} : reserved_.subspan(sizeof(CycleReport));
 }
 
@@ -269,7 +342,7 @@ void CycleLoop::commit(std::uint16_t structure, std::size_t octets) noexcept {
   // reserve() left room for the head in front of what it handed out.
   const CycleReport head{.kind = ReportKind::Housekeeping, .index = structure};
   std::ranges::copy(octets_of_report(head), reserved_.begin());
-  parts_.handover.reports.commit(sizeof head + octets);
+  parts_.handover.housekeeping.commit(sizeof head + octets);
 }
 
 }  // namespace hirosco

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -55,16 +56,30 @@ struct CyclePlan {
   std::vector<LinkOutputSlot> outputs;
   std::vector<DeviceSlot> devices;
   pus::HousekeepingSampler* sampler{nullptr};
-  std::vector<std::uint16_t> device_lost_events;  ///< per device; 0 = the descriptor declares none
+  std::vector<std::uint16_t> device_lost_events;  ///< ids, per device
   std::vector<std::uint16_t> input_stale_events;  ///< per input
-  std::uint16_t overrun_event{0};
 };
 
-/// Commands and reports between the loops of one subsystem.
+/// Commands and reports between the loops of one subsystem. Three rings of reports, so that none is crowded out by
+/// another kind: whatever an author raises, and however much housekeeping is asked for, who waits for an answer gets it.
 struct Handover {
-  Handover() : reports{64 * 1024} {}
+  Handover() : answers{32 * 1024}, events{32 * 1024}, housekeeping{64 * 1024} {}
   SpscRing<CycleCommand, 64> commands;
-  RecordRing reports;
+  RecordRing answers;  ///< somebody waits for them: at most two for each command, progress, and framework events
+  RecordRing events;  ///< the author's
+  RecordRing housekeeping;
+  // Written by the cycle, besides what the rings count themselves: what may not take the last half of one.
+  std::atomic<std::uint64_t> lost_progress{0};
+  std::atomic<std::uint64_t> lost_remarks{0};
+  [[nodiscard]] std::uint64_t lost_answers() const noexcept {
+    return answers.dropped() + lost_progress.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t lost_events() const noexcept {
+    return events.dropped() + lost_remarks.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t dropped() const noexcept {
+    return lost_answers() + lost_events() + housekeeping.dropped();
+  }
 };
 
 class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
@@ -91,6 +106,12 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] Parameter<CycleTimes>& times() noexcept { return times_parameter_; }
   [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
 
+  /// Whether the author's node wrote this parameter in the newest cycle: what anybody else writes would not last.
+  /// Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool writes_itself(std::size_t parameter) const noexcept {
+    return parameter < own_writes_octets_ && own_writes_[parameter].load(std::memory_order_relaxed) != 0;
+  }
+
   // --- the cycle --------------------------------------------------------------------------------------------------
   /// One cycle that was due at `planned`; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
   /// at most one system call per device.
@@ -101,14 +122,20 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void inhibit(Inhibition reason) noexcept { inhibited_ |= reason; }
   void report(ReportKind kind, std::uint16_t index, const pus::Request& request, AttachedLink* link = nullptr) noexcept;
 
+  void fail_call(ReportKind kind, pus::FailureCode code, const pus::Request& request, const Error& why) noexcept;
+
  private:
+  void answer(CycleReport head, Octets payload = {}) noexcept;
   void take_commands() noexcept;
   void run_function(const CycleCommand& command) noexcept;
   void enter(State state) noexcept;
   void check_permit() noexcept;
+  void listen_to_supervisor() noexcept;
   void read_inputs(TimePoint started) noexcept;
   void run_node(TimePoint planned) noexcept;
   void write_outputs(TimePoint planned) noexcept;
+  void note_stores() noexcept;
+  void note_own_writes() noexcept;
   void account(TimePoint planned, TimePoint started) noexcept;
   void count_links() noexcept;
   [[nodiscard]] bool controlling() const noexcept;
@@ -124,7 +151,16 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   Parameter<CycleStatistics> statistics_;
   Parameter<CycleTimes> times_parameter_;
   Parameter<LinkStatistics> link_statistics_;
-  std::array<std::byte, 1024> event_buffer_{};
+  std::vector<std::byte> event_buffer_;  ///< room for the largest event of the descriptor
+  struct Watched {
+    const ParameterCell* cell;
+    std::uint64_t stores;  ///< before the node ran
+    std::uint16_t parameter;
+  };
+  std::vector<Watched> watched_;  ///< what ST[20] might set
+  std::unique_ptr<std::atomic<std::uint8_t>[]> own_writes_;  ///< by parameter
+  std::size_t own_writes_octets_{0};
+  std::uint32_t report_number_{0};
   MutableOctets reserved_;  ///< housekeeping report under assembly
 
   State state_{State::PreOperational};
@@ -133,6 +169,9 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   std::uint64_t count_{0};
   std::uint32_t entered_epoch_{0};
   std::uint32_t permitted_epoch_{0};  ///< of the permit page, as checked in this cycle
+  std::uint64_t heartbeat_{0};  ///< of the supervisor, as seen in the last cycle
+  std::uint32_t silent_cycles_{0};  ///< of the supervisor
+  std::uint32_t silence_limit_{1};
   std::uint32_t overruns_in_a_row_{0};
   std::uint64_t overruns_{0};
   std::uint32_t latency_max_ns_{0};

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -24,6 +24,7 @@
 #include "hirosco/pus/st08_function.hpp"
 #include "hirosco/pus/st17_test.hpp"
 #include "hirosco/pus/st20_parameter.hpp"
+#include "hirosco/subsystem/backlog.hpp"
 #include "hirosco/subsystem/cycle.hpp"
 #include "hirosco/subsystem/link_service.hpp"
 #include "hirosco/subsystem/pages.hpp"
@@ -41,6 +42,13 @@ struct World {
   bool realtime{true};               ///< SCHED_FIFO is granted; false: the reduced limits hold (decision 21)
   /// Explains to a developer why something was refused (standard error, a test's list). Service loop only.
   std::function<void(std::string_view)> explain{};
+};
+
+/// What failed, in words that outlive whoever said them.
+struct Failure {
+  ErrorCode code{ErrorCode::Internal};
+  std::string text;
+  std::int64_t number{0};
 };
 
 class GenericSubsystem final : private pus::TelemetrySink,
@@ -81,14 +89,14 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void publish(std::string_view name, ParameterCell& parameter);
   void require_link(std::string_view set, LinkInputPort& port);
   void use_device(std::string_view name, DevicePortBase& port);
-  void bind_function(std::string_view name, std::size_t arguments, FunctionHandler handler);
+  void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
   [[nodiscard]] pus::Verification& verification() noexcept { return verification_; }
   [[nodiscard]] pus::TelemetrySink& telemetry() noexcept { return *this; }
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
   void raise_in_service(std::uint16_t event, std::span<const double> arguments);
-  /// An event by its name; nothing when the descriptor declares none.
+  /// An event of the descriptor by its name; nothing when it declares none.
   void announce(std::string_view event_name, std::initializer_list<double> arguments = {});
 
  private:
@@ -104,6 +112,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   // LinkServiceOwner
   const descriptor::Requires* find_required(std::string_view set) override;
   const LinkOutputSlot* find_provided(std::string_view set) override;
+  std::string refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) override;
   Duration period() override;
   Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) override;
   bool detach(std::uint8_t link) override;
@@ -122,21 +131,29 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void arrive(State state);
   void arrive_transient(State state);
   void go_down_from(State failed);
-  void fail_transition(State state, const char* why);
+  void fail_transition(State state, const Failure& why);
   Result<Step> enter_transient(State state);
   Result<Step> initialise_software();
   Result<Step> leave_cycle();
-  [[nodiscard]] std::string apply_configuration(const descriptor::Configuration& configuration);
+  [[nodiscard]] std::optional<Failure> apply_configuration(const descriptor::Configuration& configuration);
+  void end_configuration();
   void release_configuration();
+  void release_late();
+  [[nodiscard]] bool cycle_rests() const noexcept;
   bool push(const CycleCommand& command);
   bool close_call(const pus::Request& request);
   bool withdraw(std::uint8_t link);
   [[nodiscard]] bool required_links_attached() const noexcept;
   /// The refusal of what the present state does not permit.
   [[nodiscard]] pus::FailureNotice wrong_state() const;
-  [[nodiscard]] std::uint16_t event_id(std::string_view name) const noexcept;
-  void send(const Message& message);
-  void flush();
+  [[nodiscard]] pus::FailureNotice notice_of(std::uint16_t code, const Failure& why) const;
+  void mistake(std::string problem);
+  void check_introduction();
+  void forget_introduction();
+  void raise_event(std::uint16_t event, Octets auxiliary);
+  /// STATE_FAILED and CONFIGURATION_FAILED of `what`.
+  void raise_failure(std::uint16_t event, std::uint8_t what, const Failure& why);
+  void tell_losses(TimePoint now);
 
   Subsystem& author_;
   descriptor::Subsystem descriptor_;
@@ -145,6 +162,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   VitalPage& vital_;
   const PermitPage& permit_;
 
+  /// Of the descriptor: no Software-Init succeeds. Before the dictionary, whose making may fill it.
+  std::string dictionary_problem_;
   Dictionary dictionary_;
   WriteQueue writes_;
   Handover handover_;
@@ -169,7 +188,11 @@ class GenericSubsystem final : private pus::TelemetrySink,
   };
   std::map<std::uint8_t, LinkEnd> link_ends_;
   std::vector<std::unique_ptr<AttachedLink>> leaving_links_;
+  std::string refusal_;  ///< of an error, which does not own its words
   std::vector<pus::Request> open_calls_;  ///< functions that run: each gets exactly one final report
+
+  std::vector<std::string> problems_;  ///< of publish() and its kin: all of them fail the same Software-Init
+  std::string problems_text_;  ///< of an error, which does not own its words
 
   State state_{State::Offline};
   const descriptor::Configuration* configuration_{nullptr};
@@ -178,16 +201,17 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::optional<pus::Request> way_request_;
   bool phase_entered_{false};
   bool awaiting_cycle_{false};
+  bool release_owed_{false};  ///< the cycle still holds the configuration that Post-Operational was to give back
   TimePoint phase_deadline_{};
-  std::string latched_problem_;  ///< of publish() and its kin: fails Software-Init
 
   std::atomic<bool> wanted_{false};
   // A late answer to an earlier order must not pass for one to the newest: orders to rest are numbered.
   std::atomic<std::uint32_t> rest_ticket_{0};
   std::atomic<std::uint32_t> parked_ticket_{0};
   std::uint32_t generation_{0};
-  std::deque<std::vector<std::byte>> unsent_;
-  std::uint64_t unsent_dropped_{0};
+  Backlog backlog_;
+  std::array<std::uint64_t, 6> told_losses_{};
+  TimePoint losses_told_at_{};
   std::uint64_t last_heartbeat_{0};
   TimePoint heartbeat_seen_{};
   bool supervisor_lost_{false};

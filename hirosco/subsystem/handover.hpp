@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/pus/service.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
@@ -37,20 +38,38 @@ enum class ReportKind : std::uint8_t {
   Housekeeping,   ///< payload: source data of TM[3,25], `index` the structure id
   Event,          ///< payload: auxiliary data, `index` the event id
   Started,
-  Refused,
+  Refused,        ///< `index` the code; payload: AuthorsError
   Progressed,
   Finished,
-  Aborted,  ///< of a function; `index` code or step
+  Aborted,        ///< of a function; `index` code or step; payload of Aborted: AuthorsError
   StateEntered,   ///< `index` the State
-  NodeFailed,     ///< `index` the State
+  EntryRefused,   ///< `index` the State
+  NodeFailed,     ///< `index` the State; payload: AuthorsError
   InputDetached,
   OutputDetached,  ///< `link` may be freed
+};
+
+/// An author's error: the words are copied, as who said them may be gone when they are read.
+struct AuthorsError {
+  ErrorCode code{ErrorCode::Internal};
+  std::uint8_t text_octets{0};
+  std::int64_t number{0};
+  std::array<char, descriptor::framework_event::text_octets> text{};
+  AuthorsError() = default;
+  explicit AuthorsError(const Error& error) noexcept : code{error.code}, number{error.value} {
+    if (error.text == nullptr) return;
+    while (text_octets < text.size() && error.text[text_octets] != '\0') {
+      text[text_octets] = error.text[text_octets];
+      ++text_octets;
+    }
+  }
 };
 
 /// Cycle -> service loop; a payload may follow in the same record.
 struct CycleReport {
   ReportKind kind{};
   std::uint16_t index{0};
+  std::uint32_t number{0};  ///< answers and events count together: they are taken in the order in which they were made
   pus::Request request{};
   AttachedLink* link{nullptr};
 };

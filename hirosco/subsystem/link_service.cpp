@@ -32,6 +32,8 @@ void LinkService::offer(Octets data, const pus::Request& request) {
   const descriptor::Requires* required = owner_.find_required(asked->set);
   if (required == nullptr)
     return refuse(asked->link, {4, "no configuration in force requires a set '" + asked->set + "'"}, request);
+  if (auto why = owner_.refuse_link(st128::Role::Consumer, asked->set, asked->link); !why.empty())
+    return refuse(asked->link, {4, std::move(why)}, request);
   st128::Offer own{.set = required->name, .period = owner_.period(), .terms = required->terms, .fields = {}};
   for (const auto& field : required->fields) own.fields.push_back({field.name, field.type, field.count});
   std::array<std::byte, max_packet_octets> buffer;
@@ -49,6 +51,8 @@ void LinkService::negotiate(Octets data, const pus::Request& request) {
   const LinkOutputSlot* provided = owner_.find_provided(asked->set);
   if (provided == nullptr)
     return refuse(asked->link, {4, "no configuration in force provides a set '" + asked->set + "'"}, request);
+  if (auto why = owner_.refuse_link(st128::Role::Producer, asked->set, asked->link); !why.empty())
+    return refuse(asked->link, {4, std::move(why)}, request);
   const st128::Offer own{
       .set = asked->set, .period = owner_.period(), .terms = provided->terms().terms, .fields = provided->fields()};
   const auto outcome = st128::negotiate(own, asked->consumer);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "hirosco/data_transfer/memory.hpp"
@@ -20,6 +21,8 @@ class LinkServiceOwner {
   /// The required or provided set of the configuration in force; null when there is none.
   virtual const descriptor::Requires* find_required(std::string_view set) = 0;
   virtual const LinkOutputSlot* find_provided(std::string_view set) = 0;
+  /// Why no link may be made into a required set, or out of a provided one, now; empty when it may.
+  virtual std::string refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) = 0;
   virtual Duration period() = 0;
   /// Maps the memory and hands this end to the cycle.
   virtual Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) = 0;

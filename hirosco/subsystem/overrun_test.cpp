@@ -49,7 +49,7 @@ TEST_F(CycleTime, ThreeOverrunsInARowAreReportedOnceAndMissedCyclesAreSkipped) {
     EXPECT_EQ(planned - before, 3ms);  // on the grid and in the future
   }
   rig.service();
-  EXPECT_THAT(rig.reports(5, 3), ElementsAre("000600000003"));
+  EXPECT_THAT(rig.reports(5, 3), ElementsAre("f00300000003"));
   EXPECT_EQ(rig.vital.overruns.load(), 6u);
   EXPECT_EQ(rig.vital.execution_max_ns.load(), 2'500'000u);
 }
@@ -62,7 +62,7 @@ TEST_F(CycleTime, LateStartsOfAStarvingMachineNeitherLengthenTheRowNorBreakIt) {
   EXPECT_THAT(rig.reports(5, 3), ::testing::IsEmpty());
   cycle(2500us, 1000us);
   rig.service();
-  EXPECT_THAT(rig.reports(5, 3), ElementsAre("000600000003"));
+  EXPECT_THAT(rig.reports(5, 3), ElementsAre("f00300000003"));
   EXPECT_EQ(rig.vital.overruns.load(), 13u);
 }
 

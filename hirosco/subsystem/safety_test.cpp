@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <ranges>
+
 #include "hirosco/data_transfer/device_frame.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
@@ -14,6 +17,7 @@ namespace hirosco {
 namespace {
 
 using pus::st128::Role;
+using testing::arm_lost;
 using ::testing::ElementsAre;
 using testing::Probe;
 using testing::probe_descriptor;
@@ -205,13 +209,13 @@ TEST_F(Devices, ASilentDeviceInhibitsAndIsReportedOnce) {
   EXPECT_EQ(rig.inhibited(), inhibited_by_device);
   rig.cycle(20);
   rig.service();
-  EXPECT_EQ(rig.events(4), 1);
+  EXPECT_EQ(rig.events(arm_lost), 1);
   exchange();
   rig.cycle();
   EXPECT_TRUE(probe.arm.alive());
   rig.cycle(5);
   rig.service();
-  EXPECT_EQ(rig.events(4), 2);
+  EXPECT_EQ(rig.events(arm_lost), 2);
 }
 
 TEST_F(Devices, ADeviceThatRepeatsItselfIsSilent) {
@@ -224,16 +228,16 @@ TEST_F(Devices, ADeviceThatRepeatsItselfIsSilent) {
   }
   rig.service();
   EXPECT_FALSE(probe.arm.alive());
-  EXPECT_EQ(rig.events(4), 1);
+  EXPECT_EQ(rig.events(arm_lost), 1);
 }
 
 TEST_F(Devices, ADeviceThatNeverSpokeIsNoticedInSafeOperational) {
   rig.bring_to(State::PreOperational, 3);
   rig.cycle(50);
   rig.service();
-  EXPECT_EQ(rig.events(4), 0);
+  EXPECT_EQ(rig.events(arm_lost), 0);
   rig.set_state_now(State::SafeOperational);
-  EXPECT_EQ(rig.events(4), 1);
+  EXPECT_EQ(rig.events(arm_lost), 1);
 }
 
 TEST_F(Devices, DamagedFramesAreCountedAndNotBelieved) {
@@ -250,6 +254,45 @@ TEST_F(Devices, DamagedFramesAreCountedAndNotBelieved) {
   EXPECT_EQ(probe.arm.input().angle, 0.5);
 }
 
+/// REASON, SILENT_CYCLES, DAMAGED and WRONG_SIZE of the newest ARM_LOST, as the supervisor hears them.
+std::array<std::uint32_t, 4> loss_in(const Rig& rig) {
+  for (const auto& event : rig.raised | std::views::reverse)
+    if (event.id == arm_lost) {
+      OctetReader reader{event.auxiliary};
+      std::array<std::uint32_t, 4> loss{reader.get<std::uint8_t>()};
+      for (std::size_t i = 1; i < loss.size(); ++i) loss[i] = reader.get<std::uint32_t>();
+      return loss;
+    }
+  return {};
+}
+
+TEST_F(Devices, ALostDeviceSaysWhetherItWasSilentDamagedOfTheWrongSizeOrRepeatedItself) {
+  using enum descriptor::DeviceLoss;
+  const auto reason = [](descriptor::DeviceLoss loss) { return static_cast<std::uint32_t>(loss); };
+  const std::array<std::byte, 30> noise{};
+  std::uint32_t sequence = 1'000;
+  const std::pair<std::function<void()>, std::array<std::uint32_t, 4>> cases[]{
+      {[&] { static_cast<void>(angle); }, {reason(Silent), 3, 0, 0}},
+      {[&] { static_cast<void>(arm->send(noise)); }, {reason(Damaged), 3, 3, 0}},
+      {[&] { answer(*arm, ++sequence, {}); }, {reason(WrongSize), 3, 0, 3}},
+      {[&] { answer(*arm, 7, std::as_bytes(std::span{&angle, 1})); }, {reason(Repeated), 3, 0, 0}}};
+  bring_up(State::SafeOperational);
+  for (const auto& [misbehave, wanted] : cases) {
+    answer(*arm, 7, std::as_bytes(std::span{&angle, 1}));
+    rig.cycle();
+    ASSERT_TRUE(probe.arm.alive());
+    for (int i = 0; i < 3; ++i) {
+      misbehave();
+      rig.cycle();
+    }
+    rig.service();
+    EXPECT_EQ(loss_in(rig), wanted);
+    rig.forget_telemetry();
+    answer(*arm, ++sequence, std::as_bytes(std::span{&angle, 1}));
+    rig.cycle();
+  }
+}
+
 TEST(ReducedPromise, WithoutRealtimeRightsTheSecondSetOfLimitsHolds) {
   Probe probe;
   Rig rig{probe, probe_descriptor, false};
@@ -258,10 +301,10 @@ TEST(ReducedPromise, WithoutRealtimeRightsTheSecondSetOfLimitsHolds) {
   rig.service();
   rig.cycle(39);
   rig.service();
-  EXPECT_EQ(rig.events(4), 0);
+  EXPECT_EQ(rig.events(arm_lost), 0);
   rig.cycle(2);
   rig.service();
-  EXPECT_EQ(rig.events(4), 1);
+  EXPECT_EQ(rig.events(arm_lost), 1);
 }
 
 // --- the supervisor ----------------------------------------------------------------------------------------------------

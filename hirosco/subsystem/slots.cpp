@@ -95,10 +95,11 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   latency_max_ns_ = 0;
 }
 
-AttachedLink* LinkInputSlot::detach() noexcept {
+void LinkInputSlot::detach(const AttachedLink* link) noexcept {
+  if (link_ != link) return;
+  link_ = nullptr;
   port_->valid_ = false;
   port_->status_ = LinkStatus::None;
-  return std::exchange(link_, nullptr);
 }
 
 void LinkInputSlot::read(TimePoint now) noexcept {
@@ -218,34 +219,58 @@ void DeviceSlot::read(bool count_silence) noexcept {
   port_->fresh_ = false;
   just_lost_ = false;
   const auto received = flow_->receive(frame_);
-  if (received && received->flow == Flow::New) {
-    const auto status = read_status(Octets{frame_}.first(received->octets));
-    if (status && status->payload.size() == wire_octets(input_layout_)) {
-      decode(input_layout_, status->payload, port_->input_, order_);
-      // A frame that answers no newer command is a repetition: a frozen device must not look alive.
-      port_->fresh_ = status->sequence != echoed_ || !heard_;
-      echoed_ = status->sequence;
-      port_->flags_ = status->flags;
-      // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say.
-      if ((status->flags & device_flag::watchdog_tripped) != 0 && active_cycles_ > silence_limit_)
-        port_->fresh_ = false;
-    } else {
-      ++port_->damaged_frames_;
-    }
-  }
+  if (received && received->flow == Flow::New) take_frame(Octets{frame_}.first(received->octets));
   if (port_->fresh_) {
-    silent_cycles_ = 0;
+    since_good_ = {};
     heard_ = true;
     port_->alive_ = true;
     return;
   }
   if (!heard_ && !count_silence) return;
-  const bool hung_up = !received && heard_;
-  if (silent_cycles_ < longest_silence) ++silent_cycles_;
-  if (silent_cycles_ == silence_limit_ || (hung_up && port_->alive_)) {
+  hung_up_ = !received && heard_;
+  count(since_good_.silent_cycles);
+  if (since_good_.silent_cycles == silence_limit_ || (hung_up_ && port_->alive_)) {
     just_lost_ = port_->alive_ || !heard_;
     port_->alive_ = false;
   }
+}
+
+void DeviceSlot::take_frame(Octets frame) noexcept {
+  const auto status = read_status(frame);
+  const bool fits = status && status->payload.size() == wire_octets(input_layout_);
+  if (!fits) {
+    ++port_->damaged_frames_;
+    return count(status ? since_good_.wrong_size : since_good_.damaged);
+  }
+  decode(input_layout_, status->payload, port_->input_, order_);
+  // A frame that answers no newer command is a repetition: a frozen device must not look alive.
+  port_->fresh_ = status->sequence != echoed_ || !heard_;
+  if (!port_->fresh_) count(since_good_.repeated);
+  echoed_ = status->sequence;
+  port_->flags_ = status->flags;
+  // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say.
+  if ((status->flags & device_flag::watchdog_tripped) == 0 || active_cycles_ <= silence_limit_) return;
+  if (port_->fresh_) count(since_good_.let_go);
+  port_->fresh_ = false;
+}
+
+void DeviceSlot::count(std::uint32_t& cycles) noexcept { cycles = std::min(cycles + 1, longest_silence); }
+
+DeviceSlot::Loss DeviceSlot::loss() const noexcept {
+  Loss loss = since_good_;
+  using enum descriptor::DeviceLoss;
+  std::uint32_t most = 0;
+  const auto blame = [&](std::uint32_t frames, descriptor::DeviceLoss reason) {
+    if (frames <= most) return;
+    most = frames;
+    loss.reason = reason;
+  };
+  blame(loss.damaged, Damaged);
+  blame(loss.wrong_size, WrongSize);
+  blame(loss.let_go, LetGo);
+  blame(loss.repeated, Repeated);
+  if (hung_up_) loss.reason = HungUp;
+  return loss;
 }
 
 void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {

@@ -13,6 +13,7 @@
 #include "hirosco/data_transfer/layout.hpp"
 #include "hirosco/data_transfer/memory.hpp"
 #include "hirosco/data_transfer/realtime_link.hpp"
+#include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/pus/st128_realtime_link.hpp"
@@ -48,7 +49,8 @@ class LinkInputSlot {
   /// Prepares the scatter list of a link for the port. Mismatch: the agreement lacks a field.
   [[nodiscard]] Result<> plan(AttachedLink& link) const;
   void attach(AttachedLink* link) noexcept;
-  AttachedLink* detach() noexcept;
+  /// Lets go of this link; of another one it keeps hold.
+  void detach(const AttachedLink* link) noexcept;
   /// Reads the link into the port, in the cycle that started at `now`.
   void read(TimePoint now) noexcept;
   /// Tells how the link does.
@@ -100,12 +102,25 @@ class DeviceSlot {
   [[nodiscard]] bool alive() const noexcept { return port_->alive_; }
   /// True in the one cycle in which the device became lost.
   [[nodiscard]] bool just_lost() const noexcept { return just_lost_; }
+  /// Since its last good frame: why it counts as lost, and what came instead.
+  struct Loss {
+    descriptor::DeviceLoss reason{descriptor::DeviceLoss::Silent};
+    std::uint32_t silent_cycles{0};
+    std::uint32_t damaged{0};
+    std::uint32_t wrong_size{0};
+    std::uint32_t repeated{0};
+    std::uint32_t let_go{0};
+  };
+  [[nodiscard]] Loss loss() const noexcept;
   /// Takes the newest status frame into the port. `count_silence`: whether silence counts before a first frame came.
   void read(bool count_silence) noexcept;
   /// Sends the author's output if `active`, else the declared safe values.
   void write(std::uint32_t epoch, bool active, bool stopping) noexcept;
 
  private:
+  void take_frame(Octets frame) noexcept;
+  static void count(std::uint32_t& cycles) noexcept;
+
   const descriptor::Device* device_;
   DevicePortBase* port_;
   std::unique_ptr<DataFlow> flow_;
@@ -118,7 +133,8 @@ class DeviceSlot {
   std::vector<std::byte> payload_;
   std::vector<std::byte> frame_;
   std::uint32_t sequence_{0};
-  std::uint32_t silent_cycles_{0};
+  Loss since_good_;
+  bool hung_up_{false};
   std::uint32_t echoed_{0};          ///< command sequence that the newest status frame answers
   std::uint32_t active_cycles_{0};   ///< in a row in which outputs were to reach the actuators
   bool heard_{false};

@@ -25,13 +25,15 @@ namespace {
 
 Outcome::Outcome(const Result<>& result) noexcept
     : kind{result ? Kind::Done : Kind::Refused},
-      code{result ? pus::FailureCode{} : failure_code(result.error().code)} {}
+      code{result ? pus::FailureCode{} : failure_code(result.error().code)},
+      reason{result ? Error{} : result.error()} {}
 
 void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
 void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
 void Subsystem::use_device(std::string_view name, DevicePortBase& port) { framework_->use_device(name, port); }
 
-void Subsystem::bind_function(std::string_view name, std::size_t arguments, FunctionHandler handler) {
+void Subsystem::bind_function(std::string_view name, std::span<const ArgumentRange> arguments,
+                              FunctionHandler handler) {
   framework_->bind_function(name, arguments, std::move(handler));
 }
 
@@ -44,8 +46,9 @@ void Subsystem::progress(const Call& call, std::uint16_t step) noexcept {
   framework_->cycle().report(ReportKind::Progressed, step, call.request);
 }
 void Subsystem::finish(const Call& call) noexcept { framework_->cycle().report(ReportKind::Finished, 0, call.request); }
-void Subsystem::abort(const Call& call, pus::FailureCode code) noexcept {
-  framework_->cycle().report(ReportKind::Aborted, static_cast<std::uint16_t>(code), call.request);
+void Subsystem::abort(const Call& call, const Error& why) noexcept { abort_call(call, failure_code(why.code), why); }
+void Subsystem::abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept {
+  framework_->cycle().fail_call(ReportKind::Aborted, code, call.request, why);
 }
 
 Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {

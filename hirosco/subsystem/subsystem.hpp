@@ -6,7 +6,10 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <limits>
+#include <span>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -50,23 +53,60 @@ struct Outcome {
   enum class Kind : std::uint8_t { Done, Running, Refused };
   Kind kind{Kind::Done};
   pus::FailureCode code{};
+  Error reason{};  ///< words and number of a refusal; its text may be empty
   constexpr Outcome(Kind what, pus::FailureCode why = {}) noexcept : kind{what}, code{why} {}
   Outcome(const Result<>& result) noexcept;  // NOLINT: a handler may simply return a Result<>
 };
 inline constexpr Outcome running{Outcome::Kind::Running};
-[[nodiscard]] constexpr Outcome refused(pus::FailureCode code) noexcept { return {Outcome::Kind::Refused, code}; }
+
+/// An author's own failure codes: `enum class Trouble : std::uint16_t { sensor_broken = 0x8001 };`, each named in the
+/// descriptor: `<Failure code="0x8001" name="SENSOR_BROKEN"/>`.
+template <class E>
+concept FailureEnumeration = std::is_enum_v<E> && std::is_same_v<std::underlying_type_t<E>, std::uint16_t>;
+
+/// `text` is a string literal; it reaches ground with `number`.
+template <FailureEnumeration E>
+[[nodiscard]] constexpr Outcome refused(E code, const char* text = "", std::int64_t number = 0) noexcept {
+  Outcome outcome{Outcome::Kind::Refused, static_cast<pus::FailureCode>(code)};
+  outcome.reason = {ErrorCode::NotPermitted, text, number};
+  return outcome;
+}
 
 /// Largest number of arguments of a function.
 using pus::max_function_arguments;
 using FunctionHandler = std::function<Outcome(const std::array<double, max_function_arguments>&, Call)>;
 
+/// What a C++ type of a handler's argument can hold without changing it.
+struct ArgumentRange {
+  bool integer{false};
+  double lowest{0.0};
+  double highest{0.0};
+  int digits{0};  ///< binary, of the significand
+};
+
 namespace detail {
+template <class T>
+[[nodiscard]] constexpr ArgumentRange range_of() noexcept {
+  if constexpr (std::is_enum_v<T>) return range_of<std::underlying_type_t<T>>();
+  else {
+    using Limits = std::numeric_limits<T>;
+    return {Limits::is_integer, static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max()),
+            Limits::digits};
+  }
+}
+
 template <class T>
 struct HandlerTraits;
 template <class C, class R, class... A>
 struct HandlerTraits<R (C::*)(A...) const> {
   static constexpr bool takes_call = (std::is_same_v<A, Call> || ... || false);
   static constexpr std::size_t arguments = sizeof...(A) - (takes_call ? 1 : 0);
+  [[nodiscard]] static constexpr auto ranges() noexcept {
+    return []<std::size_t... I>(std::index_sequence<I...>) {
+      return std::array<ArgumentRange, sizeof...(I)>{
+          range_of<std::remove_cvref_t<std::tuple_element_t<I, std::tuple<A...>>>>()...};
+    }(std::make_index_sequence<arguments>{});
+  }
   template <class H, std::size_t... I>
   static Outcome invoke(const H& handler, const std::array<double, max_function_arguments>& values, const Call& call,
                         std::index_sequence<I...>) {
@@ -116,12 +156,14 @@ class Subsystem {
   /// Names the author's view of a device.
   void use_device(std::string_view name, DevicePortBase& port);
   /// Gives a function of the descriptor its handler: any callable of up to eight numbers and, last, a Call if it wants
-  /// to report later. Returns Result<> or Outcome. Runs at a cycle boundary; must not throw.
+  /// to report later. Returns Result<> or Outcome. Runs at a cycle boundary; must not throw. An argument's C++ type holds
+  /// every value that the descriptor permits, or Software-Init fails.
   template <class Handler>
   void on_function(std::string_view name, Handler handler) {
     using Traits = detail::HandlerTraits<decltype(&Handler::operator())>;
     static_assert(Traits::arguments <= max_function_arguments);
-    bind_function(name, Traits::arguments,
+    static constexpr auto ranges = Traits::ranges();
+    bind_function(name, ranges,
                   [handler](const std::array<double, max_function_arguments>& values, Call call) -> Outcome {
                     return Traits::invoke(handler, values, call, std::make_index_sequence<Traits::arguments>{});
                   });
@@ -135,7 +177,12 @@ class Subsystem {
   /// Later reports of a running function.  Realtime: wait-free.
   void progress(const Call& call, std::uint16_t step) noexcept;
   void finish(const Call& call) noexcept;
-  void abort(const Call& call, pus::FailureCode code) noexcept;
+  /// `text` is a string literal; it reaches ground with `number`.
+  template <FailureEnumeration E>
+  void abort(const Call& call, E code, const char* text = "", std::int64_t number = 0) noexcept {
+    abort_call(call, static_cast<pus::FailureCode>(code), {ErrorCode::Internal, text, number});
+  }
+  void abort(const Call& call, const Error& why) noexcept;
 
   // --- in the service loop ----------------------------------------------------------------------------------------
   /// Sends a telecommand that came from the ground link client `client` to the supervisor. ResourceExhausted: the
@@ -149,7 +196,8 @@ class Subsystem {
  private:
   friend class GenericSubsystem;
   friend class CycleLoop;
-  void bind_function(std::string_view name, std::size_t arguments, FunctionHandler handler);
+  void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
+  void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
   GenericSubsystem* framework_{nullptr};
 };
 

@@ -56,7 +56,7 @@ TEST_F(HelloTest, RefusesAGoalBeyondItsLimit) {
   rig.bring_to(State::Operational);
   const auto request = rig.call("MOVE_TO", {1.6});
   rig.settle();
-  EXPECT_EQ(rig.outcome(request), "1 4:0105");
+  EXPECT_TRUE(rig.outcome(request).starts_with("1 4:0105"));
 }
 
 }  // namespace

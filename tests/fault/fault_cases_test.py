@@ -16,12 +16,6 @@ import flight
 ACTUATORS = 5       # most cycles of the member itself from detection to actuators safe
 BOTH = ("MANIPULATOR", "JOYSTICK")
 REMOTE = {'commissioning" start="telepresence': 'commissioning" start="remote'}
-OVERRUNS = """<EventService>
-      <Event name="STATE_CHANGED" id="701" severity="info"><Argument name="STATE" type="UINT8"/></Event>
-      <Event name="CYCLE_OVERRUNS" id="702" severity="medium"><Argument name="IN_A_ROW" type="UINT32"/></Event>
-    </EventService>"""
-
-
 class FaultCases(unittest.TestCase):
     def members(self, craft):
         return {member["name"]: member for member in craft.wait_status(lambda s: True, 3.0)["subsystems"]}
@@ -133,7 +127,7 @@ class FaultCases(unittest.TestCase):
         with flight.MissionCopy({"hirosco-hello": "hirosco-overrunning", "../../subsystems/hello/hello.xml": "hello.xml"},
                                 flight.HELLO) as mission:
             text = (flight.REPOSITORY / "subsystems/hello/hello.xml").read_text()
-            pathlib.Path(mission).with_name("hello.xml").write_text(text.replace("<EventService/>", OVERRUNS))
+            pathlib.Path(mission).with_name("hello.xml").write_text(text)
             with flight.Flight(mission) as hello:
                 hello.wait_told("commissioned: mode operation")
                 limit = 3 if self.members(hello)["HELLO"]["realtime"] else 20
@@ -143,7 +137,7 @@ class FaultCases(unittest.TestCase):
                 self.assertFalse([line.told for line in hello.told(begin) if "CYCLE_OVERRUNS" in line.told])
                 self.assertEqual(hello.tc("hello", "MOVE_TO", limit)[0], 0)
                 over = hello.wait_told(f"HELLO medium CYCLE_OVERRUNS IN_A_ROW={limit}", 2.0, begin)
-                safe = hello.wait_told("HELLO info STATE_CHANGED STATE=4", 2.0, begin)
+                safe = hello.wait_told("HELLO info STATE_CHANGED STATE=SafeOperational", 2.0, begin)
                 flight.measure(f"FC6 overruns: {over.told}, SafeOperational {1e3 * (safe.at_s - over.at_s):.1f} ms later")
                 self.assertEqual(hello.end(), 0, hello.errors)
 

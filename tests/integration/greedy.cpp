@@ -36,9 +36,6 @@ constexpr auto subsystem_text = R"(<?xml version="1.0" encoding="UTF-8"?>
 <Subsystem name="GREEDY" id="20">
   <Parameters><ParamRef name="RUNS" id="0" type="UINT32"/></Parameters>
   <EventService>
-    <Event name="STATE_CHANGED" id="2001" severity="info"><Argument name="STATE" type="UINT8"/></Event>
-    <Event name="STATE_FAILED" id="2002" severity="high"><Argument name="STATE" type="UINT8"/></Event>
-    <Event name="MOTOR_LOST" id="2003" severity="high"/>
     <Event name="TROUBLE" id="2010" severity="medium"/>
     <Event name="MORE_TROUBLE" id="2011" severity="medium"/>
     <Event name="REMARK" id="2012" severity="low"/>

@@ -128,8 +128,8 @@ Result<Channel::Found> SocketChannel::receive(MessageBuffer& buffer) {
   OctetReader reader{envelope};
   const auto kind = reader.get<std::uint8_t>();
   const auto reserved = reader.get<std::uint8_t>();
-  if (reserved != 0 || (kind != static_cast<std::uint8_t>(MessageKind::Packet) &&
-                        kind != static_cast<std::uint8_t>(MessageKind::GroundTelecommand)))
+  if (reserved != 0 || kind < static_cast<std::uint8_t>(MessageKind::Packet) ||
+      kind > static_cast<std::uint8_t>(MessageKind::Event))
     return fail(ErrorCode::Malformed, "kind of message", kind);
   Found found;
   found.flow = Flow::New;

@@ -114,7 +114,7 @@ TEST_F(SocketChannelAbuse, IsRefusedAndTheNextMessageIsRead) {
   send_raw({});
   send_raw(Octets{good}.first(7));
   auto kind = good;
-  kind[0] = std::byte{3};
+  kind[0] = std::byte{0};
   send_raw(kind);
   auto reserved = good;
   reserved[1] = std::byte{1};

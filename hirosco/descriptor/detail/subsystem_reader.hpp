@@ -15,6 +15,8 @@ namespace hirosco::descriptor::detail {
 
 /// Octets of a housekeeping report that are left for samples: packet 4096 less headers, checksum and structure id.
 inline constexpr std::size_t max_housekeeping_octets = 4096 - 22 - 2;
+/// Octets of an event's arguments: the same packet less the event's id.
+inline constexpr std::size_t max_event_octets = 4096 - 22 - 2;
 /// Of one sample of a link (data_transfer/realtime_link.hpp).
 inline constexpr std::size_t max_link_octets = 65'536;
 
@@ -41,6 +43,7 @@ class SubsystemReader {
   void read_resources(const xml::Element& element);
   void read_memory(const xml::Element& element);
   void read_hang(const xml::Element& element);
+  void read_failure(const xml::Element& element);
   void read_device(const xml::Element& element);
   void check_octets(const xml::Element& element, const Device& device);
   void read_stop(Attributes& attributes, Device& device);
@@ -86,6 +89,7 @@ class SubsystemReader {
   [[nodiscard]] std::vector<Child> service_children(Services& services);
   bool first_service(const xml::Element& element, Services& services);
   void read_event(const xml::Element& element);
+  void imply_framework_events();
   void read_function(const xml::Element& element);
   [[nodiscard]] static std::uint16_t read_states(Attributes& attributes, std::string_view name,
                                                  std::vector<State> fallback);
@@ -114,6 +118,8 @@ class SubsystemReader {
   Unique device_names_{"device name", "E0201"};
   Unique event_names_{"event name", "E0201"};
   Unique event_ids_{"event id", "E0202"};
+  Unique failure_names_{"name of a failure", "E0201"};
+  Unique failure_codes_{"failure code", "E0202"};
   Unique function_names_{"function name", "E0201"};
   Unique configuration_names_{"configuration name", "E0201"};
   Unique configuration_ids_{"configuration id", "E0202"};
@@ -123,6 +129,7 @@ class SubsystemReader {
   std::vector<Provides> provides_;   ///< under <Subsystem>: valid in every configuration
   std::vector<Requires> requires_;
   std::vector<EnumerationUse> enumeration_uses_;
+  std::vector<std::pair<const xml::Element*, Event>> framework_severities_;  ///< as the descriptor wants them
   std::map<std::string, std::vector<ParameterRef>, std::less<>> references_;  ///< by every spelling
 };
 

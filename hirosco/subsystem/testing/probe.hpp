@@ -7,10 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
 
 /// A subsystem that does what a test tells it: one joint, one input link, one actuator, one lamp.
 namespace hirosco::testing {
+
+/// Numbers of the events that the framework gives the probe.
+inline constexpr std::uint16_t arm_lost = descriptor::framework_event::device_lost(0);
+inline constexpr std::uint16_t lamp_lost = descriptor::framework_event::device_lost(1);
+inline constexpr std::uint16_t hand_stale = descriptor::framework_event::set_stale(0);
 
 /// Listings 1 and 2 of the paper stand in it character for character.
 inline const std::string probe_descriptor = R"(<Subsystem name="PROBE" id="10">
@@ -21,23 +27,17 @@ inline const std::string probe_descriptor = R"(<Subsystem name="PROBE" id="10">
 </StructRef>
 
 <ParamRef name="DES_POSITION" id="1" type="DOUBLE" />
-    <ParamRef name="KP" id="2" type="DOUBLE" init="3" minimum="0" maximum="100"/>
-    <ParamRef name="KD" id="3" type="DOUBLE" init="4" minimum="0" maximum="100"/>
+    <ParamRef name="KP" id="2" type="DOUBLE" init="3" minimum="0" maximum="100" writable="PreOperational SafeOperational Operational"/>
+    <ParamRef name="KD" id="3" type="DOUBLE" init="4" minimum="0" maximum="100" writable="PreOperational SafeOperational Operational"/>
     <ParamRef name="SEEN" id="4" type="DOUBLE" read_only="yes"/>
   </Parameters>
   <EventService>
-    <Event name="STATE_CHANGED" id="1" severity="info"><Argument name="STATE" type="UINT8"/></Event>
-    <Event name="STATE_FAILED" id="2" severity="high"><Argument name="STATE" type="UINT8"/></Event>
-    <Event name="CONFIGURATION_FAILED" id="3" severity="low"><Argument name="CONFIGURATION" type="UINT8"/></Event>
-    <Event name="ARM_LOST" id="4" severity="high"/>
-    <Event name="HAND_STALE" id="5" severity="medium"><Argument name="AGE" type="UINT32"/></Event>
-    <Event name="CYCLE_OVERRUNS" id="6" severity="medium"><Argument name="IN_A_ROW" type="UINT32"/></Event>
+    <Event name="LAMP_LOST" severity="low"/>
     <Event name="OWN" id="7" severity="low"><Argument name="VALUE" type="DOUBLE"/></Event>
   </EventService>
   <FunctionService>
     <Function name="SET_GOAL" states="SafeOperational Operational"><Argument name="GOAL" type="DOUBLE" minimum="-2" maximum="2"/></Function>
     <Function name="MOVE" states="Operational"/>
-    <Function name="NEVER_BOUND" states="Operational"/>
   </FunctionService>
   <Device name="ARM" actuator="yes">
     <Input><Field name="ANGLE" type="DOUBLE"/></Input>

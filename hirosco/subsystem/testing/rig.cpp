@@ -51,6 +51,13 @@ void Rig::service() {
   for (;;) {
     const auto found = channels.supervisor_end().receive(buffer);
     if (!found || found->flow == Flow::None) return;
+    if (found->message.kind == MessageKind::Event) {
+      const auto event = pus::read_event_message(found->message.packet);
+      if (!event) throw std::runtime_error{"the subsystem sent an event that is none"};
+      raised.push_back(
+          {event->severity, event->reported, event->id, {event->auxiliary.begin(), event->auxiliary.end()}});
+      continue;
+    }
     const auto view = pus::TelemetryView::parse(found->message.packet);
     if (!view) throw std::runtime_error{"the subsystem sent something that is not telemetry"};
     const Octets data = view->source_data();
@@ -62,6 +69,7 @@ void Rig::cycle(int count) {
   for (int i = 0; i < count; ++i) {
     const auto demand = subsystem.cycle_demand();
     if (!demand.wanted) return subsystem.cycle_parked(demand.ticket);
+    if (!supervisor_silent) permit.heartbeat.fetch_add(1);
     clock.advance(demand.period);
     static_cast<void>(subsystem.cycle_step(clock.now()));
   }

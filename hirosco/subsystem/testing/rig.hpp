@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "hirosco/data_transfer/simulated/channel_pair.hpp"
 #include "hirosco/data_transfer/simulated/heap_memory.hpp"
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/pus/event_message.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
 /// One subsystem stepped by hand: the test is its supervisor, its clock, its threads and its devices. The parts around it
@@ -28,6 +30,14 @@ struct Telemetry {
   std::uint8_t subtype{};
   std::uint16_t destination{};
   std::vector<std::byte> data;
+};
+
+/// An event as the supervisor hears of it.
+struct Raised {
+  descriptor::Severity severity{};
+  pus::Reported reported{};
+  std::uint16_t id{};
+  std::vector<std::byte> auxiliary;
 };
 
 class Rig {
@@ -64,7 +74,14 @@ class Rig {
   [[nodiscard]] std::vector<std::string> reports(std::uint8_t service, std::uint8_t subtype) const;
   /// How often the event with this number came.
   [[nodiscard]] int events(std::uint16_t id) const;
-  void forget_telemetry() { telemetry.clear(); }
+  void forget_telemetry() {
+    telemetry.clear();
+    raised.clear();
+  }
+  /// How often the supervisor heard of the event with this number.
+  [[nodiscard]] int heard(std::uint16_t id) const {
+    return static_cast<int>(std::ranges::count(raised, id, &Raised::id));
+  }
   [[nodiscard]] State state() const { return subsystem.state(); }
   [[nodiscard]] std::uint32_t inhibited() const { return vital.inhibited.load(); }
 
@@ -89,6 +106,7 @@ class Rig {
   PermitPage permit{};
   std::vector<std::string> explanations;
   std::vector<Telemetry> telemetry;
+  std::vector<Raised> raised;  ///< told to the supervisor, whatever ST[05] is told
   bool supervisor_silent{false};
   std::uint32_t link_epoch{5};  ///< of the next attach()
   GenericSubsystem subsystem;

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hirosco/subsystem/testing/probe.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+
+/// Mistakes of an author: told in Software-Init, in words, all at once.
+namespace hirosco {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using testing::Probe;
+using testing::probe_descriptor;
+using testing::Rig;
+using ::testing::StartsWith;
+
+std::string explanation_of(Subsystem& author, const std::string& text = probe_descriptor) {
+  Rig rig{author, text};
+  EXPECT_THAT(rig.set_state_now(State::PreOperational), StartsWith("1 3 8:0202"));
+  EXPECT_EQ(rig.state(), State::Offline);
+  return rig.explanations.empty() ? "" : rig.explanations.front();
+}
+
+TEST(AuthorsMistakes, PublishingAnUndeclaredParameterFailsSoftwareInit) {
+  struct Wrong : Probe {
+    Result<Step> software_init() override {
+      publish("MISSPELT", kp);
+      return done;
+    }
+  } wrong;
+  EXPECT_EQ(explanation_of(wrong),
+            "PROBE: SoftwareInit failed: MISSPELT: the descriptor declares no parameter of this name");
+}
+
+TEST(AuthorsMistakes, AParameterOfAnotherLayoutFailsSoftwareInit) {
+  struct Wrong : Probe {
+    Parameter<float> narrow;
+    Result<Step> software_init() override {
+      publish("KP", narrow);
+      return done;
+    }
+  } wrong;
+  EXPECT_EQ(explanation_of(wrong),
+            "PROBE: SoftwareInit failed: KP: the C++ type is float, the descriptor declares DOUBLE");
+}
+
+TEST(AuthorsMistakes, AParameterThatIsDeclaredButNotPublishedIsNamed) {
+  struct Wrong : Probe {
+    Result<Step> software_init() override {
+      publish("KP", kp);
+      return done;
+    }
+  } wrong;
+  EXPECT_EQ(explanation_of(wrong),
+            "PROBE: SoftwareInit failed: parameters declared but not published: CUR_VALUES, DES_POSITION, KD, SEEN");
+}
+
+TEST(AuthorsMistakes, AHandlerWithAnotherNumberOfArgumentsIsNamed) {
+  struct Wrong : Probe {
+    Result<Step> software_init() override {
+      static_cast<void>(Probe::software_init());
+      on_function("SET_GOAL", [](double, double) -> Result<> { return ok(); });
+      return done;
+    }
+  } wrong;
+  EXPECT_EQ(
+      explanation_of(wrong),
+      "PROBE: SoftwareInit failed: on_function SET_GOAL: the handler takes 2 arguments, the descriptor declares 1");
+}
+
+std::string configuration_mistake(Subsystem& author, std::uint8_t id) {
+  Rig rig{author, probe_descriptor};
+  rig.set_state_now(State::PreOperational);
+  EXPECT_THAT(rig.configure_now(id), StartsWith("1 3 8:0202"));
+  EXPECT_EQ(rig.state(), State::PreOperational);
+  return rig.explanations.empty() ? "" : rig.explanations.front();
+}
+
+TEST(AuthorsMistakes, ALinkPortOfAnotherLayoutFailsTheConfiguration) {
+  struct Wrong : Probe {
+    LinkInput<Angle> short_hand;
+    Result<Step> software_init() override {
+      static_cast<void>(Probe::software_init());
+      require_link("HAND", short_hand);
+      return done;
+    }
+  } wrong;
+  EXPECT_EQ(configuration_mistake(wrong, 2),
+            "PROBE: CONFIGURE COUPLED failed: required set HAND: the C++ type has 1 members, the descriptor declares 2 "
+            "fields");
+}
+
+TEST(AuthorsMistakes, ADevicePortOfAnotherLayoutFailsTheConfiguration) {
+  struct Wrong : Probe {
+    DevicePort<Angle, Lit> wrong_arm;
+    Result<Step> software_init() override {
+      static_cast<void>(Probe::software_init());
+      use_device("ARM", wrong_arm);
+      return done;
+    }
+  } wrong;
+  EXPECT_EQ(configuration_mistake(wrong, 3),
+            "PROBE: CONFIGURE WITH_ARM failed: device ARM: output, field TORQUE: C++ has UINT8[1], the descriptor "
+            "declares DOUBLE[1]");
+}
+
+TEST(AuthorsMistakes, AreToldAllAtOnce) {
+  struct Wrong : Probe {
+    LinkInput<Hand> foot;
+    DevicePort<Angle, Torque> leg;
+    Result<Step> software_init() override {
+      publish("CUR_VALUES", current);
+      publish("DES_POSITION", goal);
+      publish("KP", kp);
+      publish("SPEED", kd);
+      require_link("FOOT", foot);
+      use_device("LEG", leg);
+      on_function("JUMP", []() -> Result<> { return ok(); });
+      on_function("SET_GOAL", [](float) -> Result<> { return ok(); });
+      return done;
+    }
+  } wrong;
+  Rig rig{wrong, probe_descriptor};
+  EXPECT_THAT(rig.set_state_now(State::PreOperational), StartsWith("1 3 8:0202"));
+  const std::string begin = "PROBE: SoftwareInit failed: ";
+  EXPECT_THAT(
+      rig.explanations,
+      ::testing::UnorderedElementsAre(
+          begin + "SPEED: the descriptor declares no parameter of this name",
+          begin + "require_link: no configuration requires a set 'FOOT'",
+          begin + "use_device: the descriptor declares no device 'LEG'",
+          begin + "on_function: the descriptor declares no function 'JUMP'",
+          begin + "on_function SET_GOAL: the C++ type of argument 1 does not hold every value of GOAL, which is DOUBLE",
+          begin + "parameters declared but not published: KD, SEEN",
+          begin + "function declared but without a handler: MOVE"));
+}
+
+/// One function whose argument is declared as `argument` says.
+std::string function_of(const std::string& argument) {
+  return R"(<Subsystem name="S" id="10"><FunctionService><Function name="F"><Argument name="A" )" + argument +
+         R"(/></Function></FunctionService><Configuration name="ONE" id="1" sampling_us="1000"/></Subsystem>)";
+}
+
+template <class T>
+struct Takes final : Subsystem {
+  Result<Step> software_init() override {
+    on_function("F", [](T) -> Result<> { return ok(); });
+    return done;
+  }
+};
+
+template <class T>
+bool taken(const std::string& argument) {
+  Takes<T> author;
+  Rig rig{author, function_of(argument)};
+  return rig.set_state_now(State::PreOperational) == "1 3 7";
+}
+
+enum class Side : std::uint8_t { Left, Right };
+
+TEST(AuthorsMistakes, AHandlerThatWouldNarrowAnArgumentIsNotTaken) {
+  EXPECT_TRUE(taken<double>(R"(type="DOUBLE")"));
+  EXPECT_TRUE(taken<double>(R"(type="UINT64")"));
+  EXPECT_TRUE(taken<float>(R"(type="FLOAT")"));
+  EXPECT_TRUE(taken<float>(R"(type="UINT16")"));
+  EXPECT_TRUE(taken<std::uint8_t>(R"(type="UINT8")"));
+  EXPECT_TRUE(taken<Side>(R"(type="UINT8")"));
+  EXPECT_TRUE(taken<std::int32_t>(R"(type="UINT16")"));
+  EXPECT_TRUE(taken<std::uint8_t>(R"(type="UINT32" maximum="255")"));
+  EXPECT_TRUE(taken<bool>(R"(type="UINT8" maximum="1")"));
+  EXPECT_FALSE(taken<float>(R"(type="DOUBLE")"));
+  EXPECT_FALSE(taken<float>(R"(type="UINT32")"));
+  EXPECT_FALSE(taken<int>(R"(type="DOUBLE")"));
+  EXPECT_FALSE(taken<int>(R"(type="FLOAT" minimum="0" maximum="1")"));
+  EXPECT_FALSE(taken<std::uint8_t>(R"(type="UINT16")"));
+  EXPECT_FALSE(taken<std::uint8_t>(R"(type="UINT32" maximum="256")"));
+  EXPECT_FALSE(taken<std::uint8_t>(R"(type="INT8")"));
+  EXPECT_FALSE(taken<std::int32_t>(R"(type="UINT32")"));
+  EXPECT_FALSE(taken<bool>(R"(type="UINT8")"));
+}
+
+TEST(AuthorsMistakes, OfADescriptorBuiltInCodeAreToldAndCrashNothing) {
+  Probe probe;
+  ManualClock clock;
+  HeapMemory memory;
+  SimulatedFlows flows;
+  ChannelPair channels;
+  VitalPage vital;
+  const PermitPage permit;
+  auto described = testing::read_descriptor(probe_descriptor);
+  described.parameters.push_back(described.parameters.back());
+  std::vector<std::string> told;
+  GenericSubsystem subsystem{probe,
+                             described,
+                             {.clock = clock,
+                              .memory = memory,
+                              .flows = flows,
+                              .explain = [&](std::string_view text) { told.emplace_back(text); }},
+                             channels.subsystem_end(),
+                             vital,
+                             permit};
+  const double target = static_cast<double>(State::PreOperational);
+  const auto data = pus::encode_call(pus::common_functions()[0], std::span{&target, 1}).value();
+  std::array<std::byte, 64> buffer;
+  const auto packet = pus::write_telecommand(buffer, {.apid = 10, .service = 8, .subtype = 1, .source = 1}, data);
+  ASSERT_TRUE(channels.supervisor_end().send({.packet = *packet}));
+  for (int i = 0; i < 5; ++i) subsystem.service_step(clock.now());
+  EXPECT_EQ(subsystem.state(), State::Offline);
+  EXPECT_FALSE(told.empty());
+}
+
+}  // namespace
+}  // namespace hirosco

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hirosco/pus/describe.hpp"
+#include "hirosco/subsystem/testing/probe.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+
+/// An author's reasons reach ground, and what has no effect is refused.
+namespace hirosco {
+namespace {
+
+using testing::Probe;
+using testing::probe_descriptor;
+using testing::Rig;
+using ::testing::StartsWith;
+
+constexpr const char* refuser_descriptor = R"(<Subsystem name="REFUSER" id="10">
+  <Failure code="0x8001" name="SENSOR_BROKEN"/>
+  <FunctionService>
+    <Function name="OWN"/><Function name="WORDS"/><Function name="UNNAMED"/><Function name="LATER"/>
+  </FunctionService>
+  <Configuration name="ONE" id="1" sampling_us="1000"/>
+</Subsystem>)";
+
+struct Refuser final : Subsystem {
+  enum class Trouble : std::uint16_t { sensor_broken = 0x8001, nameless = 0x8002 };
+  std::optional<Call> later;
+  bool configuration_fails{false};
+
+  Result<Step> software_init() override {
+    on_function("OWN", []() -> Outcome { return refused(Trouble::sensor_broken, "no answer", -7); });
+    on_function("WORDS", []() -> Result<> { return fail(ErrorCode::Unavailable, "sensor is broken", 42); });
+    on_function("UNNAMED", []() -> Outcome { return refused(Trouble::nameless); });
+    on_function("LATER", [this](Call call) -> Outcome {
+      later = call;
+      return running;
+    });
+    return done;
+  }
+  Result<> configure(const descriptor::Configuration&) override {
+    return configuration_fails ? fail(ErrorCode::Timeout, "no power", 3) : ok();
+  }
+  Result<> operational(const Cycle&) noexcept override {
+    if (later) abort(*later, Trouble::sensor_broken, "it fell off", 5);
+    later.reset();
+    return ok();
+  }
+};
+
+struct Refusals : ::testing::Test {
+  Refuser author;
+  Rig rig{author, refuser_descriptor};
+
+  /// The newest failure report: subtype, code, and its reason in words.
+  std::string failure(std::string_view function) {
+    rig.forget_telemetry();
+    rig.call(function);
+    rig.settle();
+    return newest();
+  }
+  std::string newest() {
+    for (const auto& report : rig.telemetry)
+      if (report.service == 1 && report.subtype % 2 == 0) {
+        OctetReader reader{report.data};
+        static_cast<void>(reader.get<std::uint32_t>());
+        const auto code = reader.get<std::uint16_t>();
+        std::string text = std::to_string(report.subtype) + " " + std::to_string(code);
+        const auto reason = pus::reason_in(reader.rest());
+        return reason ? text + " " + std::string{reason->text} + " " + std::to_string(reason->number) : text;
+      }
+    return "none";
+  }
+};
+
+TEST_F(Refusals, CarryTheAuthorsCodeWordsAndNumber) {
+  rig.bring_to(State::Operational);
+  EXPECT_EQ(failure("OWN"), "4 32769 no answer -7");
+  EXPECT_EQ(failure("WORDS"), "4 517 sensor is broken 42");
+  EXPECT_EQ(failure("LATER"), "8 32769 it fell off 5");
+}
+
+TEST_F(Refusals, WithACodeThatTheDescriptorDoesNotNameSaySo) {
+  rig.bring_to(State::Operational);
+  EXPECT_EQ(failure("UNNAMED"), "4 514 failure code without a name in the descriptor 32770");
+}
+
+TEST_F(Refusals, OfAConfigurationReachReportAndEvent) {
+  rig.bring_to(State::PreOperational, 0);
+  author.configuration_fails = true;
+  rig.forget_telemetry();
+  rig.configure_now(1);
+  EXPECT_EQ(newest(), "8 514 no power 3");
+  ASSERT_EQ(rig.heard(descriptor::framework_event::configuration_failed), 1);
+  OctetReader reader{rig.raised.back().auxiliary};
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  EXPECT_EQ(reader.get<std::uint8_t>(), static_cast<std::uint8_t>(ErrorCode::Timeout));
+  EXPECT_EQ(reader.get<std::int64_t>(), 3);
+  EXPECT_THAT(pus::text_of(reader.rest()), "no power");
+}
+
+TEST(ParameterWrites, ThatTheNextCycleWouldOverwriteAreRefused) {
+  Probe probe;
+  std::string text = probe_descriptor;
+  const std::string declared = "<StructRef name=\"CUR_VALUES\" id=\"0\" type=\"STRUCT\"";
+  text.replace(text.find(declared), declared.size(), declared + " writable=\"Operational\"");
+  Rig rig{probe, text};
+  rig.bring_to(State::Operational);
+  // CUR_VALUES: the probe stores it in every cycle.
+  std::vector<std::byte> data(64);
+  OctetWriter writer{data};
+  writer.put(std::uint8_t{1}).put(ParameterId{10, Type::Struct, 0}.wire()).put(std::int32_t{1}).put(2.0);
+  const auto overwritten = rig.send(20, 3, Octets{data}.first(writer.size()));
+  rig.settle();
+  EXPECT_THAT(rig.outcome(overwritten), StartsWith("1 4:0107"));
+  OctetWriter again{data};
+  again.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 2}.wire()).put(7.0);
+  const auto lasting = rig.send(20, 3, Octets{data}.first(again.size()));
+  rig.settle();
+  EXPECT_EQ(rig.outcome(lasting), "1 3 7");
+  EXPECT_EQ(probe.kp.load(), 7.0);
+}
+
+TEST(ParameterWrites, InAStateThatTheDescriptorDoesNotNameAreRefused) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  const auto set = [&](std::uint8_t id) {
+    std::vector<std::byte> data(64);
+    OctetWriter writer{data};
+    writer.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, id}.wire()).put(7.0);
+    const auto request = rig.send(20, 3, Octets{data}.first(writer.size()));
+    rig.settle();
+    return rig.outcome(request);
+  };
+  constexpr std::uint8_t kp = 2, des_position = 1;
+  rig.bring_to(State::Operational);
+  EXPECT_EQ(set(kp), "1 3 7");
+  EXPECT_THAT(set(des_position), StartsWith("1 4:0107")) << "it names no state at all";
+  rig.set_state_now(State::ErrorOperational);
+  EXPECT_THAT(set(kp), StartsWith("1 4:0107"));
+}
+
+TEST(FailedPostOperational, GivesBackConfigurationPlanAndFlowsWhenTheCycleHasComeToRest) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  rig.bring_to(State::SafeOperational, 3);
+  const auto down = rig.set_state(State::PostOperational);
+  rig.service();  // the cycle is told to rest, and hangs
+  rig.advance(11s);
+  for (int i = 0; i < 5; ++i) rig.service();
+  EXPECT_EQ(rig.state(), State::Offline);
+  EXPECT_THAT(rig.outcome(down), StartsWith("1 3 8:0202"));
+  EXPECT_EQ(rig.vital.configuration.load(), 3u) << "the cycle may still be using it";
+  const auto early = rig.set_state(State::PreOperational);
+  rig.service();
+  EXPECT_EQ(rig.outcome(early), "1 4:0108");
+  rig.cycle();  // it rests at last
+  rig.service();
+  EXPECT_EQ(rig.vital.configuration.load(), 0u);
+  const auto arm =
+      rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "arm"}, FlowSide::Subsystem);
+  EXPECT_TRUE(arm) << "its data flow is free for the next";
+  EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
+}
+
+}  // namespace
+}  // namespace hirosco
