@@ -47,6 +47,7 @@ descriptor::Mission mission_with(const std::string& name) {
   parameter.field.unit = name;
   parameter.field.enumeration = name;
   parameter.id = 7;
+  parameter.writable_states = 1U << static_cast<unsigned>(descriptor::State::Operational);
   subsystem.parameters.push_back(parameter);
   subsystem.functions = {function_with(name, name)};
   subsystem.events.push_back({name, 77, descriptor::Severity::Low, {parameter.field}, {}});
@@ -101,9 +102,9 @@ TEST(PythonPackage, EverythingOfADescriptorBecomesAMethodWithItsUnitAndRange) {
   EXPECT_THAT(text, HasSubstr("_r.EventKind(77, \"GRIPPER\","));
 }
 
-TEST(PythonPackage, AReadOnlyParameterHasNoSetter) {
+TEST(PythonPackage, AParameterThatIsNeverWritableHasNoSetter) {
   auto mission = mission_with("GRIPPER");
-  mission.subsystems[0].subsystem.parameters[0].read_only = true;
+  mission.subsystems[0].subsystem.parameters[0].writable_states = 0;
   EXPECT_THAT(module_of(mission), Not(HasSubstr("def set_gripper")));
 }
 

@@ -112,14 +112,19 @@ class OnAFlight(unittest.TestCase):
         self.assertEqual((refused.exception.code, refused.exception.parameters), (13, {"mode": "standalone"}))
         with self.assertRaisesRegex(self.rokviss.ArgumentError, "'Flying' is none of Offline, SoftwareInit"):
             arm.set_state("Flying")
-        with self.assertRaisesRegex(self.rokviss.ArgumentError, "KP: -1 N m/rad is below its minimum 0"):
-            arm.set_kp(-1)
+        with self.assertRaisesRegex(self.rokviss.ArgumentError, "POS_SCALE: 5 is above its maximum 2"):
+            arm.set_pos_scale(5)
+        arm.set_pos_scale(1.5)
+        self.assertEqual(arm.get_pos_scale(), 1.5)
+        arm.set_pos_scale(1)
         arm.set_state("Operational")
 
     def parameters_and_housekeeping(self, client):
         arm = client.manipulator
-        arm.set_kp(250)
-        self.assertEqual(arm.get_kp(), 250.0)
+        with self.assertRaises(self.rokviss.CommandFailed) as refused:  # its descriptor: not in this state
+            arm.set_pos_scale(1.5)
+        self.assertEqual((refused.exception.code, arm.get_pos_scale()), (0x0107, 1.0))
+        self.assertFalse(hasattr(arm, "set_kp"), "a protection has no setter")
         whole = arm.get_cur_values()
         self.assertEqual(set(whole), {"STATE", "POSITION", "VELOCITY", "TORQUE", "TEMPERATURE", "DEVICE_FLAGS"})
         report = arm.hk_4711()
