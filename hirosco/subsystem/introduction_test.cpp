@@ -162,24 +162,32 @@ bool taken(const std::string& argument) {
 enum class Side : std::uint8_t { Left, Right };
 
 TEST(AuthorsMistakes, AHandlerThatWouldNarrowAnArgumentIsNotTaken) {
-  EXPECT_TRUE(taken<double>(R"(type="DOUBLE")"));
-  EXPECT_TRUE(taken<double>(R"(type="UINT64")"));
-  EXPECT_TRUE(taken<float>(R"(type="FLOAT")"));
-  EXPECT_TRUE(taken<float>(R"(type="UINT16")"));
-  EXPECT_TRUE(taken<std::uint8_t>(R"(type="UINT8")"));
-  EXPECT_TRUE(taken<Side>(R"(type="UINT8")"));
-  EXPECT_TRUE(taken<std::int32_t>(R"(type="UINT16")"));
-  EXPECT_TRUE(taken<std::uint8_t>(R"(type="UINT32" maximum="255")"));
-  EXPECT_TRUE(taken<bool>(R"(type="UINT8" maximum="1")"));
-  EXPECT_FALSE(taken<float>(R"(type="DOUBLE")"));
-  EXPECT_FALSE(taken<float>(R"(type="UINT32")"));
-  EXPECT_FALSE(taken<int>(R"(type="DOUBLE")"));
-  EXPECT_FALSE(taken<int>(R"(type="FLOAT" minimum="0" maximum="1")"));
-  EXPECT_FALSE(taken<std::uint8_t>(R"(type="UINT16")"));
-  EXPECT_FALSE(taken<std::uint8_t>(R"(type="UINT32" maximum="256")"));
-  EXPECT_FALSE(taken<std::uint8_t>(R"(type="INT8")"));
-  EXPECT_FALSE(taken<std::int32_t>(R"(type="UINT32")"));
-  EXPECT_FALSE(taken<bool>(R"(type="UINT8")"));
+  const auto argument = [](const char* type, const char* minimum, const char* maximum) {
+    return std::string{"type=\""} + type + "\" minimum=\"" + minimum + "\" maximum=\"" + maximum + "\"";
+  };
+  const std::string real = argument("DOUBLE", "-1", "1"), single = argument("FLOAT", "0", "1"),
+                    byte = argument("UINT8", "0", "255"), small = argument("INT8", "-128", "127"),
+                    word = argument("UINT16", "0", "65535"), large = argument("UINT32", "0", "4294967295"),
+                    flag = argument("UINT8", "0", "1"), low = argument("UINT32", "0", "255"),
+                    above = argument("UINT32", "0", "256");
+  EXPECT_TRUE(taken<double>(real));
+  EXPECT_TRUE(taken<double>(large));
+  EXPECT_TRUE(taken<float>(single));
+  EXPECT_TRUE(taken<float>(word));
+  EXPECT_TRUE(taken<std::uint8_t>(byte));
+  EXPECT_TRUE(taken<Side>(byte));
+  EXPECT_TRUE(taken<std::int32_t>(word));
+  EXPECT_TRUE(taken<std::uint8_t>(low));
+  EXPECT_TRUE(taken<bool>(flag));
+  EXPECT_FALSE(taken<float>(real));
+  EXPECT_FALSE(taken<float>(large));
+  EXPECT_FALSE(taken<int>(real));
+  EXPECT_FALSE(taken<int>(single));
+  EXPECT_FALSE(taken<std::uint8_t>(word));
+  EXPECT_FALSE(taken<std::uint8_t>(above));
+  EXPECT_FALSE(taken<std::uint8_t>(small));
+  EXPECT_FALSE(taken<std::int32_t>(large));
+  EXPECT_FALSE(taken<bool>(byte));
 }
 
 TEST(AuthorsMistakes, OfADescriptorBuiltInCodeAreToldAndCrashNothing) {

@@ -103,8 +103,12 @@ TEST_F(Refusals, OfAConfigurationReachReportAndEvent) {
 TEST(ParameterWrites, ThatTheNextCycleWouldOverwriteAreRefused) {
   Probe probe;
   std::string text = probe_descriptor;
-  const std::string declared = "<StructRef name=\"CUR_VALUES\" id=\"0\" type=\"STRUCT\"";
-  text.replace(text.find(declared), declared.size(), declared + " writable=\"Operational\"");
+  const auto amend = [&](const std::string& declared, const std::string& with) {
+    text.replace(text.find(declared), declared.size(), declared + with);
+  };
+  amend(R"(<StructRef name="CUR_VALUES" id="0" type="STRUCT")", R"( writable="Operational")");
+  amend(R"(<ParamRef name="STATE" id="0" type="INT32")", R"( minimum="0" maximum="9")");
+  amend(R"(<ParamRef name="POSITION" id="0" type="DOUBLE")", R"( minimum="-100" maximum="100")");
   Rig rig{probe, text};
   rig.bring_to(State::Operational);
   // CUR_VALUES: the probe stores it in every cycle.
