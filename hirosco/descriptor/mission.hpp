@@ -89,9 +89,9 @@ struct Restart {
 struct Plan {
   std::string name;
   std::vector<Severity> severities;  ///< empty = any
-  std::string subsystem;             ///< empty = any
-  std::string event;                 ///< empty = any
-  std::string mode;                  ///< empty = any
+  std::string subsystem;  ///< empty = any
+  std::string event;  ///< empty = any
+  std::string mode;  ///< empty = any
   Action action{Action::Log};
   State state{State::SafeOperational};  ///< for SetState
   std::optional<Restart> restart{};  ///< besides the action: of whoever died
@@ -99,14 +99,14 @@ struct Plan {
 };
 
 struct GroundAddresses {
-  std::string subsystem;             ///< which subsystem carries the ground link; empty = none
+  std::string subsystem;  ///< which subsystem carries the ground link; empty = none
   std::string telemetry{"127.0.0.1:10015"};
   std::string telecommand{"127.0.0.1:10025"};
 };
 
 struct DatabaseUse {
-  std::string strategy{"sqlite"};    ///< sqlite | ascii
-  std::filesystem::path path;        ///< relative to the working directory
+  std::string strategy{"sqlite"};  ///< sqlite | ascii
+  std::filesystem::path path;  ///< relative to the working directory
 };
 
 struct Mission {
@@ -122,7 +122,7 @@ struct Mission {
   std::vector<MissionLink> links;
   std::vector<Mode> modes;
   std::string initial_mode;
-  std::string start_mode;            ///< empty = stay in the initial mode, commission nothing
+  std::string start_mode;  ///< empty = stay in the initial mode, commission nothing
   std::vector<Plan> plans;
 
   [[nodiscard]] const MissionSubsystem* find_subsystem(std::string_view subsystem) const noexcept;

@@ -320,7 +320,8 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
     if (found != nullptr && found != &candidate) return;
     for (const Event& e : candidate.events) {
       known.push_back(e.name);
-      fires = fires || (e.name == plan.event && std::ranges::find(plan.severities, e.severity) != plan.severities.end());
+      fires =
+          fires || (e.name == plan.event && std::ranges::find(plan.severities, e.severity) != plan.severities.end());
     }
   };
   add(mission_.supervisor);

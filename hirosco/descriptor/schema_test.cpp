@@ -28,6 +28,16 @@ TEST(Schema, AcceptsTheExamples) {
   EXPECT_TRUE(validates("mission.xsd", testing::data / "mission.xml"));
 }
 
+TEST(Schema, AcceptsWhatTheRepositoryShips) {
+  ASSERT_TRUE(run("xmllint --version")) << "libxml2-utils is not installed";
+  for (const char* part : {"missions", "subsystems", "supervisor"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator{folder / "../.." / part})
+      if (entry.path().extension() == ".xml") {
+        const bool mission = entry.path().filename() == "mission.xml";
+        EXPECT_TRUE(validates(mission ? "mission.xsd" : "subsystem.xsd", entry.path())) << entry.path();
+      }
+}
+
 TEST(Schema, RefusesWhatTheReaderRefuses) {
   ASSERT_TRUE(run("xmllint --version")) << "libxml2-utils is not installed";
   const auto file = std::filesystem::path{HIROSCO_BINARY_DIR} / "schema_test.xml";
