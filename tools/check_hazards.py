@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""docs/safety/hazards.csv is complete: every hazard has two barriers at least, says whether they are independent, and names
+tests that exist. SF1 to SF24 are the findings of the safety review, R1 to R8 the rows of the reaction table."""
+import csv
+import pathlib
+import re
+import subprocess
+import sys
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[1]
+HAZARDS = REPOSITORY / "docs/safety/hazards.csv"
+COLUMNS = ["id", "hazard", "cause", "barriers", "independent", "tests"]
+WANTED = [f"SF{n}" for n in range(1, 25)] + [f"R{n}" for n in range(1, 9)]
+TEST = re.compile(r"\bTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)")
+
+
+def known_tests():
+    files = subprocess.run(["git", "ls-files", "*.cpp"], cwd=REPOSITORY, capture_output=True, text=True, check=True).stdout
+    for name in files.split():
+        path = REPOSITORY / name
+        if path.exists():
+            for suite, test in TEST.findall(path.read_text(errors="replace")):
+                yield f"{suite}.{test}"
+
+
+def entries(cell):
+    return [entry.strip() for entry in cell.split(";") if entry.strip()]
+
+
+def problems():
+    known = set(known_tests())
+    with HAZARDS.open(newline="") as file:
+        reader = csv.DictReader(file)
+        if reader.fieldnames != COLUMNS:
+            yield f"1: the columns are {','.join(COLUMNS)}"
+            return
+        rows = list(reader)
+    for line, row in enumerate(rows, 2):
+        where = f"{line}: {row['id']}"
+        if len(entries(row["barriers"])) < 2:
+            yield f"{where} has one barrier only"
+        if row["independent"] not in ("yes", "no"):
+            yield f"{where} does not say whether its barriers are independent (yes or no)"
+        if not all(row[column] for column in COLUMNS):
+            yield f"{where} has an empty cell"
+        if not entries(row["tests"]):
+            yield f"{where} has no test"
+        for test in entries(row["tests"]):
+            if "/" in test and not (REPOSITORY / test).is_file():
+                yield f"{where}: there is no file {test}"
+            if "/" not in test and test not in known:
+                yield f"{where}: there is no test {test}"
+    ids = [row["id"] for row in rows]
+    for missing in [name for name in WANTED if name not in ids]:
+        yield f"{missing} does not stand here"
+    for twice in sorted({name for name in ids if ids.count(name) > 1}):
+        yield f"{twice} stands here twice"
+
+
+def main():
+    found = list(problems())
+    for problem in found:
+        print(f"docs/safety/hazards.csv:{problem}")
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()
