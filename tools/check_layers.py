@@ -6,7 +6,7 @@ import pathlib, re, sys
 libraries = ["utilities", "resource", "xml", "parameter", "data_transfer", "descriptor", "pus", "subsystem"]  # lowest first
 may = {"hirosco": ["hirosco"], "subsystems": ["hirosco"], "supervisor": ["hirosco", "supervisor"],
        "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything
-shells = ("hirosco/utilities/os/", "hirosco/data_transfer/flows/", "supervisor/keeper/", "supervisor/platform/", "tools/",
+shells = ("hirosco/utilities/os/", "hirosco/data_transfer/flows/", "supervisor/guard/guard_shell", "supervisor/keeper/", "supervisor/platform/", "tools/",
           "tests/", "bench/", "simulation/devices/", "subsystems/communication/tcp_server.")
 # These, and tests, main.cpp and run.cpp anywhere, may ask the operating system.
 system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|sched|spawn|signal|semaphore|mqueue|"

@@ -28,6 +28,8 @@ COMMISSIONING, TELEPRESENCE = 1, 3
 COUPLED = 2
 # What the supervisor may take to answer, and what `hirosco tc` itself takes to start on a busy computer.
 ANSWER_S, TOOL_S = 0.2, 0.3
+# The declared stop of the robot, and what `hirosco fault` takes; DeviceOutput off and holding.
+STOP_S, AT_REST = 0.2 + TOOL_S, (0, 3)
 
 
 class Violation(Exception):
@@ -165,8 +167,11 @@ class Trial:
     # What must hold.
 
     def robot_is_still(self):
-        truth = self.craft.truth("robot")
-        expect(truth["motor_1"] == 0 and truth["motor_2"] == 0, f"the robot's motors: {truth}")
+        """Its declared stop takes 200 ms; then it is off or held by its own brake, whatever anybody commands."""
+        end = time.monotonic() + STOP_S
+        while (truth := self.craft.truth("robot"))["output"] not in AT_REST and time.monotonic() < end:
+            pass
+        expect(truth["output"] in AT_REST, f"the robot has not stopped: {truth}")
 
     def answers(self):
         begin = time.monotonic()
