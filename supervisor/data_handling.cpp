@@ -79,13 +79,17 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
                           .packet = incoming.packet,
                           .note = std::string_view{text}};
   const std::uint64_t fences = parts_.guard.fences(apid);
-  if (decision->essential) {
+  // Nobody could command anything until the ground link is back: its own restoration waits for no disk either.
+  const auto* ground = mission_.find_subsystem(mission_.ground.subsystem);
+  const bool restores = incoming.sender == Sender::Supervisor && ground != nullptr && ground->subsystem.id == apid &&
+                        ground_link_.running();
+  if (decision->essential || restores) {
     if (const auto call = called_function(*telecommand); apid == 1 && call && carry_out_at_once(incoming, request, call->name)) {
       copy_to_ground();
       static_cast<void>(parts_.log.append(received));
       return;
     }
-    forward({apid, incoming.packet, incoming.memory, request, 0, true, false, fences});
+    forward({apid, incoming.packet, incoming.memory, request, 0, true, restores && decision->releases_stop, fences});
     copy_to_ground();
     static_cast<void>(parts_.log.append(received));
     return;

@@ -95,8 +95,12 @@ void i3(Plant& plant) {
   };
 }
 
-/// Devices take Off for Active, with what they were last told to do.
+/// Devices take Off for Active, with what they were last told to do, and have no second inhibit: with one they stay still.
 void i4(Plant& plant) {
+  plant.edit = [](descriptor::Mission& mission) {
+    for (auto& member : mission.subsystems)
+      for (auto& device : member.subsystem.devices) device.enable.reset();
+  };
   on_devices(plant, [] {
     return [payload = std::vector<std::byte>{}](DeviceCommand& command) mutable {
       if (command.mode == DeviceMode::Active) payload.assign(command.payload.begin(), command.payload.end());

@@ -99,6 +99,12 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   if (program.empty()) return fail(ErrorCode::NotFound, "its executable is neither beside this program nor in PATH");
   HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
   HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
+  // Its counts go on where those of the process before it ended (decision 8b).
+  auto& before = vital_[subsystem.subsystem.name];
+  if (before.octets.size() >= sizeof(VitalPage))
+    reinterpret_cast<VitalPage*>(vital.second.octets.data())->counters =
+        reinterpret_cast<const VitalPage*>(before.octets.data())->counters;
+  before = vital.second;
   // The subsystem reads what gates its actuators; from now on nobody can map it otherwise (findings SF13).
   HIROSCO_TRY(memory_.seal_writers(permit.first));
   HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair());

@@ -34,6 +34,7 @@ class SystemLauncher final : public ProcessLauncher {
   SealedMemory memory_;
   std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
   std::map<std::uint32_t, Process> processes_;
+  std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
   std::uint32_t next_{1};
 };
 

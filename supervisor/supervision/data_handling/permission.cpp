@@ -154,6 +154,9 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   const auto call = called_function(telecommand);
   if (call && sender != Sender::Supervisor && changes_supervisor(telecommand.apid(), *call))
     return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
+  // What the supervisor does for the whole craft is the ground's to ask for; a subsystem may stop it, nothing else.
+  if (call && sender == Sender::Subsystem && telecommand.apid() == supervisor_apid && call->name != "SAFE_ALL")
+    return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
   const descriptor::Function* function = call ? subsystem->find_function(call->name) : nullptr;
   const bool built_in = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
   Permitted permitted;

@@ -223,6 +223,23 @@ TEST(Permission, AParameterIsWrittenOnlyInItsStatesAndOnlyWhereTheModeOpensIt) {
   EXPECT_EQ(write({5}, State::Operational, open_mode, Sender::Supervisor), 0) << "begin values are its own";
 }
 
+TEST(Permission, ASubsystemMayStopTheCraftAndAsksTheSupervisorForNothingElse) {
+  auto mission = testing::small_mission();
+  mission.supervisor.functions.push_back(testing::function("SHUTDOWN", testing::in_states({State::Operational}), true));
+  const LinkGraph links{mission};
+  const auto permitted = [&](const char* name, Sender sender) {
+    const auto packet = testing::telecommand(1, 8, 1, call(name));
+    return decide(pus::TelecommandView::parse(packet).value(), sender,
+                  {mission, mission.modes[open_mode], links, State::Operational, 0})
+        .has_value();
+  };
+  for (const char* name : {"SET_MODE", "SHUTDOWN"}) {
+    EXPECT_FALSE(permitted(name, Sender::Subsystem)) << name;
+    EXPECT_TRUE(permitted(name, Sender::Ground)) << name;
+  }
+  EXPECT_TRUE(permitted("SAFE_ALL", Sender::Subsystem));
+}
+
 TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
   const auto packet = testing::telecommand(arm, 8, 1, testing::call_data("SET_STATE", 5));
   const auto view = pus::TelecommandView::parse(packet).value();
