@@ -97,6 +97,13 @@ struct FaultOptions {
 };
 int fault(const FaultOptions& options);
 
+struct SafeOptions {
+  std::string mission;               ///< empty = all that fly
+};
+/// Stops every actuator through the local socket of a flight's guard. 0: all have stopped, 1: somebody did not confirm,
+/// 3: nobody answered, and the keeper was signalled to do it.
+int safe(const SafeOptions& options);
+
 /// Said where hirosco-ground is missing.
 inline constexpr const char* station_needs = "it is built where libboost-dev and nlohmann-json3-dev are installed";
 
@@ -129,6 +136,9 @@ int export_python(const ExportOptions& options);
 [[nodiscard]] std::optional<descriptor::Mission> load_mission(const std::string& name_or_path);
 /// Where the running mission keeps its lock and the control sockets of its simulated devices.
 [[nodiscard]] std::filesystem::path runtime_folder(const descriptor::Mission& mission);
+/// Where the folders of all missions are, and of which mission one of them is; empty: of none.
+[[nodiscard]] std::filesystem::path runtime_root();
+[[nodiscard]] std::string mission_of_folder(const std::filesystem::path& folder);
 /// The inside of a JSON string: quotes and backslashes escaped, control characters as spaces.
 [[nodiscard]] std::string json_text(std::string_view text);
 

@@ -159,6 +159,10 @@ int read_and_do(int argc, char** argv) {
       ->required()
       ->allow_extra_args();
   fault_command->add_option("--mission", fault_options.mission, "Mission that runs")->capture_default_str();
+  SafeOptions safe_options;
+  auto* safe_command = app.add_subcommand("safe", "Stop every actuator, past ground link, cycles, queues, disk and mode");
+  safe_command->add_option("--mission", safe_options.mission, "Only this mission; by default all that fly here");
+
   GroundOptions ground_options;
   auto* ground_command = app.add_subcommand("ground", "Serve the ground station's page and API for a flying mission");
   ground_command->add_option("mission", ground_options.mission, "Name or path of the mission")->capture_default_str();
@@ -219,6 +223,7 @@ int read_and_do(int argc, char** argv) {
   if (*tc_command) return telecommand(tc_options);
   if (*status_command) return status(status_options);
   if (*log_command) return log(log_options);
+  if (*safe_command) return safe(safe_options);
   return fault(fault_options);
 }
 

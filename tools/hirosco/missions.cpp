@@ -72,10 +72,19 @@ std::optional<descriptor::Mission> load_mission(const std::string& name_or_path)
   return std::move(reading.value);
 }
 
-fs::path runtime_folder(const descriptor::Mission& mission) {
+fs::path runtime_root() {
   const char* base = std::getenv("XDG_RUNTIME_DIR");
-  const fs::path root = base != nullptr && *base != '\0' ? fs::path{base} : fs::temp_directory_path();
-  return root / fmt::format("hirosco-{}-{}", ::getuid(), mission.name);
+  return base != nullptr && *base != '\0' ? fs::path{base} : fs::temp_directory_path();
+}
+
+fs::path runtime_folder(const descriptor::Mission& mission) {
+  return runtime_root() / (fmt::format("hirosco-{}-", ::getuid()) + mission.name);
+}
+
+std::string mission_of_folder(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  const std::string begin = fmt::format("hirosco-{}-", ::getuid());
+  return name.starts_with(begin) ? name.substr(begin.size()) : std::string{};
 }
 
 std::string json_text(std::string_view text) {

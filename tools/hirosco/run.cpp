@@ -16,11 +16,19 @@
 namespace hirosco::tools {
 namespace {
 
-/// One flight of a mission at a time: the lock lives as long as the process.
-[[nodiscard]] FileDescriptor take_lock(const std::filesystem::path& folder) {
+/// One flight of a mission at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal and, in
+/// milliseconds, how long the answer to a stop may take.
+[[nodiscard]] FileDescriptor take_lock(const std::filesystem::path& folder, const descriptor::Mission& mission) {
   FileDescriptor lock{::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)};
-  if (lock && ::flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return lock;
-  return {};
+  if (!lock || ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return {};
+  Duration longest{};
+  for (const auto& member : mission.subsystems)
+    for (const auto& device : member.subsystem.devices) longest = std::max(longest, device.stop_within);
+  // The guard waits for the device, then ends its subsystem and waits for that.
+  const auto limit = std::chrono::duration_cast<std::chrono::milliseconds>(longest + std::chrono::seconds{1});
+  const std::string text = fmt::format("{} {}\n", ::getpid(), limit.count());
+  if (::ftruncate(lock.get(), 0) != 0 || ::write(lock.get(), text.data(), text.size()) < 0) return {};
+  return lock;
 }
 
 [[nodiscard]] std::optional<ProcessStart> device_start(const descriptor::Mission& mission,
@@ -56,7 +64,7 @@ int run(const RunOptions& options) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   std::filesystem::permissions(folder, std::filesystem::perms::owner_all, failed);
-  const FileDescriptor lock = take_lock(folder);
+  const FileDescriptor lock = take_lock(folder, *mission);
   if (!lock) {
     fmt::print(stderr, "hirosco run: {} flies already, or {} cannot be written\n", mission->name, folder.string());
     return exit_environment;

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""`hirosco safe`: everything that moves is stopped from beside the flight, whatever else of it stands still."""
+import signal
+import time
+import unittest
+
+import flight
+
+ANSWER_S = 0.5
+MOVERS = ("MANIPULATOR", "JOYSTICK")
+
+
+class LocalStop(unittest.TestCase):
+    def stops(self, rokviss):
+        asked = time.monotonic()
+        done = rokviss.hirosco("safe")
+        took = time.monotonic() - asked
+        print(done.stdout, done.stderr)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertLessEqual(took, ANSWER_S)
+        flight.measure(f"hirosco safe answered after {1e3 * took:.0f} ms")
+        return done.stdout.splitlines()
+
+    def nothing_moves(self, rokviss):
+        def withdrawn(status):
+            members = {member["name"]: member for member in status["subsystems"]}
+            return all(members[name]["state"] in ("Offline", "not running") or members[name]["inhibited"] for name in MOVERS)
+        self.assertIsNotNone(rokviss.wait_status(withdrawn, 5.0), "every permission is withdrawn")
+        truth = rokviss.truth("robot")
+        self.assertEqual((truth["motor_1"], truth["motor_2"]), (0.0, 0.0))
+
+    def test_everything_is_stopped_while_the_ground_link_is_frozen(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            rokviss.kill("hirosco-communication", signal.SIGSTOP)
+            lines = self.stops(rokviss)
+            self.assertEqual(len(lines), 2, "one for each device")
+            for line in lines:
+                self.assertIn("says the device", line)
+            self.nothing_moves(rokviss)
+
+    def test_everything_is_stopped_while_the_ground_link_is_dead(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            rokviss.kill("hirosco-communication")
+            self.stops(rokviss)
+            self.nothing_moves(rokviss)
+
+    def test_the_keeper_is_signalled_where_nobody_answers(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            rokviss.kill("hirosco-supervisor", signal.SIGSTOP)
+            done = rokviss.hirosco("safe")
+            self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+            self.assertIn("its keeper was signalled", done.stderr)
+            self.assertEqual(rokviss.wait_until_gone(10.0), {})
+
+    def test_where_nothing_flies_it_says_so(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            self.assertEqual(rokviss.end(), 0, rokviss.errors)
+            done = rokviss.hirosco("safe")
+            self.assertEqual((done.returncode, done.stderr.strip()), (3, "hirosco safe: nothing flies here"))
+
+
+if __name__ == "__main__":
+    flight.main()
