@@ -46,6 +46,7 @@ Console::Console(const descriptor::Mission& mission, Style style) : mission_{mis
 }
 
 Console::~Console() {
+  tell_held();
   {
     const std::lock_guard guard{mutex_};
     ending_ = true;
@@ -56,6 +57,7 @@ Console::~Console() {
 
 void Console::told(OnboardTime when, std::string_view line) {
   if (first_ == OnboardTime{}) first_ = when;
+  if (!limit_.admit(line.substr(0, line.find(' ')))) return;  // it is in the log
   const double at_s = seconds(when - first_);
   if (style_ == Style::Json) print(fmt::format("{{\"at_s\":{:.4f},\"told\":{}}}\n", at_s, json_string(line)));
   else print(fmt::format("{:9.4f} s  {}\n", at_s, printable(line)));
@@ -71,7 +73,17 @@ void Console::routed(const pus::TelemetryView& packet) {
   for (const auto& value : *values) values_[name + "." + value.name] = value.values;
 }
 
+/// A speaker is the first word of a line: a subsystem's name where it tells an event.
+void Console::tell_held() {
+  for (const auto& [speaker, lines] : limit_.turn()) {
+    const std::string line = fmt::format("{}: {} more lines in this second are in the log only", speaker, lines);
+    print(style_ == Style::Json ? fmt::format("{{\"held\":{}}}\n", json_string(line))
+                                : fmt::format("{:>12}{}\n", "", printable(line)));
+  }
+}
+
 void Console::show(const Supervisor& supervisor, Duration since_start) {
+  tell_held();
   print(style_ == Style::Json ? status_json(supervisor, since_start) : status_text(supervisor, since_start));
 }
 

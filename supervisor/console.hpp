@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hirosco/pus/housekeeping_decoder.hpp"
+#include "supervisor/platform/error_lines.hpp"
 #include "supervisor/supervisor.hpp"
 
 /// What a person at the terminal sees: the story of commissioning and recovery, then a live line every second.
@@ -28,7 +29,9 @@ class Console final : public Observer {
   void show(const Supervisor& supervisor, Duration since_start);
 
  private:
+  static constexpr std::size_t most_told = 200;
   void print(std::string line);
+  void tell_held();
   void write_lines();
   [[nodiscard]] std::string status_text(const Supervisor& supervisor, Duration since_start) const;
   [[nodiscard]] std::string status_json(const Supervisor& supervisor, Duration since_start) const;
@@ -36,6 +39,7 @@ class Console final : public Observer {
   const descriptor::Mission& mission_;
   Style style_;
   OnboardTime first_{};
+  LineLimit limit_{most_told};       ///< of one speaker from status line to status line, once a second
   std::map<std::uint16_t, pus::HousekeepingDecoder> decoders_;
   std::map<std::string, std::vector<double>> values_;   ///< newest, by "SUBSYSTEM.PARAMETER"
   // A stopped terminal must not stop the supervisor: lines wait here for a thread of their own, oldest out first.

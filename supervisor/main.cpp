@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <set>
+#include <system_error>
 
 #include "hirosco/data_transfer/flows/sealed_memory.hpp"
 #include "hirosco/data_transfer/flows/system_flow_factory.hpp"
@@ -18,6 +20,7 @@
 #include "hirosco/utilities/os/shared_memory.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
+#include "supervisor/causes.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/keeper/keeper.hpp"
@@ -35,6 +38,7 @@ using namespace hirosco::supervisor;
 constexpr int exit_finding = 1;
 constexpr int exit_usage = 2;
 constexpr int exit_environment = 3;
+constexpr int exit_unprovoked = 5;
 /// Below every cycle, above ordinary work.
 constexpr int supervisor_priority = 30;
 constexpr Duration status_period = 1s;
@@ -43,7 +47,7 @@ constexpr Duration log_start_limit = 3s;
 
 struct Options {
   std::filesystem::path mission;
-  std::filesystem::path runtime;  ///< where the guard's socket is; empty: nowhere
+  std::filesystem::path runtime;     ///< folder of this flight: sockets, what was injected
   Console::Style style{Console::Style::Text};
 };
 
@@ -77,6 +81,23 @@ struct Options {
   }
   const StoreTrouble trouble = log.trouble();
   return trouble.present ? trouble.text : "the disk of the log does not answer";
+}
+
+/// Those reactions that no injection into a simulated device had caused: each device writes the monotonic time of what it
+/// was told beside its control socket.
+[[nodiscard]] std::vector<TimePoint> unprovoked_reactions(std::vector<TimePoint> reactions,
+                                                          const std::filesystem::path& runtime) {
+  std::error_code failed;
+  for (const auto& file : std::filesystem::directory_iterator{runtime, failed}) {
+    if (reactions.empty()) break;
+    if (file.path().extension() != ".injected") continue;
+    std::ifstream lines{file.path()};
+    for (std::int64_t at_ns = 0; lines >> at_ns;) {
+      const TimePoint injected{Duration{at_ns}};
+      std::erase_if(reactions, [&](TimePoint at) { return at >= injected && at - injected <= Causes::limit; });
+    }
+  }
+  return reactions;
 }
 
 /// Descriptors that may wake the supervisor; follows the set of living members.
@@ -128,21 +149,23 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   SystemFlowFactory flows;
   SystemLauncher launcher;
   const auto strategy = from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);
+  const auto log_path = std::filesystem::path{mission.database.path};
   auto log_progress = WakeEvent::create();
   auto guard_found = WakeEvent::create();
   if (!log_progress || !guard_found) return exit_environment;
   Console console{mission, options.style};
+  Causes causes{clock, console};
   ThreadedPacketLog::Options log_options;
   log_options.on_progress = [&] { log_progress->notify(); };
-  ThreadedPacketLog log{clock, make_store(strategy, mission.database.path), std::move(log_options)};
+  ThreadedPacketLog log{clock, make_store(strategy, log_path), std::move(log_options)};
   if (const auto why_not = begin_log(log, clock)) {
-    fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, mission.database.path.string());
+    fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
     return exit_environment;
   }
   const bool realtime = realtime_permitted();
   // The log's and the console's threads exist already: they stay ordinary.
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
-  EpochFile epochs{std::filesystem::path{mission.database.path}.replace_extension(".epoch")};
+  EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
   const auto first_epoch = epochs.first(clock.onboard());
   if (!first_epoch) {
     fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
@@ -156,9 +179,9 @@ int serve(const descriptor::Mission& mission, const Options& options) {
        .guard = guard,
        .log = log,
        .open_database = [&](DatabaseStrategy wanted) -> std::unique_ptr<Database> {
-         return make_store(wanted, mission.database.path);
+         return make_store(wanted, log_path);
        },
-       .observer = console,
+       .observer = causes,
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384)}};
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
@@ -212,7 +235,28 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     sleep_until(clock.now() + 10ms);
   launcher.kill_all();
   static_cast<void>(log.flush(last_wait));
+  const auto unprovoked = unprovoked_reactions(causes.uncommanded(), options.runtime);
+  if (!unprovoked.empty()) {
+    fmt::print(stderr,
+               "hirosco: {} reaction{} of high severity that no fault, telecommand or scenario of this flight had caused, "
+               "the first {:.3f} s after the start: hirosco log --text plan\n",
+               unprovoked.size(), unprovoked.size() == 1 ? "" : "s", seconds(unprovoked.front() - started));
+    return exit_unprovoked;
+  }
   return supervisor.succeeded() ? 0 : exit_finding;
+}
+
+int named_failures(const descriptor::Mission& mission, const Options& options) {
+  try {
+    return serve(mission, options);
+  } catch (const std::bad_alloc&) {
+    std::fputs("hirosco-supervisor: no memory left for this flight\n", stderr);
+  } catch (const std::system_error& problem) {
+    // A thread of the log or of the console that cannot be started.
+    fmt::print(stderr, "hirosco-supervisor: the system refuses what a flight needs (thread, descriptor): {}\n",
+               problem.what());
+  }
+  return exit_environment;
 }
 
 }  // namespace
@@ -227,5 +271,5 @@ int main(int argc, char** argv) {
   const auto reading = descriptor::read_mission(options.mission, source);
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
   if (!reading.value) return exit_finding;
-  return serve(*reading.value, options);
+  return named_failures(*reading.value, options);
 }

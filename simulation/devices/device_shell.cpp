@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -78,9 +79,16 @@ std::string text_of(const Error& error) {
   return fmt::format("{}: {} ({})", to_text(error.code), error.text, error.value);
 }
 
-std::string answer(SimulatedDevice& device, std::string_view line) {
+/// Beside the control socket: when something was injected last. What a flight does within two seconds after it has a cause.
+void record_injection(const std::string& control) {
+  const std::int64_t now_ns = SystemClock{}.now().time_since_epoch().count();
+  if (!control.empty()) std::ofstream{control + ".injected", std::ios::app} << now_ns << '\n';
+}
+
+std::string answer(SimulatedDevice& device, std::string_view line, const std::string& control) {
   if (Words{line}[0] == "truth") return "ok " + device.truth();
   const auto done = device.fault(line);
+  if (done) record_injection(control);
   return done ? "ok" : "error " + text_of(done.error());
 }
 
@@ -113,7 +121,7 @@ bool input_closed() noexcept {
   return ::read(STDIN_FILENO, ignored.data(), ignored.size()) == 0;
 }
 
-void run(SimulatedDevice& device, ControlSocket& control) {
+void run(SimulatedDevice& device, ControlSocket& control, const std::string& control_path) {
   const SystemClock clock;
   const bool watch_input = input_tells_of_starter();
   TimePoint look_at = clock.now();
@@ -124,7 +132,7 @@ void run(SimulatedDevice& device, ControlSocket& control) {
     if (clock.now() < look_at) continue;
     look_at = clock.now() + control_period;
     if (signalled_to_end() || (watch_input && input_closed())) return;
-    control.serve([&device](std::string_view line) { return answer(device, line); });
+    control.serve([&](std::string_view line) { return answer(device, line, control_path); });
   }
 }
 
@@ -162,7 +170,7 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
   (void)lock_memory();
   (void)(realtime_permitted() ? pin_to_cycle_cpu() : ask_for_short_slices());
   (void)set_fifo_priority(priority);
-  run(*device, control);
+  run(*device, control, options.control);
   return 0;
 }
 

@@ -131,6 +131,8 @@ int keep(KeeperPlan plan) {
   }
   plan.supervisor.inherited.push_back({watched.get(), keeper_descriptor});
   plan.supervisor.inherited.push_back({page_memory->get(), keeper_page_descriptor});
+  // It is asked for its end before it can listen, too.
+  plan.supervisor.blocked = {SIGTERM, SIGINT, SIGUSR1};
   auto supervisor = Process::spawn(plan.supervisor);
   if (!supervisor) {
     std::fprintf(stderr, "hirosco: cannot start %s: %s\n", plan.supervisor.executable.c_str(), supervisor.error().text);

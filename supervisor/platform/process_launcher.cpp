@@ -117,6 +117,9 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   start.inherited = {{ends.second.get(), channel_number},
                      {SealedMemory::descriptor(vital.first), vital_number},
                      {SealedMemory::descriptor(permit.first), permit_number}};
+  // What it writes to its standard error is shown with its name, within limits.
+  const auto errors = errors_.open(subsystem.subsystem.name);
+  if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
   HIROSCO_TRY_LET(Process process, Process::spawn(start));
   LaunchedSubsystem launched;
   launched.channel = std::make_unique<SocketChannel>(std::move(ends.first));

@@ -8,6 +8,7 @@
 
 #include "hirosco/data_transfer/flows/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
+#include "supervisor/platform/error_lines.hpp"
 #include "supervisor/platform/launcher.hpp"
 
 namespace hirosco::supervisor {
@@ -32,6 +33,7 @@ class SystemLauncher final : public ProcessLauncher {
 
  private:
   SealedMemory memory_;
+  ErrorLines errors_;
   std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
   std::map<std::uint32_t, Process> processes_;
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process

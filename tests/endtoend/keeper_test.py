@@ -3,8 +3,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a flight begins and ends: one at a time, in order when asked, and without orphans when it is not."""
 import os
+import pathlib
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
 
@@ -29,6 +31,30 @@ class Keeper(unittest.TestCase):
             self.assertEqual(code, 0, rokviss.errors)
             self.assertIn("shutdown", [line.told for line in rokviss.told()])
             self.assertEqual(rokviss.wait_until_gone(2.0), {})
+
+    def test_two_flights_never_write_one_log_whatever_the_runtime_folder_is(self):
+        with flight.Flight() as rokviss, tempfile.TemporaryDirectory(prefix="hirosco-elsewhere-") as elsewhere:
+            rokviss.wait_commissioned()
+            second = subprocess.run([str(flight.BINARIES / "hirosco"), "run", rokviss.mission], cwd=rokviss.folder,
+                                    env={**rokviss.environment, "XDG_RUNTIME_DIR": elsewhere}, stdin=subprocess.DEVNULL,
+                                    capture_output=True, text=True, timeout=20, check=False)
+            self.assertEqual(second.returncode, 3, second.stderr)
+            self.assertIn("another flight writes", second.stderr)
+            self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0, "the first flight does not mind")
+
+    def test_an_end_asked_for_before_anything_was_started_is_an_orderly_one(self):
+        for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
+            with tempfile.TemporaryDirectory(prefix="hirosco-early-") as folder:
+                early = subprocess.Popen([str(flight.BINARIES / "hirosco"), "run", str(flight.ROKVISS), "--no-ground"],
+                                         cwd=folder, env={**os.environ, "XDG_RUNTIME_DIR": folder},
+                                         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                # The first moment at which it holds the signal back: nothing flies yet.
+                while not int(pathlib.Path(f"/proc/{early.pid}/status").read_text().split("SigBlk:")[1].split()[0], 16) \
+                        & 1 << (number - 1):
+                    pass
+                early.send_signal(number)
+                out, err = early.communicate(timeout=30)
+                self.assertEqual(early.returncode, 0, f"{number.name}: {out}{err}")
 
     def test_a_killed_keeper_leaves_no_orphans(self):
         self.no_orphans("hirosco")

@@ -12,7 +12,8 @@
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/utilities/time.hpp"
 
-/// The commands behind `hirosco`. Each returns its exit code: 0 ok, 1 finding, 2 usage, 3 environment, 4 internal.
+/// The commands behind `hirosco`. Each returns its exit code: 0 ok, 1 finding, 2 usage, 3 environment, 4 internal;
+/// `run` besides 5: a reaction of high severity that nobody had caused.
 namespace hirosco::tools {
 
 inline constexpr int exit_ok = 0;

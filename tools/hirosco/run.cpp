@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
 
+#include "hirosco/utilities/os/clock.hpp"
 #include "simulation/devices/described_device.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/platform/process_launcher.hpp"
@@ -15,6 +19,26 @@
 
 namespace hirosco::tools {
 namespace {
+
+/// Who asks for an end in the first moments gets an orderly one, and who asks for a stop ends nothing by it.
+void hold_back_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, number);
+  ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+/// Every process of the flight, those started again later, too, counts from the same epoch (adr 0038).
+void fix_epoch() {
+  const Duration epoch = SystemClock::calendar_epoch(SystemClock::default_tai_minus_utc);
+  ::setenv(flight_epoch_variable, std::to_string(epoch.count()).c_str(), 1);
+}
+
+/// What was injected in the flight before this one.
+void clear_injections(const descriptor::Mission& mission, const std::filesystem::path& folder) {
+  std::error_code failed;
+  for (const auto& device : mission.devices) std::filesystem::remove((folder / device.name).string() + ".injected", failed);
+}
 
 /// One flight of a mission at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal and, in
 /// milliseconds, how long the answer to a stop may take.
@@ -29,6 +53,15 @@ namespace {
   const std::string text = fmt::format("{} {}\n", ::getpid(), limit.count());
   if (::ftruncate(lock.get(), 0) != 0 || ::write(lock.get(), text.data(), text.size()) < 0) return {};
   return lock;
+}
+
+/// One log has one writer, whatever the runtime folder is: its lock stands beside it. Where none can be made the supervisor
+/// tells why, as it cannot write the log either. False: another flight writes it.
+[[nodiscard]] bool take_log_lock(const std::filesystem::path& log, FileDescriptor& lock) {
+  std::error_code failed;
+  std::filesystem::create_directories(log.parent_path(), failed);
+  lock.reset(::open((log.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  return !lock || ::flock(lock.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
 [[nodiscard]] std::optional<ProcessStart> device_start(const descriptor::Mission& mission,
@@ -57,6 +90,7 @@ namespace {
 }  // namespace
 
 int run(const RunOptions& options) {
+  hold_back_signals();
   const auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
   if (!ready(*mission, Platform::Processes)) return exit_environment;
@@ -69,6 +103,14 @@ int run(const RunOptions& options) {
     fmt::print(stderr, "hirosco run: {} flies already, or {} cannot be written\n", mission->name, folder.string());
     return exit_environment;
   }
+  const std::filesystem::path log{mission->database.path};
+  FileDescriptor log_lock;
+  if (!take_log_lock(log, log_lock)) {
+    fmt::print(stderr, "hirosco run: another flight writes {} already\n", log.string());
+    return exit_environment;
+  }
+  clear_injections(*mission, folder);
+  fix_epoch();
   supervisor::KeeperPlan plan;
   plan.run_for = options.run_for;
   for (const auto& device : mission->devices) {
@@ -98,6 +140,10 @@ int run(const RunOptions& options) {
   }
   plan.supervisor.executable = program.string();
   plan.supervisor.arguments = {"--mission", mission->file.string(), "--runtime", folder.string()};
+  // Inherited: where the keeper was killed, nobody else flies with this log before its supervisor has ended, too.
+  constexpr int first_lock = supervisor::keeper_page_descriptor + 1;
+  plan.supervisor.inherited = {{lock.get(), first_lock}};
+  if (log_lock) plan.supervisor.inherited.push_back({log_lock.get(), first_lock + 1});
   if (options.json) plan.supervisor.arguments.emplace_back("--json");
   if (options.quiet) plan.supervisor.arguments.emplace_back("--quiet");
   return supervisor::keep(std::move(plan));

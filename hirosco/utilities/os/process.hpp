@@ -37,6 +37,8 @@ struct ProcessStart {
   std::vector<Inherited> inherited{};    ///< besides 0, 1 and 2, the new process has these descriptors and no others
   std::optional<std::vector<std::string>> environment{};  ///< "NAME=value"; ours when absent
   std::string working_directory{};       ///< ours when empty
+  /// Signals that it begins with as blocked: it takes them up itself, and none ends it before it can.
+  std::vector<int> blocked{};
 };
 
 /// A process in a group of its own. It outlives this object and this process: nothing here kills it but send_signal().
@@ -45,7 +47,7 @@ struct ProcessStart {
 class Process {
  public:
   /// Starts an executable; an executable that cannot be started is an error here, not an exit later. It begins with no
-  /// blocked or ignored signals and ordinary scheduling.
+  /// ignored signals, no blocked ones but those named, and ordinary scheduling.
   [[nodiscard]] static Result<Process> spawn(const ProcessStart& start);
   /// Takes over a process that somebody else started.
   [[nodiscard]] static Result<Process> adopt(int pid) noexcept;

@@ -31,6 +31,7 @@ struct Plan {
   int first_free{3};        ///< above every number wanted
   const char* executable{};
   const char* directory{};
+  sigset_t blocked{};
   int report{-1};           ///< the child writes errno here when it fails
 };
 
@@ -52,6 +53,8 @@ void add_texts(std::vector<char*>& texts, const std::vector<std::string>& values
   plan.inherited = start.inherited;
   plan.parked.resize(start.inherited.size(), -1);
   for (const auto& entry : start.inherited) plan.first_free = std::max(plan.first_free, entry.number + 1);
+  sigemptyset(&plan.blocked);
+  for (const int number : start.blocked) sigaddset(&plan.blocked, number);
   plan.executable = start.executable.c_str();
   if (!start.working_directory.empty()) plan.directory = start.working_directory.c_str();
   return plan;
@@ -76,15 +79,13 @@ void place_descriptors(Plan& plan) noexcept {
     if (::dup2(plan.parked[i], plan.inherited[i].number) < 0) give_up(report, errno);
 }
 
-void reset_signals() noexcept {
+void reset_signals(const sigset_t& blocked) noexcept {
   for (int number = 1; number < NSIG; ++number) {
     struct sigaction action{};
     action.sa_handler = SIG_DFL;
     (void)::sigaction(number, &action, nullptr);
   }
-  sigset_t none;
-  sigemptyset(&none);
-  (void)::sigprocmask(SIG_SETMASK, &none, nullptr);
+  (void)::sigprocmask(SIG_SETMASK, &blocked, nullptr);
 }
 
 [[noreturn]] void run_child(Plan& plan) noexcept {
@@ -93,7 +94,7 @@ void reset_signals() noexcept {
   const sched_param ordinary{};
   (void)::sched_setscheduler(0, SCHED_OTHER, &ordinary);
   if (plan.directory != nullptr && ::chdir(plan.directory) != 0) give_up(plan.report, errno);
-  reset_signals();
+  reset_signals(plan.blocked);
   ::execve(plan.executable, plan.arguments.data(), plan.environment_used);
   give_up(plan.report, errno);
 }

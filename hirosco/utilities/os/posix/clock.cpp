@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/utilities/os/clock.hpp"
 
+#include <charconv>
+#include <cstdlib>
 #include <ctime>
+#include <string_view>
 
 namespace hirosco {
 namespace {
@@ -16,8 +19,34 @@ namespace {
 
 }  // namespace
 
+std::optional<Duration> given_epoch() noexcept {
+  const char* text = std::getenv(flight_epoch_variable);
+  if (text == nullptr) return std::nullopt;
+  const std::string_view digits{text};
+  std::int64_t epoch_ns = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), epoch_ns);
+  if (problem != std::errc{} || end != digits.data() + digits.size() || digits.empty()) return std::nullopt;
+  return Duration{epoch_ns};
+}
+
+Duration SystemClock::calendar_epoch(Duration tai_minus_utc) noexcept {
+  // The tightest of some readings: in between, the processor may be taken away.
+  constexpr int readings = 5;
+  Duration best{};
+  Duration narrowest = Duration::max();
+  for (int i = 0; i < readings; ++i) {
+    const Duration before = reading(CLOCK_MONOTONIC);
+    const Duration calendar = reading(CLOCK_REALTIME);
+    const Duration width = reading(CLOCK_MONOTONIC) - before;
+    if (width >= narrowest) continue;
+    narrowest = width;
+    best = calendar - before;
+  }
+  return best + tai_minus_utc + std::chrono::seconds{onboard_epoch_to_unix_s};
+}
+
 TimePoint SystemClock::do_now() const noexcept { return TimePoint{reading(CLOCK_MONOTONIC)}; }
 
-OnboardTime SystemClock::do_onboard() const noexcept { return OnboardTime{reading(CLOCK_REALTIME) + unix_to_onboard_}; }
+OnboardTime SystemClock::do_onboard() const noexcept { return OnboardTime{reading(CLOCK_MONOTONIC) + epoch_}; }
 
 }  // namespace hirosco

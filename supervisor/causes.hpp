@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/pus/st129_supervision.hpp"
+#include "supervisor/supervisor.hpp"
+
+namespace hirosco::supervisor {
+
+/// Hears what is told and routed, keeps the moments of reactions of high severity before which no telecommand had come from
+/// ground for some time, and passes everything on. What was injected into simulated devices is asked for by the shell.
+/// Thread: the supervisor's.
+class Causes final : public Observer {
+ public:
+  /// A reaction this long after somebody's deed may be its effect.
+  static constexpr Duration limit{std::chrono::seconds{2}};
+  Causes(const Clock& clock, Observer& next) : clock_{clock}, next_{next} {}
+
+  [[nodiscard]] const std::vector<TimePoint>& uncommanded() const noexcept { return uncommanded_; }
+
+  void told(OnboardTime when, std::string_view line) override {
+    hear(line);
+    next_.told(when, line);
+  }
+  void routed(const pus::TelemetryView& packet) override {
+    next_.routed(packet);
+    if (packet.service() != pus::st129::service_type || packet.subtype() != pus::st129::telecommand_copy) return;
+    const auto telecommand = pus::TelecommandView::parse(packet.source_data());
+    constexpr std::uint8_t ping = 17;  // causes nothing
+    if (telecommand && telecommand->service() != ping) commanded_ = clock_.now();
+  }
+
+ private:
+  static constexpr std::size_t most_kept = 100;
+
+  void hear(std::string_view line) {
+    constexpr std::string_view high = " high ";
+    constexpr std::string_view stop_asked = "stop by signal or local socket";
+    constexpr std::string_view because = " because of ";
+    if (line.starts_with(stop_asked)) commanded_ = clock_.now();
+    if (!line.starts_with("plan ")) {
+      // "SUBSYSTEM high EVENT ...": what its reaction will name.
+      const auto place = line.find(high);
+      if (place == std::string_view::npos || line.find(' ') != place || high_.size() >= most_kept) return;
+      const auto name = line.substr(place + high.size());
+      high_.emplace(name.substr(0, name.find(' ')));
+      return;
+    }
+    const auto reason = line.find(because);
+    const bool network = line.find(": network {") != std::string_view::npos;
+    const bool of_high = reason != std::string_view::npos && high_.contains(std::string{line.substr(reason + because.size())});
+    if ((!network && !of_high) || uncommanded_.size() >= most_kept) return;
+    const TimePoint now = clock_.now();
+    if (commanded_ == TimePoint{} || now - commanded_ > limit) uncommanded_.push_back(now);
+  }
+
+  const Clock& clock_;
+  Observer& next_;
+  TimePoint commanded_{};
+  std::set<std::string> high_;
+  std::vector<TimePoint> uncommanded_;
+};
+
+}  // namespace hirosco::supervisor
