@@ -28,6 +28,8 @@ ROKVISS = REPOSITORY / "missions/rokviss/mission.xml"
 HELLO = REPOSITORY / "missions/hello/mission.xml"
 PORT = 10015
 MANIPULATOR, JOYSTICK = 10, 11
+# The robot does its stop in the 200 ms that its descriptor declares, from the end of its enable (50 ms; 100 ms reduced) on.
+STOP_S = 0.3
 MARK = "HIROSCO_TEST_FLIGHT"      # in the environment of every process of a flight, orphans included
 
 
@@ -264,6 +266,16 @@ class Flight:
         """{name: number} of the simulated device's world."""
         return {name: float(value) for name, value in (word.split("=") for word in self.fault(device, "truth").split()
                                                        if "=" in word)}
+
+    def wait_at_rest(self, device, since):
+        """Until its motors give nothing; fails when they still do STOP_S after `since` (time.monotonic())."""
+        while True:
+            asked = time.monotonic()
+            truth = self.truth(device)
+            if (truth["motor_1"], truth["motor_2"]) == (0.0, 0.0):
+                return
+            if asked - since >= STOP_S:
+                raise AssertionError(f"{device} moves still {asked - since:.3f} s later: {truth}")
 
     def log(self, *words, last=100000):
         """The texts of the log's records, oldest first."""

@@ -7,13 +7,10 @@ import unittest
 
 import flight
 
-# The robot does its stop in the 200 ms that its descriptor declares, from the end of its enable (50 ms; 100 ms reduced) on.
-STOP_S = 0.3
-
 
 class TorqueLimit(unittest.TestCase):
     def test_ro8_pressing_too_hard_makes_the_robot_limp_and_the_hand_feels_nothing(self):
-        with flight.Flight() as rokviss,_telemetry(rokviss) as telemetry:
+        with flight.Flight() as rokviss, _telemetry(rokviss) as telemetry:
             rokviss.fault("joystick", "hand", "hold", 0, 0)
             time.sleep(2.0)
             begin = rokviss.count()
@@ -55,14 +52,6 @@ class Unplugged(unittest.TestCase):
     def test_ro9_an_unplugged_robot_in_contact_stops_both(self):
         self.stops_both("robot", "MANIPULATOR high ROBOT_LOST", ("hand", "cartesian", 0.0226, 0, 1), "joystick")
 
-    def comes_to_rest(self, rokviss, device, since):
-        while True:
-            asked = time.monotonic()
-            truth = rokviss.truth(device)
-            if (truth["motor_1"], truth["motor_2"]) == (0.0, 0.0):
-                return
-            self.assertLess(asked - since, STOP_S, truth)
-
     def stops_both(self, device, event, hand, other):
         before = flight.segments()
         with flight.Flight() as rokviss:
@@ -75,7 +64,7 @@ class Unplugged(unittest.TestCase):
             ends = [rokviss.wait_told(f"{name} is Offline", 3.0, begin) for name in ("MANIPULATOR", "JOYSTICK")]
             took = max(end.at_s for end in ends) - lost.at_s
             self.assertLess(took, 2.0)
-            self.comes_to_rest(rokviss, other, lost.received)
+            rokviss.wait_at_rest(other, lost.received)
             told = [line.told for line in rokviss.told(begin)]
             self.assertTrue([text for text in told if "plan network-down: network {" in text and
                              "MANIPULATOR" in text and "JOYSTICK" in text], told)

@@ -30,10 +30,6 @@ class FaultCases(unittest.TestCase):
         flight.measure(f"{case}: actuators inhibited {late} own cycles after the supervisor's detection")
         self.assertLessEqual(max(late.values()), ACTUATORS)
 
-    def assert_limp(self, craft, device):
-        truth = craft.truth(device)
-        self.assertEqual((truth["motor_1"], truth["motor_2"]), (0.0, 0.0), device)
-
     def assert_offline(self, craft, names, begin, seconds=2.0):
         for name in names:
             craft.wait_told(f"{name} is Offline", seconds, begin)
@@ -43,7 +39,7 @@ class FaultCases(unittest.TestCase):
         event = craft.wait_told(f"MANIPULATOR medium {cause}", 2.0, begin)
         safe = craft.wait_told("MANIPULATOR info STATE_CHANGED STATE=SafeOperational", 2.0, begin)
         flight.measure(f"{case}: {event.told}; SafeOperational {1e3 * (safe.at_s - event.at_s):.1f} ms later")
-        self.assert_limp(craft, "robot")
+        craft.wait_at_rest("robot", safe.received)
         self.assert_states(craft, MANIPULATOR="SafeOperational", JOYSTICK="Operational")
         self.assertEqual(self.plans_since(craft, begin), [f"plan to-safe: MANIPULATOR to SafeOperational because of {cause}"])
 
@@ -103,22 +99,18 @@ class FaultCases(unittest.TestCase):
         with flight.Flight() as rokviss:
             rokviss.wait_commissioned()
             rokviss.fault("joystick", "hand", "cartesian", 0.0226, 0, 0.5)
-            time.sleep(1.0)
+            time.sleep(2.5)     # longer after the hand than what it moves could be the effect of it
             begin = rokviss.count()
             rokviss.kill("hirosco-joystick", signal.SIGSTOP)
             rokviss.wait_told("JOYSTICK hangs: its cycle stands still", 5.0, begin)
             self.assert_offline(rokviss, ("MANIPULATOR",), begin)
-            self.assert_inhibited_in_time(rokviss, "FC6", ("MANIPULATOR",))
-            for device in ("robot", "joystick"):
-                self.assert_limp(rokviss, device)
-            stood = self.members(rokviss)["JOYSTICK"]
-            rokviss.kill("hirosco-joystick", signal.SIGCONT)
+            # Within the second of grace: who stands still for longer is ended (adr 0018).
+            continued = rokviss.kill("hirosco-joystick", signal.SIGCONT)
             self.assert_offline(rokviss, ("JOYSTICK",), begin)
-            self.assert_limp(rokviss, "joystick")
-            member = self.members(rokviss)["JOYSTICK"]
-            late = member["inhibited_at_cycle"] - stood["cycles"]
-            flight.measure(f"FC6: continued, it inhibits its actuators within {late} of its own cycles")
-            self.assertLessEqual(late, ACTUATORS)
+            for device in ("robot", "joystick"):
+                rokviss.wait_at_rest(device, continued)
+            # The guard read the count of a cycle that stood still: it is the last before the continuation.
+            self.assert_inhibited_in_time(rokviss, "FC6, continued")
             self.assertNotIn("JOYSTICK info STATE_CHANGED STATE=Operational",
                              [line.told for line in rokviss.told(begin)])
             self.assertEqual(rokviss.end(), 5, "nobody of this flight had caused it")
@@ -169,9 +161,8 @@ class FaultCases(unittest.TestCase):
             begin = rokviss.count()
             self.assertEqual(rokviss.tc("supervisor", "SET_POWER_BUDGET", 110)[0], 0)
             rokviss.wait_told("SUPERVISOR medium POWER_LOW BUDGET=110 W RESERVED=105 W", 2.0, begin)
-            for name in BOTH:
-                rokviss.wait_told(f"{name} info STATE_CHANGED STATE=SafeOperational", 2.0, begin)
-            self.assert_limp(rokviss, "robot")
+            safe = [rokviss.wait_told(f"{name} info STATE_CHANGED STATE=SafeOperational", 2.0, begin) for name in BOTH]
+            rokviss.wait_at_rest("robot", safe[0].received)
 
             self.assertEqual(rokviss.tc("supervisor", "SET_POWER_BUDGET", 70)[0], 0)
             rokviss.wait_told("SUPERVISOR high LOAD_SHED BUDGET=70 W RESERVED=105 W", 2.0, begin)
