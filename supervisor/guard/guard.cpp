@@ -183,7 +183,7 @@ std::uint64_t Guard::stop_all() {
   if (stops_ended_ == stops_) {
     stop_begun_ = parts_.clock.now();
     for (Watched& member : members_) {
-      member.killed = false;
+      member.stop_killed = false;
       member.stopped.reset();
       for (Device& device : member.devices) device.stopped.reset();
     }
@@ -199,8 +199,8 @@ std::optional<std::vector<StopAnswer>> Guard::stop_outcome(std::uint64_t stop) c
     if (member.spared) continue;
     const std::string& name = member.described->subsystem.name;
     for (const Device& device : member.devices)
-      answers.push_back({member.apid(), device.name, true, device.stopped, member.killed});
-    if (member.devices.empty()) answers.push_back({member.apid(), name, false, member.stopped, member.killed});
+      answers.push_back({member.apid(), device.name, true, device.stopped, member.stop_killed});
+    if (member.devices.empty()) answers.push_back({member.apid(), name, false, member.stopped, member.stop_killed});
   }
   return answers;
 }
@@ -380,6 +380,11 @@ Duration Guard::stop_limit(const Watched& member) const noexcept {
 bool Guard::has_stopped(const Watched& member) const noexcept {
   if (!member.devices.empty())
     return std::ranges::all_of(member.devices, [](const Device& device) { return device.stopped.has_value(); });
+  return says_stopped(member);
+}
+
+/// Its own word: that of its page.
+bool Guard::says_stopped(const Watched& member) const noexcept {
   if (member.vital == nullptr) return true;  // there is no process that could move anything
   const auto state = member.state();
   if (state && *state == State::Offline) return true;
@@ -387,6 +392,15 @@ bool Guard::has_stopped(const Watched& member) const noexcept {
   const bool knows = member.vital->seen_epoch.load(std::memory_order_acquire) == member.epoch;
   const bool inhibited = state != State::Operational || member.vital->inhibited.load(std::memory_order_acquire) != 0;
   return rests || (knows && inhibited);
+}
+
+/// A device that cannot be heard (unplugged, say) is no reason to end the subsystem that has let go of it.
+bool Guard::to_blame(const Watched& member) const noexcept {
+  const auto moves = [](const Device& device) {
+    const bool knows = device.heard && static_cast<std::int32_t>(device.last.sequence - device.fenced_at_sequence) > 0;
+    return knows && !device.stopped;
+  };
+  return !says_stopped(member) || std::ranges::any_of(member.devices, moves);
 }
 
 void Guard::follow_stop(TimePoint now) {
@@ -399,12 +413,12 @@ void Guard::follow_stop(TimePoint now) {
     }
     member.stopped.reset();
     const Duration since = now - stop_begun_;
-    if (since >= stop_limit(member) && !member.killed) {
-      member.killed = true;
-      if (member.grip) member.grip->kill();
+    if (since >= stop_limit(member) && !member.stop_killed && member.grip && to_blame(member)) {
+      member.stop_killed = true;
+      member.grip->kill();
       find_out(GuardFinding::Kind::Killed, member.apid());
     }
-    waiting = waiting || since < stop_limit(member) + killed_limit;
+    waiting = waiting || since < stop_limit(member) + (member.stop_killed ? killed_limit : Duration{0});
   }
   if (waiting) return;
   stops_ended_ = stops_;

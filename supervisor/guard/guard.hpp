@@ -139,6 +139,7 @@ class Guard {
     // stop
     std::optional<Duration> stopped;
     bool killed{false};
+    bool stop_killed{false};              ///< by the present stop: nobody is ended twice for one
     std::vector<Device> devices;
     [[nodiscard]] std::uint16_t apid() const noexcept { return described->subsystem.id; }
     [[nodiscard]] std::optional<State> state() const noexcept;
@@ -160,6 +161,8 @@ class Guard {
   void tell_devices(Watched& member, TimePoint now) noexcept;
   void follow_stop(TimePoint now);
   [[nodiscard]] bool has_stopped(const Watched& member) const noexcept;
+  [[nodiscard]] bool says_stopped(const Watched& member) const noexcept;
+  [[nodiscard]] bool to_blame(const Watched& member) const noexcept;
   [[nodiscard]] Duration stop_limit(const Watched& member) const noexcept;
 
   Parts parts_;

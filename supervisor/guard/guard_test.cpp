@@ -303,6 +303,32 @@ TEST_F(GuardTest, ASilentDeviceHasNotStopped) {
   EXPECT_EQ(answers->at(0).stopped, std::nullopt);
 }
 
+TEST_F(GuardTest, ADeviceThatCannotBeHeardIsNoReasonToEndWhoHasLetGoOfIt) {
+  cycling(arm);
+  run(50ms);
+  const auto stop = guard.stop_all();
+  lives[arm].vital->inhibited = inhibited_by_stop;
+  lives[arm].vital->seen_epoch = lives[arm].permit->epoch.load();
+  run(500ms, {arm, hand, camera}, std::nullopt);
+  ASSERT_TRUE(guard.stop_outcome(stop));
+  EXPECT_EQ(guard.stop_outcome(stop)->at(0).stopped, std::nullopt);
+  EXPECT_FALSE(lives[arm].process->killed);
+}
+
+TEST_F(GuardTest, NobodyIsEndedTwiceForOneStop) {
+  cycling(arm);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  const auto stop = guard.stop_all();
+  run(460ms, {arm, hand, camera}, DeviceOutput::Active);
+  EXPECT_TRUE(lives[arm].process->killed);
+  guard.forget(arm);
+  start(arm);
+  run(600ms, {arm, hand, camera}, DeviceOutput::Active);
+  EXPECT_FALSE(lives[arm].process->killed);
+  EXPECT_TRUE(guard.stop_outcome(stop));
+}
+
 TEST_F(GuardTest, StopsInAFloodAllEnd) {
   run(50ms);
   std::vector<std::uint64_t> stops;

@@ -7,6 +7,8 @@ from record import meets
 CYCLES_TO_SAFE = 5             # actuators of a network, in cycles of whoever acts
 STATE_LAG_US = 12_000          # the vital page tells a state by the service loop, every 1 or 10 ms
 SAFE_ALL_US = 500_000
+# The longest declared stop and the time to answer (450 ms), who has not stopped is ended then, and 500 ms after that.
+SAFE_ALL_ENDS_US = 950_000
 OFFLINE_US = 2_000_000
 
 
@@ -44,15 +46,16 @@ def i4_safe_all_stops_everything(flight, victims):
             continue
         if not ground_link_works(flight, victims, sent.time, sent.time + SAFE_ALL_US) or flight.finished() <= sent.time:
             continue
-        done = next((r.time for r in flight.log if r.report and r.report.service == 1 and r.report.subtype == 7
+        # Either way it ends with a report: all have stopped, or who has not.
+        done = next((r.time for r in flight.log if r.report and r.report.service == 1 and r.report.subtype in (7, 8)
                      and r.report.request_key == sent.key), None)
         asked = next((r for r in flight.log if r.telecommand and r.telecommand.key == sent.key), None)
         if asked and asked.kind != "telecommand-refused" and not asked.telecommand.ack & 8:
             done = asked.time  # nobody asked for its report
-        if done is None or done > sent.time + SAFE_ALL_US:
+        if done is None or done > sent.time + SAFE_ALL_ENDS_US:
             refused = next((r.time for r in flight.log if r.kind == "telecommand-refused" and r.telecommand
                             and r.telecommand.key == sent.key), None)
-            yield sent.time, "SAFE_ALL was " + ("refused" if refused is not None else "not completed within 500 ms")
+            yield sent.time, "SAFE_ALL was " + ("refused" if refused is not None else "not answered in its time")
         at = min(done or sent.time + SAFE_ALL_US, sent.time + SAFE_ALL_US)
         for device, (member, _) in flight.mission.devices.items():
             released = [s.time for s in flight.sent if s.time >= sent.time and is_operational(flight, s, member)]
