@@ -288,9 +288,8 @@ class Teller {
       if (line.kind.starts_with("state ")) same->t = std::max(same->t, line.t);
     }
     // At one instant the event stands before what it brought about.
-    std::ranges::stable_sort(told, {}, [](const Line& line) {
-      return std::pair{line.t.value_or(OnboardTime{}), line.kind != "event"};
-    });
+    std::ranges::stable_sort(
+        told, {}, [](const Line& line) { return std::pair{line.t.value_or(OnboardTime{}), line.kind != "event"}; });
     json causes = json::array();
     for (const Line& line : told)
       causes.push_back({{"t", json_time(line.t.value_or(begin_))},

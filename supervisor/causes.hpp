@@ -53,7 +53,8 @@ class Causes final : public Observer {
     }
     const auto reason = line.find(because);
     const bool network = line.find(": network {") != std::string_view::npos;
-    const bool of_high = reason != std::string_view::npos && high_.contains(std::string{line.substr(reason + because.size())});
+    const bool of_high =
+        reason != std::string_view::npos && high_.contains(std::string{line.substr(reason + because.size())});
     if ((!network && !of_high) || uncommanded_.size() >= most_kept) return;
     const TimePoint now = clock_.now();
     if (commanded_ == TimePoint{} || now - commanded_ > limit) uncommanded_.push_back(now);

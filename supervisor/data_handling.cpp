@@ -84,7 +84,8 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
   const bool restores = incoming.sender == Sender::Supervisor && ground != nullptr && ground->subsystem.id == apid &&
                         ground_link_.running();
   if (decision->essential || restores) {
-    if (const auto call = called_function(*telecommand); apid == 1 && call && carry_out_at_once(incoming, request, call->name)) {
+    if (const auto call = called_function(*telecommand);
+        apid == 1 && call && carry_out_at_once(incoming, request, call->name)) {
       copy_to_ground();
       static_cast<void>(parts_.log.append(received));
       return;
@@ -100,8 +101,15 @@ void Supervisor::handle_telecommand(const Incoming& incoming) {
     return reject(incoming, request, pus::FailureNotice{pus::FailureCode::QueueFull});
   // Its own telecommands were not permitted by the mode, so a change of mode does not void them.
   const std::uint32_t mode_epoch = incoming.sender == Sender::Supervisor ? 0 : mode_epoch_;
-  waiting_.push_back({number, apid, {incoming.packet.begin(), incoming.packet.end()}, incoming.memory, request, mode_epoch,
-                      now_, decision->releases_stop, fences});
+  waiting_.push_back({number,
+                      apid,
+                      {incoming.packet.begin(), incoming.packet.end()},
+                      incoming.memory,
+                      request,
+                      mode_epoch,
+                      now_,
+                      decision->releases_stop,
+                      fences});
   forward_durable();
 }
 
@@ -151,10 +159,12 @@ void Supervisor::forward_durable() {
     waiting_.pop_front();
     // What was permitted before a fence is void after it: it was permitted for another situation (findings SF4).
     if (parts_.guard.fences(next.apid) != next.fences) {
-      reject({.packet = next.packet, .memory = {}}, next.request, pus::FailureNotice{pus::FailureCode::NotPermittedNow});
+      reject({.packet = next.packet, .memory = {}}, next.request,
+             pus::FailureNotice{pus::FailureCode::NotPermittedNow});
       continue;
     }
-    forward({next.apid, next.packet, next.memory, next.request, next.mode_epoch, false, next.releases_stop, next.fences});
+    forward(
+        {next.apid, next.packet, next.memory, next.request, next.mode_epoch, false, next.releases_stop, next.fences});
   }
 }
 

@@ -171,7 +171,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
     return exit_environment;
   }
-  Guard guard{{.clock = clock, .flows = flows, .first_epoch = *first_epoch, .on_finding = [&] { guard_found->notify(); }}};
+  Guard guard{
+      {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .on_finding = [&] { guard_found->notify(); }}};
   Supervisor supervisor{
       {.mission = mission,
        .world = {.clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = {}},
@@ -186,7 +187,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
   const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
-  Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(), kept ? keeper_descriptor : -1};
+  Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
+              kept ? keeper_descriptor : -1};
   const KeeperPage* keeper_page = nullptr;
   std::atomic<std::uint64_t> unwatched{0};
   std::atomic<std::uint64_t>* own_beats = &unwatched;
@@ -203,7 +205,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   supervisor.start();
   const auto guard_thread = GuardShell::start(guard, clock, options.runtime);
   if (!guard_thread) {
-    fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text, guard_thread.error().value);
+    fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
+               guard_thread.error().value);
     launcher.kill_all();
     return exit_environment;
   }
@@ -237,10 +240,11 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   static_cast<void>(log.flush(last_wait));
   const auto unprovoked = unprovoked_reactions(causes.uncommanded(), options.runtime);
   if (!unprovoked.empty()) {
-    fmt::print(stderr,
-               "hirosco: {} reaction{} of high severity that no fault, telecommand or scenario of this flight had caused, "
-               "the first {:.3f} s after the start: hirosco log --text plan\n",
-               unprovoked.size(), unprovoked.size() == 1 ? "" : "s", seconds(unprovoked.front() - started));
+    fmt::print(
+        stderr,
+        "hirosco: {} reaction{} of high severity that no fault, telecommand or scenario of this flight had caused, "
+        "the first {:.3f} s after the start: hirosco log --text plan\n",
+        unprovoked.size(), unprovoked.size() == 1 ? "" : "s", seconds(unprovoked.front() - started));
     return exit_unprovoked;
   }
   return supervisor.succeeded() ? 0 : exit_finding;

@@ -21,7 +21,8 @@ namespace {
 constexpr Duration closed_channel_limit = std::chrono::seconds{1};
 
 /// Events of the supervisor that are about a subsystem: the reaction is that subsystem's, where they are raised.
-constexpr std::array about_subsystems{"PROCESS_DIED", "HANG", "POWER_REFUSED", "POWER_LOW", "LOAD_SHED", "RECOVERY_STEP"};
+constexpr std::array about_subsystems{"PROCESS_DIED", "HANG",      "POWER_REFUSED",
+                                      "POWER_LOW",    "LOAD_SHED", "RECOVERY_STEP"};
 
 /// What nothing overrides: whoever is gone must be stopped and taken down whatever else runs for it (findings SF5).
 [[nodiscard]] bool is_loss(std::string_view event) { return event == "PROCESS_DIED" || event == "HANG"; }

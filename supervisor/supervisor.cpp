@@ -54,7 +54,8 @@ Result<Step> Supervisor::software_init() {
     if (found == mission_.modes.end()) return refused(pus::FailureCode::UnknownIdentifier);
     // A mode whose members are dead is not that mode, whatever it is called (findings SF15).
     const auto lives = [&](const descriptor::CommissionStep& step) {
-      const auto subject = std::ranges::find(members_, step.subsystem, [](const Member& m) -> const std::string& { return m.descriptor().name; });
+      const auto subject = std::ranges::find(members_, step.subsystem,
+                                             [](const Member& m) -> const std::string& { return m.descriptor().name; });
       return subject != members_.end() && subject->alive();
     };
     if (!std::ranges::all_of(found->commission, lives)) return refused(pus::FailureCode::WrongStatus);

@@ -239,7 +239,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   Restarts restarts_;
   struct PendingStop {
     std::uint64_t stop{0};
-    std::optional<pus::Request> request;   ///< empty: asked for by signal or local socket
+    std::optional<pus::Request> request;  ///< empty: asked for by signal or local socket
   };
   std::vector<PendingStop> stops_;
   GroundRoute ground_route_;
@@ -268,7 +268,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   struct Counts {
     std::uint32_t telecommands{0};
     std::uint32_t telemetry{0};
-    std::uint32_t misdirected{0};    ///< packets that claimed another sender's APID
+    std::uint32_t misdirected{0};  ///< packets that claimed another sender's APID
     std::uint32_t housekeeping_lost{0};  ///< on the way to the ground link, as the next
     std::uint32_t reports_lost{0};
   };
@@ -276,7 +276,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   std::array<std::uint32_t, rejection_reasons> rejections_{};
   Counts counts_{};
   struct Power {
-    float budget_w{0};               ///< 0 = not limited
+    float budget_w{0};  ///< 0 = not limited
     float reserved_w{0};
   };
   Parameter<Power> power_parameter_;

@@ -97,7 +97,8 @@ void CycleLoop::check_permit() noexcept {
   const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
   const bool stopped = parts_.permit.stop.load(std::memory_order_acquire) != 0;
   const bool operational = state_ == State::Operational;
-  if (stopped || (operational && (epoch != entered_epoch_ || !parts_.permit.permits(epoch)))) inhibit(inhibited_by_stop);
+  if (stopped || (operational && (epoch != entered_epoch_ || !parts_.permit.permits(epoch))))
+    inhibit(inhibited_by_stop);
   if (silent_cycles_ > silence_limit_) inhibit(inhibited_by_supervisor);
   permitted_epoch_ = epoch;
   parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);

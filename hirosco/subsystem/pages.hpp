@@ -19,18 +19,18 @@ inline constexpr std::uint32_t page_version = 3;
 
 /// Why the framework inhibits the actuators of a subsystem; bits of VitalPage::inhibited.
 enum Inhibition : std::uint32_t {
-  inhibited_by_stop = 1,         ///< stop flag of the permit page, or another epoch
-  inhibited_by_link = 2,         ///< a required link is stale or its producer reports a fault
-  inhibited_by_device = 4,       ///< a device is silent
-  inhibited_by_author = 8,       ///< the subsystem itself (a limit)
-  inhibited_by_failure = 16,     ///< a state's node failed
+  inhibited_by_stop = 1,  ///< stop flag of the permit page, or another epoch
+  inhibited_by_link = 2,  ///< a required link is stale or its producer reports a fault
+  inhibited_by_device = 4,  ///< a device is silent
+  inhibited_by_author = 8,  ///< the subsystem itself (a limit)
+  inhibited_by_failure = 16,  ///< a state's node failed
   inhibited_by_supervisor = 32,  ///< the supervisor is gone
 };
 
 /// A real-time link as its consumer sees it, since the link was made.
 struct IncomingLink {
-  std::atomic<std::uint32_t> link{0};            ///< id, 0 = none
-  std::atomic<std::uint32_t> lost{0};            ///< samples that came and went between two cycles
+  std::atomic<std::uint32_t> link{0};  ///< id, 0 = none
+  std::atomic<std::uint32_t> lost{0};  ///< samples that came and went between two cycles
   /// From the instant that a sample is of (its producer's planned cycle) to the start of the cycle that uses it first.
   std::atomic<std::uint32_t> latency_mean_ns{0};  ///< over about the last 1,000 samples
   std::atomic<std::uint32_t> latency_max_ns{0};

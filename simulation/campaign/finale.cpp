@@ -63,7 +63,8 @@ void PlannedFlight::finale() {
   static_cast<void>(call(mission_.supervisor.name, "SET_DATABASE", 1));
   static_cast<void>(call(mission_.supervisor.name, "SAFE_ALL", {}));
   // An operator who brings the craft up gives it the power for that again.
-  if (mission_.power_budget_w) static_cast<void>(call(mission_.supervisor.name, "SET_POWER_BUDGET", mission_.power_budget_w));
+  if (mission_.power_budget_w)
+    static_cast<void>(call(mission_.supervisor.name, "SET_POWER_BUDGET", mission_.power_budget_w));
   run_until(plan_.finale + 2s);
   trace_->say("recovered");
   for (const auto& member : mission_.subsystems)

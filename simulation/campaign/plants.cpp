@@ -120,8 +120,7 @@ void i5(Plant& plant) {
 
 /// The supervisor does not listen to the ground link in half of all seconds.
 void i6(Plant& plant) {
-  on_channel(plant, "COMMUNICATION",
-             {.holds_back = [&plant] { return static_cast<int>(2 * plant.now_s()) % 2 == 1; }});
+  on_channel(plant, "COMMUNICATION", {.holds_back = [&plant] { return static_cast<int>(2 * plant.now_s()) % 2 == 1; }});
 }
 
 /// Every mode permits everything.
@@ -141,7 +140,9 @@ void i8(Plant& plant) {
 void i9(Plant& plant) {
   plant.each_instant = [&plant, done = false]() mutable {
     auto* page = const_cast<VitalPage*>(plant.craft->vital("JOYSTICK"));
-    if (done || plant.now_s() < 3 || page == nullptr || page->state.load() != static_cast<std::uint32_t>(State::Operational)) return;
+    if (done || plant.now_s() < 3 || page == nullptr ||
+        page->state.load() != static_cast<std::uint32_t>(State::Operational))
+      return;
     page->state.store(static_cast<std::uint32_t>(State::HardwareInit));
     done = true;
   };
@@ -273,7 +274,8 @@ void sf6(Plant& plant) {
                   },
               .receives =
                   [off](Message& message, MessageBuffer&) {
-                    if (message.kind == MessageKind::Packet || message.kind == MessageKind::GroundTelecommand) return true;
+                    if (message.kind == MessageKind::Packet || message.kind == MessageKind::GroundTelecommand)
+                      return true;
                     // An event message: severity, whether it is reported, id.
                     OctetReader reader{message.packet};
                     static_cast<void>(reader.get<std::uint16_t>());
@@ -309,9 +311,9 @@ void lw13(Plant& plant) { i13(plant); }
 
 const std::map<std::string_view, MakePlant>& plants() {
   static const std::map<std::string_view, MakePlant> all{
-      {"I1", i1},     {"I2", i2},   {"I3", i3},   {"I4", i4},   {"I5", i5},   {"I6", i6},     {"I8", i8},
-      {"I9", i9},     {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}, {"SF1", sf1},   {"SF4", sf4},
-      {"SF5", sf5},   {"SF6", sf6}, {"SF14", sf14}, {"LW1", lw1}, {"LW13", lw13}};
+      {"I1", i1},   {"I2", i2},   {"I3", i3},     {"I4", i4},   {"I5", i5},    {"I6", i6},   {"I8", i8},
+      {"I9", i9},   {"I10", i10}, {"I11", i11},   {"I12", i12}, {"I13", i13},  {"SF1", sf1}, {"SF4", sf4},
+      {"SF5", sf5}, {"SF6", sf6}, {"SF14", sf14}, {"LW1", lw1}, {"LW13", lw13}};
   return all;
 }
 

@@ -19,7 +19,8 @@ struct Plant {
   std::function<void(descriptor::Mission&)> edit{};
   std::function<void(simulation::DeviceCatalogue&)> devices{};
   std::function<std::unique_ptr<Channel>(std::string_view, std::unique_ptr<Channel>)> wrap_channel{};
-  std::function<std::optional<supervisor::ProcessEnd>(std::string_view, std::optional<supervisor::ProcessEnd>)> tell_end{};
+  std::function<std::optional<supervisor::ProcessEnd>(std::string_view, std::optional<supervisor::ProcessEnd>)>
+      tell_end{};
   std::function<bool(const supervisor::LogRecord&)> keeps{};
   std::function<void(const std::vector<std::string>&)> after_action{};
   std::function<void()> each_instant{};

@@ -35,7 +35,8 @@ class TamperedChannel final : public Channel {
       if (hooks_.holds_back && hooks_.holds_back()) return Found{};
       auto found = channel_->receive(buffer);
       if (!found && hooks_.hides_closing && hooks_.hides_closing()) return Found{};
-      if (!found || found->flow == Flow::None || !hooks_.receives || hooks_.receives(found->message, buffer)) return found;
+      if (!found || found->flow == Flow::None || !hooks_.receives || hooks_.receives(found->message, buffer))
+        return found;
     }
   }
 

@@ -237,7 +237,9 @@ Ended stop_by(Guarded& bench, Way way) {
   for (int k = 0; k < 1000; ++k) {
     const bool silent = way == Way::SubsystemSilent;
     if (k % 10 == 0 && way != Way::EnableSilent) bench.give(way == Way::Withdrawn ? 0 : 1, 1);
-    const DeviceMode mode = way == Way::Stop ? DeviceMode::Stop : way == Way::Off ? DeviceMode::Off : DeviceMode::Active;
+    const DeviceMode mode = way == Way::Stop  ? DeviceMode::Stop
+                            : way == Way::Off ? DeviceMode::Off
+                                              : DeviceMode::Active;
     const TwoJointArm& arm = bench.device.arm();
     if (!silent) bench.command(mode, 1, towards(arm, arm.state().motor_rad, arm.state().motor_rad_s));
     bench.step();
@@ -264,10 +266,11 @@ TEST(DeclaredStop, ComesToRestWithinItsTimeAtFullSpeedPressingAndWithASpringHook
       const double speed = bench.fastest(), force_n = bench.device.arm().contact().normal_force_n;
       const Ended ended = stop_by(bench, way);
       const std::string what = fmt::format("{}, way {}", name_of(situation), static_cast<int>(way));
-      std::cout << fmt::format("  {}: from {:.2f} rad/s and {:.1f} N at rest after {:.1f} ms, at most {:.1f} N and "
-                               "{:.1f} N m, {:.2f} N left\n",
-                               what, speed, force_n, 1e3 * ended.rest_after_s, ended.peak_force_n,
-                               ended.peak_torque_n_m, ended.force_after_n);
+      std::cout << fmt::format(
+          "  {}: from {:.2f} rad/s and {:.1f} N at rest after {:.1f} ms, at most {:.1f} N and "
+          "{:.1f} N m, {:.2f} N left\n",
+          what, speed, force_n, 1e3 * ended.rest_after_s, ended.peak_force_n, ended.peak_torque_n_m,
+          ended.force_after_n);
       EXPECT_GT(speed, situation == Situation::FullSpeed ? 0.9 * full_speed_rad_s : 0) << what;
       EXPECT_NEAR(force_n, situation == Situation::Pressing ? 40 : 0, 2) << what;
       EXPECT_GE(ended.rest_after_s, 0) << what;

@@ -42,11 +42,11 @@ std::string count_of(Duration span) {
 FlowAddress DescribedDevice::address() const { return address_of(endnode); }
 
 std::vector<std::string> DescribedDevice::arguments() const {
-  std::vector<std::string> words{"--transfer",   std::string{to_text(endnode.transfer)},
-                                 "--address",    endnode.address,
-                                 "--byte-order", settings.byte_order == std::endian::big ? "big" : "little",
-                                 "--cycle-us",   count_of<std::chrono::microseconds>(settings.cycle),
-                                 "--stop",       text_of(settings.stop),
+  std::vector<std::string> words{"--transfer",       std::string{to_text(endnode.transfer)},
+                                 "--address",        endnode.address,
+                                 "--byte-order",     settings.byte_order == std::endian::big ? "big" : "little",
+                                 "--cycle-us",       count_of<std::chrono::microseconds>(settings.cycle),
+                                 "--stop",           text_of(settings.stop),
                                  "--stop-within-ms", count_of<std::chrono::milliseconds>(settings.stop_within)};
   if (enable)
     words.insert(words.end(),
@@ -71,8 +71,9 @@ std::expected<DescribedDevice, std::string> described_device(const descriptor::M
       const bool same = use.endnode.transfer == made.endnode.transfer && use.endnode.address == made.endnode.address &&
                         use.endnode.byte_order == made.endnode.byte_order;
       if (!same)
-        return std::unexpected{fmt::format("configurations {} and {} of {} have different endnodes for {}, and it has one",
-                                           first->name, configuration.name, device.subsystem, device.device)};
+        return std::unexpected{
+            fmt::format("configurations {} and {} of {} have different endnodes for {}, and it has one", first->name,
+                        configuration.name, device.subsystem, device.device)};
       made.settings.cycle =
           first == nullptr ? configuration.sampling : std::min(made.settings.cycle, configuration.sampling);
       if (first == nullptr) first = &configuration;

@@ -51,10 +51,10 @@ TEST(DescribedDevice, TakesByteOrderPeriodStopAndSecondInhibitFromTheDescriptor)
   ASSERT_TRUE(made->settings.enable);
   EXPECT_EQ(made->settings.enable->address, "joints.enable");
   EXPECT_EQ(made->address().address, "joints");
-  const std::vector<std::string> expected{"--transfer", "udp",  "--address", "joints",     "--byte-order",
-                                          "big",        "--cycle-us", "250", "--stop",     "controlled",
-                                          "--stop-within-ms", "200", "--enable-transfer", "unix", "--enable-address",
-                                          "joints.enable"};
+  const std::vector<std::string> expected{
+      "--transfer",        "udp",  "--address",        "joints",       "--byte-order",     "big",
+      "--cycle-us",        "250",  "--stop",           "controlled",   "--stop-within-ms", "200",
+      "--enable-transfer", "unix", "--enable-address", "joints.enable"};
   EXPECT_EQ(made->arguments(), expected);
 }
 

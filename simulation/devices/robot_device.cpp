@@ -44,7 +44,8 @@ void RobotDevice::ask_for(std::uint8_t spring) noexcept {
 /// Of the joints' own electronics, which know motor rate and joint torque: damped and giving way at first, so that nothing
 /// that is pressed or hooked is torn at; towards the end the load of that moment is held, damped still.
 Vec2 RobotDevice::coming_to_rest() noexcept {
-  constexpr double damping_n_m_s = 24, soft_n_m_per_rad = 600, torque_feedback = 3;  // motor inertia seen as a quarter, as in service
+  constexpr double damping_n_m_s = 24, soft_n_m_per_rad = 600,
+                   torque_feedback = 3;  // motor inertia seen as a quarter, as in service
   const ArmState& state = arm_.state();
   const Vec2 joint = arm_.joint_torque_n_m();
   Vec2 drive = -damping_n_m_s * state.motor_rad_s;
@@ -156,8 +157,8 @@ std::string RobotDevice::do_truth() const {
       "motor_angle_1={:.6f} motor_angle_2={:.6f} "
       "output={} flags={}",
       tip[0], tip[1], contact.normal_force_n, 1e3 * contact.penetration_m, torque[0], torque[1],
-      arm_.temperature_c()[0], arm_.temperature_c()[1], applied_[0], applied_[1], brake_[0],
-      brake_[1], arm_.state().motor_rad[0], arm_.state().motor_rad[1], static_cast<int>(output()), flags());
+      arm_.temperature_c()[0], arm_.temperature_c()[1], applied_[0], applied_[1], brake_[0], brake_[1],
+      arm_.state().motor_rad[0], arm_.state().motor_rad[1], static_cast<int>(output()), flags());
 }
 
 }  // namespace hirosco::simulation

@@ -76,7 +76,8 @@ void SimulatedDevice::step(TimePoint now) {
   watch(now);
   choose_output(now);
   const std::int64_t due = due_cycles(now, exchanged);
-  const Duration cycle = settings_.clock == 1 ? settings_.cycle : milliseconds_of(1e3 * settings_.clock * seconds(settings_.cycle));
+  const Duration cycle =
+      settings_.clock == 1 ? settings_.cycle : milliseconds_of(1e3 * settings_.clock * seconds(settings_.cycle));
   for (std::int64_t i = 0; i < due; ++i) {
     advance(cycle);
     count_down(cycle);

@@ -432,8 +432,8 @@ TEST(JoystickDevice, ObeysTheHandAndItsMotors) {
 
 TEST(JoystickDevice, UnderstandsEveryHandLineAndRefusesOthers) {
   JoystickBench bench;
-  for (const char* line :
-       {"hold 0 0", "target 0.1 -0.4", "sine 1 0.15 0.5", "sine 2 0.15 0.5 1.57", "ramp 0.065 0 0.04", "cartesian 0.0176 0 1", "wander"})
+  for (const char* line : {"hold 0 0", "target 0.1 -0.4", "sine 1 0.15 0.5", "sine 2 0.15 0.5 1.57",
+                           "ramp 0.065 0 0.04", "cartesian 0.0176 0 1", "wander"})
     EXPECT_TRUE(bench.device.hand(line)) << line;
   for (const char* line :
        {"", "target 0.1", "hold 0", "hold 2 0", "sine 3 0.1 1", "sine 1 0.1", "ramp 1 0 0.04", "ramp 0 0 0", "sit"})

@@ -33,8 +33,8 @@ State<N> integrated(State<N> x, double span, double tolerance, const Rates& rate
                                      {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
                                      {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
   static constexpr double c[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-  static constexpr double fourth[7] = {5179.0 / 57600,    0,            7571.0 / 16695, 393.0 / 640,
-                                       -92097.0 / 339200, 187.0 / 2100, 1.0 / 40};
+  static constexpr double fourth[7] = {5179.0 / 57600, 0,       7571.0 / 16695, 393.0 / 640, -92097.0 / 339200,
+                                       187.0 / 2100,   1.0 / 40};
   constexpr double smallest_s = 1e-9;
   double at = 0, h = span / 2;
   while (at < span) {
@@ -188,7 +188,8 @@ class Controller {
 /// Position and force, and the passivity observer and controller.
 class Display {
  public:
-  Display(const Conditions& conditions) : conditions_{conditions}, period_{conditions.ticks_per_handle_cycle * tick_s} {}
+  Display(const Conditions& conditions)
+      : conditions_{conditions}, period_{conditions.ticks_per_handle_cycle * tick_s} {}
   Pair torque(const Pair& robot, const Pair& rate) {
     Pair shown{};
     for (std::size_t i = 0; i < 2; ++i) {

@@ -23,23 +23,23 @@ struct Conditions {
   Passivity passivity{Passivity::Off};
   Friction friction{Friction::On};
   Hand hand{Hand::MinimumJerk};
-  Pair offset_m{};              ///< that the hand intends for the tip, from home
-  double hand_span_s{1};        ///< in which it goes there
+  Pair offset_m{};  ///< that the hand intends for the tip, from home
+  double hand_span_s{1};  ///< in which it goes there
   int ticks_per_handle_cycle{1};  ///< robot cycles of 0.5 ms in one of the joystick: 1 coupled, 4 remote
-  int handle_phase_ticks{0};    ///< which of them
-  int up_ticks{1};              ///< from the joystick's cycle until the robot's controller has its angles
-  int down_ticks{0};            ///< from the robot's cycle until the joystick's controller has its torques
-  double filter{1};             ///< share of the newest angles in those that the controller follows, per handle cycle
+  int handle_phase_ticks{0};  ///< which of them
+  int up_ticks{1};  ///< from the joystick's cycle until the robot's controller has its angles
+  int down_ticks{0};  ///< from the robot's cycle until the joystick's controller has its torques
+  double filter{1};  ///< share of the newest angles in those that the controller follows, per handle cycle
   double span_s{8};
-  double torque_limit_n_m{0};   ///< motors off for good after two of three samples beyond it; 0 = none
+  double torque_limit_n_m{0};  ///< motors off for good after two of three samples beyond it; 0 = none
 };
 
 /// At the end of one tick of 0.5 ms.
 struct Sample {
   double time_s{0};
-  double force_n{0};            ///< normal force of the rail
+  double force_n{0};  ///< normal force of the rail
   double penetration_m{0};
-  Pair torque_n_m{};            ///< of the flexible joints
+  Pair torque_n_m{};  ///< of the flexible joints
   Pair motor_n_m{};
   Pair motor_rad{}, link_rad{}, handle_rad{}, display_n_m{};
 };
@@ -48,9 +48,9 @@ struct Sample {
 
 /// What RO7 asks of a flight.
 struct Figures {
-  double lost_share{0};         ///< of 4 s to 8 s without contact
-  double peak_n_m{0};           ///< largest joint torque
-  double end_force_n{0};        ///< mean of the eighth second
+  double lost_share{0};  ///< of 4 s to 8 s without contact
+  double peak_n_m{0};  ///< largest joint torque
+  double end_force_n{0};  ///< mean of the eighth second
 };
 [[nodiscard]] Figures figures_of(const std::vector<Sample>& flight);
 

@@ -16,12 +16,12 @@ namespace hirosco::simulation {
 
 /// Errors put into the model on purpose, as factors where nothing else is said: a report that cannot see them shows nothing.
 struct Plant {
-  double stiffness{1};    ///< of the flexible joints
-  double rail{1};         ///< stiffness of the contour
-  double mass{1};         ///< of both links, with their inertias
+  double stiffness{1};  ///< of the flexible joints
+  double rail{1};  ///< stiffness of the contour
+  double mass{1};  ///< of both links, with their inertias
   double force_scale{1};  ///< of what the hand feels
-  double hand_clock{1};   ///< how fast time passes for the hand and its handle
-  double delay_ms{0};     ///< no factor: by which what the joystick tells comes later
+  double hand_clock{1};  ///< how fast time passes for the hand and its handle
+  double delay_ms{0};  ///< no factor: by which what the joystick tells comes later
 };
 
 struct CraftOptions {

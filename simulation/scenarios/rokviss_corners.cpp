@@ -75,8 +75,7 @@ class CornerFlight {
 std::array<double, 2> range_of(const descriptor::Mission& mission, std::string_view subsystem, std::string_view name) {
   const auto* member = mission.find_subsystem(subsystem);
   for (const auto& parameter : member->subsystem.parameters) {
-    if (parameter.field.name == name)
-      return {parameter.field.minimum.value_or(0), parameter.field.maximum.value_or(0)};
+    if (parameter.field.name == name) return {parameter.field.minimum.value_or(0), parameter.field.maximum.value_or(0)};
     for (const auto& part : parameter.members)
       if (fmt::format("{}.{}", parameter.field.name, part.field.name) == name)
         return {part.field.minimum.value_or(0), part.field.maximum.value_or(0)};
@@ -107,8 +106,7 @@ class Cases {
   }
   [[nodiscard]] static std::string words(const Values& values) {
     std::string text;
-    for (const auto& [name, value] : values)
-      text += fmt::format(" {} {:g}", name.substr(name.find('.') + 1), value);
+    for (const auto& [name, value] : values) text += fmt::format(" {} {:g}", name.substr(name.find('.') + 1), value);
     return text;
   }
   void add(std::string mode, std::string what, Values initial, std::function<void(CornerFlight&)> fly,
@@ -180,9 +178,8 @@ class Cases {
     for (const double position : robot_range("POS_SCALE"))
       for (const double force : scale)
         for (const double passivity : {0.0, 1.0}) {
-          const Values with{{"MANIPULATOR.POS_SCALE", position},
-                            {"JOYSTICK.FORCE_SCALE", force},
-                            {"JOYSTICK.PASSIVITY", passivity}};
+          const Values with{
+              {"MANIPULATOR.POS_SCALE", position}, {"JOYSTICK.FORCE_SCALE", force}, {"JOYSTICK.PASSIVITY", passivity}};
           const auto far = [remote](CornerFlight& flight) {
             if (remote) flight.send("COMMUNICATION", "SET_DELAY", {60, 0});
           };
@@ -229,7 +226,8 @@ class Cases {
               values["MANIPULATOR.SCRIPT.OVER_PRESS"] = press;
               values["MANIPULATOR.SCRIPT.BUMP_HEIGHT"] = believed;
               // The slow ones are flown until they have pressed in and climbed the bump, not to their end.
-              add("automatic", fmt::format("contour, real bump {:g} mm,", 1e3 * bump_m), values,
+              add(
+                  "automatic", fmt::format("contour, real bump {:g} mm,", 1e3 * bump_m), values,
                   [](CornerFlight& flight) {
                     flight.robot("RUN_SCRIPT", {1});
                     flight.run(12);
@@ -301,8 +299,7 @@ std::size_t CornerTable::beyond() const noexcept {
 std::string CornerTable::text() const {
   constexpr const char* line = "{:13} {:78} {:>8} {:>8} {:>7} {:>7}  {} {}\n";
   constexpr const char* numbers = "{:13} {:78} {:8.3f} {:8.2f} {:7.3f} {:7.2f}  {} {}\n";
-  std::string text =
-      fmt::format(fmt::runtime(line), "mode", "corner", "N m", "N", "rad/s", "motor", "verdict", "end");
+  std::string text = fmt::format(fmt::runtime(line), "mode", "corner", "N m", "N", "rad/s", "motor", "verdict", "end");
   Loads worst;
   for (const Corner& corner : corners) {
     const Loads& loads = corner.loads;

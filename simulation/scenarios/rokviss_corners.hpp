@@ -15,10 +15,10 @@ namespace hirosco::simulation {
 
 /// The largest sizes of what is felt outside the controller.
 struct Loads {
-  double torque_n_m{0};   ///< of a joint
-  double force_n{0};      ///< of contact and spring on the tip
+  double torque_n_m{0};  ///< of a joint
+  double force_n{0};  ///< of contact and spring on the tip
   double speed_rad_s{0};  ///< of a joint
-  double motor_n_m{0};    ///< of a motor
+  double motor_n_m{0};  ///< of a motor
 
   [[nodiscard]] bool within(const Loads& promise) const noexcept;
 };
@@ -48,7 +48,7 @@ struct CornerTable {
   std::vector<Corner> corners{};
 
   [[nodiscard]] std::size_t beyond() const noexcept;  ///< corners that are not within the promise
-  [[nodiscard]] std::string text() const;             ///< one line per corner, the promise and the verdict
+  [[nodiscard]] std::string text() const;  ///< one line per corner, the promise and the verdict
 };
 
 /// Throws std::runtime_error when the mission cannot be flown.

@@ -218,8 +218,8 @@ class Manipulator final : public Subsystem {
   /// The end of a path is not yet the goal: a motion is done when it is measured there.
   void arrive(std::optional<Call>& call, const Joints& goal_rad, const Cycle& cycle) noexcept {
     using Verdict = manipulator::Arrival::Verdict;
-    const Verdict verdict = arrival_.judge(robot_.input().position_rad, goal_rad, goal_tolerance_.load(),
-                                           seconds(cycle.period));
+    const Verdict verdict =
+        arrival_.judge(robot_.input().position_rad, goal_rad, goal_tolerance_.load(), seconds(cycle.period));
     if (verdict == Verdict::UnderWay) return;
     if (verdict == Verdict::There) {
       raise(motion_done);

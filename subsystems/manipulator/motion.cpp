@@ -34,7 +34,8 @@ double shortest_duration_s(const Joints& from_rad, const Joints& to_rad, const M
   // Of s^3 (10 - 15 s + 6 s^2): its largest rate, at half time, and its largest second derivative.
   constexpr double peak_rate = 1.875, peak_acceleration = 5.7735026918962576;
   const double way = std::max(std::abs(to_rad[0] - from_rad[0]), std::abs(to_rad[1] - from_rad[1]));
-  return std::max(peak_rate * way / limits.speed_rad_s, std::sqrt(peak_acceleration * way / limits.acceleration_rad_s2));
+  return std::max(peak_rate * way / limits.speed_rad_s,
+                  std::sqrt(peak_acceleration * way / limits.acceleration_rad_s2));
 }
 
 const Gains& GainRamp::advance(const Gains& wanted, double span_s) noexcept {

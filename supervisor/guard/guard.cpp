@@ -30,9 +30,8 @@ std::optional<State> Guard::Watched::state() const noexcept {
 
 bool Guard::Watched::damaged() const noexcept {
   constexpr auto relaxed = std::memory_order_relaxed;
-  return vital->magic != page_magic || vital->version != page_version || !state() ||
-         vital->cycling.load(relaxed) > 1 || vital->realtime.load(relaxed) > 1 ||
-         vital->configuration.load(relaxed) == CheckedWord::damaged;
+  return vital->magic != page_magic || vital->version != page_version || !state() || vital->cycling.load(relaxed) > 1 ||
+         vital->realtime.load(relaxed) > 1 || vital->configuration.load(relaxed) == CheckedWord::damaged;
 }
 
 std::uint32_t Guard::Watched::hang_limit() const noexcept {
@@ -282,8 +281,8 @@ Guard::Watched& Guard::spinner(Watched& standing) {
   for (Watched& member : members_) {
     if (member.still == 0 || member.vital == nullptr || member.doomed || !member.grip) continue;
     const Duration had = member.grip->processor_time() - member.processor_time;
-    const double share = static_cast<double>(had.count()) /
-                         static_cast<double>((member.still * observation_period).count());
+    const double share =
+        static_cast<double>(had.count()) / static_cast<double>((member.still * observation_period).count());
     if (share > most_share) {
       most_share = share;
       most = &member;
@@ -365,7 +364,8 @@ void Guard::tell_devices(Watched& member, TimePoint now) noexcept {
     if (!member.released && knows && at_rest && !device.stopped) device.stopped = now - stop_begun_;
     const bool enabled = member.released && !supervisor_still_;
     const auto written = write_enable_command(
-        frame, {.enabled = static_cast<std::uint8_t>(enabled ? 1 : 0), .epoch = member.epoch, .sequence = ++device.sequence});
+        frame,
+        {.enabled = static_cast<std::uint8_t>(enabled ? 1 : 0), .epoch = member.epoch, .sequence = ++device.sequence});
     // A device that does not hear it stops by itself: that is what it waits for.
     if (written) static_cast<void>(device.flow->send(*written));
   }

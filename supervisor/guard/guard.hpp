@@ -27,13 +27,13 @@ namespace hirosco::supervisor {
 /// What the guard saw or did, for the rest of the supervisor to tell and to plan for.
 struct GuardFinding {
   enum class Kind : std::uint8_t {
-    CycleHangs,        ///< its cycle stands still: fenced, its real-time priority taken; killed unless it comes back
-    ServiceHangs,      ///< its service loop stands still: as above
-    PageDamaged,       ///< its vital page is not one any more: as above
-    Back,              ///< it moves again within the grace: it is not killed
-    Killed,            ///< it did not come back
-    SupervisorStill,   ///< the supervisor's own loop stood still: everything was fenced
-    StopAsked,         ///< somebody stopped everything by signal or local socket
+    CycleHangs,  ///< its cycle stands still: fenced, its real-time priority taken; killed unless it comes back
+    ServiceHangs,  ///< its service loop stands still: as above
+    PageDamaged,  ///< its vital page is not one any more: as above
+    Back,  ///< it moves again within the grace: it is not killed
+    Killed,  ///< it did not come back
+    SupervisorStill,  ///< the supervisor's own loop stood still: everything was fenced
+    StopAsked,  ///< somebody stopped everything by signal or local socket
   };
   Kind kind{};
   std::uint16_t apid{0};
@@ -42,10 +42,10 @@ struct GuardFinding {
 /// How one actuator, or a member without one that can be asked, answered the stop of everything.
 struct StopAnswer {
   std::uint16_t apid{0};
-  std::string name;                   ///< of the device, or of the member where no device of its can be asked
-  bool asked_device{false};           ///< the device said it, on the endnode of its second inhibit
-  std::optional<Duration> stopped;    ///< after the stop was ordered; empty: it did not
-  bool killed{false};                 ///< its member was ended, as it had not stopped in time
+  std::string name;  ///< of the device, or of the member where no device of its can be asked
+  bool asked_device{false};  ///< the device said it, on the endnode of its second inhibit
+  std::optional<Duration> stopped;  ///< after the stop was ordered; empty: it did not
+  bool killed{false};  ///< its member was ended, as it had not stopped in time
 };
 
 class Guard {
@@ -67,8 +67,8 @@ class Guard {
   struct Parts {
     const Clock& clock;
     FlowFactory& flows;
-    std::uint32_t first_epoch{1};       ///< of every permit page; higher than any that a device may have seen
-    std::function<void()> on_finding{}; ///< wakes the supervisor's loop. Thread: the guard's
+    std::uint32_t first_epoch{1};  ///< of every permit page; higher than any that a device may have seen
+    std::function<void()> on_finding{};  ///< wakes the supervisor's loop. Thread: the guard's
   };
   explicit Guard(Parts parts) : parts_{std::move(parts)} {}
 
@@ -122,7 +122,7 @@ class Guard {
     const VitalPage* vital{nullptr};
     PermitPage* permit{nullptr};
     std::shared_ptr<ProcessGrip> grip;
-    std::uint32_t epoch{0};               ///< of the page, kept when a process ends
+    std::uint32_t epoch{0};  ///< of the page, kept when a process ends
     std::uint64_t fences{0};
     // permission
     bool released{false};
@@ -131,15 +131,15 @@ class Guard {
     // observation
     std::uint64_t cycles{0};
     std::uint32_t still{0};
-    Duration processor_time{};            ///< when the cycle stood still first
+    Duration processor_time{};  ///< when the cycle stood still first
     std::uint64_t service_steps{0};
     TimePoint service_moved{};
-    std::optional<TimePoint> doomed;      ///< killed then unless it comes back
+    std::optional<TimePoint> doomed;  ///< killed then unless it comes back
     GuardFinding::Kind doom{};
     // stop
     std::optional<Duration> stopped;
     bool killed{false};
-    bool stop_killed{false};              ///< by the present stop: nobody is ended twice for one
+    bool stop_killed{false};  ///< by the present stop: nobody is ended twice for one
     std::vector<Device> devices;
     [[nodiscard]] std::uint16_t apid() const noexcept { return described->subsystem.id; }
     [[nodiscard]] std::optional<State> state() const noexcept;
@@ -174,7 +174,7 @@ class Guard {
   std::optional<TimePoint> beat_seen_;
   bool supervisor_still_{false};
   TimePoint next_observation_{};
-  std::uint64_t stops_{0};                ///< the newest stop of everything
+  std::uint64_t stops_{0};  ///< the newest stop of everything
   std::uint64_t stops_ended_{0};
   TimePoint stop_begun_{};
 };

@@ -60,7 +60,8 @@ Result<> GuardShell::listen(const std::filesystem::path& folder) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (socket_path_.native().size() >= sizeof address.sun_path)
-    return fail(ErrorCode::OutOfRange, "path of the guard's socket", static_cast<std::int64_t>(socket_path_.native().size()));
+    return fail(ErrorCode::OutOfRange, "path of the guard's socket",
+                static_cast<std::int64_t>(socket_path_.native().size()));
   std::memcpy(address.sun_path, socket_path_.c_str(), socket_path_.native().size());
   listener_.reset(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   ::unlink(socket_path_.c_str());  // of a flight that was killed; the flight's lock keeps others away

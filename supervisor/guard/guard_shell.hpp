@@ -32,10 +32,11 @@ class GuardShell {
  private:
   struct Client {
     FileDescriptor socket;
-    TimePoint until{};           ///< it asks by then or goes
-    std::uint64_t stop{0};       ///< 0: it has not asked yet
+    TimePoint until{};  ///< it asks by then or goes
+    std::uint64_t stop{0};  ///< 0: it has not asked yet
   };
-  GuardShell(Guard& guard, const Clock& clock, WakeEvent ending) : guard_{guard}, clock_{clock}, ending_{std::move(ending)} {}
+  GuardShell(Guard& guard, const Clock& clock, WakeEvent ending)
+      : guard_{guard}, clock_{clock}, ending_{std::move(ending)} {}
   [[nodiscard]] Result<> listen(const std::filesystem::path& folder);
   void run();
   void welcome(TimePoint now);

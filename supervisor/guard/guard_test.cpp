@@ -14,9 +14,9 @@
 namespace hirosco::supervisor {
 namespace {
 
-using ::testing::ElementsAre;
 using testing::arm;
 using testing::camera;
+using ::testing::ElementsAre;
 using testing::hand;
 using Kind = GuardFinding::Kind;
 using namespace std::chrono_literals;
@@ -63,8 +63,9 @@ struct GuardTest : ::testing::Test {
     for (const auto& described : mission.subsystems)
       ASSERT_TRUE(guard.add(described, described.subsystem.id == camera));
     for (const std::uint16_t apid : {arm, hand, camera}) start(apid);
-    motor = flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "motor-enable"}, FlowSide::Device)
-                .value();
+    motor =
+        flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "motor-enable"}, FlowSide::Device)
+            .value();
     guard.beat();
   }
   void start(std::uint16_t apid) {

@@ -102,19 +102,19 @@ struct LogPage {
 
 /// What keeps a store from storing.
 enum class StoreFault : std::uint8_t {
-  Deleted,     ///< the file is gone from its name; a new one was begun
-  Full,        ///< no space on the disk
+  Deleted,  ///< the file is gone from its name; a new one was begun
+  Full,  ///< no space on the disk
   Unwritable,  ///< owner, rights, a read-only disk
-  Damaged,     ///< an error after which nobody knows what the file holds; a new segment was begun
-  Locked,      ///< another program holds it
+  Damaged,  ///< an error after which nobody knows what the file holds; a new segment was begun
+  Locked,  ///< another program holds it
 };
 /// The newest trouble of a store that heals by itself.
 struct StoreTrouble {
-  std::uint64_t count{0};   ///< how often one began; 0 = never
+  std::uint64_t count{0};  ///< how often one began; 0 = never
   StoreFault fault{};
-  bool present{false};      ///< not over yet: nothing was stored since
+  bool present{false};  ///< not over yet: nothing was stored since
   Error error{};
-  std::string text{};       ///< cause and cure in one line
+  std::string text{};  ///< cause and cure in one line
 };
 
 /// Strategy seam: where records live. Longest packet: 65,542 octets.

@@ -12,7 +12,9 @@ namespace hirosco::supervisor {
 namespace {
 
 constexpr std::int64_t year_2020_s = 1'577'836'800 + onboard_epoch_to_unix_s;
-[[nodiscard]] OnboardTime seconds_after_2020(std::int64_t s) { return OnboardTime{std::chrono::seconds{year_2020_s + s}}; }
+[[nodiscard]] OnboardTime seconds_after_2020(std::int64_t s) {
+  return OnboardTime{std::chrono::seconds{year_2020_s + s}};
+}
 
 struct EpochFileTest : ::testing::Test {
   TestFolder folder;

@@ -142,8 +142,7 @@ void ErrorLines::work() {
     tell_held();
   }
   // What is left without an end; a pipe never holds more than one reading takes.
-  for (Stream& stream : streams)
-    stream.cutter.end([&](std::string_view text) { say(stream.speaker, text, limit); });
+  for (Stream& stream : streams) stream.cutter.end([&](std::string_view text) { say(stream.speaker, text, limit); });
   tell_held();
 }
 

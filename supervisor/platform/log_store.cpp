@@ -80,14 +80,14 @@ Result<LogPage> read_segments(DatabaseStrategy strategy, const fs::path& path, c
 }
 
 LogStore::LogStore(DatabaseStrategy strategy, fs::path path)
-    : LogStore{strategy, std::move(path), [strategy](const fs::path& file) { return open_with_folder(strategy, file); }} {
-}
+    : LogStore{strategy, std::move(path),
+               [strategy](const fs::path& file) { return open_with_folder(strategy, file); }} {}
 
 LogStore::LogStore(DatabaseStrategy strategy, fs::path path, Open open)
     : strategy_{strategy}, path_{std::move(path)}, open_{std::move(open)}, segment_path_{path_} {}
 
 LogStore::Identity LogStore::identity_of(const fs::path& path) {
-  struct stat found {};
+  struct stat found{};
   if (::stat(path.c_str(), &found) != 0) return {};
   return {static_cast<std::uint64_t>(found.st_dev), static_cast<std::uint64_t>(found.st_ino)};
 }

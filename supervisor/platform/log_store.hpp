@@ -57,11 +57,11 @@ class LogStore final : public Database {
   std::filesystem::path segment_path_;
   std::unique_ptr<Database> store_;
   Identity file_;
-  Identity ahead_;                   ///< the write-ahead file, once there is one
+  Identity ahead_;  ///< the write-ahead file, once there is one
   /// What this file has taken: numbers, and the first of them.
   std::uint64_t taken_{0};
   LogRecord first_;
-  std::optional<LogRecord> gap_;     ///< of what went with a deleted file
+  std::optional<LogRecord> gap_;  ///< of what went with a deleted file
   StoreTrouble trouble_;
 };
 

@@ -168,7 +168,8 @@ TEST(LogStore, APacketLogHoldsBackDurableWhileItsStoreIsInTroubleAndRecordsTheGa
   const TestFolder folder;
   Disk disk{.answers = {50, no_space}, .files = {}};
   const fs::path path = folder.path() / "log.txt";
-  DirectPacketLog log{clock, std::make_unique<LogStore>(store_on(disk, path)),
+  DirectPacketLog log{clock,
+                      std::make_unique<LogStore>(store_on(disk, path)),
                       {.telemetry_records = 10, .telemetry_octets = 1000, .vital_records = 10, .vital_octets = 1000}};
   for (int i = 0; i < 49; ++i)
     static_cast<void>(log.append({.kind = LogKind::Telemetry, .packet = {}, .note = "housekeeping"}));

@@ -85,10 +85,10 @@ TEST(IndependentLoop, IsWhereTheTableHasTheFiguresOfTheGroundLinkFrom) {
       const Figures off = figures_of(fly(conditions));
       conditions.passivity = Passivity::On;
       const Figures on = figures_of(fly(conditions));
-      std::cout << fmt::format("  {} ms and {} ms each way: lost {:.2f} %, with passivity {:.2f} %, peak {:.3f} N m, "
-                               "force {:.2f} N\n",
-                               round_trip_ms, relay_ticks / 2.0, 100 * off.lost_share, 100 * on.lost_share,
-                               on.peak_n_m, on.end_force_n);
+      std::cout << fmt::format(
+          "  {} ms and {} ms each way: lost {:.2f} %, with passivity {:.2f} %, peak {:.3f} N m, "
+          "force {:.2f} N\n",
+          round_trip_ms, relay_ticks / 2.0, 100 * off.lost_share, 100 * on.lost_share, on.peak_n_m, on.end_force_n);
       bands[0].add(off.lost_share);
       bands[1].add(on.peak_n_m);
       EXPECT_EQ(on.lost_share, 0);

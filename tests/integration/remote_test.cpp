@@ -77,7 +77,8 @@ TEST_F(Remote, EveryDeviceAndSubsystemMakesItsCyclesWhateverTheRatioOfTheirPerio
     const auto after = made();
     const bool remote = std::string_view{mode} == "remote";
     const std::vector<double> expected{20'000, 20'000, 20'000, remote ? 5'000.0 : 20'000.0, remote ? 5'000.0 : 1'000.0};
-    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(after[i] - before[i], expected[i], 1) << mode << ' ' << i;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(after[i] - before[i], expected[i], 1) << mode << ' ' << i;
   }
 }
 

@@ -37,9 +37,9 @@ class Stops : public ::testing::Test {
     const auto each = [&](auto&& act) {
       for (const char* subsystem : {"MANIPULATOR", "JOYSTICK"})
         if (const auto outcome = act(subsystem); !outcome.completed)
-          return ::testing::AssertionFailure() << subsystem << ": "
-                                               << (outcome.failure ? to_text(*outcome.failure) : "no answer") << '\n'
-                                               << flight.story().text();
+          return ::testing::AssertionFailure()
+                 << subsystem << ": " << (outcome.failure ? to_text(*outcome.failure) : "no answer") << '\n'
+                 << flight.story().text();
       return ::testing::AssertionSuccess();
     };
     if (auto done = each([&](auto name) { return flight.set_state(name, State::PreOperational); }); !done) return done;

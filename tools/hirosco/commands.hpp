@@ -110,12 +110,12 @@ inline constexpr const char* station_needs = "it is built where libboost-dev and
 
 struct GroundOptions {
   std::string mission{"rokviss"};
-  std::optional<std::uint16_t> port; ///< empty = 8080, or the next free one above
-  std::string token;                 ///< empty = a new one
-  std::string observer_token;        ///< empty = a new one
-  std::string telemetry;             ///< HOST:PORT; empty = as the mission says
-  std::string archive;               ///< empty = beside the mission's log
-  std::string page;                  ///< folder; empty = the one that was built
+  std::optional<std::uint16_t> port;  ///< empty = 8080, or the next free one above
+  std::string token;  ///< empty = a new one
+  std::string observer_token;  ///< empty = a new one
+  std::string telemetry;  ///< HOST:PORT; empty = as the mission says
+  std::string archive;  ///< empty = beside the mission's log
+  std::string page;  ///< folder; empty = the one that was built
   bool json{false};
 };
 int ground(const GroundOptions& options);
@@ -124,7 +124,7 @@ int why(const GroundOptions& options);
 
 struct ExportOptions {
   std::string mission;
-  std::string to{"."};               ///< folder that gets the package
+  std::string to{"."};  ///< folder that gets the package
 };
 /// The mission's Python client.
 int export_python(const ExportOptions& options);

@@ -27,12 +27,9 @@ int log(const LogOptions& options) {
     return text;
   };
   // What is searched is what is shown.
-  const auto page = supervisor::read_segments(kind, path,
-                                              {.apid = options.apid,
-                                               .service = options.service,
-                                               .text = options.text,
-                                               .words = text_of,
-                                               .last = options.last});
+  const auto page = supervisor::read_segments(
+      kind, path,
+      {.apid = options.apid, .service = options.service, .text = options.text, .words = text_of, .last = options.last});
   if (!page) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
     return exit_environment;

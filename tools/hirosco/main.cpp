@@ -119,8 +119,9 @@ int read_and_do(int argc, char** argv) {
   report_command->add_option("--only", report_options.only, "Only these runs (RO1,RO8)")->delimiter(',');
   report_command->add_option("--faults", faults, "Only the fault cases, each so many times")
       ->check(CLI::Range(1, 100000));
-  report_command->add_option("--plant", report_options.plant,
-                             "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=, hand_clock=, delay_ms=2");
+  report_command->add_option(
+      "--plant", report_options.plant,
+      "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=, hand_clock=, delay_ms=2");
 
   std::string report_for = "5min";
   report_command->add_flag("--corners", report_options.corners,
@@ -160,7 +161,8 @@ int read_and_do(int argc, char** argv) {
       ->allow_extra_args();
   fault_command->add_option("--mission", fault_options.mission, "Mission that runs")->capture_default_str();
   SafeOptions safe_options;
-  auto* safe_command = app.add_subcommand("safe", "Stop every actuator, past ground link, cycles, queues, disk and mode");
+  auto* safe_command =
+      app.add_subcommand("safe", "Stop every actuator, past ground link, cycles, queues, disk and mode");
   safe_command->add_option("--mission", safe_options.mission, "Only this mission; by default all that fly here");
 
   GroundOptions ground_options;

@@ -107,10 +107,11 @@ int report(const ReportOptions& options) {
   simulation::RunSettings settings{.mission = mission, .seed = options.seed, .repetitions = options.repetitions};
   for (const std::string& text : options.plant) {
     if (plant_one(text, settings.plant)) continue;
-    fmt::print(stderr,
-               "hirosco report: --plant '{}' is not NAME=FACTOR with stiffness, rail, mass, force_scale or hand_clock, nor "
-               "delay_ms=MS; for example mass=1.01\n",
-               text);
+    fmt::print(
+        stderr,
+        "hirosco report: --plant '{}' is not NAME=FACTOR with stiffness, rail, mass, force_scale or hand_clock, nor "
+        "delay_ms=MS; for example mass=1.01\n",
+        text);
     return exit_usage;
   }
   const auto runs = chosen(options);

@@ -37,7 +37,8 @@ void fix_epoch() {
 /// What was injected in the flight before this one.
 void clear_injections(const descriptor::Mission& mission, const std::filesystem::path& folder) {
   std::error_code failed;
-  for (const auto& device : mission.devices) std::filesystem::remove((folder / device.name).string() + ".injected", failed);
+  for (const auto& device : mission.devices)
+    std::filesystem::remove((folder / device.name).string() + ".injected", failed);
 }
 
 /// One flight of a mission at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal and, in
@@ -80,8 +81,8 @@ void clear_injections(const descriptor::Mission& mission, const std::filesystem:
   ProcessStart start;
   start.executable = program.string();
   start.arguments = made->arguments();
-  start.arguments.insert(start.arguments.end(), {"--seed", std::to_string(device.seed), "--control",
-                                                 (folder / device.name).string()});
+  start.arguments.insert(start.arguments.end(),
+                         {"--seed", std::to_string(device.seed), "--control", (folder / device.name).string()});
   for (const auto& [name, value] : device.settings)
     start.arguments.insert(start.arguments.end(), {"--set", name + "=" + value});
   return start;

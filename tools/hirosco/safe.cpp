@@ -32,7 +32,7 @@ enum class Stop : std::uint8_t { All, NotAll, Nobody };
 struct Flying {
   std::filesystem::path folder;
   std::string name;
-  FileDescriptor socket;                 ///< connected to its guard and asked; empty: nobody listens
+  FileDescriptor socket;  ///< connected to its guard and asked; empty: nobody listens
   int keeper{0};
   std::chrono::milliseconds limit{usual_limit};
 };
@@ -46,7 +46,8 @@ struct Flying {
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   FileDescriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
   if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return {};
-  if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size())) return {};
+  if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
+    return {};
   return socket;
 }
 

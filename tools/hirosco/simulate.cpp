@@ -87,9 +87,8 @@ int simulate(const SimulateOptions& options) {
     injections.push_back(*injection);
   }
   for (const Injection& injection : injections) {
-    if (injection.device != "kill" &&
-        std::ranges::find(mission->devices, injection.device, &descriptor::SimulatedDevice::name) ==
-            mission->devices.end()) {
+    if (injection.device != "kill" && std::ranges::find(mission->devices, injection.device,
+                                                        &descriptor::SimulatedDevice::name) == mission->devices.end()) {
       fmt::print(stderr, "hirosco simulate: no device '{}'; the mission has", injection.device);
       for (const auto& device : mission->devices) fmt::print(stderr, " {}", device.name);
       fmt::print(stderr, "\n");

@@ -206,8 +206,8 @@ TEST(Permission, AParameterIsWrittenOnlyInItsStatesAndOnlyWhereTheModeOpensIt) {
       writer.put(1.0);
     }
     const auto packet = testing::telecommand(arm, 20, 3, data);
-    const auto decision = decide(pus::TelecommandView::parse(packet).value(), sender,
-                                 {mission, mission.modes[mode], links, state, 0});
+    const auto decision =
+        decide(pus::TelecommandView::parse(packet).value(), sender, {mission, mission.modes[mode], links, state, 0});
     return decision ? 0 : static_cast<int>(decision.error().code());
   };
   constexpr int not_now = static_cast<int>(pus::FailureCode::NotPermittedNow);
