@@ -8,16 +8,16 @@ namespace hirosco {
 namespace {
 
 // Apart in more than one bit from each other and from the kinds of a device frame.
-enum class Kind : std::uint8_t { Command = 0x33, Status = 0x4C };
+enum class EnableKind : std::uint8_t { Command = 0x33, Status = 0x4C };
 
-struct Frame {
+struct EnableParts {
   std::uint8_t value{0};
   std::uint16_t flags{0};
   std::uint32_t epoch{0};
   std::uint32_t sequence{0};
 };
 
-Result<Octets> write_frame(MutableOctets buffer, Kind kind, const Frame& frame) noexcept {
+Result<Octets> write_enable_frame(MutableOctets buffer, EnableKind kind, const EnableParts& frame) noexcept {
   OctetWriter writer{buffer, std::endian::little};
   writer.put(enable_frame_magic).put(static_cast<std::uint8_t>(kind)).put(frame.value).put(frame.flags);
   writer.put(frame.epoch).put(frame.sequence);
@@ -27,14 +27,14 @@ Result<Octets> write_frame(MutableOctets buffer, Kind kind, const Frame& frame) 
   return writer.written();
 }
 
-Result<Frame> read_frame(Octets octets, Kind kind, std::uint8_t highest_value) noexcept {
+Result<EnableParts> read_enable_frame(Octets octets, EnableKind kind, std::uint8_t highest_value) noexcept {
   if (octets.size() != enable_frame_octets)
     return fail(ErrorCode::Malformed, "enable frame length", static_cast<std::int64_t>(octets.size()));
   OctetReader reader{octets, std::endian::little};
   if (const auto magic = reader.get<std::uint16_t>(); magic != enable_frame_magic)
     return fail(ErrorCode::Malformed, "enable frame magic", magic);
   const auto found_kind = reader.get<std::uint8_t>();
-  Frame frame;
+  EnableParts frame;
   frame.value = reader.get<std::uint8_t>();
   frame.flags = reader.get<std::uint16_t>();
   frame.epoch = reader.get<std::uint32_t>();
@@ -49,21 +49,21 @@ Result<Frame> read_frame(Octets octets, Kind kind, std::uint8_t highest_value) n
 }  // namespace
 
 Result<Octets> write_enable_command(MutableOctets buffer, const EnableCommand& command) noexcept {
-  return write_frame(buffer, Kind::Command, {command.enabled, 0, command.epoch, command.sequence});
+  return write_enable_frame(buffer, EnableKind::Command, {command.enabled, 0, command.epoch, command.sequence});
 }
 
 Result<Octets> write_enable_status(MutableOctets buffer, const EnableStatus& status) noexcept {
-  return write_frame(buffer, Kind::Status,
+  return write_enable_frame(buffer, EnableKind::Status,
                      {static_cast<std::uint8_t>(status.output), status.flags, status.epoch, status.sequence});
 }
 
 Result<EnableCommand> read_enable_command(Octets frame) noexcept {
-  HIROSCO_TRY_LET(const Frame found, read_frame(frame, Kind::Command, 1));
+  HIROSCO_TRY_LET(const EnableParts found, read_enable_frame(frame, EnableKind::Command, 1));
   return EnableCommand{found.value, found.epoch, found.sequence};
 }
 
 Result<EnableStatus> read_enable_status(Octets frame) noexcept {
-  HIROSCO_TRY_LET(const Frame found, read_frame(frame, Kind::Status, static_cast<std::uint8_t>(DeviceOutput::Holding)));
+  HIROSCO_TRY_LET(const EnableParts found, read_enable_frame(frame, EnableKind::Status, static_cast<std::uint8_t>(DeviceOutput::Holding)));
   return EnableStatus{static_cast<DeviceOutput>(found.value), found.flags, found.epoch, found.sequence};
 }
 
