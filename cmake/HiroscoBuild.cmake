@@ -28,10 +28,6 @@ if(HIROSCO_SANITIZE)
   target_compile_options(hirosco_options INTERFACE
     -fsanitize=${HIROSCO_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(hirosco_options INTERFACE -fsanitize=${HIROSCO_SANITIZE})
-  # A few large pieces, as of tests (below): half the time to build.
-  set(CMAKE_UNITY_BUILD ON)
-  set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
-  target_compile_options(hirosco_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 
 # -O3 costs a third more time to compile than it gives back here; bench/ would show it.
