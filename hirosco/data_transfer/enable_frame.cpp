@@ -54,7 +54,7 @@ Result<Octets> write_enable_command(MutableOctets buffer, const EnableCommand& c
 
 Result<Octets> write_enable_status(MutableOctets buffer, const EnableStatus& status) noexcept {
   return write_enable_frame(buffer, EnableKind::Status,
-                     {static_cast<std::uint8_t>(status.output), status.flags, status.epoch, status.sequence});
+                            {static_cast<std::uint8_t>(status.output), status.flags, status.epoch, status.sequence});
 }
 
 Result<EnableCommand> read_enable_command(Octets frame) noexcept {
@@ -63,7 +63,8 @@ Result<EnableCommand> read_enable_command(Octets frame) noexcept {
 }
 
 Result<EnableStatus> read_enable_status(Octets frame) noexcept {
-  HIROSCO_TRY_LET(const EnableParts found, read_enable_frame(frame, EnableKind::Status, static_cast<std::uint8_t>(DeviceOutput::Holding)));
+  HIROSCO_TRY_LET(const EnableParts found,
+                  read_enable_frame(frame, EnableKind::Status, static_cast<std::uint8_t>(DeviceOutput::Holding)));
   return EnableStatus{static_cast<DeviceOutput>(found.value), found.flags, found.epoch, found.sequence};
 }
 
