@@ -255,9 +255,11 @@ void Supervisor::restart_due(TimePoint now) {
 /// Without the ground link nobody could command anything: it comes back to what its mode asks for by itself.
 void Supervisor::restore_ground_link(Member& subject) {
   const descriptor::CommissionStep* wanted = nullptr;
-  for (const descriptor::Mode* mode : {mode_, mission_.find_mode(mission_.start_mode)})
-    for (const auto& step : mode != nullptr ? mode->commission : std::vector<descriptor::CommissionStep>{})
+  for (const descriptor::Mode* mode : {mode_, mission_.find_mode(mission_.start_mode)}) {
+    if (mode == nullptr) continue;
+    for (const auto& step : mode->commission)
       if (wanted == nullptr && step.subsystem == subject.descriptor().name) wanted = &step;
+  }
   if (wanted == nullptr) return;
   const descriptor::Subsystem& subsystem = subject.descriptor();
   const auto* configuration = subsystem.find_configuration(wanted->configuration);

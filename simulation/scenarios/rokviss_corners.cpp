@@ -17,7 +17,7 @@ namespace {
 using Values = std::map<std::string, double>;
 
 /// A corner before it is flown.
-struct Case {
+struct CornerCase {
   std::string mode;
   std::string what;
   Values initial;
@@ -91,7 +91,7 @@ class Cases {
     for (const char* mode : {"telepresence", "feel", "remote"}) coupled(mode);
     programmes();
   }
-  [[nodiscard]] std::vector<Case> take() { return std::move(cases_); }
+  [[nodiscard]] std::vector<CornerCase> take() { return std::move(cases_); }
 
  private:
   [[nodiscard]] std::array<double, 2> robot_range(std::string_view name) const {
@@ -242,7 +242,7 @@ class Cases {
   }
 
   const descriptor::Mission& mission_;
-  std::vector<Case> cases_;
+  std::vector<CornerCase> cases_;
 };
 
 double largest_of(const descriptor::Field& field) noexcept {
@@ -273,9 +273,9 @@ Loads promised_loads(const descriptor::Mission& mission) {
 CornerTable fly_corners(const CornerSettings& settings) {
   const Flight first{{.mission = settings.mission}};
   CornerTable table{.promise = promised_loads(first.mission())};
-  const std::vector<Case> cases = Cases{first.mission()}.take();
+  const std::vector<CornerCase> cases = Cases{first.mission()}.take();
   for (std::size_t i = 0; i < cases.size(); i += std::max<std::size_t>(settings.one_in, 1)) {
-    const Case& one = cases[i];
+    const CornerCase& one = cases[i];
     CraftOptions options{.mission = settings.mission, .seed = settings.seed};
     options.initial = one.initial;
     options.start_mode = one.mode;
