@@ -30,7 +30,7 @@ def install():
     stamp = WORK / "node_modules" / "installed"
     if stamp.exists() and stamp.read_text() == wanted:
         return
-    if subprocess.run(["npm", "ci", "--prefer-offline", "--fetch-retries=1"], cwd=WORK, capture_output=True).returncode:
+    if subprocess.run(["npm", "ci", "--prefer-offline", "--fetch-retries=1", "--fetch-timeout=30000"], cwd=WORK, capture_output=True).returncode:
         skip("no-package-index-of-node")
     stamp.write_text(wanted)
 
