@@ -23,7 +23,9 @@ constexpr Duration latest_packet = 5s;
 constexpr std::array<std::string_view, 11> stages{"",         "accepted",  "failed", "started", "failed", "progress",
                                                   "progress", "completed", "failed", "",        "failed"};
 
-[[nodiscard]] std::optional<Verdict> verdict_of(const pus::TelemetryView& packet) {
+/// Failures are called by the names of the descriptors, with the words of whoever refused.
+[[nodiscard]] std::optional<Verdict> verdict_of(const pus::PacketDescriber& describer,
+                                                const pus::TelemetryView& packet) {
   const std::uint8_t subtype = packet.subtype();
   if (subtype == 0 || subtype >= stages.size() || stages[subtype].empty()) return std::nullopt;
   OctetReader reader{packet.source_data()};
@@ -37,8 +39,8 @@ constexpr std::array<std::string_view, 11> stages{"",         "accepted",  "fail
     const auto code = reader.get<std::uint16_t>();
     verdict.code = code;
     if (!verdict.reason.empty()) verdict.reason += ": ";
-    const auto text = to_text(static_cast<pus::FailureCode>(code));
-    verdict.reason += text.empty() ? "code " + std::to_string(code) : std::string{text};
+    const std::string text = describer.describe_failure(packet.apid(), code, reader.rest());
+    verdict.reason += text.empty() ? "code " + std::to_string(code) : text;
   }
   verdict.last = subtype == 7 || (failure && subtype != 6);
   return reader.good() ? std::optional{std::move(verdict)} : std::nullopt;
@@ -78,7 +80,7 @@ Heard Model::take(const pus::TelemetryView& packet) {
   ++revision_;
   if (newest_ - packet.time() > latest_packet) set_back(packet.time());
   newest_ = std::max(newest_, packet.time());
-  if (packet.service() == 1) heard.verdict = verdict_of(packet);
+  if (packet.service() == 1) heard.verdict = verdict_of(describer_, packet);
   if (packet.service() == 3 && packet.subtype() == 25) take_housekeeping(packet, heard);
   if (packet.service() == 5 && packet.subtype() >= 1 && packet.subtype() <= 4) take_event(packet, heard);
   const bool supervision =

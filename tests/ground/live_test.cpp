@@ -95,6 +95,21 @@ TEST_F(GroundStation, EveryPageSeesEveryStageOfEverybodysTelecommands) {
   }
 }
 
+TEST(GroundStationOfAnAuthorsRefusal, CallsItByItsNameInTheDescriptorEverywhere) {
+  Flight flight{rokviss("standalone")};
+  Station station{flight};
+  ASSERT_TRUE(station.run_until([&] { return flight.craft().supervisor().commissioned(); }));
+  station.run(1s);
+  Page page;
+  station.session().opened(page, true);
+  const json refused = station.command("MANIPULATOR", "MOVE_TO", {{"Q1", 1.0}, {"Q2", 2.6}, {"DURATION", 0.2}});
+  EXPECT_EQ(refused["stage"], "failed");
+  EXPECT_EQ(refused["code"], 0x8002);
+  EXPECT_EQ(refused["reason"], "TOO_FAST");
+  EXPECT_EQ(refused["reports"].back()["reason"], "TOO_FAST");
+  EXPECT_EQ(page.last("command")["reason"], "TOO_FAST");
+}
+
 /// What `send` makes of a telecommand of another ground in the history; the newest command.
 class AnotherGround : public GroundStation {
  protected:
