@@ -20,7 +20,7 @@ void Backlog::send(Channel& channel, const Message& message, Worth worth) {
                                 [](const Queue& queue) { return queue.waiting.empty(); });
   Queue& queue = queues_[own];
   if (free) {
-    const auto sent = channel.send(message);
+    const auto sent = try_send(channel, message);
     if (sent) return;
     if (!worth_another_try(sent.error())) {
       ++queue.lost;
@@ -38,11 +38,17 @@ void Backlog::flush(Channel& channel) {
   for (Queue& queue : queues_)
     while (!queue.waiting.empty()) {
       const Unsent& next = queue.waiting.front();
-      const auto sent = channel.send({.kind = next.kind, .packet = next.packet});
+      const auto sent = try_send(channel, {.kind = next.kind, .packet = next.packet});
       if (!sent && worth_another_try(sent.error())) return;
       if (!sent) ++queue.lost;
       queue.waiting.pop_front();
     }
+}
+
+Result<> Backlog::try_send(Channel& channel, const Message& message) {
+  auto sent = channel.send(message);
+  peer_gone_ = !sent && sent.error().code == ErrorCode::Unavailable;
+  return sent;
 }
 
 bool Backlog::empty() const noexcept {

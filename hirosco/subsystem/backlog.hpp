@@ -26,6 +26,11 @@ class Backlog {
   void send(Channel& channel, const Message& message, Worth worth);
   void flush(Channel& channel);
   [[nodiscard]] bool empty() const noexcept;
+  /// False while so many answers wait that those to one more telecommand could crowd out older ones: it is to stay where
+  /// it is. Answers that nobody will ever take are no reason to wait.
+  [[nodiscard]] bool answers_have_room() const noexcept {
+    return queue(Worth::Answer).waiting.size() < most_waiting / 2 || peer_gone_;
+  }
   /// Messages of this worth that were never sent.
   [[nodiscard]] std::uint64_t lost(Worth worth) const noexcept { return queue(worth).lost; }
 
@@ -40,8 +45,10 @@ class Backlog {
     std::deque<Unsent> waiting;
     std::uint64_t lost{0};
   };
+  [[nodiscard]] Result<> try_send(Channel& channel, const Message& message);
   [[nodiscard]] const Queue& queue(Worth worth) const noexcept { return queues_[static_cast<std::size_t>(worth)]; }
   std::array<Queue, 3> queues_;
+  bool peer_gone_{false};
 };
 
 }  // namespace hirosco

@@ -79,6 +79,25 @@ TEST_F(BacklogTest, AFullQueueLosesItsOldest) {
   EXPECT_TRUE(all.ends_with("60 70"));
 }
 
+TEST_F(BacklogTest, HasRoomForMoreAnswersUntilHalfOfItIsFullOfThemAndNeverWaitsForSomebodyWhoIsGone) {
+  for (std::size_t i = 0; i < 4 + 3 * Backlog::most_waiting; ++i) send(7, Worth::Housekeeping);
+  EXPECT_TRUE(backlog.answers_have_room()) << "housekeeping takes none of it";
+  for (std::size_t i = 0; i < Backlog::most_waiting / 2; ++i) {
+    EXPECT_TRUE(backlog.answers_have_room()) << i;
+    send(1, Worth::Answer);
+  }
+  EXPECT_FALSE(backlog.answers_have_room());
+  MessageBuffer buffer;
+  ASSERT_TRUE(channels.supervisor_end().receive(buffer));
+  backlog.flush(channels.subsystem_end());
+  EXPECT_TRUE(backlog.answers_have_room());
+  send(1, Worth::Answer);
+  EXPECT_FALSE(backlog.answers_have_room());
+  channels.close_supervisor_end();
+  backlog.flush(channels.subsystem_end());
+  EXPECT_TRUE(backlog.answers_have_room());
+}
+
 TEST_F(BacklogTest, AMessageThatNoChannelCarriesIsCountedAndHoldsUpNobody) {
   const std::vector<std::byte> endless(max_packet_octets + 1);
   backlog.send(channels.subsystem_end(), {.packet = endless}, Worth::Answer);

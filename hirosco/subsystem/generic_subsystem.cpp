@@ -101,7 +101,9 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
 
 void GenericSubsystem::receive_messages() {
   MessageBuffer buffer;
-  for (int left = messages_per_step; left > 0; --left) {
+  // A telecommand whose answers might crowd out those to another stays in the channel: the supervisor finds that full and
+  // says so, while an answer that is dropped is a telecommand of which nobody ever hears again (adr 0029).
+  for (int left = messages_per_step; left > 0 && reads(); --left) {
     auto found = channel_.receive(buffer);
     if (!found) {
       // One damaged message is no loss of the supervisor: the next look goes on behind it.

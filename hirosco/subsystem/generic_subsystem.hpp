@@ -64,6 +64,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   /// One step of the service loop; returns when the next is due at the latest.  Realtime: allocates. Thread: service.
   TimePoint service_step(TimePoint now);
 
+  /// False while what the supervisor sends has to wait for the supervisor to take what was said: its channel is not to wake
+  /// the service loop for being readable, only for being writable.  Thread: service.
+  [[nodiscard]] bool reads() const noexcept { return backlog_.answers_have_room(); }
+
   /// What the cycle thread is to do.
   struct Demand {
     bool wanted{false};

@@ -126,6 +126,7 @@ class CycleThread {
 void serve(GenericSubsystem& subsystem, const Clock& clock, const Channel& channel, CycleThread& cycle) {
   WaitSet waits;
   static_cast<void>(waits.add(channel.wait_descriptor()));
+  bool reading = true;
   bool cycling = false;
   std::uint32_t ticket = 0;
   while (!subsystem.finished()) {
@@ -135,6 +136,11 @@ void serve(GenericSubsystem& subsystem, const Clock& clock, const Channel& chann
     if ((demand.wanted && !cycling) || demand.ticket != ticket) cycle.wake();
     cycling = demand.wanted;
     ticket = demand.ticket;
+    if (const bool reads = subsystem.reads(); reads != reading) {
+      // What is not read would end every wait: at real-time priority that takes the processor from who has to read us.
+      static_cast<void>(waits.change(channel.wait_descriptor(), reads ? Interest::Read : Interest::Write));
+      reading = reads;
+    }
     const auto ready = waits.wait(std::max(wake - clock.now(), Duration{0}));
     if (!ready) continue;
     // A supervisor that is gone would end every wait from now on: at real-time priority that takes the processor.

@@ -66,6 +66,32 @@ TEST(SupervisorGone, ItsLimitIsTwoSecondsRoundedUpToWholeCycles) {
   EXPECT_EQ(supervisor_silence_cycles(1h), 1u);
 }
 
+TEST(SupervisorLate, GetsEveryReportOnEveryTelecommandHoweverLateItReadsThem) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  std::vector<testing::Sent> pings(3000);
+  for (testing::Sent& ping : pings) ping = rig.send(17, 1, {});
+  // The processor is the subsystem's alone: it could answer all of them before the supervisor reads one answer.
+  for (int i = 0; i < 100; ++i) static_cast<void>(rig.subsystem.service_step(rig.clock.now()));
+  EXPECT_FALSE(rig.subsystem.reads());
+  for (int i = 0; i < 100; ++i) rig.service();
+  EXPECT_TRUE(rig.subsystem.reads());
+  for (const testing::Sent& ping : pings) ASSERT_EQ(rig.outcome(ping), "1 3 7");
+  EXPECT_EQ(rig.reports(17, 2).size(), pings.size());
+  EXPECT_EQ(rig.heard(descriptor::framework_event::reports_lost), 0);
+}
+
+TEST(SupervisorLate, IsMissedThoughAnswersToItWaitWhenItIsGoneForGood) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  for (int i = 0; i < 3000; ++i) static_cast<void>(rig.send(17, 1, {}));
+  for (int i = 0; i < 100; ++i) static_cast<void>(rig.subsystem.service_step(rig.clock.now()));
+  ASSERT_FALSE(rig.subsystem.reads());
+  rig.channels.close_supervisor_end();
+  for (int i = 0; i < 100; ++i) static_cast<void>(rig.subsystem.service_step(rig.clock.now()));
+  EXPECT_TRUE(rig.subsystem.finished());
+}
+
 /// Does something in the middle of a step of the service loop: reports of the cycle are taken, messages not yet.
 struct Interrupted : Probe {
   std::function<void()> between;
