@@ -27,17 +27,27 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
       uplink_.pop_front();
     }
   }
+  [[nodiscard]] std::size_t finish(TimePoint now) override {
+    finishing_ = true;
+    step(now);
+    return uplink_.size();
+  }
   void telemetry(Octets packet) override {
     ++counters_.telemetry_packets;
     if (ground_.receive_) ground_.receive_(packet);
   }
   [[nodiscard]] const communication::LinkCounters& counters() const override { return counters_; }
-  void arrive(Octets packet) { uplink_.emplace_back(packet.begin(), packet.end()); }
+  /// False: the link is closing.
+  [[nodiscard]] bool arrive(Octets packet) {
+    if (!finishing_) uplink_.emplace_back(packet.begin(), packet.end());
+    return !finishing_;
+  }
 
  private:
   SimulatedGround& ground_;
   communication::GroundTraffic& traffic_;
   std::deque<std::vector<std::byte>> uplink_;
+  bool finishing_{false};
   communication::LinkCounters counters_;
 };
 
@@ -48,10 +58,6 @@ OpenGroundTransport SimulatedGround::transport() {
   };
 }
 
-bool SimulatedGround::send(Octets packet) {
-  if (end_ == nullptr) return false;
-  end_->arrive(packet);
-  return true;
-}
+bool SimulatedGround::send(Octets packet) { return end_ != nullptr && end_->arrive(packet); }
 
 }  // namespace hirosco::simulation

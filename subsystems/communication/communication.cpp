@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "subsystems/communication/delay_line.hpp"
@@ -39,6 +40,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
     std::uint32_t refused;
     std::uint32_t idle_packets;
     std::uint32_t damaged_packets;
+    std::uint32_t dropped;
   };
   /// What the joystick on ground sends up, and what it is sent down.
   struct JoystickSet {
@@ -52,7 +54,12 @@ class Communication final : public Subsystem, private communication::GroundTraff
     std::uint8_t active;
   };
   static constexpr Duration ground_patience = 2s;
-  enum Event : std::uint16_t { ground_link_lost = 201, ground_link_restored = 202, client_cut = 203 };
+  enum Event : std::uint16_t {
+    ground_link_lost = 201,
+    ground_link_restored = 202,
+    client_cut = 203,
+    telecommands_dropped = 204
+  };
 
   Result<Step> software_init() override {
     publish("LINK", link_);
@@ -95,7 +102,16 @@ class Communication final : public Subsystem, private communication::GroundTraff
   }
   Result<> error_operational(const Cycle&) noexcept override { return show(); }
 
+  /// What clients have already handed to us is the supervisor's to answer, and listeners wait for that answer: the link
+  /// closes when all is taken. What is not in time is counted and told, at least to the log.
   Result<Step> hardware_deinit() override {
+    if (!transport_) return done;
+    if (!closing_since_) closing_since_ = now_;
+    const std::size_t left = transport_->finish(now_);
+    if (left != 0 && now_ - *closing_since_ < closing_patience) return again;
+    if (left != 0) raise_in_service(telecommands_dropped, {static_cast<double>(left)});
+    dropped_ += static_cast<std::uint32_t>(left);
+    closing_since_.reset();
     transport_.reset();
     return done;
   }
@@ -103,7 +119,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
   void service(TimePoint now) override {
     if (!transport_) return;
     now_ = now;
-    transport_->step(now);
+    if (!closing_since_) transport_->step(now);
     count(now);
   }
 
@@ -146,7 +162,8 @@ class Communication final : public Subsystem, private communication::GroundTraff
                      .broken = closed(CloseReason::SocketError),
                      .refused = u32(counters.refused),
                      .idle_packets = u32(counters.idle_packets),
-                     .damaged_packets = u32(counters.packets - counters.valid_packets)};
+                     .damaged_packets = u32(counters.packets - counters.valid_packets),
+                     .dropped = dropped_};
     shared_link_.store(next_link_);
     shared_clients_.store(next_clients_);
   }
@@ -199,6 +216,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
 
   static constexpr Duration relay_patience = 100ms;
   static constexpr Duration cuts_period = 100ms;
+  static constexpr Duration closing_patience = 500ms;
 
   OpenGroundTransport open_;
   std::unique_ptr<GroundTransport> transport_;
@@ -221,6 +239,8 @@ class Communication final : public Subsystem, private communication::GroundTraff
   Link next_link_{};
   Clients next_clients_{};
   TimePoint now_{};
+  std::optional<TimePoint> closing_since_;
+  std::uint32_t dropped_{0};  ///< telecommands that nobody took before the link was closed
   TimePoint last_rx_{};
   TimePoint last_client_{};
   std::array<std::uint64_t, communication::close_reasons> cuts_told_{};

@@ -16,6 +16,8 @@ class GroundTransport {
   virtual ~GroundTransport() = default;
   /// Moves what is due; never blocks.
   virtual void step(TimePoint now) = 0;
+  /// The link is to be closed: nothing more comes in, what has come is handed over. How many packets still wait for that.
+  [[nodiscard]] virtual std::size_t finish(TimePoint now) = 0;
   /// Queues a packet for every telemetry client.
   virtual void telemetry(Octets packet) = 0;
   [[nodiscard]] virtual const communication::LinkCounters& counters() const = 0;

@@ -59,6 +59,13 @@ void Deframer::pop(TimePoint now) noexcept {
   look(now);
 }
 
+std::size_t Deframer::waiting() const noexcept {
+  Deframer rest = *this;
+  std::size_t packets = 0;
+  for (; !rest.front().empty(); ++packets) rest.pop(begun_);
+  return packets;
+}
+
 void Deframer::look(TimePoint now) noexcept {
   while (whole_ == 0 && !spoilt_ && begin_ != end_) {
     const Octets rest = Octets{buffer_}.subspan(begin_, end_ - begin_);
@@ -258,6 +265,13 @@ bool GroundClients::hand_over(GroundTraffic& traffic, TimePoint now) {
     queue(client);
   }
   return waiting_ == 0;
+}
+
+std::size_t GroundClients::waiting_packets() const noexcept {
+  std::size_t packets = 0;
+  for (const Client& client : clients_)
+    if (client.id != 0) packets += client.deframer.waiting();
+  return packets;
 }
 
 Result<> GroundClients::telemetry(Octets packet) {

@@ -48,6 +48,8 @@ class Deframer {
   void end() noexcept;
   /// The oldest whole packet; empty when there is none. Idle packets are dropped and counted.
   [[nodiscard]] Octets front() const noexcept { return Octets{buffer_}.subspan(begin_, whole_); }
+  /// How many whole packets wait, idle ones not counted.
+  [[nodiscard]] std::size_t waiting() const noexcept;
   /// That packet has been taken.
   void pop(TimePoint now) noexcept;
   /// Incomplete when a packet has been waited for too long; not while whole ones before it wait to be taken.
@@ -152,6 +154,8 @@ class GroundClients {
   /// Offers what waits, one packet of each client in turn, to `traffic`; at most `packets_per_turn`. True when it ended
   /// because nothing waits any more.
   bool hand_over(GroundTraffic& traffic, TimePoint now);
+  /// Whole packets that nobody has taken yet.
+  [[nodiscard]] std::size_t waiting_packets() const noexcept;
   /// Queues a packet for every client of the telemetry port. ResourceExhausted: longer than the backlog.
   Result<> telemetry(Octets packet);
   /// What may be sent to the client next, as far as it is in one piece; empty when it has everything.

@@ -98,6 +98,18 @@ std::optional<TimePoint> TcpServer::step(TimePoint now) {
   return next;
 }
 
+std::size_t TcpServer::finish(TimePoint now) {
+  listeners_ = {};
+  for (Connection& connection : connections_) {
+    if (connection.client == 0 || !connection.socket || connection.deaf) continue;
+    clients_.end_input(connection.client);
+    connection.deaf = true;
+    watch(connection, EPOLL_CTL_MOD);
+  }
+  step(now);
+  return clients_.waiting_packets();
+}
+
 /// What is due for a connection after the others had their turn.
 void TcpServer::tend(Connection& connection) {
   if (const auto reason = clients_.condemned(connection.client)) {

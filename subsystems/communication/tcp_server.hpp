@@ -39,6 +39,9 @@ class TcpServer {
   /// time at which it has to be called even when `descriptor()` stays silent: that of its own limits; while packets wait
   /// for somebody who takes them, its owner knows best when that may be.
   std::optional<TimePoint> step(TimePoint now);
+  /// As `step`, but nobody comes in and nothing more is read: what has been received is handed over, and listeners get
+  /// the reports on it. How many whole packets still wait; `step` is not to be called any more.
+  [[nodiscard]] std::size_t finish(TimePoint now);
   /// Queues a packet for all telemetry clients; it leaves with the next `step`. ResourceExhausted: longer than
   /// the backlog.
   Result<> telemetry(Octets packet) { return clients_.telemetry(packet); }

@@ -318,6 +318,30 @@ TEST_F(TcpServerTest, DoesNotWakeItsOwnerForWhatHasToWait) {
   until([&] { return echo_.valid == 2000; });
 }
 
+TEST_F(TcpServerTest, FinishesWithAllThatItHasReceivedAndItsListenersHearTheAnswers) {
+  Client client{port()};
+  until_connected(1);
+  echo_.room = 0;
+  std::vector<std::byte> stream;
+  for (std::uint16_t i = 0; i < 20; ++i) {
+    const auto packet = telecommand(i);
+    stream.insert(stream.end(), packet.begin(), packet.end());
+  }
+  ASSERT_EQ(client.send(stream), stream.size());
+  until([&] { return server_->counters().held_back > 0; });
+  echo_.room = 5;
+  EXPECT_EQ(server_->finish(now_), 15U);
+  client.send(telecommand(99));
+  EXPECT_EQ(server_->finish(now_), 15U) << "nobody takes them";
+  echo_.room = ~std::uint64_t{0};
+  EXPECT_EQ(server_->finish(now_), 0U);
+  while (last_answer(client) != 19) {
+    EXPECT_EQ(server_->finish(now_), 0U);
+    client.receive();
+  }
+  EXPECT_EQ(echo_.valid, 20U) << "what came later was not read";
+}
+
 TEST_F(TcpServerTest, ServesHonestClientsBesideTwoHundredSilentOnes) {
   std::vector<std::unique_ptr<Client>> silent;
   for (int i = 0; i < 200; ++i) {
