@@ -51,7 +51,9 @@ void Supervisor::handle_event(std::uint16_t from, Octets message) {
 void Supervisor::react(Member& origin, std::string_view event, Severity severity) {
   const Reaction reaction = choose_reaction(mission_, {origin.descriptor().name, event, severity, mode_->name});
   if (shutting_down_) return;  // everything is on its way down already
-  if (reaction.restart && event == "PROCESS_DIED" && !restarts_.plan(origin.apid(), *reaction.restart, now_))
+  using enum Restarts::AtLimit;
+  if (reaction.restart && event == "PROCESS_DIED" &&
+      !restarts_.plan(origin.apid(), *reaction.restart, now_, is_ground_link(origin) ? GoesOn : StaysDown))
     tell(origin.descriptor().name + " stays down: it died too often", origin.apid());
   if (reaction.action == descriptor::Action::Log) return;
   // One plan at a time for a subsystem; only something worse overrides it.
@@ -248,8 +250,21 @@ void Supervisor::restart_due(TimePoint now) {
     Member* subject = member(*apid);
     if (subject == nullptr || subject->alive() || shutting_down_) continue;
     launch(*subject);
-    if (subject->alive() && subject->descriptor().name == mission_.ground.subsystem) restore_ground_link(*subject);
+    if (subject->alive() && is_ground_link(*subject)) restore_ground_link(*subject);
   }
+}
+
+/// In Offline the ground link hears nobody who could bring it up again, whether a fault or a telecommand put it there.
+void Supervisor::watch_ground_link(TimePoint now) {
+  const auto link = std::ranges::find_if(members_, [&](const Member& subject) { return is_ground_link(subject); });
+  if (link == members_.end()) return;
+  const bool lost = link->alive() && link->state() == State::Offline && !shutting_down_ && !sequence_.running() &&
+                    !ground_link_.running();
+  if (!lost) return ground_link_lost_at_.reset();
+  if (!ground_link_lost_at_) ground_link_lost_at_ = now;
+  if (now - *ground_link_lost_at_ < ground_link_patience_) return;
+  ground_link_lost_at_.reset();
+  restore_ground_link(*link);
 }
 
 /// Without the ground link nobody could command anything: it comes back to what its mode asks for by itself.
@@ -272,6 +287,7 @@ void Supervisor::restore_ground_link(Member& subject) {
   for (const State state : {State::SafeOperational, State::Operational})
     if (state <= wanted->state) add("SET_STATE", static_cast<double>(state), std::string{to_text(state)});
   ground_link_.start(std::move(stages), Sequence::OnFailure::Stop, [this](bool success, const std::string& why) {
+    ground_link_patience_ = success ? ground_link_pause : std::min(2 * ground_link_patience_, Restarts::longest_pause);
     tell(success ? "the ground link is back" : "the ground link did not come back: " + why);
   });
 }

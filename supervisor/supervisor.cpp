@@ -246,6 +246,7 @@ TimePoint Supervisor::step(TimePoint now) {
     next_watch_ = now + watch_period;
     watch_ends(true);
     restart_due(now);
+    watch_ground_link(now);
     watch_memory();
     observe_power();
     shed_load();

@@ -167,6 +167,7 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void hear_of(Member& member, GuardFinding::Kind what);
   void launch(Member& member);
   void restart_due(TimePoint now);
+  void watch_ground_link(TimePoint now);
   void restore_ground_link(Member& member);
   void member_died(Member& member, const ProcessEnd& end);
 
@@ -203,7 +204,10 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   bool own_cycle_running_{false};
   LinkHandling links_;
   Sequence sequence_;
-  Sequence ground_link_;  ///< brings a restarted ground link back
+  static constexpr Duration ground_link_pause = std::chrono::seconds{1};
+  Sequence ground_link_;  ///< brings a lost ground link back
+  std::optional<TimePoint> ground_link_lost_at_;
+  Duration ground_link_patience_{ground_link_pause};  ///< longer after each time that it did not come back
   PowerLedger power_;
   pus::PacketDescriber describer_;
 

@@ -123,7 +123,6 @@ Result<Step> GenericSubsystem::leave_cycle() {
   if (wanted_.load(std::memory_order_relaxed)) {
     rest_ticket_.fetch_add(1, std::memory_order_release);
     wanted_.store(false, std::memory_order_release);
-    vital_.cycling.store(0, std::memory_order_release);
   }
   if (!cycle_rests()) return again;
   take_cycle_reports();

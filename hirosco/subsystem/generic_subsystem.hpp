@@ -82,7 +82,13 @@ class GenericSubsystem final : private pus::TelemetrySink,
   /// One cycle; call only while cycle_demand().wanted.  Realtime: bounded, no allocation. Thread: cycle.
   TimePoint cycle_step(TimePoint planned) noexcept { return cycle_.step(planned); }
   /// The cycle thread has seen that no cycle is wanted and rests.  Thread: cycle.
-  void cycle_parked(std::uint32_t ticket) noexcept { parked_ticket_.store(ticket, std::memory_order_release); }
+  void cycle_parked(std::uint32_t ticket) noexcept {
+    // Told by who rests, not by who ordered it: one that spins after the order is watched until it is ended. Once for a
+    // ticket: with that the next configuration may have begun.
+    if (parked_ticket_.load(std::memory_order_relaxed) == ticket) return;
+    vital_.cycling.store(0, std::memory_order_release);
+    parked_ticket_.store(ticket, std::memory_order_release);
+  }
 
   /// Offline again after the supervisor went away or said so: the process may end.
   [[nodiscard]] bool finished() const noexcept { return finished_; }

@@ -220,7 +220,9 @@ TEST_F(GenericSubsystemTest, ACycleThatWasNeverSeenIsStillAskedToRest) {
   EXPECT_NE(rig.subsystem.cycle_demand().ticket, before);
   EXPECT_EQ(rig.outcome(configured), "1 3 7");
   EXPECT_EQ(rig.outcome(down), "1 3");
+  EXPECT_EQ(rig.vital.cycling.load(), 1U) << "who does not rest is watched on";
   rig.settle();
+  EXPECT_EQ(rig.vital.cycling.load(), 0U);
   EXPECT_EQ(rig.outcome(down), "1 3 7");
 }
 

@@ -72,7 +72,7 @@ struct VitalPage {
   std::atomic<std::uint32_t> inhibited{0};  ///< bits of Inhibition
   std::atomic<std::uint32_t> seen_epoch{0};  ///< epoch of the permit page at the last cycle
   CheckedWord realtime{0};  ///< 1: SCHED_FIFO granted, 0: the reduced promise holds
-  CheckedWord cycling{0};  ///< 1 while the cycle is to run
+  CheckedWord cycling{0};  ///< 1 from a configuration until the cycle rests again
   std::atomic<std::uint64_t> period_ns{0};
   std::atomic<std::uint64_t> cycles{0};  ///< advances while the cycle runs: hang detection
   std::atomic<std::uint64_t> service_steps{0};  ///< advances while the service loop runs

@@ -27,6 +27,7 @@ void PlannedFlight::end_faults() {
     craft_->stop(member.subsystem.name, false);
     craft_->stick(member.subsystem.name, false);
     craft_->strain(member.subsystem.name, 0, {});
+    craft_->call_spin_off(member.subsystem.name);
   }
   if (supervisor_stopped_) craft_->stop(mission_.supervisor.name, false);
   supervisor_stopped_ = false;

@@ -24,7 +24,12 @@ void put(OctetWriter& writer, const Vec2& values) noexcept { writer.put(values[0
 
 RobotDevice::RobotDevice(FlowFactory& flows, FlowAddress address, const Settings& settings, const ArmParameters& arm,
                          const RobotSensors& sensors)
-    : SimulatedDevice{flows, std::move(address), settings}, arm_{arm}, sensors_{sensors}, random_{settings.seed} {}
+    : SimulatedDevice{flows, std::move(address), settings},
+      arm_{arm},
+      sensors_{sensors},
+      made_noise_n_m_{sensors.torque_noise_n_m},
+      made_thermal_acceleration_{arm.thermal.acceleration},
+      random_{settings.seed} {}
 
 Result<> RobotDevice::take(OctetReader payload) noexcept {
   const Vec2 torque{payload.get<double>(), payload.get<double>()};
@@ -145,6 +150,15 @@ Result<> RobotDevice::do_fault(const Words& words) {
     return ok();
   }
   return fail(ErrorCode::InvalidArgument, "unknown fault");
+}
+
+/// A hooked spring stays: that is where the world is, no fault.
+void RobotDevice::do_heal() noexcept {
+  for (std::size_t joint = 0; joint < arm_.temperature_c().size(); ++joint)
+    arm_.set_temperature(joint, arm_.parameters().thermal.ambient_c);
+  arm_.set_thermal_acceleration(made_thermal_acceleration_);
+  arm_.set_friction(true);
+  sensors_.torque_noise_n_m = made_noise_n_m_;
 }
 
 std::string RobotDevice::do_truth() const {

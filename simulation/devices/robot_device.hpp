@@ -46,12 +46,15 @@ class RobotDevice final : public SimulatedDevice {
   void write_sensors(OctetWriter& payload) noexcept override;
   [[nodiscard]] Result<> do_fault(const Words& words) override;
   [[nodiscard]] std::string do_truth() const override;
+  void do_heal() noexcept override;
   [[nodiscard]] bool can(Stop) const noexcept override { return true; }
   [[nodiscard]] Vec2 coming_to_rest() noexcept;
   [[nodiscard]] Vec2 gripping(const Vec2& load_n_m, double stiffness_n_m_per_rad) noexcept;
 
   TwoJointArm arm_;
   RobotSensors sensors_;
+  double made_noise_n_m_;
+  double made_thermal_acceleration_;
   Random random_;
   Vec2 commanded_{};
   std::uint8_t spring_asked_{0};

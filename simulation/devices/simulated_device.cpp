@@ -286,6 +286,7 @@ void SimulatedDevice::heal() noexcept {
   silent_until_ = frozen_until_ = {};
   delay_ = {};
   corrupt_frames_ = 0;
+  do_heal();
 }
 
 Result<> SimulatedDevice::apply_fault(const Words& words) {

@@ -89,7 +89,7 @@ class SimulatedDevice {
 
   /// Injects a fault from one line of text and records it with the time of the last step:
   ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | heal
-  /// and what the device adds. InvalidArgument, OutOfRange: nothing was done.
+  /// and what the device adds; heal ends all that was injected, but plugs nothing in. InvalidArgument, OutOfRange: nothing was done.
   [[nodiscard]] Result<> fault(std::string_view line);
   [[nodiscard]] const std::vector<Injection>& injections() const noexcept { return injections_; }
 
@@ -131,6 +131,8 @@ class SimulatedDevice {
   /// A fault line of the device's own. InvalidArgument: not known here either.
   [[nodiscard]] virtual Result<> do_fault(const Words& words) = 0;
   [[nodiscard]] virtual std::string do_truth() const = 0;
+  /// Takes back what do_fault() did to the device.
+  virtual void do_heal() noexcept {}
   /// Which stops it has.
   [[nodiscard]] virtual bool can(Stop stop) const noexcept { return stop == Stop::Drop; }
 

@@ -380,6 +380,17 @@ TEST(Faults, SilenceAndStallSayNothingButListen) {
   EXPECT_FALSE(bench.raw().empty());
 }
 
+TEST(Faults, HealTakesBackWhatWasDoneToTheDeviceItself) {
+  RobotBench bench;
+  const double made = bench.device.arm().parameters().thermal.acceleration;
+  for (const char* line : {"temperature 1 85", "temperature 2 85", "thermal_accel 7", "friction off", "noise 3"})
+    ASSERT_TRUE(bench.device.fault(line)) << line;
+  ASSERT_TRUE(bench.device.fault("heal"));
+  EXPECT_EQ(bench.device.arm().temperature_c(), (Vec2{20, 20}));
+  EXPECT_EQ(bench.device.arm().parameters().thermal.acceleration, made);
+  EXPECT_GT(bench.device.arm().parameters().joint.friction_coulomb_n_m, 0);
+}
+
 TEST(Faults, CorruptDamagesExactlyThatManyFrames) {
   RobotBench bench;
   ASSERT_TRUE(bench.device.fault("corrupt 20"));

@@ -243,6 +243,10 @@ void Spacecraft::spin(std::string_view name) {
   member->spins_since = clock_.now();
 }
 
+void Spacecraft::call_spin_off(std::string_view name) {
+  if (Member* member = find(name); member != nullptr && !member->cycling) member->spinning = false;
+}
+
 void Spacecraft::stick(std::string_view name, bool stuck) {
   if (Member* member = find(name)) member->stuck = stuck;
 }

@@ -83,6 +83,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   void stop(std::string_view name, bool stopped);
   /// Its next cycle never ends: with one processor for all cycles (adr 0007) nobody else's runs, until it is killed.
   void spin(std::string_view name);
+  /// A spin that no cycle has begun yet will not be; one that has ends with its process only.
+  void call_spin_off(std::string_view name);
   /// Its service loop stands still and goes on, beside its cycle.
   void stick(std::string_view name, bool stuck);
   /// Puts a packet into a subsystem's end of its channel as if it had sent it. False: it is gone, or the channel is full.

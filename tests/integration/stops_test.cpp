@@ -191,6 +191,38 @@ TEST_F(Stops, AGroundLinkThatDiedComesBackToWhatItWas) {
   EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed);
 }
 
+/// It was ordered to rest before anybody saw that it spins: the order makes nobody blind.
+TEST_F(Stops, ACycleThatSpinsWhenItIsToRestIsEndedAndComesBack) {
+  open_for_bring_up();
+  ASSERT_TRUE(flight.set_state("JOYSTICK", State::SafeOperational).completed);
+  flight.craft().spin("JOYSTICK");
+  static_cast<void>(flight.set_state("JOYSTICK", State::PostOperational));
+  flight.craft().run(3s);
+  ASSERT_NE(flight.craft().subsystem("JOYSTICK"), nullptr);
+  for (const char* other : {"MANIPULATOR"})
+    for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})
+      if (flight.state(other) != State::Offline) static_cast<void>(flight.set_state(other, state));
+  EXPECT_TRUE(bring_up());
+}
+
+TEST_F(Stops, AGroundLinkThatATelecommandClosedComesBackByItself) {
+  open_for_bring_up();
+  for (const State state : {State::SafeOperational, State::PostOperational})
+    ASSERT_TRUE(flight.set_state("COMMUNICATION", state).completed) << to_text(state);
+  static_cast<void>(flight.set_state("COMMUNICATION", State::Offline));
+  ASSERT_TRUE(flight.story().has("COMMUNICATION info STATE_CHANGED STATE=Offline")) << flight.story().text();
+  ASSERT_TRUE(flight.run_until_state("COMMUNICATION", State::Operational, 3s)) << flight.story().text();
+  EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed);
+}
+
+TEST_F(Stops, AGroundLinkThatDiesAgainAndAgainComesBackAgainAndAgain) {
+  for (int death = 1; death <= 8; ++death) {
+    flight.craft().kill("COMMUNICATION");
+    ASSERT_TRUE(flight.run_until_state("COMMUNICATION", State::Operational, 12s)) << death << flight.story().text();
+    EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed) << death;
+  }
+}
+
 TEST_F(Stops, AModeWhoseMembersAreDeadIsRefused) {
   open_for_bring_up();
   flight.craft().kill("JOYSTICK");

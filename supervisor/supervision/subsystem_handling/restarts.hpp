@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -11,18 +12,23 @@
 #include "hirosco/utilities/time.hpp"
 
 /// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
-/// than its plan says (findings SF15; reliability 5: a crash loop stays down).
+/// than its plan says (findings SF15; reliability 5: a crash loop stays down). The ground link alone never stays down:
+/// nobody could bring it up again.
 namespace hirosco::supervisor {
 
 class Restarts {
  public:
+  enum class AtLimit { StaysDown, GoesOn };
+  static constexpr Duration longest_pause = std::chrono::seconds{10};
+
   /// False: the limit is reached, it stays down.
-  bool plan(std::uint16_t apid, const descriptor::Restart& rule, TimePoint now) {
+  bool plan(std::uint16_t apid, const descriptor::Restart& rule, TimePoint now, AtLimit at_limit = AtLimit::StaysDown) {
     std::vector<TimePoint>& before = history_[apid];
     std::erase_if(before, [&](TimePoint at) { return now - at >= rule.within; });
-    if (before.size() >= rule.limit) return false;
+    if (before.size() >= rule.limit && at_limit == AtLimit::StaysDown) return false;
     Duration pause = rule.pause;
-    for (std::size_t i = 0; i < before.size() && pause < rule.within; ++i) pause *= 2;
+    for (std::size_t i = 0; i < before.size() && pause < longest_pause; ++i) pause *= 2;
+    pause = std::min(pause, std::max(longest_pause, rule.pause));
     before.push_back(now);
     due_[apid] = now + pause;
     return true;
