@@ -224,9 +224,9 @@ bool PlannedFlight::send_packet(const std::string& origin, Octets packet) {
   const auto telecommand = pus::TelecommandView::parse(packet);
   if (telecommand) {
     const bool function = telecommand->service() == 8;
-    trace_->say("{} {} {} {} {} {} {} {}", sent ? "sent" : "unsent", origin, telecommand->apid(),
-                telecommand->sequence_count(), telecommand->source(), telecommand->service(), telecommand->subtype(),
-                function ? name_in(telecommand->application_data()) : "-");
+    trace_->say("{} {} {} {} {} {} {} {} {}", sent ? "sent" : "unsent", origin, telecommand->apid(),
+                telecommand->sequence_count(), telecommand->source(), telecommand->ack(), telecommand->service(),
+                telecommand->subtype(), function ? name_in(telecommand->application_data()) : "-");
   } else {
     trace_->say("{} {} damaged", sent ? "sent" : "unsent", origin);
   }

@@ -87,10 +87,12 @@ def i3_everything_is_logged_once(flight, victims):
 def i6_ping_is_answered(flight, victims):
     answers = {}
     for down in flight.down:
-        if down[3] == 1 and down[4] == 7 and down[5] == 0:
+        if down[3] == 1 and down[4] in (2, 4, 7, 8) and down[5] == 0:
             answers.setdefault(down[6], down[0])
     for sent in flight.sent:
         if sent.service != 17 or sent.subtype != 1 or sent.apid != flight.mission.supervisor.apid or sent.origin != "ground":
+            continue
+        if not sent.ack & 8:  # the end was not asked for
             continue
         limit = FLOODED_PING_US if meets(victims["FLOOD"], sent.time, sent.time) else PING_US
         if sent.time + limit >= flight.finished() or not ground_link_works(flight, victims, sent.time, sent.time + limit):

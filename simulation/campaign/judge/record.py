@@ -60,6 +60,7 @@ class Sent:
     apid: int
     count: int
     source: int
+    ack: int
     service: int
     subtype: int
     function: str
@@ -113,7 +114,7 @@ class Record:
         elif what == "cycles":
             self.cycles.append((time, {name: int(n) for name, n in (word.split("=") for word in rest)}))
         elif what == "sent" and rest[1] != "damaged":
-            self.sent.append(Sent(time, rest[0], *map(int, rest[1:6]), rest[6]))
+            self.sent.append(Sent(time, rest[0], *map(int, rest[1:7]), rest[7]))
         elif what == "sent":
             self.damaged_sent += 1
         elif what == "down":
