@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A headless Chromium with a page that is open at the gateway's URL, and what went wrong in it.
+import assert from 'node:assert/strict';
 import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
@@ -25,9 +26,21 @@ export async function open_browser() {
   }};
 }
 
+/// A wait is for a condition, and ends when that holds. This much without it says that it never will, also where a browser that draws
+/// in software shares two processors with a flight and a compiler.
+export const patience_ms = 120000;
+
+/// The smallest window that the page is made for: the cheapest to draw.
+export const small = {width: 1280, height: 720};
+
+/// Waits until `condition(value)` in the page is true, and hands out what it answered. Looked at ten times a second: at every frame, as
+/// is usual, would make a browser without a graphics card draw sixty of them a second for nothing else.
+export const holds = (page, condition, value) => page.waitForFunction(condition, value, {polling: 100});
+
 /// Opens `url`; `faults` fills with console errors, exceptions and requests to anybody else.
 export async function open_page(context, url, size = {width: 1600, height: 900}) {
   const page = await context.newPage();
+  page.setDefaultTimeout(patience_ms);
   await page.setViewportSize(size);
   const faults = [];
   const own = new URL(url).origin;
@@ -47,12 +60,34 @@ export const views = ['overview', 'subsystems/MANIPULATOR', 'plots', 'commands/M
 /// To a view, as following its address does.
 export async function go(page, view) {
   await page.evaluate((to) => { location.hash = `#/${to}`; }, view);
-  await page.waitForFunction((to) => document.querySelector('nav a.on')?.getAttribute('href') === `#/${to}`, view.split(/[/?]/)[0]);
+  await holds(page, (to) => document.querySelector('nav a.on')?.getAttribute('href') === `#/${to}`, view.split(/[/?]/)[0]);
 }
 
-/// Waits until `holds` answers true; a wait that leads nowhere says what for.
-export async function until(what, holds, limit_s = 30) {
-  for (const end = performance.now() + limit_s * 1000; !await holds(); await sleep(20)) {
+/// A line to the socket of a simulated device, by the gateway.
+export const inject = (page, device, line) => page.evaluate(async ([one, words]) => {
+  const answer = await fetch('/api/faults', {method: 'POST', body: JSON.stringify({device: one, line: words}),
+    headers: {'Content-Type': 'application/json', Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}});
+  if (!answer.ok) throw new Error(`${one} ${words}: ${await answer.text()}`);
+}, [device, line]);
+
+/// Waits until both machines of rokviss are told to be coupled and nothing to be stopped.
+export const coupled = (page) => holds(page, () => document.querySelector('[data-test=mode] b')?.textContent === 'telepresence' &&
+  !document.querySelector('[data-test=mode-stopped]') && ['MANIPULATOR', 'JOYSTICK'].every((name) =>
+    document.querySelector(`[data-test=subsystem-${name}] .state`)?.textContent === 'Operational'));
+
+/// The whole network by one button of the subsystems' view; a bring-up that fails says at which step and why.
+export async function bring_up(page, mode) {
+  await go(page, 'subsystems/MANIPULATOR');
+  await page.selectOption('[data-test=commission-mode]', mode);
+  await page.click('[data-test=commission]');
+  const end = page.locator('[data-test=commissioned], [data-test=commission-failed]');
+  await end.waitFor();
+  assert.match(await end.textContent(), /is up$/);
+}
+
+/// Waits until `is_so` answers true; a wait that leads nowhere says what for.
+export async function until(what, is_so, limit_s = patience_ms / 1000) {
+  for (const end = performance.now() + limit_s * 1000; !await is_so(); await sleep(20)) {
     if (performance.now() > end) throw new Error(`${what}: not within ${limit_s} s`);
   }
 }

@@ -9,7 +9,7 @@ import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
 import {gzipSync} from 'node:zlib';
-import {go, open_browser, open_page, serious_findings, until, views} from './browser.mjs';
+import {go, holds, open_browser, open_page, patience_ms, serious_findings, until, views} from './browser.mjs';
 
 const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
 
@@ -44,7 +44,7 @@ describe('a flight that means well', () => {
 
   it('draws the robot when joints move, and rests when nothing does', async () => {
     await go(page, 'overview');
-    await page.waitForFunction(() => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
+    await holds(page, () => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
   });
 
   for (const [what, from, to] of [['the handle of the joystick', 0.15, 0.4], ['the fingertip', 0.58, 0.75]]) {
@@ -106,7 +106,7 @@ describe('a flight that means well', () => {
   });
 
   it('shows octets and the refusal before sending, and the verdict after', async () => {
-    await page.waitForFunction(() => /^[0-9A-F]{2} /.test(document.querySelector('[data-test=octets]').textContent));
+    await holds(page, () => /^[0-9A-F]{2} /.test(document.querySelector('[data-test=octets]').textContent));
     await page.waitForSelector('[data-test=permission].no');
     await page.click('[data-test=send]');
     await page.waitForSelector('[data-test=verdict].failed');
@@ -120,7 +120,7 @@ describe('a flight that means well', () => {
     const box = await page.locator('[data-test=safe-all]').boundingBox();
     await page.mouse.move(box.x + 20, box.y + 15);
     await page.mouse.down();
-    await page.waitForFunction(() => document.querySelector('[data-test=history]').textContent.includes('SAFE_ALL'));
+    await holds(page, () => document.querySelector('[data-test=history]').textContent.includes('SAFE_ALL'));
     await page.mouse.up();
   });
 
@@ -129,7 +129,7 @@ describe('a flight that means well', () => {
     const legal = {'Operational': ['Safe-Operational', 'Error-Operational'], 'Pre-Operational': ['Safe-Operational', 'Error-Operational', 'Post-Operational', 'Offline'],
       'Safe-Operational': ['Operational', 'Error-Operational', 'Post-Operational', 'Offline']};
     // Both at once, as the flight goes on; of the states those that the table has.
-    const shown = await page.waitForFunction((states) => {
+    const shown = await holds(page, (states) => {
       const state = document.querySelector('.diagram .here text')?.textContent.trim();
       return states.includes(state) ? {state, open: [...document.querySelectorAll('.diagram .open text')].map((one) => one.textContent)} : null;
     }, Object.keys(legal));
@@ -143,7 +143,7 @@ describe('a flight that means well', () => {
     for (const [keys, view] of [[['g', 'l'], 'links'], [['c'], 'commands'], [['?'], 'help']]) {
       await page.evaluate(() => document.activeElement?.blur());
       for (const key of keys) await page.keyboard.press(key);
-      await page.waitForFunction((to) => location.hash.startsWith(`#/${to}`), view);
+      await holds(page, (to) => location.hash.startsWith(`#/${to}`), view);
     }
     await page.evaluate(() => document.activeElement?.blur());
     await go(page, 'events');
@@ -190,15 +190,15 @@ describe('a flight that does not', () => {
       assert.deepEqual(wide, [], view);
     }
     await page.click('[data-test=faults]');
-    await page.waitForFunction(() => document.querySelector('[data-test=faults-drawer]')?.textContent.includes('<img src=x'));
+    await holds(page, () => document.querySelector('[data-test=faults-drawer]')?.textContent.includes('<img src=x'));
     await page.keyboard.press('Escape');
     await go(page, 'links');
-    await page.waitForFunction(() => document.querySelector('svg.links')?.textContent.includes('<img src=x'));
+    await holds(page, () => document.querySelector('svg.links')?.textContent.includes('<img src=x'));
     await go(page, 'events');
-    await page.waitForFunction(() => document.querySelector('[data-test=events]')?.textContent.includes('<img src=x'));
+    await holds(page, () => document.querySelector('[data-test=events]')?.textContent.includes('<img src=x'));
     assert.ok(await page.evaluate(() => document.querySelector('[data-test=events]').textContent.includes('y'.repeat(1000))));
     await page.click('[data-test=log-search]');
-    await page.waitForFunction(() => document.querySelector('[data-test=log]')?.textContent.includes('<img src=x'));
+    await holds(page, () => document.querySelector('[data-test=log]')?.textContent.includes('<img src=x'));
     assert.equal(await page.evaluate(() => window.hurt), undefined);
     assert.equal(await page.locator('img[src="x"]').count(), 0);
     assert.deepEqual(faults, []);
@@ -209,15 +209,52 @@ describe('a flight that does not', () => {
     await page.fill('[data-search]', 'burst 9999');
     await page.evaluate(() => fetch('/api/faults', {method: 'POST', headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`},
       body: '{"device":"joystick","line":"burst"}'}));
-    await page.waitForFunction(() => document.querySelector('[data-test=events]')?.textContent.includes('burst 9999'));
+    await holds(page, () => document.querySelector('[data-test=events]')?.textContent.includes('burst 9999'));
     await go(page, 'links');
     await page.waitForSelector('svg.links');
   });
 
   it('shows NaN and infinity by name', async () => {
     await go(page, 'subsystems/MANIPULATOR');
-    await page.waitForFunction(() => /NaN/.test(document.querySelector('[data-test=values]')?.textContent));
+    await holds(page, () => /NaN/.test(document.querySelector('[data-test=values]')?.textContent));
     assert.match(await page.textContent('[data-test=values]'), /∞/);
+  });
+});
+
+describe('a page slower than the telemetry', () => {
+  it('shows less often, not later and later', async () => {
+    const served = await serve('synthetic');
+    const page = await browser.context.newPage();
+    page.setDefaultTimeout(patience_ms);
+    // Twice as long for each batch as the telemetry takes to bring another.
+    await page.addInitScript(() => {
+      const Real = window.Worker;
+      window.batches = 0;
+      window.newest_s = -Infinity;
+      window.Worker = class extends Real {
+        constructor(...words) {
+          super(...words);
+          this.addEventListener('message', ({data}) => {
+            if (data.kind !== 'messages') return;
+            ++window.batches;
+            for (const one of data.list) if (one.type === 'values') window.newest_s = Math.max(window.newest_s, one.t);
+            for (const end_ms = performance.now() + 100; performance.now() < end_ms;);
+          });
+        }
+      };
+    });
+    await page.goto(served.url);
+    await holds(page, () => window.batches >= 30);
+    const batches = await page.evaluate(async () => {
+      const answer = await fetch('/api/status', {headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}});
+      const {t} = await answer.json();
+      const first = window.batches;
+      while (window.newest_s < t) await new Promise((resolve) => setTimeout(resolve));
+      return window.batches - first;
+    });
+    await page.close();
+    served.end();
+    assert.ok(batches <= 5, `${batches} batches stood before the newest`);
   });
 });
 

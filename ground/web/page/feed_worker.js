@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Holds the WebSocket beside the page's thread: a hidden or busy tab never leaves the gateway with a full queue. What comes is
-// handed on in batches, so that a burst of 10,000 events costs the page one redraw.
+// handed on in batches, so that a burst of 10,000 events costs the page one redraw. The next batch waits until the page is through with
+// the last one and had as much time for itself: a page slower than the telemetry shows less often, never later and later.
 
 const batch_ms = 10;
 const longest_wait_ms = 1000;
@@ -13,8 +14,15 @@ let timer = 0;
 let wait_ms = 250;
 let url = '';
 
+let page_is_busy = false;
+
+function hand_on_soon(after_ms = batch_ms) {
+  if (waiting.length && !page_is_busy) timer ||= setTimeout(hand_on, after_ms);
+}
+
 function hand_on() {
   timer = 0;
+  page_is_busy = true;
   postMessage({kind: 'messages', list: waiting});
   waiting = [];
 }
@@ -31,7 +39,7 @@ function connect() {
     } catch {
       return;
     }
-    timer ||= setTimeout(hand_on, batch_ms);
+    hand_on_soon();
   };
   socket.onclose = ({code}) => {
     postMessage({kind: 'closed', code});
@@ -44,6 +52,9 @@ onmessage = ({data}) => {
   if (data.kind === 'connect') {
     url = data.url;
     connect();
+  } else if (data.kind === 'taken') {
+    page_is_busy = false;
+    hand_on_soon(Math.max(batch_ms, data.took_ms));
   } else if (data.kind === 'send' && socket?.readyState === WebSocket.OPEN) {
     socket.send(JSON.stringify(data.message));
   }

@@ -268,8 +268,23 @@ async function really_fetch_present() {
 const worker = new Worker(new URL('feed_worker.js', document.baseURI), {type: 'module'});
 export const send_to_gateway = (message) => worker.postMessage({kind: 'send', message});
 
+/// Tells the worker when what the batch brought about has been rendered, and how long all of it took.
+function take_batch(list) {
+  const began_ms = performance.now();
+  const through = new MessageChannel();
+  through.port1.onmessage = () => {
+    through.port1.close();
+    worker.postMessage({kind: 'taken', took_ms: performance.now() - began_ms});
+  };
+  try {
+    take(list);
+  } finally {
+    through.port2.postMessage(null);
+  }
+}
+
 worker.onmessage = ({data}) => {
-  if (data.kind === 'messages') take(data.list);
+  if (data.kind === 'messages') take_batch(data.list);
   if (data.kind === 'open') {
     gateway.value = {connected: true, since_ms: performance.now()};
     if (replay.value) send_to_gateway({type: 'replay', at: now_s(), speed: replay.value.speed});

@@ -16,6 +16,7 @@ import {replay, values} from '../store.js';
 import {angles_of_offset, before_wall, surface_x_m, target_line, within_range} from './hand.js';
 
 const moved_rad = 1e-5;
+const quick_ms = 10;
 const trail_points = 400;
 const hand_period_ms = 60;
 const near_limit = 0.08;
@@ -272,12 +273,35 @@ export class RobotView {
   }
 
   draw_soon() {
-    this.waiting ||= requestAnimationFrame(() => {
-      this.waiting = 0;
-      ++this.frames;
-      this.node.dataset.frames = this.frames;
-      this.renderer.render(this.scene, this.camera);
-    });
+    if (this.resting) this.wanted_again = true;
+    else this.waiting ||= requestAnimationFrame(() => this.draw());
+  }
+
+  draw() {
+    this.waiting = 0;
+    ++this.frames;
+    this.node.dataset.frames = this.frames;
+    const began_ms = performance.now();
+    this.renderer.render(this.scene, this.camera);
+    // Told when the browser is through with the picture: without a graphics card the page waits until the processor has drawn it.
+    this.resting = true;
+    const through = new MessageChannel();
+    through.port1.onmessage = () => {
+      through.port1.close();
+      this.rest(performance.now() - began_ms);
+    };
+    through.port2.postMessage(null);
+  }
+
+  /// For half as long as a picture took, the page is everybody else's: no slow computer keeps an operator from the rest of it.
+  rest(took_ms) {
+    if (this.closed) return;
+    this.pause = setTimeout(() => {
+      this.resting = false;
+      if (!this.wanted_again) return;
+      this.wanted_again = false;
+      this.draw_soon();
+    }, took_ms < quick_ms ? 0 : took_ms / 2);
   }
 
   forget() {
@@ -411,6 +435,8 @@ export class RobotView {
 
   close() {
     cancelAnimationFrame(this.waiting);
+    clearTimeout(this.pause);
+    this.closed = true;
     this.observer.disconnect();
     this.controls.dispose();
     this.scene.traverse((part) => {
