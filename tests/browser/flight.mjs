@@ -3,7 +3,7 @@
 //
 // Real flights and real gateways for tests of the page, each in a folder of its own.
 import {spawn} from 'node:child_process';
-import {mkdtempSync, rmSync} from 'node:fs';
+import {mkdtempSync, readdirSync, readFileSync, rmSync} from 'node:fs';
 import {createServer} from 'node:net';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
@@ -61,10 +61,25 @@ export async function fly({mission = join(missions, 'rokviss'), command = 'run',
   const folder = new_folder();
   const flight = start(folder, [command, join(mission, 'mission.xml'), ...more]);
   const [url] = await flight.says(wait_for);
-  return {url, folder, told: flight.told, gone: flight.gone, async end() {
+  return {url, folder, pid: flight.child.pid, told: flight.told, gone: flight.gone, async end() {
     await flight.end();
     rmSync(folder, {recursive: true, force: true});
   }};
+}
+
+/// The id of the process of `flight` that runs this program: of any flight's there may be several.
+export function process_of(flight, name) {
+  const found = new Map();
+  for (const entry of readdirSync('/proc').filter((one) => /^\d+$/.test(one))) {
+    try {
+      const [, words, rest] = /^\d+ \((.*)\) (.*)$/s.exec(readFileSync(`/proc/${entry}/stat`, 'utf8'));
+      found.set(Number(entry), {name: words, parent: Number(rest.split(' ')[1])});
+    } catch { /* gone meanwhile */ }
+  }
+  const is_of_flight = (pid) => pid === flight.pid || (found.has(pid) && is_of_flight(found.get(pid).parent));
+  // The system keeps 15 letters of a name.
+  const [pid] = [...found.keys()].filter((one) => found.get(one).name === name.slice(0, 15) && is_of_flight(one));
+  return pid;
 }
 
 /// `hirosco ground` beside a flight or without one.

@@ -5,19 +5,15 @@
 // passivity, the store of the log, SAFE ALL, shutdown.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {go, open_browser, open_page} from './browser.mjs';
+import {bring_up, go, holds, open_browser, open_page, small} from './browser.mjs';
 import {fly} from './flight.mjs';
-
-const wait = {timeout: 30000};
-/// A programme on board moves the arm for so long.
-const programme = {timeout: 90000};
 
 describe('an operator with nothing but the page', () => {
   let flight, browser, page;
   before(async () => {
     flight = await fly();
     browser = await open_browser();
-    ({page} = await open_page(browser.context, flight.url));
+    ({page} = await open_page(browser.context, flight.url, small));
     await mode_is('telepresence');
   });
   after(async () => {
@@ -25,15 +21,15 @@ describe('an operator with nothing but the page', () => {
     await flight?.end();
   });
 
-  const mode_is = (name) => page.waitForFunction((wanted) => document.querySelector('[data-test=mode] b')?.textContent === wanted, name, wait);
-  const state_is = (name, state) => page.waitForFunction(([one, wanted]) =>
-    document.querySelector(`[data-test=subsystem-${one}] .state`)?.textContent === wanted, [name, state], wait);
+  const mode_is = (name) => holds(page, (wanted) => document.querySelector('[data-test=mode] b')?.textContent === wanted, name);
+  const state_is = (name, state) => holds(page, ([one, wanted]) =>
+    document.querySelector(`[data-test=subsystem-${one}] .state`)?.textContent === wanted, [name, state]);
 
   /// Fills the form in, waits for "permitted", sends, waits for the verdict.
-  async function command(subsystem, action, values = {}, limit = wait) {
-    await go(page, 'overview');
+  async function command(subsystem, action, values = {}) {
+    await go(page, 'help');
     await go(page, `commands/${subsystem}/${action}`);
-    await page.waitForSelector(`[data-test=send]:has-text("${action}"), [data-test=send]:has-text("to fill in")`, wait);
+    await page.waitForSelector(`[data-test=send]:has-text("${action}"), [data-test=send]:has-text("to fill in")`);
     for (const [name, value] of Object.entries(values)) {
       const field = page.locator(`[data-test=field-${name}]`);
       if (await field.evaluate((node) => node.tagName === 'SELECT')) {
@@ -44,14 +40,14 @@ describe('an operator with nothing but the page', () => {
         await field.fill(String(value));
       }
     }
-    await page.waitForSelector('[data-test=permission].yes', wait);
+    await page.waitForSelector('[data-test=permission].yes');
     await page.click('[data-test=send]');
-    await page.waitForSelector('[data-test=verdict].completed', limit);
+    await page.waitForSelector('[data-test=verdict].completed');
   }
 
   async function to_state(name, state, told = state) {
     await go(page, `subsystems/${name}`);
-    await page.click(`[data-test=go-${state}]`, wait);
+    await page.click(`[data-test=go-${state}]`);
     await state_is(name, told);
   }
 
@@ -74,13 +70,13 @@ describe('an operator with nothing but the page', () => {
     for (const name of both) await to_state(name, 'PreOperational', 'Pre-Operational');
     for (const name of both) {
       await go(page, `subsystems/${name}`);
-      await page.click('[data-test=configure-COUPLED]', wait);
-      await page.waitForFunction(() => document.querySelector('[data-test=configure-COUPLED]').classList.contains('on'), null, wait);
+      await page.click('[data-test=configure-COUPLED]');
+      await holds(page, () => document.querySelector('[data-test=configure-COUPLED]').classList.contains('on'));
     }
     await go(page, 'links');
     for (const link of [1, 2]) {
-      await page.click(`[data-test=link-${link}]:has-text("make")`, wait);
-      await page.waitForSelector(`[data-test=link-${link}]:has-text("cut")`, wait);
+      await page.click(`[data-test=link-${link}]:has-text("make")`);
+      await page.waitForSelector(`[data-test=link-${link}]:has-text("cut")`);
     }
     for (const name of both) await to_state(name, 'SafeOperational', 'Safe-Operational');
     for (const name of both) await to_state(name, 'Operational');
@@ -88,16 +84,13 @@ describe('an operator with nothing but the page', () => {
     await mode_is('telepresence');
   });
 
-  async function bring_up(mode) {
-    await go(page, 'subsystems/MANIPULATOR');
-    await page.selectOption('[data-test=commission-mode]', mode);
-    await page.click('[data-test=commission]');
-    await page.waitForSelector('[data-test=commissioned]', {timeout: 60000});
+  async function to_mode(mode) {
+    await bring_up(page, mode);
     await mode_is(mode);
   }
 
   it('moves the arm alone, hooks a spring and lets it go, displays torques', async () => {
-    await bring_up('standalone');
+    await to_mode('standalone');
     await command('MANIPULATOR', 'SET_GAINS', {KP: 300, KD: 24});
     await command('MANIPULATOR', 'MOVE_TO', {Q1: -0.9, Q2: 1.7, DURATION: 1});
     await command('MANIPULATOR', 'HOLD');
@@ -109,19 +102,19 @@ describe('an operator with nothing but the page', () => {
   });
 
   it('runs the contour and the spring programme on board', async () => {
-    await bring_up('automatic');
-    await command('MANIPULATOR', 'RUN_SCRIPT', {SCRIPT: 1}, programme);
-    await command('MANIPULATOR', 'RUN_SCRIPT', {SCRIPT: 2}, programme);
+    await to_mode('automatic');
+    await command('MANIPULATOR', 'RUN_SCRIPT', {SCRIPT: 1});
+    await command('MANIPULATOR', 'RUN_SCRIPT', {SCRIPT: 2});
   });
 
   it('changes the store of the log, makes all safe and shuts down', async () => {
     await command('SUPERVISOR', 'SET_DATABASE', {STRATEGY: 1});
     await command('SUPERVISOR', 'SAFE_ALL');
     await go(page, 'subsystems/MANIPULATOR');
-    await page.waitForFunction(() => /inhibited/.test(document.querySelector('[data-test=subsystem-MANIPULATOR]').textContent), null, wait);
+    await holds(page, () => /inhibited/.test(document.querySelector('[data-test=subsystem-MANIPULATOR]').textContent));
     await command('SUPERVISOR', 'SET_MODE', {MODE: 'safe'});
     await go(page, 'commands/SUPERVISOR/SHUTDOWN');
-    await page.waitForSelector('[data-test=permission].yes', wait);
+    await page.waitForSelector('[data-test=permission].yes');
     await page.click('[data-test=send]');
     assert.equal(await flight.gone, 0);
   });

@@ -6,10 +6,8 @@ import assert from 'node:assert/strict';
 import {cpSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
-import {open_browser, open_page} from './browser.mjs';
+import {holds, open_browser, open_page, small} from './browser.mjs';
 import {fly, missions, new_folder} from './flight.mjs';
-
-const wait = {timeout: 60000};
 
 describe('the tour', () => {
   // A visitor changes a line of XML: not in the sources.
@@ -19,8 +17,8 @@ describe('the tour', () => {
   const open_tour = async (mission) => {
     flight = await fly({command: 'tour', mission: join(sources, 'missions', mission)});
     await page?.close();
-    ({page} = await open_page(browser.context, flight.url));
-    await page.waitForSelector('[data-test=tour]', wait);
+    ({page} = await open_page(browser.context, flight.url, small));
+    await page.waitForSelector('[data-test=tour]');
   };
   before(async () => {
     browser = await open_browser();
@@ -34,9 +32,9 @@ describe('the tour', () => {
 
   const title = async () => (await page.textContent('[data-test=tour] h3')).replace('✓', '').trim();
   const act = (text) => page.click(`[data-test=tour-act]:has-text("${text}")`);
-  const done = () => page.waitForSelector('[data-test=tour-done]', wait);
+  const done = () => page.waitForSelector('[data-test=tour-done]');
   const next = () => page.click('[data-test=tour-next]');
-  const mode_is = (name) => page.waitForFunction((wanted) => document.querySelector('[data-test=mode] b').textContent === wanted, name, wait);
+  const mode_is = (name) => holds(page, (wanted) => document.querySelector('[data-test=mode] b').textContent === wanted, name);
 
   it('opens at its first step, on a flight that is coupled: the hand moves', async () => {
     assert.match(flight.url, /&tour$/);
@@ -52,9 +50,9 @@ describe('the tour', () => {
     assert.equal(await title(), 'Couple two machines');
     await act('Take apart');
     await mode_is('standalone');
-    await page.waitForFunction(() => document.querySelector('[data-test=subsystem-MANIPULATOR] .state').textContent === 'Operational', null, wait);
+    await holds(page, () => document.querySelector('[data-test=subsystem-MANIPULATOR] .state').textContent === 'Operational');
     await act('MOVE_TO');
-    await page.waitForFunction(() => [...document.querySelectorAll('.toasts p')].some((one) => /MOVE_TO: completed/.test(one.textContent)), null, wait);
+    await holds(page, () => [...document.querySelectorAll('.toasts p')].some((one) => /MOVE_TO: completed/.test(one.textContent)));
     await act('Home, and couple');
     await done();
     await next();
@@ -70,7 +68,7 @@ describe('the tour', () => {
     await done();
     await next();
     assert.equal(await title(), 'Read the story');
-    await page.waitForSelector('[data-test=why] li', wait);
+    await page.waitForSelector('[data-test=why] li');
     await done();
     await next();
   });
@@ -79,7 +77,7 @@ describe('the tour', () => {
     await act('Plug in and couple');
     await mode_is('telepresence');
     for (const [field, text] of [['Q1', '-1'], ['Q2', '1.9'], ['DURATION', '2']]) await page.fill(`[data-test=field-${field}]`, text);
-    await page.waitForSelector('[data-test=permission].no', wait);
+    await page.waitForSelector('[data-test=permission].no');
     await page.click('[data-test=send]');
     await done();
     await next();

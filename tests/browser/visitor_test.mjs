@@ -2,18 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A visitor's first five minutes on a real flight: takes the handle by its shaft, shakes it, pushes the rail by the fingertip and by the
-// handle, pulls the plug, reads what happened, puts the plug in and brings it up by one button, again and again; then the gateway stands
-// still. HIROSCO_RECOVERIES: how often (10). HIROSCO_PICTURES: a folder for pictures of it.
+// handle, pulls the plug, reads what happened, puts the plug in and brings it up by one button; then the gateway stands still. HIROSCO_PICTURES: a folder for pictures of it.
 import assert from 'node:assert/strict';
 import {rmSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
 import {setTimeout as sleep} from 'node:timers/promises';
-import {go, open_browser, open_page} from './browser.mjs';
+import {bring_up, coupled, go, holds, inject, open_browser, open_page} from './browser.mjs';
 import {fly, free_port, ground} from './flight.mjs';
-
-const wait = {timeout: 90000};
-const recoveries = Number(process.env.HIROSCO_RECOVERIES ?? 10);
 
 describe('a visitor', () => {
   let flight, station, browser, page, faults;
@@ -22,9 +18,9 @@ describe('a visitor', () => {
     station = await ground(flight.folder, 'rokviss', await free_port());
     browser = await open_browser();
     ({page, faults} = await open_page(browser.context, station.url, {width: 1440, height: 900}));
-    await page.waitForSelector('[data-test=robot][data-loaded]', wait);
-    await mode_holds();
-    await inject('joystick', 'hand target 0 0');
+    await page.waitForSelector('[data-test=robot][data-loaded]');
+    await coupled(page);
+    await inject(page, 'joystick', 'hand target 0 0');
   });
   after(async () => {
     await browser?.close();
@@ -33,19 +29,14 @@ describe('a visitor', () => {
     if (station) rmSync(flight.folder, {recursive: true, force: true});
   });
 
-  const inject = (device, line) => page.evaluate(([one, words]) => fetch('/api/faults', {method: 'POST', body: JSON.stringify({device: one, line: words}),
-    headers: {'Content-Type': 'application/json', Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}}), [device, line]);
   const picture = (name) => process.env.HIROSCO_PICTURES ? page.screenshot({path: join(process.env.HIROSCO_PICTURES, `${name}.png`)}) : null;
-  const mode_holds = () => page.waitForFunction(() => document.querySelector('[data-test=mode] b')?.textContent === 'telepresence' &&
-    !document.querySelector('[data-test=mode-stopped]') && document.querySelector('[data-test=subsystem-MANIPULATOR] .state')?.textContent === 'Operational' &&
-    document.querySelector('[data-test=subsystem-JOYSTICK] .state')?.textContent === 'Operational', null, wait);
   const force_n = () => page.evaluate(() => Number(/force\s*([\d.]+)/.exec(document.querySelector('.readout')?.textContent ?? '')?.[1] ?? NaN));
   async function nothing_tripped(doing) {
     await sleep(500);
     const text = await page.evaluate(() => [...document.querySelectorAll('[data-test=events] tr')].map((row) => row.textContent).join('\n'));
     assert.doesNotMatch(text, /TORQUE_LIMIT_EXCEEDED|TORQUE_HARD/, doing);
     assert.equal(await page.locator('[data-test=stop-banner]').count(), 0, doing);
-    await mode_holds();
+    await coupled(page);
   }
 
   /// Every place in a part of the picture where the cursor says "grab", from above to below: asked without moving the mouse.
@@ -65,55 +56,67 @@ describe('a visitor', () => {
     assert.ok(found.length > 0, 'there is something to take');
     return found;
   }
+  /// Takes hold of something there; the arm moves meanwhile: a hand that closes on nothing reaches again.
+  async function take(from, to, choose) {
+    for (let reaches = 0; reaches < 20; ++reaches) {
+      const place = choose(await grips(from, to));
+      await page.mouse.move(...place);
+      await page.mouse.down();
+      if (await page.evaluate(() => document.querySelector('[data-test=robot] canvas').style.cursor) === 'grabbing') return place;
+      await page.mouse.up();
+    }
+    return assert.fail('took hold of nothing in 20 reaches');
+  }
+  /// The arm rests and touches nothing: the readout, told five times a second, has said the same for a second.
+  const at_rest = () => holds(page, () => {
+    const told = [...document.querySelectorAll('.readout b')].map((one) => Number(one.textContent.replace('−', '-')).toFixed(2)).join(' ');
+    window.rests_for = told === window.told_before && told.endsWith(' 0.00') ? (window.rests_for ?? 0) + 1 : 0;
+    window.told_before = told;
+    return window.rests_for >= 10;
+  });
   async function shake([x, y], reach_px, times) {
     for (let k = 0; k < times; ++k) {
-      await page.mouse.move(x + (k % 2 ? -1 : 1) * reach_px, y + (k % 3 - 1) * reach_px / 2, {steps: 4});
+      await page.mouse.move(x + (k % 2 ? -1 : 1) * reach_px, y + (k % 3 - 1) * reach_px / 2, {steps: 2});
       await sleep(40);
     }
   }
 
-  it('takes the handle at its shaft and at its ball, drags it a little and shakes it, and nothing trips', async () => {
-    const places = await grips(0.02, 0.45);
-    for (const place of [places.at(-1), places[0], places[Math.floor(places.length / 2)]]) {
-      await page.mouse.move(...place);
-      await page.mouse.down();
-      await page.mouse.move(place[0] + 24, place[1], {steps: 12});
+  for (const [where, choose] of [['at its foot', (places) => places.at(-1)], ['at its ball', (places) => places[0]],
+    ['halfway', (places) => places[Math.floor(places.length / 2)]]]) {
+    it(`takes the handle ${where}, drags it a little and shakes it, and nothing trips`, async () => {
+      const place = await take(0.02, 0.45, choose);
+      await page.mouse.move(place[0] + 24, place[1], {steps: 6});
       await sleep(300);
-      await shake(place, 60, 30);
+      await shake(place, 60, 16);
       await page.mouse.up();
       await nothing_tripped(`taken at ${place}`);
-    }
-  });
+    });
+  }
 
   it('pushes the rail by the handle, feels it, and nothing trips', async () => {
-    const [place] = await grips(0.02, 0.45);
-    await page.mouse.move(...place);
-    await page.mouse.down();
+    const place = await take(0.02, 0.45, (places) => places[0]);
+    let most_n = 0;
     // Down in the picture is the direction of the second axis, that bends the elbow open.
-    await page.mouse.move(place[0], place[1] + 160, {steps: 10});
-    await sleep(2500);
-    await page.mouse.move(place[0], place[1] - 160, {steps: 10});
-    await sleep(2500);
+    for (const reach of [160, -160]) {
+      await page.mouse.move(place[0], place[1] + reach, {steps: 6});
+      for (const end_ms = performance.now() + 2500; performance.now() < end_ms; await sleep(100)) most_n = Math.max(most_n, await force_n());
+    }
     await page.mouse.up();
+    assert.ok(most_n > 5, `felt ${most_n} N`);
     await nothing_tripped('pushed by the handle');
   });
 
   it('pushes the rail by the fingertip as far as the mouse goes, and nothing trips', async () => {
-    await sleep(2000);
-    const places = await grips(0.5, 0.85);
-    const place = places[Math.floor(places.length / 2)];
-    await page.mouse.move(...place);
-    await page.mouse.down();
-    let most_n = 0;
+    await at_rest();
+    const place = await take(0.5, 0.85, (places) => places[Math.floor(places.length / 2)]);
     for (const reach of [28, 80, 200]) {
       await page.mouse.move(place[0] + reach, place[1], {steps: 6});
-      await sleep(1500);
-      most_n = Math.max(most_n, await force_n());
-      if (reach === 80) await picture('pushing');
+      await sleep(1000);
     }
-    await shake([place[0] + 60, place[1]], 50, 20);
+    await holds(page, () => Number(/force\s*([\d.]+)/.exec(document.querySelector('.readout')?.textContent ?? '')?.[1]) > 15);
+    await picture('pushing');
+    await shake([place[0] + 60, place[1]], 50, 16);
     await page.mouse.up();
-    assert.ok(most_n > 15, `felt ${most_n} N`);
     await nothing_tripped('pushed by the fingertip');
   });
 
@@ -121,21 +124,21 @@ describe('a visitor', () => {
     await page.click('[data-test=faults]');
     await page.click('[data-test=fault-joystick-unplug]');
     await page.keyboard.press('Escape');
-    await page.waitForSelector('[data-test=stop-banner]', wait);
-    await page.waitForFunction(() => /were stopped/.test(document.querySelector('[data-test=stop-title]')?.textContent), null, wait);
-    await page.waitForFunction(() => /plan network-down/.test(document.querySelector('[data-test=stop-banner]')?.textContent), null, wait);
+    await page.waitForSelector('[data-test=stop-banner]');
+    await holds(page, () => /were stopped/.test(document.querySelector('[data-test=stop-title]')?.textContent));
+    await holds(page, () => /plan network-down/.test(document.querySelector('[data-test=stop-banner]')?.textContent));
     const banner = await page.textContent('[data-test=stop-banner]');
     assert.match(banner, /JOYSTICK lost its device/);
     assert.match(banner, /MANIPULATOR/);
     assert.match(banner, /within [\d.]+ ms/);
     assert.match(banner, /COMMUNICATION/);
-    await page.waitForSelector('[data-test=mode-stopped]', wait);
-    await page.waitForSelector('[data-test=link].good', wait);
-    await page.waitForSelector('[data-test=stopped-MANIPULATOR]:has-text("plan network-down")', wait);
-    await page.waitForSelector('[data-test=robot-verdict]:has-text("ACTUATORS INHIBITED")', wait);
+    await page.waitForSelector('[data-test=mode-stopped]');
+    await page.waitForSelector('[data-test=link].good');
+    await page.waitForSelector('[data-test=stopped-MANIPULATOR]:has-text("plan network-down")');
+    await page.waitForSelector('[data-test=robot-verdict]:has-text("ACTUATORS INHIBITED")');
     await picture('stopped');
     await page.click('[data-test=stop-why]');
-    await page.waitForSelector('[data-test=why] li', wait);
+    await page.waitForSelector('[data-test=why] li');
     const causes = await page.locator('[data-test=why] li').allTextContents();
     assert.match(causes[0], /Fault injected: joystick unplug/);
     assert.match(causes[1], /JOYSTICK lost its device/);
@@ -145,13 +148,13 @@ describe('a visitor', () => {
 
   it('replays the five seconds before, comes back, and the stop is still latched until it is acknowledged', async () => {
     await page.click('[data-test=stop-replay]');
-    await page.waitForSelector('[data-test=replay-bar]', wait);
-    await page.waitForFunction(() => document.querySelector('[data-test=subsystem-JOYSTICK] .state')?.textContent === 'Operational', null, wait);
+    await page.waitForSelector('[data-test=replay-bar]');
+    await holds(page, () => document.querySelector('[data-test=subsystem-JOYSTICK] .state')?.textContent === 'Operational');
     await page.click('[data-test=live]');
-    await page.waitForSelector('[data-test=stop-banner]', wait);
+    await page.waitForSelector('[data-test=stop-banner]');
     await page.click('[data-test=stop-acknowledge]');
-    await page.waitForSelector('[data-test=stop-banner]', {state: 'detached', ...wait});
-    await page.waitForSelector('[data-test=mode-stopped]', wait);
+    await page.waitForSelector('[data-test=stop-banner]', {state: 'detached'});
+    await page.waitForSelector('[data-test=mode-stopped]');
   });
 
   it('is told the true reason when it cannot be brought up', async () => {
@@ -159,44 +162,33 @@ describe('a visitor', () => {
     await go(page, 'subsystems/MANIPULATOR');
     await page.selectOption('[data-test=commission-mode]', 'telepresence');
     await page.click('[data-test=commission]');
-    await page.waitForSelector('[data-test=commission-failed]', {timeout: 120000});
+    await page.waitForSelector('[data-test=commission-failed]');
     const told = await page.textContent('[data-test=commission-failed]');
     await picture('refused');
-    assert.doesNotMatch(told, /^Stopped at “[^”]*”: not permitted in this state$/, told);
-    await go(page, 'overview');
+    assert.match(told, /JOYSTICK/, told);
+    assert.doesNotMatch(told, /not permitted in this state$|code \d+$/, told);
+    console.log(`told: ${told}`);
   });
 
-  it(`plugs in and brings it up by one button, ${recoveries} times in a row`, async () => {
-    for (let k = 0; k < recoveries; ++k) {
-      await inject('joystick', 'unplug');
-      if (k > 0) await page.waitForSelector('[data-test=stop-banner]', wait);
-      await page.waitForSelector('[data-test=mode-stopped]', wait);
-      await inject('joystick', 'plug');
-      if (await page.locator('[data-test=stop-bring-up]').count() === 0) {
-        // Acknowledged before: the other button does the same.
-        await go(page, 'subsystems/MANIPULATOR');
-        await page.click('[data-test=commission]');
-        await page.waitForSelector('[data-test=commissioned]', {timeout: 120000});
-        await go(page, 'overview');
-      } else {
-        await page.click('[data-test=stop-bring-up]');
-        await page.waitForSelector('[data-test=stop-banner]', {state: 'detached', timeout: 120000});
-      }
-      await mode_holds();
-      await sleep(1000);
-      await mode_holds();
-      assert.equal(await page.locator('[data-test=stop-banner]').count(), 0, `recovery ${k + 1}`);
-    }
+  it('plugs in and brings it up by one button', async () => {
+    await inject(page, 'joystick', 'plug');
+    await bring_up(page, 'telepresence');
+    await go(page, 'overview');
+    await coupled(page);
   });
 
   it('is told that the link is silent while the gateway stands still, and that the picture is old', async () => {
     station.child.kill('SIGSTOP');
-    await page.waitForSelector('[data-test=link].bad:has-text("LINK SILENT")', wait);
-    await page.waitForSelector('[data-test=robot-verdict]:has-text("old")', wait);
+    await page.waitForSelector('[data-test=link].bad:has-text("LINK SILENT")');
+    // The browser counts itself: who stands still says nothing of how old its last word is.
+    for (const least_s of [3, 5]) {
+      await holds(page, (least) => Number(/for (\d+) s/.exec(document.querySelector('[data-test=link]').textContent)?.[1]) >= least, least_s);
+    }
+    await page.waitForSelector('[data-test=robot-verdict]:has-text("old")');
     await picture('silent');
     station.child.kill('SIGCONT');
-    await page.waitForSelector('[data-test=link].good', wait);
-    await mode_holds();
+    await page.waitForSelector('[data-test=link].good');
+    await coupled(page);
   });
 
   it('saw no error of the page', () => assert.deepEqual(faults.filter((one) => !/409|503/.test(one)), []));
