@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/communication/communication.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "hirosco/subsystem/testing/rig.hpp"
+
+namespace hirosco {
+namespace {
+
+using testing::Rig;
+
+std::string descriptor_text() {
+  std::ifstream file{HIROSCO_SOURCE_DIR "/subsystems/communication/communication.xml"};
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// A link with so many packets that nobody takes.
+struct Link {
+  std::size_t waiting{0};
+  bool open{false};
+  int finished{0};
+  int steps{0};
+};
+class Transport final : public GroundTransport {
+ public:
+  explicit Transport(Link& link) : link_{link} { link_.open = true; }
+  ~Transport() override { link_.open = false; }
+  void step(TimePoint) override { ++link_.steps; }
+  [[nodiscard]] std::size_t finish(TimePoint) override {
+    ++link_.finished;
+    return link_.waiting;
+  }
+  void telemetry(Octets) override {}
+  [[nodiscard]] const communication::LinkCounters& counters() const override { return counters_; }
+
+ private:
+  Link& link_;
+  communication::LinkCounters counters_;
+};
+
+struct ClosedLink : ::testing::Test {
+  Link link;
+  std::unique_ptr<Subsystem> author{
+      make_communication([this](communication::GroundTraffic&) -> Result<std::unique_ptr<GroundTransport>> {
+        return std::make_unique<Transport>(link);
+      })};
+  Rig rig{*author, descriptor_text()};
+  testing::Sent way_down;
+
+  void SetUp() override {
+    rig.bring_to(State::SafeOperational);
+    way_down = rig.set_state(State::Offline);
+  }
+  static constexpr std::uint16_t dropped = 204;
+};
+
+TEST_F(ClosedLink, IsOpenUntilAllThatItHasReceivedIsTakenAndReadsNothingMeanwhile) {
+  link.waiting = 3;
+  rig.settle();
+  const int steps = link.steps;
+  for (int i = 0; i < 100; ++i) {
+    rig.advance(4ms);
+    rig.settle(1);
+  }
+  EXPECT_TRUE(link.open);
+  EXPECT_GT(link.finished, 0);
+  EXPECT_EQ(link.steps, steps);
+  EXPECT_EQ(rig.state(), State::HardwareDeinit);
+  link.waiting = 0;
+  rig.settle();
+  EXPECT_FALSE(link.open);
+  EXPECT_EQ(rig.outcome(way_down), "1 3 7");
+  EXPECT_EQ(rig.events(dropped), 0);
+}
+
+TEST_F(ClosedLink, TellsWhatNobodyTookInHalfASecondAndCloses) {
+  link.waiting = 3;
+  rig.settle();
+  rig.advance(600ms);
+  rig.settle();
+  EXPECT_FALSE(link.open);
+  EXPECT_EQ(rig.outcome(way_down), "1 3 7");
+  EXPECT_EQ(rig.heard(dropped), 1);
+}
+
+}  // namespace
+}  // namespace hirosco
