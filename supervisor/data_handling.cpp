@@ -265,10 +265,7 @@ Situation Supervisor::situation_of(std::uint16_t apid) const {
 void Supervisor::handle_telemetry(std::uint16_t from, Octets packet) {
   const auto report = pus::TelemetryView::parse(packet);
   // Who sends is known from the channel (decision 2): a packet with another APID is not passed on.
-  if (!report || report->apid() != from) {
-    ++counts_.misdirected;
-    return;
-  }
+  if (!report || report->apid() != from) return count_unreadable(from);
   ++counts_.telemetry;
   const bool event = report->service() == 5 && report->subtype() <= 4;
   static_cast<void>(parts_.log.append({.kind = event ? LogKind::Event : LogKind::Telemetry,

@@ -19,6 +19,7 @@ namespace {
 
 /// How long a process may live on with its channel closed; what it does then cannot be known.
 constexpr Duration closed_channel_limit = std::chrono::seconds{1};
+constexpr Duration unreadable_period = std::chrono::seconds{1};
 
 /// Events of the supervisor that are about a subsystem: the reaction is that subsystem's, where they are raised.
 constexpr std::array about_subsystems{"PROCESS_DIED", "HANG",      "POWER_REFUSED",
@@ -32,20 +33,35 @@ constexpr std::array about_subsystems{"PROCESS_DIED", "HANG",      "POWER_REFUSE
 /// Events are heard here and nowhere else: whether ST[05] reports one to ground is no matter of recovery (adr 0020).
 void Supervisor::handle_event(std::uint16_t from, Octets message) {
   const auto event = pus::read_event_message(message);
-  if (!event) {
-    ++counts_.misdirected;
-    return;
-  }
+  if (!event) return count_unreadable(from);
   const descriptor::Subsystem& subsystem = from == 1 ? mission_.supervisor : mission_.find_subsystem(from)->subsystem;
   const auto declared = std::ranges::find(subsystem.events, event->id, &descriptor::Event::id);
   const std::string name = declared != subsystem.events.end() ? declared->name : std::to_string(event->id);
-  const std::string text = subsystem.name + " " + std::string{to_text(event->severity)} + " " +
+  // Damage makes nothing harmless that the descriptor calls severe.
+  const Severity severity =
+      declared != subsystem.events.end() ? std::max(event->severity, declared->severity) : event->severity;
+  const std::string text = subsystem.name + " " + std::string{to_text(severity)} + " " +
                            describer_.describe_event(from, message.subspan(pus::event_message_id_at));
   // A report is in the log as the packet that it is.
   if (event->reported == pus::Reported::Yes) parts_.observer.told(parts_.world.clock.onboard(), text);
   else tell(text, from);
-  if (from == 1) return react_to_own(name, event->severity);
-  if (Member* origin = member(from); origin != nullptr && origin->alive()) react(*origin, name, event->severity);
+  if (from == 1) return react_to_own(name, severity);
+  if (Member* origin = member(from); origin != nullptr && origin->alive()) react(*origin, name, severity);
+}
+
+/// What is damaged or claims another sender is no loss: it is counted and told, and what follows is read (findings SF9).
+void Supervisor::count_unreadable(std::uint16_t from) {
+  ++counts_.misdirected;
+  if (Member* origin = member(from)) ++origin->unreadable;
+}
+
+/// The first at once, then once a second how many: who says nothing else fills neither log nor console.
+void Supervisor::tell_unreadable(Member& subject) {
+  if (subject.unreadable == subject.unreadable_told || now_ < subject.next_unreadable_told) return;
+  subject.next_unreadable_told = now_ + unreadable_period;
+  tell(fmt::format("{}: {} messages could not be read", subject.descriptor().name,
+                   subject.unreadable - std::exchange(subject.unreadable_told, subject.unreadable)),
+       subject.apid());
 }
 
 void Supervisor::react(Member& origin, std::string_view event, Severity severity) {
@@ -202,14 +218,13 @@ void Supervisor::watch_ends(bool all) {
     if (!subject.alive() || (!all && !subject.closed_at)) continue;
     if (const auto end = parts_.launcher.ended(subject.process())) {
       receive_from(subject);  // its last words
+      subject.next_unreadable_told = now_;
+      tell_unreadable(subject);
       if (subject.alive()) member_died(subject, *end);
-    } else if (subject.unreadable != subject.unreadable_told) {
-      tell(fmt::format("{}: {} messages could not be read", subject.descriptor().name,
-                       subject.unreadable - std::exchange(subject.unreadable_told, subject.unreadable)),
-           subject.apid());
-    } else if (subject.closed_at && now_ > *subject.closed_at + closed_channel_limit) {
-      parts_.launcher.kill(subject.process());
+      continue;
     }
+    tell_unreadable(subject);
+    if (subject.closed_at && now_ > *subject.closed_at + closed_channel_limit) parts_.launcher.kill(subject.process());
   }
 }
 
@@ -236,7 +251,7 @@ void Supervisor::hear_of(Member& subject, GuardFinding::Kind what) {
   switch (what) {
     case CycleHangs: tell(name + " hangs: its cycle stands still", subject.apid()); break;
     case ServiceHangs: tell(name + " hangs: its service loop stands still", subject.apid()); break;
-    case PageDamaged: tell(name + " hangs: it has overwritten its vital page", subject.apid()); break;
+    case PageDamaged: tell(name + " hangs: its vital or permit page is damaged", subject.apid()); break;
     case Back: return tell(name + " moves again", subject.apid());
     case Killed: return tell(name + " was ended: it did not come back or had not stopped in time", subject.apid());
     default: return;

@@ -292,12 +292,17 @@ void Supervisor::receive_from(Member& member) {
       continue;
     }
     const auto header = pus::read_primary_header(message.packet);
-    if (!header) continue;
+    // Only the ground link brings what ground sent.
+    const bool from_ground = message.kind == MessageKind::GroundTelecommand;
+    if (!header || (from_ground && (!ground_link || !header->telecommand))) {
+      ++member.unreadable;
+      continue;
+    }
     if (!header->telecommand) {
       // Before an answer, what was said before it: the copy of the telecommand that it answers.
       receive_from_self();
       handle_telemetry(member.apid(), message.packet);
-    } else if (message.kind == MessageKind::GroundTelecommand && ground_link) {
+    } else if (from_ground) {
       handle_telecommand({.packet = message.packet, .sender = Sender::Ground, .source = 0, .memory = {}});
       receive_from_self();  // what it said about that: its own backlog must not overflow in a flood
     } else {

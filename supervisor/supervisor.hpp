@@ -162,6 +162,8 @@ class Supervisor final : private Subsystem, private LinkOperator, private Comman
   void recovered(std::uint16_t apid, descriptor::Severity severity);
 
   // subsystem handling
+  void count_unreadable(std::uint16_t from);
+  void tell_unreadable(Member& subject);
   void watch_ends(bool all);  ///< or only those whose channel is closed
   void take_guard_findings();
   void hear_of(Member& member, GuardFinding::Kind what);

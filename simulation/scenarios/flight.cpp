@@ -66,7 +66,8 @@ Flight::Flight(Plan plan) : subsystems_{std::move(plan.subsystems)}, devices_{st
                                                           .devices = devices_,
                                                           .log = log_,
                                                           .observer = story_,
-                                                          .seed = plan.seed});
+                                                          .seed = plan.seed,
+                                                          .wrap_channel = plan.wrap_channel});
 }
 
 std::vector<supervisor::LogRecord> Flight::records() {

@@ -54,6 +54,8 @@ struct Plan {
   /// Texts that stand in for files, by file name.
   std::map<std::string, std::string> files{};
   std::uint64_t seed{1};
+  /// What stands between the supervisor and a member's channel; empty: nothing.
+  std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
 };
 
 /// Edit of rokviss: the hand rests until the test moves it.

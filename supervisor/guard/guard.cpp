@@ -17,6 +17,13 @@ constexpr Duration killed_limit = std::chrono::milliseconds{400};
 /// Findings that nobody takes are those of a supervisor that stands still; the first tell the story.
 constexpr std::size_t most_findings = 1024;
 
+/// Damage of the page neither lowers an epoch, so that devices would not hear of it, nor uses up those that are left.
+void restore_epoch(PermitPage& page, std::uint32_t epoch) noexcept {
+  if (page.epoch.load(std::memory_order_relaxed) == epoch) return;
+  page.go.store(0, std::memory_order_release);
+  page.epoch.store(epoch, std::memory_order_release);
+}
+
 }  // namespace
 
 // --- one member --------------------------------------------------------------------------------------------------------
@@ -30,8 +37,16 @@ std::optional<State> Guard::Watched::state() const noexcept {
 
 bool Guard::Watched::damaged() const noexcept {
   constexpr auto relaxed = std::memory_order_relaxed;
+  // What it demands and how often it cycles follows from its configuration: one that nobody declared is none.
+  const std::uint32_t id = vital->configuration.load(relaxed);
+  const auto declared = [&](const descriptor::Configuration& configuration) { return configuration.id == id; };
+  const bool known = id == 0 || std::ranges::any_of(described->subsystem.configurations, declared);
+  // Nobody but the guard writes what gates: where it finds something else than it wrote, that page is believed no more.
+  const std::uint64_t go = permit->go.load(relaxed);
+  const bool gate = permit->magic == page_magic && permit->version == page_version &&
+                    permit->epoch.load(relaxed) == epoch && (go == 0 || (released && go == permission_word(epoch)));
   return vital->magic != page_magic || vital->version != page_version || !state() || vital->cycling.load(relaxed) > 1 ||
-         vital->realtime.load(relaxed) > 1 || vital->configuration.load(relaxed) == CheckedWord::damaged;
+         vital->realtime.load(relaxed) > 1 || !known || !gate;
 }
 
 std::uint32_t Guard::Watched::hang_limit() const noexcept {
@@ -135,6 +150,7 @@ void Guard::fence(Watched& member) noexcept {
   if (PermitPage* page = member.permit) {
     if (member.vital != nullptr && page->stop.load(std::memory_order_relaxed) == 0)
       page->stopped_at_cycle.store(member.vital->cycles.load(std::memory_order_acquire), std::memory_order_relaxed);
+    restore_epoch(*page, member.epoch);
     page->fence();
     member.epoch = page->epoch.load(std::memory_order_relaxed);
   }
@@ -157,6 +173,7 @@ bool Guard::release(std::uint16_t apid, std::uint64_t seen_fences) {
   const LockGuard lock{mutex_};
   Watched* member = find(apid);
   if (member == nullptr || member->permit == nullptr || member->fences != seen_fences || member->doomed) return false;
+  restore_epoch(*member->permit, member->epoch);
   member->permit->release();
   member->epoch = member->permit->epoch.load(std::memory_order_relaxed);
   member->released = true;

@@ -30,18 +30,18 @@ inline constexpr Duration keeper_patience = std::chrono::seconds{3};
 /// Looks at one counter of the page from time to time.
 class Progress {
  public:
-  /// True while it has moved and then stood still for longer than the patience.
+  /// True while it has moved and then stood still for longer than the patience. A counter that is damaged has moved once.
   [[nodiscard]] bool stands_still(std::uint64_t count, TimePoint now) noexcept {
-    if (count != seen_ || count == 0) {
+    if (count != seen_) {
       seen_ = count;
       moved_ = now;
     }
-    return count != 0 && now - moved_ > keeper_patience;
+    return moved_ && now - *moved_ > keeper_patience;
   }
 
  private:
   std::uint64_t seen_{0};
-  TimePoint moved_{};
+  std::optional<TimePoint> moved_;  ///< empty: it has not begun
 };
 
 struct KeeperPlan {

@@ -10,6 +10,7 @@ void Member::started(LaunchedSubsystem launched) {
   going_down = false;
   closed_at.reset();
   unreadable = unreadable_told = 0;
+  next_unreadable_told = {};
 }
 
 void Member::died() { launched_ = {}; }

@@ -1,0 +1,54 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""What `hirosco` cannot write is no success, and what it cannot make out of its arguments is named: with a code that says
+so, in words, and never by a crash (findings LW15)."""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+HIROSCO = pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco"
+ROKVISS = REPOSITORY / "missions/rokviss/mission.xml"
+USAGE, ENVIRONMENT = 2, 3
+
+
+class Output(unittest.TestCase):
+    def hirosco(self, *words, to=None):
+        """Exit code and what it said; `to` is where its standard output goes."""
+        with tempfile.TemporaryDirectory(prefix="hirosco-output-") as folder:
+            with open(to or os.devnull, "w", encoding="utf-8") as out:
+                done = subprocess.run([HIROSCO, *map(str, words)], stdout=out, stderr=subprocess.PIPE, text=True,
+                                      check=False, cwd=folder,
+                                      env={**os.environ, "NO_COLOR": "1", "XDG_RUNTIME_DIR": folder})
+            return done.returncode, done.stderr
+
+    def refused(self, code, text, *words, to=None):
+        found, said = self.hirosco(*words, to=to)
+        self.assertEqual(found, code, f"{words}: {said}")
+        self.assertIn(text, said)
+
+    def test_a_full_device_is_no_success(self):
+        for words in (("check", ROKVISS), ("check", "--show", ROKVISS),
+                      ("simulate", ROKVISS, "--for", "0.2s"), ("--version",), ("--help",)):
+            with self.subTest(words):
+                self.refused(ENVIRONMENT, "No space left on device", *words, to="/dev/full")
+        self.refused(ENVIRONMENT, "No space left on device", "simulate", ROKVISS, "--for", "0.2s", "--trace", "/dev/full")
+
+    def test_a_seed_that_is_none_is_named(self):
+        for seed in ("-1", "18446744073709551616", "1e3", "x"):
+            self.refused(USAGE, f"not a seed: '{seed}'", "simulate", ROKVISS, "--for", "0.1s", f"--seed={seed}")
+        self.assertEqual(self.hirosco("simulate", ROKVISS, "--for", "0.1s", "--seed=18446744073709551615")[0], 0)
+
+    def test_a_fault_for_nobody_is_named(self):
+        for line, text in (("0.1 kill NOBODY", "no subsystem 'NOBODY'"), ("0.1 nobody unplug", "no device 'nobody'")):
+            self.refused(USAGE, text, "simulate", ROKVISS, "--for", "0.2s", "--at", line)
+
+    def test_a_fault_beyond_its_length_is_named(self):
+        self.refused(USAGE, "at most 255 characters, not 100000", "fault", "robot", "x" * 100_000, "--mission", ROKVISS)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <linux/falloc.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "hirosco/subsystem/pages.hpp"
+
+/// A real subsystem that turns on its supervisor when it is sent SIGUSR2 (findings SF13). It tries to change every page that
+/// it may only read, by everything that the system offers for memory it was handed, and writes what came of each attempt to
+/// hostile.txt. Then it puts a page of its own making, which permits for ever, where the cycle looks for its permission, and
+/// hears and says nothing any more. Linked beside its main() for tests only.
+namespace {
+
+constexpr int channel_number = 3, permit_number = 5;  // as the supervisor's launcher hands them over
+constexpr std::size_t page_octets = 4096;
+
+struct Region {
+  void* at;
+  std::size_t octets;
+  std::string name;
+};
+
+/// Memory that several processes share and this one may only read.
+std::vector<Region> read_only_regions() {
+  std::vector<Region> found;
+  std::FILE* const maps = std::fopen("/proc/self/maps", "re");
+  std::array<char, 512> line;
+  while (maps != nullptr && std::fgets(line.data(), static_cast<int>(line.size()), maps) != nullptr) {
+    std::uintptr_t begin = 0, end = 0;
+    std::array<char, 5> access{};
+    std::array<char, 256> name{};
+    if (std::sscanf(line.data(), "%" SCNxPTR "-%" SCNxPTR " %4s %*s %*s %*s /memfd:%255s", &begin, &end, access.data(),
+                    name.data()) == 4 &&
+        std::strcmp(access.data(), "r--s") == 0)
+      found.push_back({reinterpret_cast<void*>(begin), end - begin, name.data()});
+  }
+  if (maps != nullptr) std::fclose(maps);
+  return found;
+}
+
+class Report {
+ public:
+  explicit Report(const char* path) : file_{std::fopen(path, "we")} {}
+  ~Report() {
+    if (file_ != nullptr) std::fclose(file_);
+  }
+  Report(const Report&) = delete;
+  Report& operator=(const Report&) = delete;
+  void tried(const std::string& what, int done) const {
+    if (file_ != nullptr) std::fprintf(file_, "%s: %s\n", what.c_str(), done != 0 ? "DONE" : "refused");
+  }
+
+ private:
+  std::FILE* file_;
+};
+
+bool maps_writable(int descriptor) {
+  void* const at = ::mmap(nullptr, page_octets, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  if (at == MAP_FAILED) return false;
+  ::munmap(at, page_octets);
+  return true;
+}
+
+bool becomes_writable(int descriptor) {
+  void* const at = ::mmap(nullptr, page_octets, PROT_READ, MAP_SHARED, descriptor, 0);
+  return at != MAP_FAILED && ::mprotect(at, page_octets, PROT_READ | PROT_WRITE) == 0;
+}
+
+void attack_descriptor(const Report& report, const std::string& name, int descriptor) {
+  constexpr std::uint64_t ones = ~std::uint64_t{0};
+  report.tried(name + " write", ::pwrite(descriptor, &ones, sizeof ones, 0) == sizeof ones);
+  report.tried(name + " map writable", maps_writable(descriptor));
+  report.tried(name + " map, then mprotect", becomes_writable(descriptor));
+  const int again = ::open(("/proc/self/fd/" + std::to_string(descriptor)).c_str(), O_RDWR | O_CLOEXEC);
+  if (again >= 0) {
+    report.tried(name + " write when opened again", ::pwrite(again, &ones, sizeof ones, 0) == sizeof ones);
+    report.tried(name + " map writable when opened again", maps_writable(again));
+    ::close(again);
+  }
+  report.tried(name + " shrink", ::ftruncate(descriptor, 0) == 0);
+  report.tried(name + " grow", ::ftruncate(descriptor, 2 * page_octets) == 0);
+  report.tried(name + " punch",
+               ::fallocate(descriptor, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, page_octets) == 0);
+  report.tried(name + " seal", ::fcntl(descriptor, F_ADD_SEALS, F_SEAL_WRITE) == 0);
+}
+
+void attack_mapping(const Report& report, const Region& region) {
+  constexpr std::uint64_t ones = ~std::uint64_t{0};
+  const int memory = ::open("/proc/self/mem", O_RDWR | O_CLOEXEC);
+  report.tried(
+      region.name + " write by way of /proc/self/mem",
+      ::pwrite(memory, &ones, sizeof ones, static_cast<off_t>(reinterpret_cast<std::uintptr_t>(region.at))) > 0);
+  ::close(memory);
+  report.tried(region.name + " madvise remove", ::madvise(region.at, region.octets, MADV_REMOVE) == 0);
+  const bool writable = ::mprotect(region.at, region.octets, PROT_READ | PROT_WRITE) == 0;
+  report.tried(region.name + " mprotect", writable);
+  if (writable) static_cast<void>(::mprotect(region.at, region.octets, PROT_READ));
+}
+
+/// A page that permits under its present epoch for ever, in place of the true one from one access to the next.
+hirosco::PermitPage* put_look_alike(const Region& permit) {
+  const int own = ::memfd_create("look-alike", MFD_CLOEXEC);
+  if (own < 0 || ::ftruncate(own, static_cast<off_t>(permit.octets)) != 0) return nullptr;
+  void* const copy = ::mmap(nullptr, permit.octets, PROT_READ | PROT_WRITE, MAP_SHARED, own, 0);
+  if (copy == MAP_FAILED) return nullptr;
+  std::memcpy(copy, permit.at, permit.octets);
+  if (::mmap(permit.at, permit.octets, PROT_READ, MAP_SHARED | MAP_FIXED, own, 0) == MAP_FAILED) return nullptr;
+  return std::launder(static_cast<hirosco::PermitPage*>(copy));
+}
+
+/// The channel stays open, and nobody reads it or answers.
+void turn_deaf() {
+  std::array<int, 2> silence{};
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, silence.data()) != 0) return;
+  static_cast<void>(::dup(channel_number));
+  static_cast<void>(::dup2(silence[0], channel_number));
+}
+
+void* turn(void* argument) {
+  const int permit = *static_cast<int*>(argument);
+  sigset_t wanted;
+  sigemptyset(&wanted);
+  sigaddset(&wanted, SIGUSR2);
+  int number = 0;
+  ::sigwait(&wanted, &number);
+  hirosco::PermitPage* look_alike = nullptr;
+  {
+    const Report report{"hostile.new"};
+    attack_descriptor(report, "hirosco-permit", permit);
+    const auto regions = read_only_regions();
+    for (const Region& region : regions) attack_mapping(report, region);
+    for (const Region& region : regions)
+      if (region.name == "hirosco-permit") look_alike = put_look_alike(region);
+    report.tried("look-alike", look_alike != nullptr);
+    ::close(permit);
+    turn_deaf();
+  }
+  std::rename("hostile.new", "hostile.txt");
+  while (look_alike != nullptr) {
+    look_alike->heartbeat.fetch_add(1, std::memory_order_release);
+    const timespec pause{0, 1'000'000};
+    ::nanosleep(&pause, nullptr);
+  }
+  return nullptr;
+}
+
+struct Hostile {
+  Hostile() : permit{::fcntl(permit_number, F_DUPFD_CLOEXEC, 16)} {
+    // Blocked before there is another thread: the one that waits for it gets it.
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGUSR2);
+    ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+    pthread_t thread;
+    ::pthread_create(&thread, nullptr, turn, &permit);
+  }
+  int permit;
+} hostile;
+
+}  // namespace

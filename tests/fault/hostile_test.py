@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""A subsystem that turns on its supervisor while its robot pushes: it can change nothing that gates it, and where it looks
+away, makes a permission of its own and hears nothing any more, the robot is stopped without it (findings SF13)."""
+import pathlib
+import signal
+import time
+import unittest
+
+import flight
+
+HOSTILE = "hirosco-hostile-manipulator"
+ORPHANS_GONE_S = 12.0           # the keeper's patience, the grace of orphans that do not end themselves, and their end
+BOTH = ("manipulator", "joystick")
+COMMISSIONING, TELEPRESENCE, COUPLED = 1, 3, 2
+
+
+class Hostile(unittest.TestCase):
+    def fly(self):
+        return flight.MissionCopy({"hirosco-manipulator": HOSTILE})
+
+    def push(self, craft):
+        """The robot pushes on the rail; that does not pass by itself."""
+        craft.fault("joystick", "hand", "cartesian", 0.0226, 0, 0.5)
+        end = time.monotonic() + 15.0
+        while craft.truth("robot")["force"] < 20.0:
+            self.assertLess(time.monotonic(), end, "the robot pushes")
+
+    def turn(self, craft):
+        """It turns; the lines of what it has tried."""
+        craft.kill(HOSTILE, signal.SIGUSR2)
+        report = pathlib.Path(craft.folder) / "hostile.txt"
+        end = time.monotonic() + 15.0
+        while not report.exists():
+            self.assertLess(time.monotonic(), end, "it has made its attempts")
+            time.sleep(0.01)
+        lines = report.read_text().splitlines()
+        report.unlink()
+        return lines
+
+    def assert_nothing_was_changed(self, craft, lines):
+        flight.measure(f"{len(lines) - 1} attempts on pages and links of others")
+        self.assertGreaterEqual(len([line for line in lines if line.startswith("hirosco-permit")]), 12)
+        self.assertEqual([line for line in lines if not line.endswith(": refused")], ["look-alike: DONE"])
+        self.assertEqual(craft.tc("supervisor", "ping")[0], 0)
+        self.assertEqual(craft.tc("joystick", "ping")[0], 0)
+
+    def test_a_stop_reaches_the_robot_of_a_subsystem_that_permits_itself_and_does_not_listen(self):
+        with self.fly() as mission, flight.Flight(mission) as craft:
+            craft.wait_commissioned()
+            for _ in range(2):  # the page of a process that was started again is as good as the first
+                self.push(craft)
+                begin = craft.count()
+                lines = self.turn(craft)
+                self.assert_nothing_was_changed(craft, lines)
+                self.assertGreater(craft.truth("robot")["force"], 20.0, "it pushes on, as nobody stopped it")
+                asked = time.monotonic()
+                done = craft.hirosco("safe")
+                craft.wait_at_rest("robot", asked)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                self.assertIn("ROBOT stopped", done.stdout)
+                self.assertIn("says the device", done.stdout)
+                craft.wait_told("MANIPULATOR died: signal 9", 3.0, begin)
+                craft.wait_told("started MANIPULATOR", 3.0, begin)
+                craft.wait_at_rest("robot", asked)
+                self.bring_up(craft)
+
+    def test_without_a_supervisor_its_robot_stops_too_and_it_is_no_orphan(self):
+        with self.fly() as mission, flight.Flight(mission) as craft:
+            craft.wait_commissioned()
+            self.push(craft)
+            self.assert_nothing_was_changed(craft, self.turn(craft))
+            stopped = craft.kill("hirosco-supervisor", signal.SIGSTOP)
+            craft.wait_at_rest("robot", stopped)
+            self.assertEqual(craft.wait_until_gone(ORPHANS_GONE_S), {})
+            flight.measure(f"everything of the flight gone {time.monotonic() - stopped:.1f} s after its supervisor stopped")
+            self.assertEqual(craft.process.wait(5.0), 4)
+            with flight.Flight(mission, folder=craft.folder) as again:
+                again.wait_commissioned()
+                self.push(again)
+
+    def bring_up(self, craft):
+        time.sleep(0.5)
+        self.do(craft, "supervisor", "SET_MODE", COMMISSIONING)
+        # Who is further on already refuses a step: the states in the end decide.
+        for function, argument in (("SET_STATE", 3), ("CONFIGURE", COUPLED)):
+            for name in BOTH:
+                craft.tc(name, function, argument)
+        for link in (1, 2):
+            craft.tc("supervisor", "LINK", link)
+        for name in BOTH:
+            craft.tc(name, "SET_STATE", 4)
+        for name in BOTH:
+            self.do(craft, name, "SET_STATE", 5)
+        self.do(craft, "supervisor", "SET_MODE", TELEPRESENCE)
+
+    def do(self, craft, subsystem, function, *arguments):
+        code, reports = craft.tc(subsystem, function, *arguments)
+        self.assertEqual(code, 0, f"{subsystem} {function} {arguments}: {reports}")
+
+
+if __name__ == "__main__":
+    flight.main()
