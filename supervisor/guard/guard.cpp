@@ -280,10 +280,15 @@ void Guard::observe_cycle(Watched& member, TimePoint now) {
     return;
   }
   const std::uint64_t cycles = member.vital->cycles.load(std::memory_order_acquire);
-  if (cycles != std::exchange(member.cycles, cycles)) {
+  const bool moves = cycles != std::exchange(member.cycles, cycles);
+  const bool looks = member.vital->seen_epoch.load(std::memory_order_acquire) == member.epoch;
+  if (moves && looks) {
     member.still = 0;
     return;
   }
+  // A cycle that goes on and does not see what it is permitted looks somewhere else (findings SF13).
+  if (moves && ++member.still >= member.hang_limit()) doom(member, GuardFinding::Kind::PageDamaged, now);
+  if (moves) return;
   if (member.still++ == 0 && member.grip) member.processor_time = member.grip->processor_time();
   if (member.still < member.hang_limit()) return;
   Watched& culprit = spinner(member);

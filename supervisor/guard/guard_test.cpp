@@ -57,6 +57,7 @@ struct GuardTest : ::testing::Test {
   std::map<std::uint16_t, Life> lives;
   std::unique_ptr<DataFlow> motor;
   EnableCommand told{};
+  bool looks{true};  ///< cycles look at their permit pages
 
   void SetUp() override {
     clock.set(TimePoint{10s});
@@ -91,7 +92,10 @@ struct GuardTest : ::testing::Test {
            std::optional<DeviceOutput> output = DeviceOutput::Off) {
     for (const TimePoint end = clock.now() + span; clock.now() < end; clock.advance(Guard::period)) {
       guard.beat();
-      for (const std::uint16_t apid : moves) ++lives[apid].vital->cycles;
+      for (const std::uint16_t apid : moves) {
+        ++lives[apid].vital->cycles;
+        if (looks) lives[apid].vital->seen_epoch = lives[apid].permit->epoch.load();
+      }
       for (auto& [apid, life] : lives) ++life.vital->service_steps;
       static_cast<void>(guard.step(clock.now()));
       std::array<std::byte, enable_frame_octets> frame;
@@ -306,6 +310,25 @@ TEST_F(GuardTest, DamageOfAnyWordOfAPermitPageInAnyStatePermitsNothingAndWhatGat
         EXPECT_THAT(kinds(arm), ElementsAre(Kind::PageDamaged)) << to_text(state) << ' ' << at << ' ' << value;
         EXPECT_FALSE(may_move(arm) || told.enabled != 0) << at << ' ' << value;
       });
+}
+
+TEST_F(GuardTest, OneThatGoesOnAndDoesNotLookAtItsPermitPageIsToldAndEnded) {
+  for (const std::uint16_t apid : {arm, hand}) cycling(apid);
+  run(50ms);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  run(1s);
+  EXPECT_THAT(kinds(arm), ElementsAre());
+  looks = false;  // from one cycle to the next it reads a page of its own
+  run(1s);
+  EXPECT_THAT(kinds(arm), ElementsAre()) << "it has seen all that it was told so far";
+  guard.fence(arm);
+  run(150ms);
+  EXPECT_THAT(kinds(arm), ElementsAre());
+  run(100ms);
+  EXPECT_THAT(kinds(arm), ElementsAre(Kind::PageDamaged)) << "after its limit of 20 observations";
+  run(Guard::grace + 10ms);
+  EXPECT_TRUE(lives[arm].process->killed);
+  EXPECT_FALSE(lives[hand].process->killed) << "whom nobody told anything new";
 }
 
 TEST_F(GuardTest, ADamagedEpochIsNeitherTakenOverNorKept) {
