@@ -272,7 +272,9 @@ void damage_in_every_state(GuardTest& test, std::size_t octets, auto&& page_of, 
           test.cycling(arm, static_cast<State>(state));
           test.lives[arm].vital->configuration = 2;
           test.run(10ms);
-          if (released) EXPECT_TRUE(test.guard.release(arm, test.guard.fences(arm)));
+          if (released) {
+            EXPECT_TRUE(test.guard.release(arm, test.guard.fences(arm)));
+          }
           test.run(5ms);
           static_cast<void>(test.guard.take_findings());
           std::uint32_t& hit = reinterpret_cast<std::uint32_t*>(page_of(test.lives[arm]))[word];
@@ -290,7 +292,7 @@ TEST_F(GuardTest, DamageOfAnyWordOfAVitalPageInAnyStatePermitsNothingAndWhatDeci
   damage_in_every_state(
       *this, offsetof(VitalPage, counters), vital,
       [&](State state, bool released, std::size_t at, std::uint32_t value) {
-        if (!released) EXPECT_FALSE(may_move(arm) || told.enabled != 0) << at << ' ' << value;
+        EXPECT_FALSE(!released && (may_move(arm) || told.enabled != 0)) << at << ' ' << value;
         const bool decides = at < offsetof(VitalPage, inhibited) ||
                              (at >= offsetof(VitalPage, realtime) && at < offsetof(VitalPage, period_ns));
         if (!decides) return;
@@ -303,7 +305,7 @@ TEST_F(GuardTest, DamageOfAnyWordOfAPermitPageInAnyStatePermitsNothingAndWhatGat
   const auto permit = [](Life& life) { return life.permit; };
   damage_in_every_state(
       *this, sizeof(PermitPage), permit, [&](State state, bool released, std::size_t at, std::uint32_t value) {
-        if (!released) EXPECT_FALSE(may_move(arm) || told.enabled != 0) << at << ' ' << value;
+        EXPECT_FALSE(!released && (may_move(arm) || told.enabled != 0)) << at << ' ' << value;
         const bool gates = at < offsetof(PermitPage, stop) ||
                            (at >= offsetof(PermitPage, go) && at < offsetof(PermitPage, mode_epoch));
         if (!gates) return;
