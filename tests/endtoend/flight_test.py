@@ -90,10 +90,6 @@ class MissionOverride(unittest.TestCase):
                 rokviss.fault("joystick", "hand", "cartesian", 0.0226, 0, 0.5)      # comes to 6.7 N m
                 told = rokviss.wait_told("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED", 3.0, begin).told
                 self.assertIn("LIMIT=6 N m", told)
-                # The log is searched in the words that are shown, whatever their case.
-                for word in ("TORQUE_LIMIT_EXCEEDED", "torque_limit_ex", "limit=6 n m"):
-                    found = [record["text"] for record in rokviss.log("--text", word)]
-                    self.assertTrue(any("TORQUE_LIMIT_EXCEEDED" in text for text in found), f"{word}: {found}")
                 self.assertEqual(rokviss.end(), 0, rokviss.errors)
 
 
