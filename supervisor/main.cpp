@@ -47,6 +47,7 @@ constexpr Duration log_start_limit = 3s;
 
 struct Options {
   std::filesystem::path mission;
+  std::filesystem::path log;         ///< empty = as the mission says
   std::filesystem::path runtime;     ///< folder of this flight: sockets, what was injected
   Console::Style style{Console::Style::Text};
 };
@@ -56,6 +57,7 @@ struct Options {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word{argv[i]};
     if (word == "--mission" && i + 1 < argc) options.mission = argv[++i];
+    else if (word == "--log" && i + 1 < argc) options.log = argv[++i];
     else if (word == "--runtime" && i + 1 < argc) options.runtime = argv[++i];
     else if (word == "--json") options.style = Console::Style::Json;
     else if (word == "--quiet") options.style = Console::Style::Quiet;
@@ -149,7 +151,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   SystemFlowFactory flows;
   SystemLauncher launcher;
   const auto strategy = from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);
-  const auto log_path = std::filesystem::path{mission.database.path};
+  const auto log_path = options.log.empty() ? std::filesystem::path{mission.database.path} : options.log;
   auto log_progress = WakeEvent::create();
   auto guard_found = WakeEvent::create();
   if (!log_progress || !guard_found) return exit_environment;

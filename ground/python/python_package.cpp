@@ -363,7 +363,8 @@ class SubsystemClass {
   text += mission_about(catalogue);
   text +=
       "\n    def __init__(self, host: _t.Optional[str] = None, port: _t.Optional[int] = None, "
-      "timeout: float = 5.0) -> None:\n        super().__init__(host, port, timeout)\n";
+      "timeout: float = 5.0,\n                 instance: _t.Optional[str] = None) -> None:\n"
+      "        super().__init__(host, port, timeout, instance)\n";
   return text + made + "        self._subsystems = (" + all + ")\n        self._start()\n";
 }
 

@@ -12,8 +12,11 @@ import collections
 import contextlib
 import dataclasses
 import datetime
+import fcntl
 import math
 import numbers
+import os
+import pathlib
 import random
 import socket
 import struct
@@ -77,6 +80,40 @@ class CommandFailed(HiroscoError):
     @property
     def parameters(self) -> Dict[str, Any]:
         return self.verification.parameters
+
+
+# --- flights on this computer ----------------------------------------------------------------------------------------
+
+def flights(folder: Optional[str] = None) -> List[Dict[str, str]]:
+    """Your flights on this computer: instance, mission, telemetry ("HOST:PORT"), log and more (docs/adr/0037)."""
+    found = []
+    with contextlib.suppress(OSError):
+        for path in sorted(pathlib.Path(folder or f"/tmp/hirosco-flights-{os.getuid()}").iterdir()):
+            with contextlib.suppress(OSError, UnicodeDecodeError), path.open(encoding="utf-8") as file:
+                # Who flies has the file locked; looking takes no lock.
+                query = struct.pack("hhqqi4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
+                if struct.unpack("hhqqi4x", fcntl.fcntl(file, fcntl.F_OFD_GETLK, query))[0] == fcntl.F_UNLCK:
+                    continue
+                entry = dict(line.split("=", 1) for line in file.read().splitlines() if "=" in line)
+                if entry.get("instance") == path.name:
+                    found.append(entry)
+    return found
+
+
+def find_flight(mission: str, instance: Optional[str] = None,
+                folder: Optional[str] = None) -> Optional[Dict[str, str]]:
+    """The flight of this mission; None when none is in the air. LinkLost: the instance does not fly, or several do."""
+    known = flights(folder)
+    of_mission = [flight for flight in known if flight.get("mission") == mission]
+    meant = [flight for flight in of_mission if instance in (None, flight["instance"])]
+    if len(meant) == 1:
+        return meant[0]
+    names = ", ".join(f"{flight['instance']} ({flight.get('mission')})" for flight in known) or "nothing"
+    if instance is not None:
+        raise LinkLost(f"no instance {instance!r} of {mission} flies; on this computer: {names}")
+    if meant:
+        raise LinkLost(f"{len(meant)} flights of {mission} are in the air: say instance=...; on this computer: {names}")
+    return None
 
 
 # --- packets ---------------------------------------------------------------------------------------------------------
@@ -514,8 +551,10 @@ class Craft:
     _subsystems: Tuple[Subsystem, ...] = ()
     kept_events = 10_000
 
-    def __init__(self, host: Optional[str] = None, port: Optional[int] = None, timeout: float = 5.0) -> None:
-        """Connects. LinkLost: nobody answers there."""
+    def __init__(self, host: Optional[str] = None, port: Optional[int] = None, timeout: float = 5.0,
+                 instance: Optional[str] = None) -> None:
+        """Connects: to the flight of this mission on this computer, to that of this name (`hirosco run --instance`), or
+        to `host` and `port`. LinkLost: nobody answers there, or it is not clear which flight is meant."""
         self.source = random.randint(FIRST_SOURCE, LAST_SOURCE)
         self.events: "collections.deque[Event]" = collections.deque(maxlen=self.kept_events)
         self.received = self.damaged = 0
@@ -525,6 +564,11 @@ class Craft:
         self._count = random.randrange(1 << 14)
         self._lost: Optional[str] = None
         where = (host or self._about.host, port or self._about.port)
+        if instance is not None or (host is None and port is None):
+            flight = find_flight(self._about.name, instance)
+            if flight and flight.get("telemetry"):
+                there, _, number = flight["telemetry"].rpartition(":")
+                where = (host or there, port or int(number))
         try:
             self._socket = socket.create_connection(where, timeout)
         except OSError as error:

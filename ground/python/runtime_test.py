@@ -3,14 +3,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The runtime of exported clients against the test vectors of the packet library, and against a peer that answers by a
 script; against a spacecraft it flies in tests/ground/python_client_test.py."""
+import fcntl
 import json
 import math
 import pathlib
 import re
 import socket
 import struct
+import tempfile
 import threading
 import unittest
+import unittest.mock
 
 import runtime
 from runtime import (ArgumentError, CommandFailed, Craft, EventKind, Field, Function, Layout, LinkLost, MissionAbout,
@@ -156,6 +159,60 @@ class Peer:
 
     def verify(self, request, subtype, data=b""):
         self.tell(1, subtype, request[:4] + data, int.from_bytes(request[9:11], "big"))
+
+
+class Registry(unittest.TestCase):
+    """The flights of this computer, as `hirosco run` enters them (docs/adr/0037)."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="hirosco-flights-test-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def fly(self, instance, mission="SMALL", telemetry="127.0.0.1:31115"):
+        path = self.folder / instance
+        path.write_text(f"instance={instance}\nmission={mission}\ntelemetry={telemetry}\nlog=/l/a=b.db\n")
+        lock = path.open("r+")
+        self.addCleanup(lock.close)
+        fcntl.fcntl(lock, fcntl.F_OFD_SETLK, struct.pack("hhqqi4x", fcntl.F_WRLCK, 0, 0, 0, 0))
+        return lock
+
+    def test_who_has_its_entry_locked_flies(self):
+        self.assertEqual(runtime.flights(str(self.folder / "none")), [])
+        lock = self.fly("one")
+        (self.folder / "over").write_text("instance=over\nmission=SMALL\ntelemetry=127.0.0.1:1\n")
+        (self.folder / "binary").write_bytes(b"\xff\0")
+        for _ in range(2):
+            self.assertEqual([flight["instance"] for flight in runtime.flights(str(self.folder))], ["one"])
+        self.assertEqual(runtime.flights(str(self.folder))[0]["log"], "/l/a=b.db")
+        lock.close()
+        self.assertEqual(runtime.flights(str(self.folder)), [])
+
+    def test_the_only_flight_of_the_mission_is_meant_else_a_name_is_asked_for(self):
+        find = lambda **which: runtime.find_flight("SMALL", folder=str(self.folder), **which)
+        self.assertIsNone(find())
+        self.fly("hello", mission="HELLO")
+        self.assertIsNone(find())
+        self.fly("one")
+        self.assertEqual(find()["instance"], "one")
+        self.fly("two", telemetry="127.0.0.1:31215")
+        with self.assertRaisesRegex(LinkLost, "2 flights of SMALL are in the air: say instance"):
+            find()
+        self.assertEqual(find(instance="two")["telemetry"], "127.0.0.1:31215")
+        for unknown in ("three", "hello"):
+            with self.assertRaisesRegex(LinkLost, f"no instance '{unknown}' of SMALL flies; on this computer: hello"):
+                find(instance=unknown)
+
+    def test_a_client_connects_to_the_flight_that_is_meant(self):
+        peer = Peer()
+        flight = {"instance": "two", "telemetry": f"127.0.0.1:{peer.port}"}
+        about = MissionAbout("SMALL", "127.0.0.1", 1, "ARM", (), (), ())
+        small = type("Small", (Craft,), {"_about": about})
+        with unittest.mock.patch.object(runtime, "find_flight", lambda mission, instance: flight):
+            craft = small(instance="two")
+        self.addCleanup(craft._socket.close)
+        peer.accept()                           # the other port is closed, so it was this one
+        self.addCleanup(peer.socket.close)
 
 
 class Client(unittest.TestCase):

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
-#include <string>
+#include <cstdlib>
+#include <string_view>
 
 #include "hirosco/subsystem/run.hpp"
 #include "subsystems/communication/communication.hpp"
@@ -24,19 +24,14 @@ class TcpTransport final : public GroundTransport {
   std::unique_ptr<communication::TcpServer> server_;
 };
 
-[[nodiscard]] std::uint16_t port_of(const char* variable, std::uint16_t fallback) {
+[[nodiscard]] std::string_view given(const char* variable) {
   const char* text = std::getenv(variable);
-  if (text == nullptr) return fallback;
-  const std::string_view digits{text};
-  std::uint16_t port = fallback;
-  std::from_chars(digits.data(), digits.data() + digits.size(), port);
-  return port;
+  return text != nullptr ? text : "";
 }
 
 Result<std::unique_ptr<GroundTransport>> open_tcp(communication::GroundTraffic& traffic) {
-  communication::TcpServer::Options options;
-  options.telemetry_port = port_of("HIROSCO_TELEMETRY_PORT", options.telemetry_port);
-  options.telecommand_port = port_of("HIROSCO_TELECOMMAND_PORT", options.telecommand_port);
+  HIROSCO_TRY_LET(const auto options, communication::TcpServer::at(given(communication::telemetry_address_variable),
+                                                                   given(communication::telecommand_address_variable)));
   HIROSCO_TRY_LET(auto server, communication::TcpServer::open(options, traffic));
   return std::make_unique<TcpTransport>(std::move(server));
 }

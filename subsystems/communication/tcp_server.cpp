@@ -10,6 +10,7 @@
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <charconv>
 #include <utility>
 
 namespace hirosco::communication {
@@ -35,7 +36,26 @@ Result<in_addr> loopback_address(const std::string& text) {
   return address;
 }
 
+Result<> split(std::string_view text, std::string& host, std::uint16_t& port) {
+  if (text.empty()) return ok();
+  const auto colon = text.rfind(':');
+  if (colon == std::string_view::npos || colon == 0)
+    return fail(ErrorCode::InvalidArgument, "an address of the ground link is HOST:PORT");
+  const auto [end, problem] = std::from_chars(text.data() + colon + 1, text.data() + text.size(), port);
+  if (problem != std::errc{} || end != text.data() + text.size())
+    return fail(ErrorCode::InvalidArgument, "port of the ground link");
+  host = text.substr(0, colon);
+  return ok();
+}
+
 }  // namespace
+
+Result<TcpServer::Options> TcpServer::at(std::string_view telemetry, std::string_view telecommand) {
+  Options options;
+  HIROSCO_TRY(split(telemetry, options.address, options.telemetry_port));
+  HIROSCO_TRY(split(telecommand, options.telecommand_address, options.telecommand_port));
+  return options;
+}
 
 TcpServer::TcpServer(const Options& options, GroundTraffic& traffic) : traffic_{traffic}, clients_{options.limits} {}
 TcpServer::~TcpServer() = default;
@@ -51,12 +71,13 @@ Result<std::unique_ptr<TcpServer>> TcpServer::open(const Options& options, Groun
 }
 
 Result<> TcpServer::listen_on(GroundPort port, const Options& options) {
-  HIROSCO_TRY_LET(const in_addr host, loopback_address(options.address));
+  const bool telemetry = port == GroundPort::TelemetryAndTelecommands;
+  const bool same = telemetry || options.telecommand_address.empty();
+  HIROSCO_TRY_LET(const in_addr host, loopback_address(same ? options.address : options.telecommand_address));
   FileDescriptor listener{::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
   if (!listener) return fail(ErrorCode::SystemFailure, "socket of the ground link", errno);
   const int yes = 1;
   ::setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  const bool telemetry = port == GroundPort::TelemetryAndTelecommands;
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr = host;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/result.hpp"
@@ -14,6 +15,11 @@
 #include "subsystems/communication/ground_link.hpp"
 
 namespace hirosco::communication {
+
+/// In the environment of the subsystem: HOST:PORT at which it listens, as `<Ground>` of the mission and the instance of the
+/// flight have it (adr 0037).
+inline constexpr const char* telemetry_address_variable = "HIROSCO_TELEMETRY_ADDRESS";
+inline constexpr const char* telecommand_address_variable = "HIROSCO_TELECOMMAND_ADDRESS";
 
 /// The sockets of the ground link: two listening ports on a loopback address, nothing blocks, no thread of its own.
 /// Its owner waits for `descriptor()` to become readable or for the time that `step` named, then calls `step`.
@@ -24,11 +30,14 @@ class TcpServer {
  public:
   struct Options {
     std::string address{"127.0.0.1"};  ///< an IPv4 address within 127.0.0.0/8
+    std::string telecommand_address{};  ///< of the port for telecommands only; empty = the same
     std::uint16_t telemetry_port{10'015};  ///< 0: any free one
     std::uint16_t telecommand_port{10'025};
     GroundClients::Limits limits{};
   };
 
+  /// Where to listen by addresses HOST:PORT; an empty one leaves its defaults. InvalidArgument: it is none.
+  [[nodiscard]] static Result<Options> at(std::string_view telemetry, std::string_view telecommand);
   /// NotPermitted: not a loopback address. SystemFailure: errno (port taken). `traffic` outlives the server.
   [[nodiscard]] static Result<std::unique_ptr<TcpServer>> open(const Options& options, GroundTraffic& traffic);
   ~TcpServer();

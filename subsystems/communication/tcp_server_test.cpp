@@ -156,6 +156,38 @@ TEST_F(TcpServerTest, RefusesEveryAddressButLoopback) {
   EXPECT_TRUE(TcpServer::open({.address = "127.0.0.2", .telemetry_port = 0, .telecommand_port = 0}, echo_));
 }
 
+TEST_F(TcpServerTest, ListensWhereItIsToldByAddresses) {
+  const auto options = TcpServer::at("127.0.0.3:31015", "127.0.0.2:31025");
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->address, "127.0.0.3");
+  EXPECT_EQ(options->telemetry_port, 31015);
+  EXPECT_EQ(options->telecommand_address, "127.0.0.2");
+  EXPECT_EQ(options->telecommand_port, 31025);
+  EXPECT_EQ(TcpServer::at("", "")->telemetry_port, 10015) << "nobody says";
+  for (const char* address : {"127.0.0.1", "127.0.0.1:", "127.0.0.1:x", "127.0.0.1:70000", ":10015", "127.0.0.1:1 "})
+    EXPECT_FALSE(TcpServer::at(address, "")) << address;
+}
+
+TEST_F(TcpServerTest, ListensForTelecommandsAtAnotherAddressThanForTelemetry) {
+  Echo echo;
+  auto server =
+      TcpServer::open(
+          {.address = "127.0.0.3", .telemetry_port = 0, .telecommand_address = "127.0.0.2", .telecommand_port = 0},
+          echo)
+          .value();
+  const auto connects = [&](const char* host, GroundPort port) {
+    const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(server->port(port));
+    ::inet_pton(AF_INET, host, &address.sin_addr);
+    return ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  };
+  EXPECT_TRUE(connects("127.0.0.3", GroundPort::TelemetryAndTelecommands));
+  EXPECT_TRUE(connects("127.0.0.2", GroundPort::TelecommandsOnly));
+  EXPECT_FALSE(connects("127.0.0.3", GroundPort::TelecommandsOnly));
+}
+
 TEST_F(TcpServerTest, ReportsAPortThatIsTaken) {
   const auto second = TcpServer::open({.telemetry_port = port(), .telecommand_port = 0}, echo_);
   ASSERT_FALSE(second);

@@ -107,13 +107,13 @@ class Line:
 class Flight:
     """`with Flight() as flight:` — at the end of the block the flight is shut down in order if it still runs."""
 
-    def __init__(self, mission=ROKVISS, binaries=None, prefix=(), environment=None, folder=None, owner=None):
+    def __init__(self, mission=ROKVISS, binaries=None, prefix=(), environment=None, folder=None, owner=None, instance=None):
         self.mission, self.binaries = str(mission), pathlib.Path(binaries or BINARIES)
         self.prefix, self.extra = list(prefix), dict(environment or {})
         self.mark = uuid.uuid4().hex
         self.own_folder = folder is None
         self.folder = pathlib.Path(folder or tempfile.mkdtemp(prefix="hirosco-flight-"))
-        self.owner = owner
+        self.owner, self.instance = owner, instance
         self.lines, self.process = [], None
         self._arrived = threading.Condition()
         self._ended = False
@@ -123,7 +123,7 @@ class Flight:
 
     def __enter__(self):
         free_by = time.monotonic() + 3.0        # a killed process closes its sockets a moment after it is gone
-        while listens(PORT):
+        while self.instance is None and listens(PORT):    # one with a name of its own takes free ports
             if time.monotonic() > free_by:
                 raise RuntimeError(f"something listens on port {PORT} already: another flight?")
             time.sleep(0.05)
@@ -135,7 +135,8 @@ class Flight:
         self.environment = {**os.environ, "XDG_RUNTIME_DIR": str(runtime), "NO_COLOR": "1", MARK: self.mark, **self.extra}
         self.started = time.monotonic()
         self.process = subprocess.Popen(
-            [*self.prefix, str(self.binaries / "hirosco"), "run", self.mission, "--json", "--no-ground"], cwd=self.folder,
+            [*self.prefix, str(self.binaries / "hirosco"), "run", self.mission, "--json", "--no-ground", *self._which()],
+            cwd=self.folder,
             env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.errors = []
         self._readers = [threading.Thread(target=self._read_lines, daemon=True),
@@ -199,6 +200,16 @@ class Flight:
         for text in self.process.stderr:
             self.errors.append(text.decode(errors="replace").rstrip())
 
+    def _which(self):
+        return [] if self.instance is None else ["--instance", self.instance]
+
+    def place(self):
+        """What a flight with a name of its own says first: its instance, telemetry, telecommand, log and folder."""
+        line = self.wait_line(lambda l: "instance" in l.content, 10.0)
+        if line is None:
+            raise AssertionError("it does not say where it is")
+        return line.content
+
     # What is told.
 
     def story(self):
@@ -253,11 +264,11 @@ class Flight:
     def tc(self, subsystem, function, *arguments, seconds=30.0):
         """`hirosco tc`: (exit code, ["1,1", "1,3", ...])."""
         done = self.hirosco("tc", subsystem, function, *map(str, arguments), "--mission", self.mission, "--json",
-                            seconds=seconds)
+                            *self._which(), seconds=seconds)
         return done.returncode, [json.loads(line)["report"] for line in done.stdout.splitlines() if line.startswith("{")]
 
     def fault(self, device, *words):
-        done = self.hirosco("fault", device, *map(str, words), "--mission", self.mission)
+        done = self.hirosco("fault", device, *map(str, words), "--mission", self.mission, *self._which())
         if done.returncode != 0:
             raise AssertionError(f"hirosco fault {device} {words}: {done.stdout}{done.stderr}")
         return done.stdout.strip()
@@ -279,7 +290,7 @@ class Flight:
 
     def log(self, *words, last=100000):
         """The texts of the log's records, oldest first."""
-        done = self.hirosco("log", "--mission", self.mission, "--json", "--last", str(last), *words)
+        done = self.hirosco("log", "--mission", self.mission, "--json", "--last", str(last), *self._which(), *words)
         if done.returncode != 0:
             raise AssertionError(f"hirosco log: {done.stderr}")
         return [json.loads(line) for line in done.stdout.splitlines()]

@@ -50,9 +50,8 @@ using Options = std::map<std::string, std::string>;
 
 /// Beside the log that the supervisor writes.
 [[nodiscard]] fs::path archive_of(const descriptor::Mission& mission) {
-  fs::path path = mission.database.path;
-  if (path.empty()) path = "log/" + mission.name + ".db";
-  return path.replace_filename(path.stem().string() + "-ground.db");
+  const fs::path& log = mission.database.path;
+  return tools::archive_beside(log.empty() ? fs::path{"log/" + mission.name + ".db"} : log);
 }
 
 [[nodiscard]] fs::path page_folder() {
@@ -115,7 +114,7 @@ constexpr std::uint16_t tried_ports = 20;
   const auto server = listen(server_options, option(options, "--port"));
   if (!server) return tools::exit_environment;
   HttpServer& shell = **server;
-  const fs::path devices = tools::runtime_folder(mission);
+  const fs::path devices = option(options, "--devices", tools::runtime_folder(mission.name).string());
   Surroundings outside;
   outside.send = [&](Octets packet) { return shell.send(packet); };
   outside.ask_device = [&](const std::string& device, const std::string& line, auto done) {

@@ -24,6 +24,7 @@ inline constexpr int exit_internal = 4;
 
 struct RunOptions {
   std::string mission;
+  std::string instance;              ///< empty = the mission's name (adr 0037)
   std::optional<Duration> run_for;
   bool quiet{false};
   bool json{false};
@@ -63,11 +64,12 @@ struct ReportOptions {
 };
 int report(const ReportOptions& options);
 
-/// How clients reach the spacecraft.
+/// How clients reach the spacecraft. What is empty is that of the one that flies, else as rokviss says.
 struct Connection {
-  std::string mission{"rokviss"};
-  std::string address{"127.0.0.1"};
-  std::uint16_t port{10'015};
+  std::string mission;
+  std::string instance;
+  std::string host;
+  std::uint16_t port{0};
   bool json{false};
 };
 struct TelecommandOptions {
@@ -81,8 +83,9 @@ int telecommand(const TelecommandOptions& options);
 int status(const Connection& connection);
 
 struct LogOptions {
-  std::string mission{"rokviss"};
-  std::string path;                  ///< of the store; empty = the mission's
+  std::string mission;               ///< as for a connection
+  std::string instance;
+  std::string path;                  ///< of the store; empty = of the one that flies, else the mission's
   std::optional<std::uint16_t> apid;
   std::optional<std::uint8_t> service;
   std::string text;
@@ -92,7 +95,8 @@ struct LogOptions {
 int log(const LogOptions& options);
 
 struct FaultOptions {
-  std::string mission{"rokviss"};
+  std::string mission;               ///< as for a connection
+  std::string instance;
   std::string device;
   std::vector<std::string> words;
 };
@@ -100,6 +104,7 @@ int fault(const FaultOptions& options);
 
 struct SafeOptions {
   std::string mission;               ///< empty = all that fly
+  std::string instance;
 };
 /// Stops every actuator through the local socket of a flight's guard. 0: all have stopped, 1: somebody did not confirm,
 /// 3: nobody answered, and the keeper was signalled to do it.
@@ -109,11 +114,12 @@ int safe(const SafeOptions& options);
 inline constexpr const char* station_needs = "it is built where libboost-dev and nlohmann-json3-dev are installed";
 
 struct GroundOptions {
-  std::string mission{"rokviss"};
+  std::string mission;  ///< as for a connection
+  std::string instance;
   std::optional<std::uint16_t> port;  ///< empty = 8080, or the next free one above
   std::string token;  ///< empty = a new one
   std::string observer_token;  ///< empty = a new one
-  std::string telemetry;  ///< HOST:PORT; empty = as the mission says
+  std::string telemetry;  ///< HOST:PORT; empty = of the one that flies, else as the mission says
   std::string archive;  ///< empty = beside the mission's log
   std::string page;  ///< folder; empty = the one that was built
   bool json{false};
@@ -135,11 +141,14 @@ int export_python(const ExportOptions& options);
 [[nodiscard]] std::filesystem::path find_mission(const std::string& name_or_path);
 /// Reads the mission and prints what is wrong with it to standard error.
 [[nodiscard]] std::optional<descriptor::Mission> load_mission(const std::string& name_or_path);
-/// Where the running mission keeps its lock and the control sockets of its simulated devices.
-[[nodiscard]] std::filesystem::path runtime_folder(const descriptor::Mission& mission);
-/// Where the folders of all missions are, and of which mission one of them is; empty: of none.
+/// Where a flight keeps its lock and the control sockets of its simulated devices. An instance without a name of its own
+/// has its mission's.
+[[nodiscard]] std::filesystem::path runtime_folder(const std::string& instance);
+/// Where the folders of all flights are, and of which instance one of them is; empty: of none.
 [[nodiscard]] std::filesystem::path runtime_root();
-[[nodiscard]] std::string mission_of_folder(const std::filesystem::path& folder);
+[[nodiscard]] std::string instance_of_folder(const std::filesystem::path& folder);
+/// The ground station's archive, beside the log that the supervisor writes.
+[[nodiscard]] std::filesystem::path archive_beside(const std::filesystem::path& log);
 /// The inside of a JSON string: quotes and backslashes escaped, control characters as spaces.
 [[nodiscard]] std::string json_text(std::string_view text);
 

@@ -11,6 +11,7 @@
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -52,19 +53,21 @@ constexpr const char* lines_of_devices =
 }  // namespace
 
 int fault(const FaultOptions& options) {
-  const auto mission = load_mission(options.mission);
-  if (!mission) return exit_finding;
+  const auto found = find_flight("fault", options.mission, options.instance);
+  if (!found) return found.error();
+  const descriptor::Mission& mission = found->mission;
   std::string line;
   for (const std::string& word : options.words) line += (line.empty() ? "" : " ") + word;
   if (line.size() > longest_line || line.find('\n') != std::string::npos) {
     fmt::print(stderr, "hirosco fault: one line of at most {} characters, not {}\n", longest_line, line.size());
     return exit_usage;
   }
-  const auto answer = ask(runtime_folder(*mission) / options.device, line);
+  const auto answer =
+      ask((found->flight ? found->flight->folder : runtime_folder(mission.name)) / options.device, line);
   if (!answer) {
     fmt::print(stderr, "hirosco fault: no simulated device '{}' answers; does {} run? Devices:", options.device,
-               mission->name);
-    for (const auto& device : mission->devices) fmt::print(stderr, " {}", device.name);
+               found->flight ? found->flight->instance : mission.name);
+    for (const auto& device : mission.devices) fmt::print(stderr, " {}", device.name);
     fmt::print(stderr, "\n");
     return exit_environment;
   }

@@ -5,19 +5,24 @@
 #include "hirosco/pus/describe.hpp"
 #include "supervisor/platform/log_store.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
 int log(const LogOptions& options) {
   std::filesystem::path path = options.path;
   std::string strategy = path.extension() == ".log" ? "ascii" : "sqlite";
+  std::optional<descriptor::Mission> mission;
   if (path.empty()) {
-    const auto mission = load_mission(options.mission);
-    if (!mission) return exit_finding;
-    path = mission->database.path;
+    auto found = find_log("log", options.mission, options.instance);
+    if (!found) return found.error();
+    path = std::move(found->path);
+    mission = std::move(found->mission);
     strategy = mission->database.strategy;
+  } else if (const std::string name = options.mission.empty() ? "rokviss" : options.mission;
+             !find_mission(name).empty()) {
+    mission = load_mission(name);
   }
   const auto kind = from_text<supervisor::DatabaseStrategy>(strategy).value_or(supervisor::DatabaseStrategy::Sqlite);
-  const auto mission = find_mission(options.mission).empty() ? std::nullopt : load_mission(options.mission);
   const auto describer = mission ? std::optional<pus::PacketDescriber>{*mission} : std::nullopt;
   const auto text_of = [&](const supervisor::LogRecord& record) {
     if (!describer || record.packet.empty()) return supervisor::describe(record);

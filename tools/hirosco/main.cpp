@@ -39,11 +39,16 @@ using namespace hirosco::tools;
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(number * scale));
 }
 
+void add_instance(CLI::App& command, std::string& instance) {
+  command.add_option("--instance", instance, "Which flight, where several are in the air");
+}
+
 void add_connection(CLI::App& command, Connection& connection) {
-  command.add_option("--mission", connection.mission, "Mission whose descriptors decode the packets")
-      ->capture_default_str();
-  command.add_option("--host", connection.address, "Address of the ground link")->capture_default_str();
-  command.add_option("--port", connection.port, "Port of the ground link")->capture_default_str();
+  command.add_option("--mission", connection.mission,
+                     "Mission whose descriptors decode the packets; by default the one that flies, else rokviss");
+  add_instance(command, connection.instance);
+  command.add_option("--host", connection.host, "Address of the ground link; by default the flight's");
+  command.add_option("--port", connection.port, "Port of the ground link; by default the flight's");
   command.add_flag("--json", connection.json, "One JSON object instead of text");
 }
 
@@ -77,6 +82,8 @@ int read_and_do(int argc, char** argv) {
   std::string run_for;
   auto* run_command = app.add_subcommand("run", "Fly a mission with real processes until Ctrl-C");
   run_command->add_option("mission", run_options.mission, "Name (rokviss, hello) or path of a mission")->required();
+  run_command->add_option("--instance", run_options.instance,
+                          "A name of its own for this flight: log, ports, sockets and devices of its own, too");
   run_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
   run_command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");
   bool no_ground = false;
@@ -144,7 +151,9 @@ int read_and_do(int argc, char** argv) {
 
   LogOptions log_options;
   auto* log_command = app.add_subcommand("log", "Read the supervisor's log");
-  log_command->add_option("--mission", log_options.mission, "Mission whose log is read")->capture_default_str();
+  log_command->add_option("--mission", log_options.mission,
+                          "Mission whose log is read; by default the one that flies, else rokviss");
+  log_command->add_option("--instance", log_options.instance, "Whose log, of those that fly or have flown from here");
   log_command->add_option("--path", log_options.path, "Another log store");
   log_command->add_option("--apid", log_options.apid, "Only this subsystem");
   log_command->add_option("--service", log_options.service, "Only this service");
@@ -159,15 +168,19 @@ int read_and_do(int argc, char** argv) {
   fault_command->add_option("line", fault_options.words, "unplug, plug, freeze MS, corrupt N, hand wander, ...")
       ->required()
       ->allow_extra_args();
-  fault_command->add_option("--mission", fault_options.mission, "Mission that runs")->capture_default_str();
+  fault_command->add_option("--mission", fault_options.mission, "Mission that runs; by default the one that flies");
+  add_instance(*fault_command, fault_options.instance);
   SafeOptions safe_options;
   auto* safe_command =
       app.add_subcommand("safe", "Stop every actuator, past ground link, cycles, queues, disk and mode");
   safe_command->add_option("--mission", safe_options.mission, "Only this mission; by default all that fly here");
+  safe_command->add_option("--instance", safe_options.instance, "Only this flight");
 
   GroundOptions ground_options;
   auto* ground_command = app.add_subcommand("ground", "Serve the ground station's page and API for a flying mission");
-  ground_command->add_option("mission", ground_options.mission, "Name or path of the mission")->capture_default_str();
+  ground_command->add_option("mission", ground_options.mission,
+                             "Name or path of the mission; by default the one that flies, else rokviss");
+  add_instance(*ground_command, ground_options.instance);
   ground_command->add_option("--port", ground_options.port,
                              "Port on the loopback address; by default the first free one from 8080 on");
   ground_command->add_option("--token", ground_options.token,
@@ -179,7 +192,10 @@ int read_and_do(int argc, char** argv) {
   ground_command->add_option("--page", ground_options.page, "Folder with another page");
   ground_command->add_flag("--json", ground_options.json, "The URL as JSON");
   auto* why_command = app.add_subcommand("why", "The chain of causes of the last stop");
-  why_command->add_option("mission", ground_options.mission, "Name or path of the mission")->capture_default_str();
+  why_command->add_option("mission", ground_options.mission,
+                          "Name or path of the mission; by default the one that flies, else rokviss");
+  why_command->add_option("--instance", ground_options.instance,
+                          "Which one, of those that fly or have flown from here");
   why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");
   why_command->add_flag("--json", ground_options.json, "As JSON");
   ExportOptions export_options;

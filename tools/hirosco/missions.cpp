@@ -77,11 +77,13 @@ fs::path runtime_root() {
   return base != nullptr && *base != '\0' ? fs::path{base} : fs::temp_directory_path();
 }
 
-fs::path runtime_folder(const descriptor::Mission& mission) {
-  return runtime_root() / (fmt::format("hirosco-{}-", ::getuid()) + mission.name);
+fs::path runtime_folder(const std::string& instance) {
+  return runtime_root() / (fmt::format("hirosco-{}-", ::getuid()) + instance);
 }
 
-std::string mission_of_folder(const fs::path& folder) {
+fs::path archive_beside(const fs::path& log) { return log.parent_path() / (log.stem().string() + "-ground.db"); }
+
+std::string instance_of_folder(const fs::path& folder) {
   const std::string name = folder.filename().string();
   const std::string begin = fmt::format("hirosco-{}-", ::getuid());
   return name.starts_with(begin) ? name.substr(begin.size()) : std::string{};

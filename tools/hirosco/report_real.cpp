@@ -17,6 +17,7 @@
 #include "hirosco/utilities/os/process.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "tools/hirosco/ground_connection.hpp"
+#include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -105,12 +106,13 @@ void take(Octets octets, Heard& heard) {
 }
 
 /// Listens until the flight closes the link in its end.
-void listen(Process& flight, Heard& heard) {
-  constexpr std::uint16_t port = 10'015;
+void listen(Process& flight, const std::string& mission, Heard& heard) {
   for (;;) {
     const auto ended = flight.poll();
     if (!ended || ended->has_value()) return;
-    auto connection = GroundConnection::open("127.0.0.1", port);
+    const auto place = find_ground_link("report", {.mission = mission, .instance = {}, .host = {}});
+    if (!place) return;
+    auto connection = GroundConnection::open(place->host, place->port);
     if (!connection) {
       std::this_thread::sleep_for(std::chrono::milliseconds{50});
       continue;
@@ -191,7 +193,7 @@ Chapter fly_for_real(const std::filesystem::path& mission, Duration span) {
     return chapter;
   }
   Heard heard;
-  listen(*flight, heard);
+  listen(*flight, mission.string(), heard);
   const auto end = flight->poll();
   if (!end || !end->has_value() || !(*end)->success())
     chapter.findings.problems.emplace_back("the flight did not end in order");

@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
 
+#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "simulation/devices/described_device.hpp"
+#include "subsystems/communication/tcp_server.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/platform/process_launcher.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/readiness.hpp"
 
 namespace hirosco::tools {
@@ -34,6 +34,30 @@ void fix_epoch() {
   ::setenv(flight_epoch_variable, std::to_string(epoch.count()).c_str(), 1);
 }
 
+/// Every process of the flight knows where it belongs, those started again later, too: by environment.
+void tell_children(const FlightEntry& flight) {
+  const auto tell = [](const char* variable, const std::string& value) {
+    if (value.empty()) ::unsetenv(variable);
+    else ::setenv(variable, value.c_str(), 1);
+  };
+  tell(communication::telemetry_address_variable, flight.telemetry);
+  tell(communication::telecommand_address_variable, flight.telecommand);
+  tell(flight_instance_variable, flight.named() ? flight.instance : std::string{});
+}
+
+/// Whoever names a flight has to know where to find what is its own.
+void introduce(const FlightEntry& flight, const RunOptions& options) {
+  if (!flight.named() || options.quiet) return;
+  if (options.json)
+    fmt::print("{{\"instance\":\"{}\",\"telemetry\":\"{}\",\"telecommand\":\"{}\",\"log\":\"{}\",\"folder\":\"{}\"}}\n",
+               flight.instance, flight.telemetry, flight.telecommand, json_text(flight.log.string()),
+               json_text(flight.folder.string()));
+  else
+    fmt::print("instance {}: telemetry {}, telecommands {}, log {}\n", flight.instance, flight.telemetry,
+               flight.telecommand, flight.log.string());
+  std::fflush(stdout);
+}
+
 /// What was injected in the flight before this one.
 void clear_injections(const descriptor::Mission& mission, const std::filesystem::path& folder) {
   std::error_code failed;
@@ -41,19 +65,22 @@ void clear_injections(const descriptor::Mission& mission, const std::filesystem:
     std::filesystem::remove((folder / device.name).string() + ".injected", failed);
 }
 
-/// One flight of a mission at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal and, in
-/// milliseconds, how long the answer to a stop may take.
-[[nodiscard]] FileDescriptor take_lock(const std::filesystem::path& folder, const descriptor::Mission& mission) {
-  FileDescriptor lock{::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)};
-  if (!lock || ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return {};
+/// One flight of an instance at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal, in
+/// milliseconds how long the answer to a stop may take, and which mission this is.
+[[nodiscard]] FileDescriptor take_folder(const std::filesystem::path& folder, const descriptor::Mission& mission) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all, failed);
+  auto lock = take_lock(folder / "lock");
+  if (!lock) return {};
   Duration longest{};
   for (const auto& member : mission.subsystems)
     for (const auto& device : member.subsystem.devices) longest = std::max(longest, device.stop_within);
   // The guard waits for the device, then ends its subsystem and waits for that.
   const auto limit = std::chrono::duration_cast<std::chrono::milliseconds>(longest + std::chrono::seconds{1});
-  const std::string text = fmt::format("{} {}\n", ::getpid(), limit.count());
-  if (::ftruncate(lock.get(), 0) != 0 || ::write(lock.get(), text.data(), text.size()) < 0) return {};
-  return lock;
+  const std::string text = fmt::format("{} {} {}\n", ::getpid(), limit.count(), mission.name);
+  if (::ftruncate(lock->get(), 0) != 0 || ::write(lock->get(), text.data(), text.size()) < 0) return {};
+  return std::move(*lock);
 }
 
 /// One log has one writer, whatever the runtime folder is: its lock stands beside it. Where none can be made the supervisor
@@ -61,8 +88,41 @@ void clear_injections(const descriptor::Mission& mission, const std::filesystem:
 [[nodiscard]] bool take_log_lock(const std::filesystem::path& log, FileDescriptor& lock) {
   std::error_code failed;
   std::filesystem::create_directories(log.parent_path(), failed);
-  lock.reset(::open((log.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
-  return !lock || ::flock(lock.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  auto taken = take_lock(log.string() + ".lock");
+  if (taken) lock = std::move(*taken);
+  return taken || taken.error().code != ErrorCode::Unavailable;
+}
+
+/// The locks of one flight. The supervisor inherits them: where the keeper was killed, nobody else flies with this name,
+/// this log or these ports before its supervisor has ended, too.
+struct Locks {
+  FileDescriptor folder;
+  FileDescriptor log;
+  FileDescriptor registry;
+};
+
+/// Fills in the ports of the flight; empty, and the reason was printed, when it cannot be.
+[[nodiscard]] std::optional<Locks> take_locks(const descriptor::Mission& mission, FlightEntry& flight) {
+  Locks locks;
+  locks.folder = take_folder(flight.folder, mission);
+  if (!locks.folder) {
+    fmt::print(stderr, "hirosco run: {} flies already, or {} cannot be written\n", flight.instance,
+               flight.folder.string());
+    return std::nullopt;
+  }
+  const std::filesystem::path log = instance_log(mission, flight.instance);
+  if (!take_log_lock(log, locks.log)) {
+    fmt::print(stderr, "hirosco run: another flight writes {} already\n", log.string());
+    return std::nullopt;
+  }
+  auto entered = FlightRegistry{}.enter(flight);
+  if (!entered) {
+    fmt::print(stderr, "hirosco run: {}\n", entered.error());
+    return std::nullopt;
+  }
+  flight = std::move(entered->flight);
+  locks.registry = std::move(entered->lock);
+  return locks;
 }
 
 [[nodiscard]] std::optional<ProcessStart> device_start(const descriptor::Mission& mission,
@@ -95,21 +155,17 @@ int run(const RunOptions& options) {
   const auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
   if (!ready(*mission, Platform::Processes)) return exit_environment;
-  const auto folder = runtime_folder(*mission);
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  std::filesystem::permissions(folder, std::filesystem::perms::owner_all, failed);
-  const FileDescriptor lock = take_lock(folder, *mission);
-  if (!lock) {
-    fmt::print(stderr, "hirosco run: {} flies already, or {} cannot be written\n", mission->name, folder.string());
-    return exit_environment;
+  FlightEntry flight = plan_flight(*mission, options.instance.empty() ? mission->name : options.instance);
+  if (!good_instance(flight.instance)) {
+    fmt::print(stderr, "hirosco run: '{}' is no name of a flight: letters, digits, '-' and '_', at most 64\n",
+               flight.instance);
+    return exit_usage;
   }
-  const std::filesystem::path log{mission->database.path};
-  FileDescriptor log_lock;
-  if (!take_log_lock(log, log_lock)) {
-    fmt::print(stderr, "hirosco run: another flight writes {} already\n", log.string());
-    return exit_environment;
-  }
+  const auto locks = take_locks(*mission, flight);
+  if (!locks) return exit_environment;
+  const auto& folder = flight.folder;
+  introduce(flight, options);
+  tell_children(flight);
   clear_injections(*mission, folder);
   fix_epoch();
   supervisor::KeeperPlan plan;
@@ -128,7 +184,10 @@ int run(const RunOptions& options) {
   if (options.ground && !station.empty()) {
     ProcessStart start;
     start.executable = station.string();
-    start.arguments = {"--child", "--mission", mission->file.string()};
+    start.arguments = {"--child", "--mission", mission->file.string(), "--devices", folder.string()};
+    if (!flight.telemetry.empty()) start.arguments.insert(start.arguments.end(), {"--telemetry", flight.telemetry});
+    if (flight.named())
+      start.arguments.insert(start.arguments.end(), {"--archive", archive_beside(flight.log).string()});
     if (options.json) start.arguments.emplace_back("--json");
     if (options.quiet) start.arguments.emplace_back("--quiet");
     if (options.tour) start.arguments.emplace_back("--tour");
@@ -141,10 +200,10 @@ int run(const RunOptions& options) {
   }
   plan.supervisor.executable = program.string();
   plan.supervisor.arguments = {"--mission", mission->file.string(), "--runtime", folder.string()};
-  // Inherited: where the keeper was killed, nobody else flies with this log before its supervisor has ended, too.
+  if (flight.named()) plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--log", flight.log.string()});
   constexpr int first_lock = supervisor::keeper_page_descriptor + 1;
-  plan.supervisor.inherited = {{lock.get(), first_lock}};
-  if (log_lock) plan.supervisor.inherited.push_back({log_lock.get(), first_lock + 1});
+  plan.supervisor.inherited = {{locks->folder.get(), first_lock}, {locks->registry.get(), first_lock + 1}};
+  if (locks->log) plan.supervisor.inherited.push_back({locks->log.get(), first_lock + 2});
   if (options.json) plan.supervisor.arguments.emplace_back("--json");
   if (options.quiet) plan.supervisor.arguments.emplace_back("--quiet");
   return supervisor::keep(std::move(plan));

@@ -18,6 +18,7 @@
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/process.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -31,7 +32,8 @@ enum class Stop : std::uint8_t { All, NotAll, Nobody };
 /// One flight of this user. No descriptor is read for it: what stops a flight does not depend on a file that somebody edits.
 struct Flying {
   std::filesystem::path folder;
-  std::string name;
+  std::string name;  ///< of the instance
+  std::string mission;  ///< as its lock or the registry says
   FileDescriptor socket;  ///< connected to its guard and asked; empty: nobody listens
   int keeper{0};
   std::chrono::milliseconds limit{usual_limit};
@@ -88,19 +90,50 @@ struct Flying {
   return ::lstat(folder.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) && facts.st_uid == ::getuid();
 }
 
-/// All flights that somebody answers for: a guard or a keeper. Each guard has been asked when this returns.
-[[nodiscard]] std::vector<Flying> ask_all(const std::string& mission) {
+/// Where flights of this user may be: in the runtime folder of this terminal, and where the registry says, as another one
+/// may have another.
+[[nodiscard]] std::vector<Flying> candidates() {
   std::vector<Flying> found;
+  const auto add = [&](std::filesystem::path folder, std::string name, std::string mission, int keeper) {
+    if (name.empty() || !ours(folder) || std::ranges::find(found, folder, &Flying::folder) != found.end()) return;
+    found.push_back({.folder = std::move(folder),
+                     .name = std::move(name),
+                     .mission = std::move(mission),
+                     .socket = {},
+                     .keeper = keeper});
+  };
+  for (const FlightEntry& entry : FlightRegistry{}.flights())
+    add(entry.folder, entry.instance, entry.mission, entry.keeper);
   std::error_code failed;
   for (std::filesystem::directory_iterator folders{runtime_root(), failed}, none; !failed && folders != none;
-       folders.increment(failed)) {
-    Flying flight{.folder = folders->path(), .name = mission_of_folder(folders->path()), .socket = {}};
-    if (flight.name.empty() || (!mission.empty() && flight.name != mission) || !ours(flight.folder)) continue;
-    flight.socket = ask_guard(flight.folder / "safe.socket");
+       folders.increment(failed))
+    add(folders->path(), instance_of_folder(folders->path()), {}, 0);
+  for (Flying& flight : found) {
+    std::ifstream lock{flight.folder / "lock"};
+    int keeper = 0;
     std::int64_t limit_ms = 0;
-    if (std::ifstream lock{flight.folder / "lock"}; lock >> flight.keeper >> limit_ms)
+    std::string mission;
+    if (lock >> keeper >> limit_ms) {
+      flight.keeper = keeper;
       flight.limit = std::chrono::milliseconds{std::clamp<std::int64_t>(limit_ms, 0, 120'000)};
-    if (flight.socket || keeper_of(flight)) found.push_back(std::move(flight));
+    }
+    if (lock >> mission) flight.mission = mission;
+    if (flight.mission.empty()) flight.mission = flight.name;
+  }
+  return found;
+}
+
+/// All flights that are meant and that somebody answers for: a guard or a keeper. Each guard has been asked when this
+/// returns. `others` are the names of those that were not meant.
+[[nodiscard]] std::vector<Flying> ask_all(const SafeOptions& wanted, std::vector<std::string>& others) {
+  std::vector<Flying> found;
+  for (Flying& flight : candidates()) {
+    const bool meant = (wanted.instance.empty() || flight.name == wanted.instance) &&
+                       (wanted.mission.empty() || flight.mission == wanted.mission || flight.name == wanted.mission);
+    if (meant) flight.socket = ask_guard(flight.folder / "safe.socket");
+    if (!flight.socket && !keeper_of(flight)) continue;
+    if (meant) found.push_back(std::move(flight));
+    else others.push_back(flight.name);
   }
   return found;
 }
@@ -114,8 +147,14 @@ int safe(const SafeOptions& options) {
     if (!mission) return exit_finding;
     wanted = mission->name;
   }
-  const auto flights = ask_all(wanted);
+  std::vector<std::string> others;
+  const auto flights = ask_all({.mission = wanted, .instance = options.instance}, others);
   const auto asked = std::chrono::steady_clock::now();
+  if (flights.empty() && !others.empty()) {
+    fmt::print(stderr, "hirosco safe: {} does not fly; there are: {}\n",
+               options.instance.empty() ? wanted : options.instance, fmt::join(others, ", "));
+    return exit_environment;
+  }
   if (flights.empty()) {
     fmt::print(stderr, "hirosco safe: nothing flies here\n");
     return exit_environment;

@@ -8,6 +8,7 @@
 #include "hirosco/pus/housekeeping_decoder.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
+#include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -49,16 +50,17 @@ void print_json(const descriptor::Subsystem& subsystem, Listened& listened) {
 }  // namespace
 
 int status(const Connection& connection) {
-  const auto mission = load_mission(connection.mission);
-  if (!mission) return exit_finding;
-  auto link = GroundConnection::open(connection.address, connection.port);
+  const auto place = find_ground_link("status", connection);
+  if (!place) return place.error();
+  const descriptor::Mission& mission = place->mission;
+  auto link = GroundConnection::open(place->host, place->port);
   if (!link) {
-    fmt::print(stderr, "hirosco status: {}:{}: {}\n", connection.address, connection.port, link.error().text);
+    fmt::print(stderr, "hirosco status: {}:{}: {}\n", place->host, place->port, link.error().text);
     return exit_environment;
   }
   std::map<std::uint16_t, pus::HousekeepingDecoder> decoders;
-  decoders.emplace(mission->supervisor.id, pus::HousekeepingDecoder{mission->supervisor});
-  for (const auto& member : mission->subsystems)
+  decoders.emplace(mission.supervisor.id, pus::HousekeepingDecoder{mission.supervisor});
+  for (const auto& member : mission.subsystems)
     decoders.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
   Listened listened;
   const auto end = std::chrono::steady_clock::now() + listening;
@@ -76,8 +78,8 @@ int status(const Connection& connection) {
       for (const auto& value : *values) listened.values[report->apid()][value.name] = value;
   }
   const auto print = connection.json ? print_json : print_text;
-  print(mission->supervisor, listened);
-  for (const auto& member : mission->subsystems) print(member.subsystem, listened);
+  print(mission.supervisor, listened);
+  for (const auto& member : mission.subsystems) print(member.subsystem, listened);
   return exit_ok;
 }
 

@@ -13,6 +13,7 @@
 #include "hirosco/utilities/lower_case.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
+#include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -148,21 +149,21 @@ void print_usage(const descriptor::Function& function) {
 }  // namespace
 
 int telecommand(const TelecommandOptions& options) {
-  const auto mission = load_mission(options.connection.mission);
-  if (!mission) return exit_finding;
-  const auto* subsystem = find_subsystem(*mission, options.subsystem);
+  const auto place = find_ground_link("tc", options.connection);
+  if (!place) return place.error();
+  const descriptor::Mission& mission = place->mission;
+  const auto* subsystem = find_subsystem(mission, options.subsystem);
   if (subsystem == nullptr) return exit_usage;
   const bool ping = lower_case(options.function) == "ping";
   std::vector<std::byte> data;
   if (!ping) {
-    auto encoded = encode(options, *mission, *subsystem);
+    auto encoded = encode(options, mission, *subsystem);
     if (!encoded) return exit_usage;
     data = std::move(*encoded);
   }
-  auto connection = GroundConnection::open(options.connection.address, options.connection.port);
+  auto connection = GroundConnection::open(place->host, place->port);
   if (!connection) {
-    fmt::print(stderr, "hirosco tc: {}:{}: {}\n", options.connection.address, options.connection.port,
-               connection.error().text);
+    fmt::print(stderr, "hirosco tc: {}:{}: {}\n", place->host, place->port, connection.error().text);
     return exit_environment;
   }
   // A source id and a first count of its own: reports find back to this call and to no other (decision 27).
@@ -179,10 +180,9 @@ int telecommand(const TelecommandOptions& options) {
                                              data);
   // What is essential gets in by the telecommand port whoever fills the other one (docs/adr/0028); without that port the
   // connection for the reports has to do.
-  auto own =
-      is_essential(*subsystem, options.function)
-          ? GroundConnection::open(options.connection.address, telecommand_port(*mission, options.connection.port))
-          : Result<GroundConnection>{fail(ErrorCode::NotFound, "not essential")};
+  auto own = is_essential(*subsystem, options.function)
+                 ? GroundConnection::open(place->host, telecommand_port(mission, place->port))
+                 : Result<GroundConnection>{fail(ErrorCode::NotFound, "not essential")};
   GroundConnection& way = own ? *own : *connection;
   if (!packet || !way.send(*packet)) {
     fmt::print(stderr, "hirosco tc: the telecommand could not be sent\n");

@@ -72,6 +72,27 @@ TEST(SystemFlowFactory, RefusesMeansThatAreNotBuiltIn) {
   EXPECT_EQ(factory.open({99, "x"}, FlowSide::Subsystem).error().code, ErrorCode::InvalidArgument);
 }
 
+TEST(SystemFlowFactory, KeepsTheDevicesOfTwoFlightsOfOneMissionApart) {
+  SystemFlowFactory plain{""};
+  SystemFlowFactory one{"one"};
+  SystemFlowFactory two{"two"};
+  for (const FlowAddress& address : {SharedMemoryTraits::address(), UnixTraits::address()}) {
+    const auto of_plain = plain.open(address, FlowSide::Device);
+    const auto of_one = one.open(address, FlowSide::Device);
+    ASSERT_TRUE(of_plain);
+    ASSERT_TRUE(of_one) << "the same side of the same address, in another flight";
+    const auto subsystem = two.open(address, FlowSide::Subsystem);
+    const std::array<std::byte, 4> frame{};
+    if (subsystem) {
+      EXPECT_FALSE((*subsystem)->send(frame)) << "nobody listens in that flight";
+    }
+    EXPECT_TRUE(one.open(address, FlowSide::Subsystem).value()->send(frame));
+    std::array<std::byte, 64> buffer;
+    EXPECT_EQ((*of_plain)->receive(buffer).value().octets, 0U) << "it was for the other flight";
+    EXPECT_EQ((*of_one)->receive(buffer).value().octets, frame.size());
+  }
+}
+
 TEST(UdpFlow, RefusesEveryAddressOutsideThisComputer) {
   SystemFlowFactory factory;
   for (const char* address : {"0.0.0.0:5000", "192.0.2.1:5000", "128.0.0.1:5000"})

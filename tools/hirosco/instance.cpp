@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/hirosco/instance.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+
+namespace hirosco::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t longest_name = 64;
+/// Where no mission is named and none flies.
+constexpr const char* usual_mission = "rokviss";
+
+struct Address {
+  std::string host;
+  std::uint16_t port{0};
+};
+
+[[nodiscard]] Address address_of(const std::string& text) {
+  const auto colon = text.rfind(':');
+  Address address{.host = text.substr(0, colon)};
+  if (colon == std::string::npos) return address;
+  std::from_chars(text.data() + colon + 1, text.data() + text.size(), address.port);
+  return address;
+}
+
+/// In numbers, as sockets want it.
+[[nodiscard]] std::string in_numbers(const std::string& address) {
+  constexpr std::string_view name{"localhost:"};
+  return address.starts_with(name) ? "127.0.0.1:" + address.substr(name.size()) : address;
+}
+
+/// What a second process at the same address would get in the way of: neither name nor port is the instance's.
+[[nodiscard]] std::vector<std::string> udp_of(const descriptor::Mission& mission) {
+  std::vector<std::string> found;
+  const auto note = [&](const descriptor::Endnode& endnode) {
+    if (endnode.transfer == descriptor::Transfer::Udp) found.push_back(endnode.address);
+  };
+  for (const auto& member : mission.subsystems) {
+    for (const auto& device : member.subsystem.devices)
+      if (device.enable) note(*device.enable);
+    for (const auto& configuration : member.subsystem.configurations)
+      for (const auto& use : configuration.devices) note(use.endnode);
+  }
+  std::ranges::sort(found);
+  found.erase(std::ranges::unique(found).begin(), found.end());
+  return found;
+}
+
+[[nodiscard]] std::string list_of(const std::vector<FlightEntry>& flights) {
+  std::string text;
+  for (const auto& flight : flights)
+    text += fmt::format("\n  --instance {}: mission {}, telemetry {}, log {}", flight.instance, flight.mission,
+                        flight.telemetry.empty() ? "none" : flight.telemetry, flight.log.string());
+  return text;
+}
+
+}  // namespace
+
+bool good_instance(const std::string& name) {
+  const auto good = [](unsigned char letter) {
+    return (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') || (letter >= 'a' && letter <= 'z') ||
+           letter == '-' || letter == '_';
+  };
+  return !name.empty() && name.size() <= longest_name && std::ranges::all_of(name, good);
+}
+
+Result<> can_listen(const std::string& text) {
+  const Address wanted = address_of(text);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(wanted.port);
+  if (::inet_pton(AF_INET, wanted.host.c_str(), &address.sin_addr) != 1)
+    return fail(ErrorCode::InvalidArgument, "the ground link needs an IPv4 address");
+  const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  const int yes = 1;
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+      ::listen(socket.get(), 1) == 0)
+    return ok();
+  if (errno == EADDRINUSE) return fail(ErrorCode::Unavailable, "somebody listens there already", errno);
+  return fail(ErrorCode::SystemFailure, "this computer does not let us listen there", errno);
+}
+
+fs::path instance_log(const descriptor::Mission& mission, const std::string& instance) {
+  const fs::path& path = mission.database.path;
+  return instance.empty() || instance == mission.name ? path : path.parent_path() / instance / path.filename();
+}
+
+FlightEntry plan_flight(const descriptor::Mission& mission, const std::string& instance) {
+  std::error_code failed;
+  FlightEntry entry{.instance = instance,
+                    .mission = mission.name,
+                    .file = fs::absolute(mission.file, failed),
+                    .folder = runtime_folder(instance),
+                    .log = fs::absolute(instance_log(mission, instance), failed),
+                    .udp = udp_of(mission),
+                    .load = descriptor::cycle_share(mission),
+                    .keeper = ::getpid()};
+  if (mission.ground.subsystem.empty()) return entry;
+  entry.telemetry = in_numbers(mission.ground.telemetry);
+  entry.telecommand = in_numbers(mission.ground.telecommand);
+  return entry;
+}
+
+std::expected<std::optional<FlightEntry>, std::string> choose_flight(const std::vector<FlightEntry>& flights,
+                                                                     const Which& which) {
+  if (!which.instance.empty()) {
+    const auto wanted = std::ranges::find(flights, which.instance, &FlightEntry::instance);
+    if (wanted == flights.end())
+      return std::unexpected{fmt::format("no instance '{}' flies{}", which.instance,
+                                         flights.empty() ? "; nothing flies here" : "; there are:" + list_of(flights))};
+    if (!which.mission.empty() && wanted->mission != which.mission)
+      return std::unexpected{
+          fmt::format("instance '{}' flies mission {}, not {}", which.instance, wanted->mission, which.mission)};
+    return *wanted;
+  }
+  std::vector<FlightEntry> meant;
+  for (const auto& flight : flights)
+    if (which.mission.empty() || flight.mission == which.mission) meant.push_back(flight);
+  if (meant.empty()) return std::nullopt;
+  if (meant.size() == 1) return meant.front();
+  return std::unexpected{fmt::format("{} flights are in the air; which one?{}", meant.size(), list_of(meant))};
+}
+
+std::expected<FoundFlight, int> find_flight(const char* command, const std::string& mission,
+                                            const std::string& instance) {
+  std::optional<descriptor::Mission> loaded;
+  if (!mission.empty()) {
+    loaded = load_mission(mission);
+    if (!loaded) return std::unexpected{exit_finding};
+  }
+  auto chosen = choose_flight(FlightRegistry{}.flights(), {loaded ? loaded->name : std::string{}, instance});
+  if (!chosen) {
+    fmt::print(stderr, "hirosco {}: {}\n", command, chosen.error());
+    return std::unexpected{exit_usage};
+  }
+  if (!loaded) loaded = load_mission(*chosen ? (*chosen)->file.string() : usual_mission);
+  if (!loaded) return std::unexpected{exit_finding};
+  return FoundFlight{std::move(*loaded), std::move(*chosen)};
+}
+
+std::expected<FoundFlight, int> only_mission(const std::string& mission) {
+  auto loaded = load_mission(mission.empty() ? usual_mission : mission);
+  if (!loaded) return std::unexpected{exit_finding};
+  return FoundFlight{std::move(*loaded), std::nullopt};
+}
+
+std::expected<FoundLog, int> find_log(const char* command, const std::string& mission, const std::string& instance) {
+  const auto flights = FlightRegistry{}.flights();
+  const bool flies = std::ranges::find(flights, instance, &FlightEntry::instance) != flights.end();
+  if (good_instance(instance) && !flies) {
+    auto flown = only_mission(mission);
+    if (!flown) return std::unexpected{flown.error()};
+    auto path = instance_log(flown->mission, instance);
+    std::error_code failed;
+    if (fs::exists(path, failed)) return FoundLog{std::move(flown->mission), std::move(path)};
+  }
+  auto found = find_flight(command, mission, instance);
+  if (!found) return std::unexpected{found.error()};
+  auto path = found->flight ? found->flight->log : found->mission.database.path;
+  return FoundLog{std::move(found->mission), std::move(path)};
+}
+
+std::expected<GroundLinkPlace, int> find_ground_link(const char* command, const Connection& connection) {
+  // Who says where it is gets exactly that, whatever flies on this computer.
+  const bool said = !connection.host.empty() || connection.port != 0;
+  if (said && connection.instance.empty()) {
+    auto named = only_mission(connection.mission);
+    if (!named) return std::unexpected{named.error()};
+    const Address usual = address_of(in_numbers(named->mission.ground.telemetry));
+    return GroundLinkPlace{std::move(named->mission), connection.host.empty() ? usual.host : connection.host,
+                           connection.port == 0 ? usual.port : connection.port};
+  }
+  auto found = find_flight(command, connection.mission, connection.instance);
+  if (!found) return std::unexpected{found.error()};
+  const Address place = address_of(found->flight ? found->flight->telemetry : in_numbers(found->mission.ground.telemetry));
+  if (place.port == 0 && connection.port == 0) {
+    fmt::print(stderr, "hirosco {}: {} has no ground link\n", command, found->flight->instance);
+    return std::unexpected{exit_environment};
+  }
+  return GroundLinkPlace{std::move(found->mission), connection.host.empty() ? place.host : connection.host,
+                         connection.port == 0 ? place.port : connection.port};
+}
+
+}  // namespace hirosco::tools
