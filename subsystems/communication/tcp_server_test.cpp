@@ -172,7 +172,7 @@ TEST_F(TcpServerTest, ListensForTelecommandsAtAnotherAddressThanForTelemetry) {
   Echo echo;
   auto server =
       TcpServer::open(
-          {.address = "127.0.0.3", .telemetry_port = 0, .telecommand_address = "127.0.0.2", .telecommand_port = 0},
+          {.address = "127.0.0.3", .telecommand_address = "127.0.0.2", .telemetry_port = 0, .telecommand_port = 0},
           echo)
           .value();
   const auto connects = [&](const char* host, GroundPort port) {

@@ -90,8 +90,9 @@ constexpr std::chrono::milliseconds between_holds{20};
   for (const FlightEntry& other : others) load += other.load;
   constexpr double rounding = 1e-9;
   if (load <= 1.0 + rounding) return {};
-  std::string text = fmt::format("the cycles of all flights need {:.0f} % of the processor that they share: this one {:.0f} %",
-                                 load * 100, entry.load * 100);
+  std::string text =
+      fmt::format("the cycles of all flights need {:.0f} % of the processor that they share: this one {:.0f} %",
+                  load * 100, entry.load * 100);
   for (const FlightEntry& other : others) text += fmt::format(", {} {:.0f} %", other.instance, other.load * 100);
   return text;
 }
@@ -145,8 +146,8 @@ std::expected<FileDescriptor, std::string> FlightRegistry::hold() const {
   ::mkdir(folder_.c_str(), 0700);
   struct stat found{};
   if (::lstat(folder_.c_str(), &found) != 0 || !S_ISDIR(found.st_mode) || found.st_uid != ::getuid())
-    return std::unexpected{fmt::format("{}, where the flights of this computer stand, is no folder of yours",
-                                       folder_.string())};
+    return std::unexpected{
+        fmt::format("{}, where the flights of this computer stand, is no folder of yours", folder_.string())};
   Result<FileDescriptor> lock = take_lock(folder_ / ".lock");
   for (int i = 0; i < tried_holds && !lock && lock.error().code == ErrorCode::Unavailable; ++i) {
     std::this_thread::sleep_for(between_holds);

@@ -185,7 +185,8 @@ std::expected<GroundLinkPlace, int> find_ground_link(const char* command, const 
   }
   auto found = find_flight(command, connection.mission, connection.instance);
   if (!found) return std::unexpected{found.error()};
-  const Address place = address_of(found->flight ? found->flight->telemetry : in_numbers(found->mission.ground.telemetry));
+  const Address place =
+      address_of(found->flight ? found->flight->telemetry : in_numbers(found->mission.ground.telemetry));
   if (place.port == 0 && connection.port == 0) {
     fmt::print(stderr, "hirosco {}: {} has no ground link\n", command, found->flight->instance);
     return std::unexpected{exit_environment};

@@ -101,7 +101,8 @@ TEST_F(Flights, WithANameOfTheirOwnGetTheFirstPortsThatNobodyHas) {
 TEST_F(Flights, WhosePortsAreTakenAreRefused) {
   const FlightRegistry registry{folder_};
   const FileDescriptor foreign = listener(31025);
-  EXPECT_NE(reason(registry.enter(entry("ROKVISS"))).find("127.0.0.9:31025: somebody listens there"), std::string::npos);
+  EXPECT_NE(reason(registry.enter(entry("ROKVISS"))).find("127.0.0.9:31025: somebody listens there"),
+            std::string::npos);
   EXPECT_TRUE(registry.enter(entry("one"))) << "another name has other ports";
 }
 
@@ -161,10 +162,12 @@ TEST(Choice, IsTheOnlyFlightThatIsMeantElseAskedForByNames) {
   };
   EXPECT_FALSE(*choose_flight({}, {}));
   EXPECT_EQ((*choose_flight({flight("ROKVISS", "ROKVISS")}, {}))->instance, "ROKVISS");
-  const std::vector<FlightEntry> several{flight("ROKVISS", "ROKVISS"), flight("hello-1", "HELLO"), flight("two", "ROKVISS")};
+  const std::vector<FlightEntry> several{flight("ROKVISS", "ROKVISS"), flight("hello-1", "HELLO"),
+                                         flight("two", "ROKVISS")};
   EXPECT_EQ((*choose_flight(several, {.mission = {}, .instance = "two"}))->instance, "two");
   EXPECT_EQ((*choose_flight(several, {.mission = "HELLO", .instance = {}}))->instance, "hello-1");
-  EXPECT_FALSE(*choose_flight(several, {.mission = "OTHER", .instance = {}})) << "another mission's flight is not meant";
+  EXPECT_FALSE(*choose_flight(several, {.mission = "OTHER", .instance = {}}))
+      << "another mission's flight is not meant";
   const auto which = choose_flight(several, {.mission = "ROKVISS", .instance = {}});
   ASSERT_FALSE(which);
   EXPECT_NE(which.error().find("2 flights are in the air; which one?"), std::string::npos) << which.error();
@@ -173,7 +176,8 @@ TEST(Choice, IsTheOnlyFlightThatIsMeantElseAskedForByNames) {
 }
 
 TEST(Choice, OfANameThatDoesNotFlySaysWhichOnesDo) {
-  const std::vector<FlightEntry> flights{{.instance = "one", .mission = "ROKVISS", .file = {}, .folder = "/f", .log = {}}};
+  const std::vector<FlightEntry> flights{
+      {.instance = "one", .mission = "ROKVISS", .file = {}, .folder = "/f", .log = {}}};
   const auto wrong = choose_flight(flights, {.mission = {}, .instance = "won"});
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().find("no instance 'won' flies; there are:"), std::string::npos) << wrong.error();
@@ -228,9 +232,9 @@ TEST(Instance, KnowsTheUdpAddressesOfItsDevices) {
   device.enable = endnode(descriptor::Transfer::Udp, "127.0.0.1:5001");
   member.subsystem.devices.push_back(device);
   descriptor::Configuration configuration;
-  for (const auto& used : {endnode(descriptor::Transfer::Udp, "127.0.0.1:5000"),
-                           endnode(descriptor::Transfer::Udp, "127.0.0.1:5000"),
-                           endnode(descriptor::Transfer::Unix, "/tmp/x")})
+  for (const auto& used :
+       {endnode(descriptor::Transfer::Udp, "127.0.0.1:5000"), endnode(descriptor::Transfer::Udp, "127.0.0.1:5000"),
+        endnode(descriptor::Transfer::Unix, "/tmp/x")})
     configuration.devices.emplace_back().endnode = used;
   member.subsystem.configurations.push_back(configuration);
   mission.subsystems.push_back(member);
@@ -238,9 +242,8 @@ TEST(Instance, KnowsTheUdpAddressesOfItsDevices) {
 }
 
 TEST(Instance, NamesThatWouldLeaveTheirFolderAreNone) {
-  for (const std::string& name :
-       {std::string{}, std::string{"."}, std::string{".."}, std::string{".lock"}, std::string{"a/b"}, std::string{"a b"},
-        std::string{"ä"}, std::string(65, 'a')})
+  for (const std::string& name : {std::string{}, std::string{"."}, std::string{".."}, std::string{".lock"},
+                                  std::string{"a/b"}, std::string{"a b"}, std::string{"ä"}, std::string(65, 'a')})
     EXPECT_FALSE(good_instance(name)) << name;
   EXPECT_TRUE(good_instance("rokviss-2"));
   EXPECT_TRUE(good_instance(std::string(64, 'a'))) << "as long as a mission's name";
