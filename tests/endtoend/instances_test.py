@@ -85,9 +85,9 @@ class Instances(unittest.TestCase):
             # Each hears its own telecommand and its own device's fault, and the other does not.
             self.assertEqual(one.tc("manipulator", "SET_TORQUE_LIMIT", 11)[0], 0)
             one.fault("joystick", "unplug")
-            one.wait_told("DEVICE_LOST")
+            one.wait_told("JOYSTICK_LOST")
             self.assertIsNotNone(moving(two), "the other flight goes on")
-            for what in ("DEVICE_LOST", "SET_TORQUE_LIMIT"):
+            for what in ("JOYSTICK_LOST", "SET_TORQUE_LIMIT"):
                 self.assertTrue([record for record in one.log() if what in record["text"]], what)
                 self.assertFalse([record for record in two.log() if what in record["text"]], what)
             self.assertEqual(two.tc("joystick", "ping")[0], 0)
