@@ -127,7 +127,7 @@ class Instances(unittest.TestCase):
             done = one.hirosco("export", "python", one.mission, "--to", out)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(one.tc("supervisor", "SET_MODE", "standalone")[0], 0)
-            one.wait_told("commissioned: mode standalone")
+            one.wait_told("mode standalone")
             program = ("from hirosco_rokviss import LinkLost, Spacecraft\n"
                        "for name in ('one', 'two'):\n"
                        "    with Spacecraft(instance=name) as craft:\n"
