@@ -54,6 +54,17 @@ Word load(const std::byte* memory, std::size_t at, std::memory_order order) noex
 
 Word version_epoch(const LinkLayout& layout) noexcept { return link_memory::version << 32 | layout.epoch; }
 
+constexpr Word coded(LinkStatus status) noexcept {
+  const Word number = std::to_underlying(status);
+  return (~number << 32) | number;
+}
+
+constexpr LinkStatus status_of(Word word) noexcept {
+  for (const LinkStatus status : {LinkStatus::Valid, LinkStatus::Degraded, LinkStatus::Stopping})
+    if (word == coded(status)) return status;
+  return LinkStatus::Fault;
+}
+
 // Leaves the line to the writer for a moment, where the processor knows how.
 void relax() noexcept {
 #if defined(__x86_64__)
@@ -117,7 +128,7 @@ void LinkWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status) 
   const std::size_t end = link_memory::payload_at + payload_octets_;
   for (std::size_t at = link_memory::sequence_at; at < end && at < claimed_octets; at += line) claim(memory_ + at);
   word(memory_, link_memory::sequence_at).store(sequence_ + 1, std::memory_order_relaxed);
-  publish(link_memory::status_at, std::to_underlying(status));
+  publish(link_memory::status_at, coded(status));
   publish(link_memory::count_at, ++count_);
   publish(link_memory::stamp_at, std::bit_cast<Word>(std::int64_t{sampled_at.time_since_epoch().count()}));
   const std::size_t whole = payload_octets_ / sizeof(Word) * sizeof(Word);
@@ -138,7 +149,7 @@ void LinkWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status) 
 void LinkWriter::set_status(LinkStatus status) noexcept {
   assert(memory_ != nullptr);
   word(memory_, link_memory::sequence_at).store(sequence_ + 1, std::memory_order_relaxed);
-  word(memory_, link_memory::status_at).store(std::to_underlying(status), std::memory_order_release);
+  word(memory_, link_memory::status_at).store(coded(status), std::memory_order_release);
   sequence_ += 2;
   word(memory_, link_memory::sequence_at).store(sequence_, std::memory_order_release);
 }
@@ -191,7 +202,7 @@ LinkSample LinkReader::read(MutableOctets payload) noexcept {
 // torn in `payload` is put right by last(); before the first sample it could not be, so accept() fills it then.
 bool LinkReader::copy(std::uint64_t sequence, LinkSample& sample, MutableOctets payload) noexcept {
   const auto get = [this](std::size_t at) { return load(memory_, at, std::memory_order_acquire); };
-  sample.status = static_cast<LinkStatus>(static_cast<std::uint32_t>(get(link_memory::status_at)));
+  sample.status = status_of(get(link_memory::status_at));
   sample.count = get(link_memory::count_at);
   sample.sampled_at = TimePoint{Duration{std::bit_cast<std::int64_t>(get(link_memory::stamp_at))}};
   const std::size_t direct = last_.count == 0 ? 0 : payload_octets_ / sizeof(Word);

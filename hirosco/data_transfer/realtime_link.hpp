@@ -14,7 +14,8 @@
 /// The latest-value real-time link in shared memory: one writer, many readers, no system call (decision 20).
 namespace hirosco {
 
-/// Written by the producer beside each sample.
+/// Written by the producer beside each sample. What no producer wrote is read as Fault: no damage of the word turns a
+/// fault into something to rely on (findings SF19).
 enum class LinkStatus : std::uint32_t { None = 0, Valid = 1, Degraded = 2, Stopping = 3, Fault = 4 };
 
 /// What both sides agreed on and find again in the memory's header.
@@ -28,14 +29,14 @@ struct LinkLayout {
 /// Where things stand in a link's memory, in octets. All words are of 8 octets in the order of the machine.
 namespace link_memory {
 inline constexpr std::uint64_t magic = 0x4B4E'494C'5243'5348;  ///< "HSCRLINK" of a little-endian machine
-inline constexpr std::uint64_t version = 1;
+inline constexpr std::uint64_t version = 2;
 inline constexpr std::size_t magic_at = 0;           ///< line 0: written once, before the link is handed on
 inline constexpr std::size_t version_epoch_at = 8;   ///< version in the high, epoch in the low half
 inline constexpr std::size_t payload_octets_at = 16;
 inline constexpr std::size_t layout_hash_at = 24;
 inline constexpr std::size_t period_at = 32;         ///< ns
 inline constexpr std::size_t sequence_at = 64;       ///< line 1: odd while the writer is at work
-inline constexpr std::size_t status_at = 72;
+inline constexpr std::size_t status_at = 72;         ///< in the low half, its complement in the high one
 inline constexpr std::size_t count_at = 80;          ///< of the sample, from 1
 inline constexpr std::size_t stamp_at = 88;          ///< ns of the monotonic clock
 inline constexpr std::size_t payload_at = 96;        ///< filled up with zero to a whole word

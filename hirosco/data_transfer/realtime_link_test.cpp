@@ -202,16 +202,85 @@ TEST(RealtimeLinkHeader, HasTheFormThatIsWrittenDown) {
   LinkWriter writer = LinkWriter::make(memory.all(), layout_of(payload_octets)).value();
   writer.write(Payload{}, TimePoint{42ns}, LinkStatus::Degraded);
   EXPECT_EQ(memory.word(0).load(), link_memory::magic);
-  EXPECT_EQ(memory.word(8).load(), 0x0000'0001'0000'0007u);
+  EXPECT_EQ(memory.word(8).load(), 0x0000'0002'0000'0007u);
   EXPECT_EQ(memory.word(16).load(), payload_octets);
   EXPECT_EQ(memory.word(24).load(), 0x1234'5678'9ABC'DEF0u);
   EXPECT_EQ(memory.word(32).load(), 500'000u);
   EXPECT_EQ(memory.word(64).load(), 2u);
-  EXPECT_EQ(memory.word(72).load(), 2u);
+  EXPECT_EQ(memory.word(72).load(), 0xFFFF'FFFD'0000'0002u);
   EXPECT_EQ(memory.word(80).load(), 1u);
   EXPECT_EQ(memory.word(88).load(), 42u);
   EXPECT_EQ(link_memory_octets(256), 384u);
   EXPECT_EQ(link_memory_octets(1), 128u);
+}
+
+/// What may become of a word of shared memory: one flipped bit, and whole words that damage leaves behind (findings SF19).
+std::vector<std::uint64_t> damages(std::uint64_t word) {
+  std::vector<std::uint64_t> damaged{0,        ~std::uint64_t{0}, ~word, 0x5555'5555'5555'5555, 0xAAAA'AAAA'AAAA'AAAA,
+                                     word + 1, word - 1};
+  for (unsigned bit = 0; bit < 64; ++bit) damaged.push_back(word ^ std::uint64_t{1} << bit);
+  std::erase(damaged, word);
+  return damaged;
+}
+
+TEST(RealtimeLinkDamage, OfTheStatusIsAFaultWhateverItWas) {
+  for (const auto status : {LinkStatus::Valid, LinkStatus::Degraded, LinkStatus::Stopping, LinkStatus::Fault}) {
+    LinkMemory memory{payload_octets};
+    LinkWriter writer = LinkWriter::make(memory.all(), layout_of(payload_octets)).value();
+    LinkReader reader = LinkReader::make(memory.all(), layout_of(payload_octets)).value();
+    Payload payload{};
+    const auto read_as = [&](std::uint64_t word) {
+      writer.write(payload, TimePoint{1us}, status);
+      memory.word(link_memory::status_at).store(word);
+      return reader.read(payload).status;
+    };
+    writer.write(payload, TimePoint{1us}, status);
+    const std::uint64_t good = memory.word(link_memory::status_at).load();
+    EXPECT_EQ(read_as(good), status);
+    for (const std::uint64_t damaged : damages(good)) EXPECT_EQ(read_as(damaged), LinkStatus::Fault) << damaged;
+  }
+}
+
+TEST(RealtimeLinkDamage, OfTheFirstLineIsSeenWhenTheLinkIsMade) {
+  using namespace link_memory;
+  LinkMemory memory{payload_octets};
+  const LinkLayout layout = layout_of(payload_octets);
+  ASSERT_TRUE(LinkWriter::make(memory.all(), layout));
+  for (const std::size_t at : {magic_at, version_epoch_at, payload_octets_at, layout_hash_at}) {
+    const std::uint64_t good = memory.word(at).load();
+    for (const std::uint64_t damaged : damages(good)) {
+      memory.word(at).store(damaged);
+      EXPECT_EQ(LinkReader::make(memory.all(), layout).error().code, ErrorCode::Mismatch) << at << ' ' << damaged;
+    }
+    memory.word(at).store(good);
+  }
+}
+
+TEST_F(RealtimeLink, DamageOfAnyWordIsReadAsNewAtMostOnceAndIsOverWithTheNextSample) {
+  const std::size_t words = memory_.all().size() / sizeof(std::uint64_t);
+  std::uint64_t n = 0;
+  for (std::size_t word = 0; word < words; ++word) {
+    for (const bool before_it_was_read : {true, false}) {
+      write(++n);
+      for (const std::uint64_t damaged : damages(memory_.word(word * 8).load())) {
+        write(++n);
+        if (!before_it_was_read) static_cast<void>(reader_.read(seen_));
+        memory_.word(word * 8).store(damaged);
+        // A writer that is dead by now: its link must look old, so that it becomes stale.
+        int news = 0;
+        for (int look = 0; look < 4; ++look) news += reader_.read(seen_).flow == Flow::New ? 1 : 0;
+        EXPECT_LE(news, 1) << word << ' ' << damaged;
+        write(++n);
+        write(++n);
+        const LinkSample sample = reader_.read(seen_);
+        if (word * 8 < link_memory::sequence_at) continue;  // read once, when the link was made
+        ASSERT_EQ(sample.flow, Flow::New) << word << ' ' << damaged;
+        ASSERT_EQ(sample.count, n);
+        ASSERT_EQ(sample.status, LinkStatus::Valid);
+        ASSERT_TRUE(is_sample(seen_, n));
+      }
+    }
+  }
 }
 
 TEST(RealtimeLinkPayload, MayHaveAnyLength) {

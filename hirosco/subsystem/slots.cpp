@@ -129,8 +129,8 @@ void LinkInputSlot::read(TimePoint now) noexcept {
   }
   port_->status_ = sample.status;
   const bool fresh = port_->age_cycles_ <= age_limit_ * link_->producer_cycles_per_sample;
-  port_->valid_ =
-      port_->count_ != 0 && fresh && sample.status != LinkStatus::Fault && sample.status != LinkStatus::Stopping;
+  const bool reliable = sample.status == LinkStatus::Valid || sample.status == LinkStatus::Degraded;
+  port_->valid_ = port_->count_ != 0 && fresh && reliable;
 }
 
 void LinkInputSlot::tell(IncomingLink& page) const noexcept {
