@@ -24,6 +24,8 @@ using nlohmann::json;
 /// What happens within it of the event before belongs to the same story.
 constexpr Duration same_story = 3s;
 constexpr Duration before = 2s;
+/// Two periods of the slowest cycles of a control loop.
+constexpr Duration same_instant = 2ms;
 /// An injected fault is timed by its answer, which may come later than the event that it causes.
 constexpr Duration answer_delay = 500ms;
 
@@ -78,6 +80,9 @@ class Teller {
       begin_ = event.t;
       cause_ = event;
     }
+    // Who notices a loss by its effect may report in the very cycle of who has lost: of one instant the gravest is the cause.
+    for (const StoredEvent& event : severe)
+      if (event.t >= begin_ && event.t - begin_ <= same_instant && event.severity > cause_.severity) cause_ = event;
     mode_ = mode_at(begin_);
     tell_faults();
     tell_events(to);
@@ -175,7 +180,8 @@ class Teller {
                           fmt::format(": plan {} wants {}", plan(), state_words(to_text(*state)))});
       } else if (severity >= Severity::Medium) {
         last = event.t;
-        lines_.push_back({event.t, severity, "event", {}, sentence(event, values)});
+        const bool is_cause = event.t == cause_.t && event.id == cause_.id && event.subsystem == cause_.subsystem;
+        lines_.push_back({event.t, severity, is_cause ? "cause" : "event", {}, sentence(event, values)});
       }
     }
   }
@@ -287,9 +293,12 @@ class Teller {
         same->names.push_back(line.names.front());
       if (line.kind.starts_with("state ")) same->t = std::max(same->t, line.t);
     }
-    // At one instant the event stands before what it brought about.
-    std::ranges::stable_sort(
-        told, {}, [](const Line& line) { return std::pair{line.t.value_or(OnboardTime{}), line.kind != "event"}; });
+    // The cause first; at one instant the event stands before what it brought about.
+    std::ranges::stable_sort(told, {}, [&](const Line& line) {
+      return std::pair{line.kind == "cause" ? begin_ : line.t.value_or(OnboardTime{}), line.kind == "cause"   ? 0
+                                                                                       : line.kind == "event" ? 1
+                                                                                                              : 2};
+    });
     json causes = json::array();
     for (const Line& line : told)
       causes.push_back({{"t", json_time(line.t.value_or(begin_))},

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/pus/st08_function.hpp"
 #include "tests/ground/station.hpp"
 
@@ -296,6 +297,23 @@ TEST_F(GroundStation, WhyTellsTheCauseFirstThenWhatItBroughtAbout) {
       ::testing::ContainsRegex("JOYSTICK and MANIPULATOR went Offline within [0-9.]+ ms, by plan network-down"));
   EXPECT_THAT(why["detail"].get<std::string>(), ::testing::HasSubstr("COMMUNICATION"));
   EXPECT_EQ(station.get("/api/why?to=1")["causes"].size(), 0U) << "a replay of before knows nothing of it";
+}
+
+TEST_F(GroundStation, WhyNamesWhoLostItsDeviceAndNotWhoSawTheEffectInTheSameInstant) {
+  const auto event = [](std::uint16_t id) {
+    std::vector<std::byte> data(40);
+    data[0] = static_cast<std::byte>(id >> 8);
+    data[1] = static_cast<std::byte>(id & 0xFF);
+    return data;
+  };
+  const auto stale = descriptor::framework_event::set_stale(0), lost = descriptor::framework_event::device_lost(0);
+  ASSERT_TRUE(station.session().receive(telemetry(10, 5, 3, noon, event(stale))));
+  ASSERT_TRUE(station.session().receive(telemetry(11, 5, 4, noon + 300us, event(lost))));
+  const json why = station.get("/api/why");
+  EXPECT_THAT(why["title"].get<std::string>(), ::testing::StartsWith("JOYSTICK lost its device"));
+  EXPECT_EQ(why["severity"], "high");
+  ASSERT_EQ(why["causes"].size(), 2U);
+  EXPECT_THAT(why["causes"][0]["text"].get<std::string>(), ::testing::StartsWith("JOYSTICK lost its device"));
 }
 
 TEST_F(GroundStation, WhyFoldsTheStepsOfAHandThatTrippedTheLimit) {
