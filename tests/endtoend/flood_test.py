@@ -305,12 +305,13 @@ class Flood(unittest.TestCase):
         self.assertEqual(self.honest.link()[1]["incomplete"] - before["incomplete"], 1)
 
     def test_every_connection_is_counted_once(self):
+        gaps = self.honest.gaps       # a flood before this may have dropped housekeeping (adr 0029)
         _, counted = self.honest.link()
         now = 2                       # the honest client's
         closed = sum(counted[name] for name in ("slow", "evicted", "bad_header", "bad_length", "incomplete", "left",
                                                 "broken"))
         self.assertEqual(counted["accepted"], closed + now)
-        self.assertEqual(self.honest.gaps, 0, "telemetry was dropped on its way")
+        self.assertEqual(self.honest.gaps, gaps, "telemetry was dropped on its way")
 
 
 if __name__ == "__main__":
