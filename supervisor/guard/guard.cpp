@@ -173,14 +173,19 @@ bool Guard::release(std::uint16_t apid, std::uint64_t seen_fences) {
   const LockGuard lock{mutex_};
   Watched* member = find(apid);
   if (member == nullptr || member->permit == nullptr || member->fences != seen_fences || member->doomed) return false;
+  // What is being stopped is let go again once it has stopped; what it did then is no matter of that stop any more.
+  const bool stopping = stops_ended_ != stops_ && !member->spared;
+  if (stopping && !has_stopped(*member)) return false;
+  if (stopping) {
+    member->settled = stops_;
+    if (!member->stopped) member->stopped = parts_.clock.now() - stop_begun_;
+  }
   restore_epoch(*member->permit, member->epoch);
   member->permit->release();
   member->epoch = member->permit->epoch.load(std::memory_order_relaxed);
   member->released = true;
   member->seen_operational = false;
   member->released_at = parts_.clock.now();
-  member->stopped.reset();
-  for (Device& device : member->devices) device.stopped.reset();
   return true;
 }
 
@@ -193,8 +198,14 @@ std::uint64_t Guard::stop_all(GuardFinding::Kind why) {
 
 std::uint64_t Guard::stop_all() {
   const LockGuard lock{mutex_};
-  for (Watched& member : members_)
-    if (!member.spared) fence(member);
+  for (Watched& member : members_) {
+    if (member.spared) continue;
+    if (member.released) {
+      member.stopped.reset();
+      for (Device& device : member.devices) device.stopped.reset();
+    }
+    fence(member);
+  }
   // Stops that overlap end together; their time runs from the first.
   if (stops_ended_ == stops_) {
     stop_begun_ = parts_.clock.now();
@@ -428,7 +439,7 @@ bool Guard::to_blame(const Watched& member) const noexcept {
 void Guard::follow_stop(TimePoint now) {
   bool waiting = false;
   for (Watched& member : members_) {
-    if (member.spared) continue;
+    if (member.spared || member.settled == stops_) continue;
     if (has_stopped(member)) {
       if (!member.stopped) member.stopped = now - stop_begun_;
       continue;

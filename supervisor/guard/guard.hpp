@@ -139,6 +139,7 @@ class Guard {
     // stop
     std::optional<Duration> stopped;
     bool killed{false};
+    std::uint64_t settled{0};  ///< the stop in which it had stopped and was let go again
     bool stop_killed{false};  ///< by the present stop: nobody is ended twice for one
     std::vector<Device> devices;
     [[nodiscard]] std::uint16_t apid() const noexcept { return described->subsystem.id; }

@@ -372,6 +372,46 @@ TEST_F(GuardTest, AStopOfEverythingIsAnsweredByTheDevicesAndSparesTheGroundLink)
   EXPECT_LE(answers->at(1).stopped.value(), 10ms);
 }
 
+TEST_F(GuardTest, WhoIsLetGoAgainBeforeTheOthersHaveStoppedIsNotEndedForMovingThen) {
+  for (const std::uint16_t apid : {arm, hand}) {
+    cycling(apid);
+    ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  }
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  const auto stop = guard.stop_all();
+  EXPECT_FALSE(guard.release(arm, guard.fences(arm))) << "its motor moves still";
+  lives[hand].vital->inhibited = inhibited_by_stop;
+  run(50ms, {arm, hand, camera}, DeviceOutput::Stopping);
+  ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  lives[hand].vital->inhibited = 0;
+  run(300ms, {arm, hand, camera}, DeviceOutput::Stopping);
+  EXPECT_FALSE(lives[hand].process->killed);
+  run(20ms, {arm, hand, camera}, DeviceOutput::Holding);
+  const auto answers = guard.stop_outcome(stop);
+  ASSERT_TRUE(answers);
+  EXPECT_TRUE(answers->at(0).stopped);
+  EXPECT_LE(answers->at(1).stopped.value(), 50ms) << "it had stopped";
+  EXPECT_TRUE(guard.release(arm, guard.fences(arm)));
+}
+
+TEST_F(GuardTest, AStopAfterALeaveToGoOnDuringAStopIsOneOfItsOwn) {
+  for (const std::uint16_t apid : {arm, hand}) {
+    cycling(apid);
+    ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  }
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  static_cast<void>(guard.stop_all());
+  lives[hand].vital->inhibited = inhibited_by_stop;
+  run(50ms, {arm, hand, camera}, DeviceOutput::Stopping);
+  ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  lives[hand].vital->inhibited = 0;
+  run(50ms, {arm, hand, camera}, DeviceOutput::Stopping);
+  const auto again = guard.stop_all();
+  run(600ms, {arm, hand, camera}, DeviceOutput::Holding);
+  EXPECT_TRUE(lives[hand].process->killed) << "it does not stop this time";
+  EXPECT_TRUE(guard.stop_outcome(again));
+}
+
 TEST_F(GuardTest, WhatAMemberSaysOfItselfDoesNotStandForItsDevice) {
   cycling(arm);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
