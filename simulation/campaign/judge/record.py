@@ -164,7 +164,7 @@ class Record:
                     for name in self.members:
                         spans[name].append((time, gone + 100_000))
             elif verb in ("stop", "stick"):
-                opened[subject, verb] = time
+                opened.setdefault((subject, verb), time)  # one that died of it does not go on
             elif verb in ("go", "unstick"):
                 key = subject, {"go": "stop", "unstick": "stick"}[verb]
                 if key in opened:
