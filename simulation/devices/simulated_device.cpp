@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/devices/simulated_device.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -280,6 +282,10 @@ Result<> SimulatedDevice::fault(std::string_view line) {
   HIROSCO_TRY(apply_fault(words));
   if (injections_.size() < most_injections) injections_.push_back({now_, std::string{line}});
   return ok();
+}
+
+std::string SimulatedDevice::truth() const {
+  return fmt::format("{} world_s={:.4f}", do_truth(), static_cast<double>(cycles_) * seconds(settings_.cycle));
 }
 
 void SimulatedDevice::heal() noexcept {

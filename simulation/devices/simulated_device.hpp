@@ -103,8 +103,9 @@ class SimulatedDevice {
   [[nodiscard]] std::uint64_t own_cycles() const noexcept { return own_cycles_; }
   [[nodiscard]] std::uint64_t damaged_commands() const noexcept { return damaged_commands_; }
   [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
-  /// World truth as one line of "name=value" words, for people and pages.
-  [[nodiscard]] std::string truth() const { return do_truth(); }
+  /// World truth as one line of "name=value" words, for people and pages; "world_s" is the time that has passed there, from
+  /// which a late host is left out.
+  [[nodiscard]] std::string truth() const;
 
  protected:
   SimulatedDevice(FlowFactory& flows, FlowAddress address, const Settings& settings);

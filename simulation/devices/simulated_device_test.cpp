@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
@@ -389,6 +390,15 @@ TEST(Faults, HealTakesBackWhatWasDoneToTheDeviceItself) {
   EXPECT_EQ(bench.device.arm().temperature_c(), (Vec2{20, 20}));
   EXPECT_EQ(bench.device.arm().parameters().thermal.acceleration, made);
   EXPECT_GT(bench.device.arm().parameters().joint.friction_coulomb_n_m, 0);
+}
+
+TEST(Truth, TellsHowMuchTimeHasPassedInTheWorld) {
+  RobotBench bench;
+  for (int k = 0; k < 40; ++k) bench.active();
+  const double passed_s = static_cast<double>(bench.device.cycles()) * 500e-6;
+  EXPECT_GE(bench.device.cycles(), 40U);
+  EXPECT_NE(bench.device.truth().find(fmt::format("world_s={:.4f}", passed_s)), std::string::npos)
+      << bench.device.truth();
 }
 
 TEST(Faults, CorruptDamagesExactlyThatManyFrames) {

@@ -261,6 +261,23 @@ class Flight:
         return subprocess.run([str(self.binaries / "hirosco"), *words], cwd=self.folder, env={**self.environment, MARK: ""},
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=seconds, check=False)
 
+    def bring_up(self, do):
+        """The one bring-up of an operator, from wherever the two are; do(subsystem, function, argument) has to succeed."""
+        commissioning, telepresence, coupled = 1, 3, 2
+        both = ("manipulator", "joystick")
+        do("supervisor", "SET_MODE", commissioning)
+        # Who is further on already refuses a step: the states in the end decide.
+        for function, argument in (("SET_STATE", 3), ("CONFIGURE", coupled)):
+            for name in both:
+                self.tc(name, function, argument)
+        for link in (1, 2):
+            self.tc("supervisor", "LINK", link)
+        for name in both:
+            self.tc(name, "SET_STATE", 4)
+        for name in both:
+            do(name, "SET_STATE", 5)
+        do("supervisor", "SET_MODE", telepresence)
+
     def tc(self, subsystem, function, *arguments, seconds=30.0):
         """`hirosco tc`: (exit code, ["1,1", "1,3", ...])."""
         done = self.hirosco("tc", subsystem, function, *map(str, arguments), "--mission", self.mission, "--json",
@@ -279,14 +296,17 @@ class Flight:
                                                        if "=" in word)}
 
     def wait_at_rest(self, device, since):
-        """Until its motors give nothing; fails when they still do STOP_S after `since` (time.monotonic())."""
+        """Until its motors give nothing; fails when they still do STOP_S after `since` (time.monotonic()). A simulated world
+        leaves out the time that its host was late: from the first look on its own time counts, before that all."""
+        before_s, first = time.monotonic() - since, None
         while True:
-            asked = time.monotonic()
             truth = self.truth(device)
+            first = first or truth
             if (truth["motor_1"], truth["motor_2"]) == (0.0, 0.0):
                 return
-            if asked - since >= STOP_S:
-                raise AssertionError(f"{device} moves still {asked - since:.3f} s later: {truth}")
+            moved_s = before_s + truth["world_s"] - first["world_s"]
+            if moved_s >= STOP_S:
+                raise AssertionError(f"{device} moves still {moved_s:.3f} s later: {truth}")
 
     def log(self, *words, last=100000):
         """The texts of the log's records, oldest first."""
@@ -416,6 +436,15 @@ class Telemetry:
         with self._mutex:
             reports = list(self.reports)
         return [(r.time_s, values) for r in reports if (values := r.housekeeping(identifier)) is not None]
+
+    def wait_housekeeping(self, identifier, more_than, seconds=10.0):
+        """The same as soon as there are more than that. They are sampled by cycles, of which a late host leaves out some."""
+        end = time.monotonic() + seconds
+        while len(found := self.housekeeping(identifier)) <= more_than:
+            if time.monotonic() >= end:
+                raise AssertionError(f"{len(found)} reports of structure {identifier} in {seconds:.0f} s")
+            time.sleep(0.05)
+        return found
 
     def forget(self):
         with self._mutex:

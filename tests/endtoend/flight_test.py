@@ -31,14 +31,8 @@ class Rokviss(unittest.TestCase):
         time.sleep(1.0)
         telemetry.forget()
         time.sleep(4.0)
-        # Sampled by cycles, of which a host that takes the processors away leaves out some; rates are judged elsewhere.
-        end = time.monotonic() + 10.0
-        while len(telemetry.housekeeping(4721)) <= 10 and time.monotonic() < end:
-            time.sleep(0.1)
-        follows = [values for _, values in telemetry.housekeeping(4713)]
-        felt = [values for _, values in telemetry.housekeeping(4721)]
-        self.assertGreater(len(follows), 40)
-        self.assertGreater(len(felt), 10)
+        follows = [values for _, values in telemetry.wait_housekeeping(4713, 40)]
+        felt = [values for _, values in telemetry.wait_housekeeping(4721, 10)]
         for axis in range(2):
             hand = [values["position"][axis] for values in felt]
             robot = [values["peer_position"][axis] for values in felt]

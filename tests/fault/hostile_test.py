@@ -12,8 +12,6 @@ import flight
 
 HOSTILE = "hirosco-hostile-manipulator"
 ORPHANS_GONE_S = 12.0           # the keeper's patience, the grace of orphans that do not end themselves, and their end
-BOTH = ("manipulator", "joystick")
-COMMISSIONING, TELEPRESENCE, COUPLED = 1, 3, 2
 
 
 class Hostile(unittest.TestCase):
@@ -87,18 +85,7 @@ class Hostile(unittest.TestCase):
 
     def bring_up(self, craft):
         time.sleep(0.5)
-        self.do(craft, "supervisor", "SET_MODE", COMMISSIONING)
-        # Who is further on already refuses a step: the states in the end decide.
-        for function, argument in (("SET_STATE", 3), ("CONFIGURE", COUPLED)):
-            for name in BOTH:
-                craft.tc(name, function, argument)
-        for link in (1, 2):
-            craft.tc("supervisor", "LINK", link)
-        for name in BOTH:
-            craft.tc(name, "SET_STATE", 4)
-        for name in BOTH:
-            self.do(craft, name, "SET_STATE", 5)
-        self.do(craft, "supervisor", "SET_MODE", TELEPRESENCE)
+        craft.bring_up(lambda *words: self.do(craft, *words))
 
     def do(self, craft, subsystem, function, *arguments):
         code, reports = craft.tc(subsystem, function, *arguments)

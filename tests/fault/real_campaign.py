@@ -24,8 +24,6 @@ SYS_TGKILL = {"x86_64": 234, "aarch64": 131}[os.uname().machine]
 SPINNABLE = {"hirosco-joystick": "hirosco-spinnable-joystick", "hirosco-manipulator": "hirosco-spinnable-manipulator"}
 RESTARTS = {"60": "1"}              # three deaths in a minute are many for a mission, few for a campaign
 ROBOT, JOYSTICK, GROUND = "hirosco-spinnable-manipulator", "hirosco-spinnable-joystick", "hirosco-communication"
-COMMISSIONING, TELEPRESENCE = 1, 3
-COUPLED = 2
 # What the supervisor may take to answer, and what `hirosco tc` itself takes to start on a busy computer.
 ANSWER_S, TOOL_S = 0.2, 0.3
 # The declared stop of the robot, and what `hirosco fault` takes; DeviceOutput off and holding.
@@ -194,18 +192,7 @@ class Trial:
                 back = craft.wait_told(f"started {line.told.split()[0]}", 2.0, self.begin)
                 expect(back.at_s - line.at_s < 2.0, f"{line.told.split()[0]} was back after 2 s only")
         time.sleep(0.5)
-        self.do("supervisor", "SET_MODE", COMMISSIONING)
-        both = ("manipulator", "joystick")
-        for function, argument in (("SET_STATE", 3), ("CONFIGURE", COUPLED)):
-            for name in both:
-                craft.tc(name, function, argument)
-        for link in (1, 2):
-            craft.tc("supervisor", "LINK", link)
-        for name in both:
-            craft.tc(name, "SET_STATE", 4)
-        for name in both:
-            self.do(name, "SET_STATE", 5)
-        self.do("supervisor", "SET_MODE", TELEPRESENCE)
+        craft.bring_up(self.do)
         self.reach = -self.reach
         craft.fault("joystick", "hand", "cartesian", 0, self.reach, 0.5)
         pushed = 0
