@@ -92,6 +92,7 @@ class Record:
         for line in (folder / "trace.txt").read_text().splitlines():
             self.take(line.split())
         self.log = [self.logged(line) for line in (folder / "log.txt").read_text().splitlines()]
+        self.ending = next((r.time for r in self.log if r.kind == "action" and r.note.startswith("shutdown")), self.end)
 
     def take(self, words):
         time, what, rest = int(words[0]), words[1], words[2:]
@@ -138,7 +139,7 @@ class Record:
 
     def finished(self):
         """When the supervisor began to end the flight."""
-        return next((r.time for r in self.log if r.kind == "action" and r.note.startswith("shutdown")), self.end)
+        return self.ending
 
     def mode(self):
         series = Series(self.mission.initial_mode)
