@@ -176,7 +176,9 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
     permitted.releases_stop = up_to_operational;
     if (up_to_safe && situation.power != nullptr) {
       permitted.reserves_w = demand_w(*subsystem, situation);
-      if (const auto shortage = situation.power->shortage(subsystem->id, permitted.reserves_w))
+      // Whom no shortage sheds none refuses: without the ground link nobody could give the craft more power.
+      const bool spared = subsystem->name == situation.mission.ground.subsystem;
+      if (const auto shortage = situation.power->shortage(subsystem->id, permitted.reserves_w); shortage && !spared)
         return std::unexpected{notice_of(*shortage)};
     }
     // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].

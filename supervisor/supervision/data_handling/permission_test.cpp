@@ -142,6 +142,23 @@ TEST(Permission, IsDecidedAsTheTableSays) {
   }
 }
 
+TEST(Permission, TheGroundLinkComesUpWhateverTheBudgetAndItsPowerIsReserved) {
+  auto mission = testing::small_mission();
+  mission.ground.subsystem = "ARM";
+  LinkGraph links{mission};
+  links.set_up(2, true);
+  const auto packet = testing::telecommand(arm, 8, 1, set_state(State::SafeOperational));
+  const auto view = pus::TelecommandView::parse(packet);
+  for (const double budget_w : {0.0, 0.001, 59.999, 60.0}) {
+    const PowerLedger power{budget_w};
+    for (const Sender sender : {Sender::Ground, Sender::Supervisor})
+      EXPECT_EQ(text_of(decide(view.value(), sender,
+                               {mission, mission.modes[open_mode], links, State::PreOperational, 2, &power})),
+                "ok, 60 W")
+          << budget_w;
+  }
+}
+
 TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
   const auto mission = testing::small_mission();
   const LinkGraph links{mission};
