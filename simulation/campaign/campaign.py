@@ -2,16 +2,16 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Flies a mission under random plans and has each flight judged. The drawing aims at what was seldom covered so far."""
-import argparse, collections, concurrent.futures, json, os, pathlib, subprocess, sys, tempfile, time
+import argparse, collections, concurrent.futures, json, os, pathlib, random, subprocess, sys, tempfile, time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "judge"))
-from descriptors import read_mission  # noqa: E402
-from draw import Draw, commands_of, faults_of  # noqa: E402
+from descriptors import STATES, read_mission  # noqa: E402
+from draw import Draw, commands_of, faults_of, out_of_reach  # noqa: E402
 from shrink import shrink  # noqa: E402
 
 BATCH = 20                 # flights that are drawn from the same coverage
-AIM_COMMANDS, AIM_FAULTS = 40, 4
+AIM_COMMANDS, AIM_FAULTS = 50, 10
 COMMAND_GOAL, FAULT_GOAL = 20, 10
 FLIGHT_LIMIT_S = 120
 
@@ -42,10 +42,21 @@ class Pilot:
             return json.loads(judged.stdout)
 
 
-def emptiest(cells, covered, goal, number, turn):
-    """The next `number` cells of those that are covered least, each flight of a batch its own."""
-    empty = sorted((cell for cell in cells if covered[cell] < goal), key=lambda cell: (covered[cell], cell.split("|")[0], cell))
-    return empty[turn * number:(turn + 1) * number]
+def emptiest(cells, covered, goal, number, turn, seed):
+    """The next `number` cells of those that are covered least, each flight of a batch its own as far as there are enough.
+    Cells of one state stand together: the craft is driven there once."""
+    place = list(range(len(cells)))
+    random.Random(seed).shuffle(place)
+    order = {cell: at for cell, at in zip(cells, place)}
+    empty = sorted((cell for cell in cells if covered[cell] < goal), key=lambda cell: (covered[cell], state_of(cell), order[cell]))
+    start = turn * number
+    if start >= len(empty):
+        start %= max(len(empty), 1)
+    return empty[start:start + number]
+
+
+def state_of(cell):
+    return next(part for part in cell.split("|") if part in STATES)
 
 
 class Campaign:
@@ -54,13 +65,16 @@ class Campaign:
         self.mission = read_mission(arguments.mission)
         self.pilot = Pilot(arguments.mission, arguments.fly_plan, arguments.plant)
         self.commands, self.faults = collections.Counter(), collections.Counter()
-        self.command_cells, self.fault_cells = list(commands_of(self.mission)), list(faults_of(self.mission))
-        self.failed = []
+        self.out_of_reach = out_of_reach(self.mission)
+        self.command_cells = [cell for cell in commands_of(self.mission) if cell not in self.out_of_reach]
+        self.fault_cells = [cell for cell in faults_of(self.mission) if cell not in self.out_of_reach]
+        self.failed, self.violations = [], 0
 
     def plan(self, index):
         turn = index % BATCH
-        commands = emptiest(self.command_cells, self.commands, COMMAND_GOAL, AIM_COMMANDS, turn)
-        faults = emptiest(self.fault_cells, self.faults, FAULT_GOAL, AIM_FAULTS, turn)
+        seed = f"{self.arguments.seed}/{index // BATCH}"
+        commands = emptiest(self.command_cells, self.commands, COMMAND_GOAL, AIM_COMMANDS, turn, seed)
+        faults = emptiest(self.fault_cells, self.faults, FAULT_GOAL, AIM_FAULTS, turn, seed)
         return Draw(self.mission, self.arguments.seed, index, commands, faults).text()
 
     def run(self):
@@ -77,13 +91,17 @@ class Campaign:
                     self.faults.update(result["faults"])
                     if result["violations"] and only in (None, index):
                         self.tell(index, result, plans[index])
-        self.table()
-        flown = len(range(last)) if only is None else 1
-        print(f"{flown - len(self.failed)} passed, {len(self.failed)} failed ({time.monotonic() - started:.0f} s)")
-        return 1 if self.failed else 0
+        full = self.table()
+        flown = last if only is None else 1
+        wrong = [cell for cell in self.out_of_reach if self.commands[cell] + self.faults[cell]]
+        for cell in wrong:
+            print(f"covered, though draw.py says that it is out of reach: {cell}")
+        print(f"{flown} flights, {self.violations} violations, cells full {full[0]} and {full[1]}, {time.monotonic() - started:.0f} seconds")
+        return 1 if self.failed or wrong else 0
 
     def tell(self, index, result, plan):
         self.failed.append(index)
+        self.violations += len(result["violations"])
         print(f"flight {index} of seed {self.arguments.seed}:")
         for invariant, seconds, text in result["violations"]:
             print(f"  {invariant} {seconds:.4f} s: {text}")
@@ -100,22 +118,23 @@ class Campaign:
         sys.stdout.flush()
 
     def table(self):
-        """Covered: how many cells reached their goal, and the emptiest of them."""
+        """State by state: how many cells reached their goal, and the emptiest. Returns "full/all" of both kinds."""
+        shares = []
         for title, cells, covered, goal in (("state x telecommand x origin", self.command_cells, self.commands, COMMAND_GOAL),
                                             ("fault x state x member", self.fault_cells, self.faults, FAULT_GOAL)):
-            full = sum(covered[cell] >= goal for cell in cells)
-            print(f"{title}: {full} of {len(cells)} cells at least {goal} times, {sum(covered[c] == 0 for c in cells)} never, "
-                  f"{sum(covered.values())} in all")
-            columns = collections.defaultdict(collections.Counter)
-            for cell in cells:
-                first, second, third = cell.split("|")
-                row, column = (second, f"{first}") if title.startswith("state") else (f"{first} {third}", second)
-                columns[row][column] = min(columns[row].get(column, 10**6), covered[cell])
-            names = ["Offline", "PreOperational", "SafeOperational", "Operational", "ErrorOperational", "PostOperational"]
-            if self.arguments.table:
-                print(f"{'(least of all origins)' if title.startswith('state') else '':<28}" + "".join(f"{name:>17}" for name in names))
-                for row in columns:
-                    print(f"{row:<28}" + "".join(f"{columns[row].get(name, '-'):>17}" for name in names))
+            print(f"{title}, each at least {goal} times:")
+            print(f"  {'state':<18}{'cells':>7}{'full':>7}{'never':>7}{'least':>7}{'in all':>9}")
+            for state in sorted({state_of(cell) for cell in cells}, key=STATES.index):
+                counts = [covered[cell] for cell in cells if state_of(cell) == state]
+                print(f"  {state:<18}{len(counts):>7}{sum(n >= goal for n in counts):>7}{counts.count(0):>7}{min(counts):>7}{sum(counts):>9}")
+            lacking = sorted((covered[cell], cell) for cell in cells if covered[cell] < goal)
+            for number, cell in lacking[:len(lacking) if self.arguments.table else 10]:
+                print(f"    {number:>3} {cell}")
+            shares.append(f"{len(cells) - len(lacking)}/{len(cells)}")
+        print("out of reach:" if self.out_of_reach else "nothing is out of reach")
+        for cell, why in self.out_of_reach.items():
+            print(f"    {cell}: {why}")
+        return shares
 
 
 def parse(words=None):
@@ -129,7 +148,7 @@ def parse(words=None):
     parser.add_argument("--show", action="store_true", help="print the plan of --only instead of flying it")
     parser.add_argument("--out", help="folder for the plans that failed")
     parser.add_argument("--shrink", type=int, default=3, help="how many failed plans are made small (0: none)")
-    parser.add_argument("--table", action="store_true", help="print coverage cell by cell")
+    parser.add_argument("--table", action="store_true", help="print all cells that are not full")
     parser.add_argument("--plant", help="fly with this planted defect")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--fly-plan", default=os.environ.get("HIROSCO_FLY_PLAN", str(default)))

@@ -8,12 +8,17 @@ from descriptors import ERROR, OFFLINE, OPERATIONAL, POST, PRE, SAFE, STATES, TY
 
 FINALE_S = 26.0
 BEGIN_S = 0.1           # commissioned by then
+FULL_POWER = b"SET_POWER_BUDGET" + bytes([1, 1]) + struct.pack(">f", 120)
 COMMON = ["3.1", "3.3", "3.5", "3.6", "3.9", "3.27", "3.29", "3.31", "3.33", "5.5", "5.6", "5.7", "17.1", "20.1", "20.3",
           "128.1", "128.2", "128.3", "128.4", "129.1", "3.77", "99.1", "SET_STATE", "CONFIGURE", "unknown"]
 DEVICE_FAULTS = ["unplug", "silent", "stall", "freeze", "corrupt", "delay"]
 OWN_FAULTS = {"MANIPULATOR": ["temperature", "hook", "release", "friction", "noise", "thermal_accel"], "JOYSTICK": ["hand"]}
 MEMBER_FAULTS = ["kill", "stop", "spin", "stick", "strain"]
 LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
+# How long the craft is left alone with a fault that was aimed: what ends or stops a process takes longest.
+LEFT_ALONE_S = {**dict.fromkeys(DEVICE_FAULTS, 0.7), **dict.fromkeys(MEMBER_FAULTS, 1.6)}
+MOST_STRIKES = 2        # of a member in one flight by what may end it: who dies too often stays down
+COUPLED = ["COUPLED", "COUPLED", "COUPLED_FEEL", "STANDALONE"]
 # The states that last; the others are passed in one instant of virtual time. Down first, whatever state there is.
 DOWN = [SAFE, OFFLINE]
 WAY_TO = {OFFLINE: DOWN, PRE: [*DOWN, PRE], SAFE: [*DOWN, PRE, "CONFIGURE", "LINKS", SAFE],
@@ -21,8 +26,14 @@ WAY_TO = {OFFLINE: DOWN, PRE: [*DOWN, PRE], SAFE: [*DOWN, PRE, "CONFIGURE", "LIN
           POST: [*DOWN, PRE, "CONFIGURE", POST]}
 
 
+def out_of_reach(mission):
+    """{cell: why nothing can cover it}. A flight that covers one all the same is an error of this list."""
+    return {f"Offline|{kind}|ground": f"ground's packets pass through {mission.ground}, which has no link to ground while it is Offline"
+            for kind in mission.by_name(mission.ground).functions}
+
+
 def commands_of(mission):
-    """Cells that can be reached: state | kind | origin."""
+    """Cells: state of the addressee | kind | origin."""
     origins = ["ground", *(m.name for m in mission.members)]
     for state in WAY_TO:
         for origin in origins:
@@ -34,7 +45,7 @@ def commands_of(mission):
 
 
 def faults_of(mission):
-    """Cells that can be reached: fault | state | member."""
+    """Cells: fault | state of the member | member."""
     members = [m.name for m in mission.members]
     acting = [m for m in members if m != mission.ground]
     for state in WAY_TO:
@@ -53,9 +64,12 @@ class Draw:
         self.mission = mission
         self.random = random.Random(f"{seed}/{index}")
         self.lines = []           # (time, words)
+        self.struck = set()       # whom something was done to that may last
         self.wanted_commands, self.wanted_faults = list(wanted_commands), list(wanted_faults)
+        self.acting = [m for m in mission.members if m.name != mission.ground]
         self.flight_seed = self.random.randrange(1, 1 << 32)
-        self.mode = self.random.choice(["telepresence"] * 3 + [m for m in mission.modes if m not in (mission.initial_mode, "safe")])
+        hooks = any(cell.startswith("fault hook") for cell in self.wanted_faults)
+        self.mode = "standalone" if hooks else self.random.choice(["telepresence"] * 3 + [m for m in mission.modes if m not in (mission.initial_mode, "safe")])
 
     # --- values ------------------------------------------------------------------------------------------------------
     def value(self, argument):
@@ -123,7 +137,7 @@ class Draw:
         if kind == "CONFIGURE":
             return 8, 1, b"CONFIGURE".ljust(16, b"\0") + bytes([1, 1, r.choice([*subsystem.configurations, 0, 99])])
         if kind == "unknown":
-            return 8, 1, r.choice([b"NOBODY_HAS_IT".ljust(16, b"\0") + b"\0", r.randbytes(17), b"HOLD"])
+            return 8, 1, r.choice([b"NOBODY_HAS_IT".ljust(16, b"\0") + b"\0", r.randbytes(17), b"HOL"])
         return 8, 1, self.call(kind, subsystem.functions[kind].arguments)
 
     # --- actions -----------------------------------------------------------------------------------------------------
@@ -152,52 +166,74 @@ class Draw:
             return self.add(time, f"raw {origin} {octets.hex() or '00'}")
         return self.telecommand(time, origin, owner, kind)
 
-    def drive(self, time, member, state, mode="COUPLED"):
-        """Ground brings a member into a state, step by step; 30 ms each."""
+    def function(self, time, subsystem, name, *arguments):
+        """A telecommand of ground to a function with arguments of one octet."""
+        data = name.encode().ljust(16, b"\0") + bytes([len(arguments), *(octet for pair in enumerate(arguments, 1) for octet in pair)])
+        self.telecommand(time, "ground", subsystem, name, data)
+
+    def drive(self, time, state, configuration=None):
+        """Ground brings both ends of the network into a state, step by step, 30 ms each."""
         mission = self.mission
-        self.telecommand(time, "ground", mission.supervisor, "SET_MODE",
-                         b"SET_MODE".ljust(16, b"\0") + bytes([1, 1, mission.mode_ids[mission.initial_mode]]))
+        configuration = configuration or self.random.choice(COUPLED)
+        self.function(time, mission.supervisor, "SET_MODE", mission.mode_ids[mission.initial_mode])
+        self.telecommand(time + 0.01, "ground", mission.supervisor, "SET_POWER_BUDGET", FULL_POWER)
         for step in WAY_TO[state]:
             time += 0.03
-            if step == "CONFIGURE":
-                chosen = next((c.id for c in member.configurations.values() if c.name == mode), 1)
-                self.telecommand(time, "ground", member, "CONFIGURE", b"CONFIGURE".ljust(16, b"\0") + bytes([1, 1, chosen]))
-            elif step == "LINKS":
+            if step == "LINKS":
                 for link in (1, 2):
-                    self.telecommand(time, "ground", mission.supervisor, "LINK", b"LINK".ljust(16, b"\0") + bytes([1, 1, link]))
-            else:
-                self.telecommand(time, "ground", member, "SET_STATE", b"SET_STATE".ljust(16, b"\0") + bytes([1, 1, step]))
-        return time + 0.03
+                    self.function(time, mission.supervisor, "LINK", link)
+                continue
+            for member in self.acting:
+                if step == "CONFIGURE":
+                    chosen = next((c.id for c in member.configurations.values() if c.name == configuration), 1)
+                    self.function(time, member, "CONFIGURE", chosen)
+                else:
+                    self.function(time, member, "SET_STATE", step)
+        return time + 0.05
+
+    def drive_ground_link(self, time, state):
+        """The member that carries the ground link into a state; from Offline it comes back by itself."""
+        way = {PRE: [SAFE, POST, PRE], SAFE: [SAFE], ERROR: [ERROR], POST: [SAFE, POST], OFFLINE: [SAFE, POST, OFFLINE]}[state]
+        mission = self.mission
+        self.function(time, mission.supervisor, "SET_MODE", mission.mode_ids[mission.initial_mode])
+        for step in way:
+            time += 0.05
+            self.function(time, mission.by_name(mission.ground), "SET_STATE", step)
+        return time + 0.05
 
     def bring_up(self, time):
         """Both ends of the network by ground, as an operator would."""
         mission = self.mission
-        acting = [m for m in mission.members if m.name != mission.ground]
         if self.random.random() < 0.5:
-            self.telecommand(time, "ground", mission.supervisor, "SAFE_ALL", b"SAFE_ALL".ljust(16, b"\0") + bytes([0]))
-        for step in WAY_TO[OPERATIONAL]:
-            time += 0.04
-            for member in acting:
-                if step == "CONFIGURE":
-                    chosen = next((c.id for c in member.configurations.values() if c.name == "COUPLED"), 1)
-                    self.telecommand(time, "ground", member, "CONFIGURE", b"CONFIGURE".ljust(16, b"\0") + bytes([1, 1, chosen]))
-                elif step != "LINKS":
-                    self.telecommand(time, "ground", member, "SET_STATE", b"SET_STATE".ljust(16, b"\0") + bytes([1, 1, step]))
-            if step == "LINKS":
-                for link in (1, 2):
-                    self.telecommand(time, "ground", mission.supervisor, "LINK", b"LINK".ljust(16, b"\0") + bytes([1, 1, link]))
-        return time + 0.04
+            self.function(time, mission.supervisor, "SAFE_ALL")
+        return self.drive(time, OPERATIONAL, "COUPLED")
 
-    def fault(self, time, fault, member):
+    def calm(self, time):
+        """Ends what was injected so far."""
+        for device, (owner, _) in self.mission.devices.items():
+            if owner in self.struck:
+                self.add(time, f"fault {device} heal")
+                self.add(time, f"fault {device} plug")
+        for member in self.mission.members:
+            if member.name in self.struck:
+                self.add(time, f"go {member.name}")
+                self.add(time, f"unstick {member.name}")
+        if "LOG" in self.struck:
+            self.add(time, "log heal")
+            self.function(time + 0.01, self.mission.supervisor, "SET_DATABASE", 1)
+        self.struck.clear()
+
+    def fault(self, time, fault, member, durations=(0.005, 0.05, 0.3, 1.0, 3.0)):
         """One fault, and mostly its end some time later."""
         r = self.random
-        lasts = r.choice([0.005, 0.05, 0.3, 1.0, 3.0])
+        lasts = r.choice(durations)
+        self.struck.add("LOG" if fault.startswith("log ") else member)
         if fault.startswith("fault "):
             device = next(d for d, (owner, _) in self.mission.devices.items() if owner == member)
             what = fault.split()[1]
             words = {"stall": f"stall {r.choice([1, 3, 50, 500])}", "freeze": f"freeze {r.choice([1, 3, 50, 5000])}",
                      "corrupt": f"corrupt {r.choice([1, 3, 50, 1000000])}", "delay": f"delay {r.choice([1, 5, 100])}",
-                     "temperature": f"temperature {r.choice([1, 2])} {r.choice([56, 72, 81, 20])}", "hook": f"hook {r.choice([1, 2])}",
+                     "temperature": f"temperature {r.choice([1, 2])} {r.choice([56, 72, 81, 20])}", "hook": f"hook {r.choice([1, 2, 2, 2])}",
                      "friction": f"friction {r.choice(['on', 'off'])}", "noise": f"noise {r.choice([0, 0.1, 2])}",
                      "thermal_accel": f"thermal_accel {r.choice([0, 10])}",
                      "hand": r.choice(["hand wander", "hand cartesian 0.0226 0 0.2", "hand sine 1 0.3 2", "hand hold 0.1 0.1",
@@ -226,42 +262,66 @@ class Draw:
 
     # --- a flight ----------------------------------------------------------------------------------------------------
     def aim(self):
-        """At the emptiest cells: drives a member into the state and does there what is wanting."""
-        r, mission = self.random, self.mission
+        """At the emptiest cells: drives the craft into the state and does there what is wanting. When it is done."""
+        r = self.random
         time = BEGIN_S + 0.3
-        while self.wanted_commands or self.wanted_faults:
-            cells = self.wanted_commands or self.wanted_faults
-            state = cells[0].split("|")[1 if cells is self.wanted_faults else 0]
-            here = [c for c in self.wanted_commands if c.split("|")[0] == state]
-            faults = [c for c in self.wanted_faults if c.split("|")[1] == state]
-            self.wanted_commands = [c for c in self.wanted_commands if c not in here]
-            self.wanted_faults = [c for c in self.wanted_faults if c not in faults]
-            acting = [m for m in mission.members if m.name != mission.ground]
-            member = next((m for m in acting if faults and m.name == faults[0].split("|")[2]), r.choice(acting))
-            ready = max(self.drive(time, m, STATES.index(state)) for m in acting)
-            time = ready + 0.02
-            for cell in here:
-                _, kind, origin = cell.split("|")
-                owner = next((s for s in [mission.supervisor, *mission.members] if kind in s.functions), member)
-                self.send_random(time, kind, origin, owner)
-                time += r.choice([0.0, 0.001, 0.004])
-                if kind in ("SET_STATE", "CONFIGURE"):
-                    time = max(self.drive(time + 0.01, m, STATES.index(state)) for m in acting) + 0.01
-            for cell in faults:
-                fault, _, struck = cell.split("|")
-                self.fault(time, fault, struck)
-                time += 0.25
-            time += r.uniform(0.1, 0.6)
+        by_state = {}
+        for cell in self.wanted_commands:
+            state, kind, _ = cell.split("|")
+            by_state.setdefault((state, kind in self.mission.by_name(self.mission.ground).functions), []).append(cell)
+        ends = [cell for cell in self.wanted_commands if "|SHUTDOWN|ground" in cell]
+        strikes = {}
+        episodes = [(0.1 if state == "Operational" else r.random(), self.send_there, (state, of_ground_link, cells))
+                    for (state, of_ground_link), cells in by_state.items()]
+        for cell in self.wanted_faults:
+            fault, state, member = cell.split("|")
+            what = fault.split()[-1]
+            strikes[member] = strikes.get(member, 0) + (what in MEMBER_FAULTS)
+            # A spring can be hooked where the robot begins; what may end a process comes last.
+            rank = 0 if what == "hook" else r.uniform(2, 3) if what in MEMBER_FAULTS else r.uniform(0, 2)
+            if what not in MEMBER_FAULTS or strikes[member] <= MOST_STRIKES:
+                episodes.append((rank, self.strike_there, (fault, state, member)))
+        for _, episode, what in sorted(episodes, key=lambda entry: entry[0]):
             if time > FINALE_S - 3:
-                return
+                break
+            if r.random() < 0.9:
+                self.calm(time)
+            time = episode(time + 0.03, *what)
+        if ends:
+            self.telecommand(FINALE_S - r.uniform(0.02, 0.5), "ground", self.mission.supervisor, "SHUTDOWN")
+        return time
 
-    def roam(self):
+    def send_there(self, time, state, of_ground_link, cells):
+        r, mission = self.random, self.mission
+        drive = self.drive_ground_link if of_ground_link and state != "Operational" else self.drive
+        time = drive(time, STATES.index(state))
+        for cell in cells:
+            _, kind, origin = cell.split("|")
+            if kind == "SHUTDOWN" and origin == "ground":
+                continue
+            owner = next((s for s in [mission.supervisor, *mission.members] if kind in s.functions), r.choice(self.acting))
+            self.telecommand(time, origin, owner, kind)
+            time += r.choice([0.0, 0.001, 0.004])
+            if kind in ("SET_STATE", "CONFIGURE"):
+                time = drive(time + 0.01, STATES.index(state))
+        if drive == self.drive_ground_link:
+            if STATES.index(state) != OFFLINE:
+                time = self.drive_ground_link(time + 0.05, OFFLINE)
+            time += 1.3
+        return time + r.uniform(0.05, 0.2)
+
+    def strike_there(self, time, fault, state, member):
+        time = self.drive(time, STATES.index(state))
+        self.fault(time, fault, member, (0.005, 0.05, 0.3))
+        return time + LEFT_ALONE_S.get(fault.split()[-1], 0.1) + self.random.uniform(0, 0.2)
+
+    def roam(self, begin=0.3):
         """Whatever, whenever; faults come alone, in pairs, and into a recovery that is under way."""
         r, mission = self.random, self.mission
         for _ in range(r.choice([20, 80, 200])):
             self.send_random(r.uniform(BEGIN_S, FINALE_S))
         for _ in range(r.choice([1, 2, 4])):
-            time = r.uniform(0.3, FINALE_S - 2)
+            time = r.uniform(min(begin, FINALE_S - 5), FINALE_S - 2)
             for _ in range(r.choice([1, 1, 2, 3])):
                 cell = r.choice(list(faults_of(mission)))
                 fault, _, struck = cell.split("|")
@@ -273,9 +333,8 @@ class Draw:
     def strike_in_use(self):
         """Both ends of the network are up, ground silences events or commands SAFE_ALL in a hurry, then something breaks."""
         r, mission = self.random, self.mission
-        acting = [m for m in mission.members if m.name != mission.ground]
         time = self.bring_up(r.uniform(0.5, FINALE_S - 4))
-        victim = r.choice(acting)
+        victim = r.choice(self.acting)
         if r.random() < 0.5:
             for event in victim.events:
                 self.add(time + 0.05, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
@@ -288,9 +347,8 @@ class Draw:
         return self.fault(time + 0.5, fault, victim.name)
 
     def text(self):
-        if self.wanted_commands or self.wanted_faults:
-            self.aim()
-        self.roam()
+        aimed = self.aim() if self.wanted_commands or self.wanted_faults else 0.3
+        self.roam(self.random.choice([0.3, aimed, aimed]))
         self.strike_in_use()
         self.lines.sort(key=lambda line: line[0])
         head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}"]

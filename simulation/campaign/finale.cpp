@@ -63,9 +63,6 @@ void PlannedFlight::finale() {
   // A store that has failed takes nothing more; a new one does.
   static_cast<void>(call(mission_.supervisor.name, "SET_DATABASE", 1));
   static_cast<void>(call(mission_.supervisor.name, "SAFE_ALL", {}));
-  // An operator who brings the craft up gives it the power for that again.
-  if (mission_.power_budget_w)
-    static_cast<void>(call(mission_.supervisor.name, "SET_POWER_BUDGET", mission_.power_budget_w));
   run_until(plan_.finale + 2s);
   trace_->say("recovered");
   for (const auto& member : mission_.subsystems)
@@ -89,6 +86,9 @@ void PlannedFlight::bring_up() {
   const auto lives = [&](const auto& step) { return craft_->alive(step.subsystem); };
   if (!std::ranges::all_of(mode->commission, lives)) mode = alone;
   static_cast<void>(call(mission_.supervisor.name, "SET_MODE", commissioning->id));
+  // An operator who brings the craft up gives it the power for that again.
+  if (mission_.power_budget_w)
+    static_cast<void>(call(mission_.supervisor.name, "SET_POWER_BUDGET", mission_.power_budget_w));
   std::vector<const descriptor::CommissionStep*> steps;
   for (const auto& step : mode->commission)
     if (lives(step) && step.subsystem != mission_.ground.subsystem) steps.push_back(&step);
