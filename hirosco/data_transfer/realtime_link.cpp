@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+// Safety module: link core (docs/safety/modules.csv).
 #include "hirosco/data_transfer/realtime_link.hpp"
 
 #include <atomic>

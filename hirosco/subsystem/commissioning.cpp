@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+// Safety module: states (docs/safety/modules.csv).
 #include <algorithm>
 
 #include "hirosco/descriptor/framework_events.hpp"

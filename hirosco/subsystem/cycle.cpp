@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+// Safety module: cycle (docs/safety/modules.csv).
 #include "hirosco/subsystem/cycle.hpp"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+// Safety module: fence (docs/safety/modules.csv).
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+// Safety module: log writer (docs/safety/modules.csv).
 #include "supervisor/platform/log_queue.hpp"
 
 #include <algorithm>

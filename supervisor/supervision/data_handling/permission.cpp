@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+// Safety module: permission (docs/safety/modules.csv).
 #include "supervisor/supervision/data_handling/permission.hpp"
 
 #include <algorithm>
