@@ -56,6 +56,7 @@ class Api final : public Application {
   void closed(const Peer& peer) override { session_.closed(peer); }
   void link_up() override { session_.link_up(); }
   void link_down() override { session_.link_down(); }
+  void not_sent(Octets packet) override { session_.not_sent(packet); }
   [[nodiscard]] bool link_received(Octets octets) override { return session_.receive(octets); }
   void tick() override;
 

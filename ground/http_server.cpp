@@ -24,6 +24,9 @@ using Failure = boost::system::error_code;
 
 constexpr auto request_limit = std::chrono::seconds{30};
 constexpr auto device_limit = std::chrono::seconds{2};
+/// Of telecommands in the kernel: what became of those nobody can tell when the link is lost, so that few may be there.
+constexpr int link_send_octets = 4096;
+constexpr auto errand_limit = std::chrono::seconds{2};
 constexpr auto reconnect_pause = std::chrono::milliseconds{300};
 constexpr std::size_t most_header_octets = std::size_t{16} << 10;
 constexpr std::size_t most_message_octets = std::size_t{4} << 10;
@@ -149,7 +152,7 @@ class Server final : public HttpServer {
   void stop() override {
     asio::post(io_, [this] { shut(); });
   }
-  [[nodiscard]] bool send(Octets packet) override;
+  [[nodiscard]] bool send(Octets packet, Way way) override;
   void ask(const std::string& socket_path, const std::string& line,
            std::function<void(std::optional<std::string>)> done) override;
 
@@ -168,6 +171,8 @@ class Server final : public HttpServer {
   void read_link();
   void write_link();
   void lose_link();
+  [[nodiscard]] bool send_in_turn(Octets packet);
+  void send_alone(Octets packet);
 
   Options options_;
   asio::io_context io_{1};
@@ -453,6 +458,9 @@ void Server::tick() {
 
 void Server::connect() {
   link_ = tcp::socket{io_};
+  Failure unlimited;
+  link_.open(spacecraft_.protocol(), unlimited);
+  link_.set_option(asio::socket_base::send_buffer_size{link_send_octets}, unlimited);
   link_.async_connect(spacecraft_, [this](Failure failed) {
     if (ending_) return;
     if (failed) return lose_link();
@@ -475,7 +483,8 @@ void Server::read_link() {
 void Server::lose_link() {
   Failure ignored;
   link_.close(ignored);
-  link_queue_.clear();
+  // What the next link would bring late is told as not sent instead: its sender may want something else by then.
+  for (const auto& packet : std::exchange(link_queue_, {})) application_->not_sent(packet);
   link_pending_ = 0;
   if (linked_) application_->link_down();
   linked_ = false;
@@ -485,7 +494,14 @@ void Server::lose_link() {
   });
 }
 
-bool Server::send(Octets packet) {
+bool Server::send(Octets packet, Way way) {
+  if (way == Way::InTurn) return send_in_turn(packet);
+  if (!linked_) return false;
+  send_alone(packet);
+  return true;
+}
+
+bool Server::send_in_turn(Octets packet) {
   if (!linked_ || link_pending_ + packet.size() > most_waiting_telecommands) return false;
   link_pending_ += packet.size();
   link_queue_.emplace_back(packet.begin(), packet.end());
@@ -497,11 +513,52 @@ void Server::write_link() {
   link_writing_ = true;
   auto packet = std::make_shared<std::vector<std::byte>>(std::move(link_queue_.front()));
   link_queue_.pop_front();
-  asio::async_write(link_, asio::buffer(*packet), [this, packet](Failure, std::size_t) {
+  asio::async_write(link_, asio::buffer(*packet), [this, packet](Failure failed, std::size_t) {
     link_writing_ = false;
     // A failure shows to the reader too, which makes a new link.
+    if (failed && !ending_) application_->not_sent(*packet);
     link_pending_ -= std::min(link_pending_, packet->size());
     if (linked_ && !link_queue_.empty()) write_link();
+  });
+}
+
+namespace {
+
+/// A connection for one telecommand.
+struct Errand {
+  explicit Errand(asio::io_context& io) : socket{io}, limit{io} {}
+  tcp::socket socket;
+  asio::steady_timer limit;
+  std::vector<std::byte> packet;
+  std::array<std::byte, 1> nothing{};
+};
+
+}  // namespace
+
+void Server::send_alone(Octets packet) {
+  auto errand = std::make_shared<Errand>(io_);
+  errand->packet.assign(packet.begin(), packet.end());
+  errand->limit.expires_after(errand_limit);
+  errand->limit.async_wait([errand](Failure failed) {
+    Failure ignored;
+    if (!failed) errand->socket.close(ignored);
+  });
+  // Without that port the link has to do.
+  const auto or_in_turn = [this, errand] {
+    errand->limit.cancel();
+    if (!ending_ && !send_in_turn(errand->packet)) application_->not_sent(errand->packet);
+  };
+  errand->socket.async_connect({spacecraft_.address(), options_.telecommand_port}, [errand,
+                                                                                    or_in_turn](Failure failed) {
+    if (failed) return or_in_turn();
+    asio::async_write(errand->socket, asio::buffer(errand->packet), [errand, or_in_turn](Failure lost, std::size_t) {
+      if (lost) return or_in_turn();
+      Failure ignored;
+      errand->socket.shutdown(tcp::socket::shutdown_send, ignored);
+      // The other side ends it when it has taken what came.
+      errand->socket.async_read_some(asio::buffer(errand->nothing),
+                                     [errand](Failure, std::size_t) { errand->limit.cancel(); });
+    });
   });
 }
 

@@ -46,6 +46,8 @@ class Application {
   /// The spacecraft's stream.
   virtual void link_up() = 0;
   virtual void link_down() = 0;
+  /// A telecommand that send() took and that has not left, or not as a whole.
+  virtual void not_sent(Octets packet) = 0;
   /// False: close the link and make a new one.
   [[nodiscard]] virtual bool link_received(Octets octets) = 0;
   virtual void tick() = 0;
@@ -56,6 +58,7 @@ class HttpServer {
   struct Options {
     std::uint16_t port{8080};          ///< on the loopback address, no other
     std::string spacecraft{"127.0.0.1:10015"};
+    std::uint16_t telecommand_port{10025};  ///< of the spacecraft, beside that for telemetry
     Duration tick_period{std::chrono::milliseconds{50}};
     /// End when standard input ends: the process that started us is gone.
     bool end_with_input{false};
@@ -76,8 +79,8 @@ class HttpServer {
   virtual void stop() = 0;
 
   // --- for the application, from the thread of run() -----------------------------------------------------------------
-  /// To the spacecraft; false without a link, or when it takes nothing.
-  [[nodiscard]] virtual bool send(Octets packet) = 0;
+  /// To the spacecraft; false without a link, or when it takes nothing. Alone: it leaves though nothing else does.
+  [[nodiscard]] virtual bool send(Octets packet, Way way) = 0;
   /// One line to a UNIX stream socket and its answer, within 2 s; empty when nobody answers.
   virtual void ask(const std::string& socket_path, const std::string& line,
                    std::function<void(std::optional<std::string>)> done) = 0;

@@ -100,6 +100,21 @@ void Session::link_down() {
   parts_.archive.commit();
 }
 
+void Session::not_sent(Octets packet) {
+  const auto header = pus::read_primary_header(packet);
+  const auto found = header ? open_commands_.find({parts_.source, header->request_id}) : open_commands_.end();
+  if (found == open_commands_.end()) return;  // a question: it expires
+  StoredCommand command = std::move(found->second.command);
+  open_commands_.erase(found);
+  command.t = now();
+  command.stage = "failed";
+  command.reason = "not sent: the link was lost";
+  parts_.archive.add(command.number, StoredReport{command.t, command.stage, std::nullopt, command.reason});
+  json message = command_json(command);
+  message["type"] = "command";
+  broadcast(message);
+}
+
 bool Session::receive(Octets octets) {
   stream_.insert(stream_.end(), octets.begin(), octets.end());
   std::size_t used = 0;
@@ -334,6 +349,7 @@ Answered<Session::Prepared> Session::prepare(const json& body) const {
   auto data = pus::encode_call(*function, std::span<const std::optional<double>>{values});
   if (!data) return refuse(400, wanted + ": " + data.error().text);
   prepared.data = std::move(*data);
+  if (function->essential) prepared.way = Way::Alone;
   return prepared;
 }
 
@@ -379,7 +395,7 @@ Answered<json> Session::command(const json& body) {
   parts_.archive.commit();
   const std::uint32_t request_id = pus::read_primary_header(*packet)->request_id;
   open_commands_[{parts_.source, request_id}] = {command, parts_.clock.now()};
-  if (!parts_.outside.send(*packet)) {
+  if (!parts_.outside.send(*packet, prepared->way)) {
     open_commands_.erase({parts_.source, request_id});
     parts_.archive.add(command.number, StoredReport{command.t, "failed", std::nullopt, "not sent: no link"});
     return refuse(503, "no link to the spacecraft");
@@ -400,7 +416,7 @@ void Session::preview(const json& body, std::function<void(Answered<json>)> done
   // No reports but the answer itself.
   const auto query = packet_of(parts_.catalogue.mission().supervisor.id, pus::st129::service_type,
                                pus::st129::permission_question, 0, *asked, next_count());
-  const bool sent = connected_ && query && parts_.outside.send(*query);
+  const bool sent = connected_ && query && parts_.outside.send(*query, Way::InTurn);
   if (!sent)
     return done(
         json{{"octets", octets}, {"permitted", nullptr}, {"code", nullptr}, {"reason", "no link to the spacecraft"}});

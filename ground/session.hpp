@@ -31,10 +31,15 @@ class Peer {
   virtual void close(std::uint16_t code, const std::string& reason) = 0;
 };
 
+/// How a telecommand leaves: behind those that wait for the link, or by a connection of its own to the port that is for
+/// telecommands alone, past a link that takes nothing (docs/adr/0028).
+enum class Way : std::uint8_t { InTurn, Alone };
+
 /// What the session asks of the shell around it.
 struct Surroundings {
-  /// Sends a telecommand to the spacecraft; false without a link.
-  std::function<bool(Octets)> send;
+  /// Sends a telecommand to the spacecraft; false when it certainly does not leave. One that then could not leave after
+  /// all comes back by `not_sent`.
+  std::function<bool(Octets, Way)> send;
   /// One line to the control socket of a simulated device; the answer comes later, empty when nobody answers.
   std::function<void(const std::string& device, const std::string& line,
                      std::function<void(std::optional<std::string>)>)>
@@ -58,7 +63,7 @@ class Session {
     Archive& archive;
     const Clock& clock;
     Surroundings outside;
-    std::uint16_t source{0x2000};      ///< of its telecommands (decision 27)
+    std::uint16_t source{0x2000};  ///< of its telecommands (decision 27)
     std::uint16_t first_count{0};
   };
   explicit Session(Parts parts);
@@ -69,6 +74,8 @@ class Session {
   // --- the link -----------------------------------------------------------------------------------------------------
   void link_up();
   void link_down();
+  /// A telecommand that was to be sent has not left: its sender is told.
+  void not_sent(Octets packet);
   /// Octets of the telemetry stream as they come, in pieces of any size. False: this is no telemetry, close the link.
   [[nodiscard]] bool receive(Octets octets);
   /// Batches to the clients, limits of time. Call 20 times a second.
@@ -106,6 +113,7 @@ class Session {
     const descriptor::Subsystem* subsystem{};
     std::string function;
     std::uint8_t service{8};
+    Way way{Way::InTurn};
     std::string arguments;  ///< a JSON object with the values that are sent
     std::vector<std::byte> data;
   };

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hostile neighbours of a running ground station: clients that hold connections, send what is no request, or would
 command without being allowed to, and a spacecraft that sends anything in valid packets. Python's standard library only."""
+import contextlib
+import http.client
 import json
 import os
 import random
@@ -179,6 +181,61 @@ class Attack(unittest.TestCase):
         self.assertTrue(page.is_alive())
         page.socket.socket.shutdown(socket.SHUT_RDWR)
         page.join()
+
+
+class JammedLink(unittest.TestCase):
+    """A spacecraft whose link takes nothing: what is essential leaves at once, and what does not leave is told."""
+
+    def setUp(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        self.link, self.essential = self.ports_of_a_mission()
+        self.gateway = self.enterContext(Gateway(folder, telemetry=f"127.0.0.1:{self.link.getsockname()[1]}"))
+        self.craft = self.enterContext(self.link.accept()[0])
+        self.gateway.until(lambda status: status["link"]["connected"])
+
+    def ports_of_a_mission(self):
+        """Listening sockets: one for everything, and ten ports above it one for telecommands alone."""
+        while True:
+            link = socket.socket()
+            link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)      # of those that it accepts, too
+            link.bind(("127.0.0.1", 0))
+            try:
+                essential = socket.create_server(("127.0.0.1", link.getsockname()[1] + 10))
+            except OSError:
+                link.close()
+                continue
+            link.listen()
+            essential.settimeout(10.0)
+            return self.enterContext(link), self.enterContext(essential)
+
+    def command(self, subsystem, function):
+        return self.gateway.request("/api/commands", {"subsystem": subsystem, "function": function, "arguments": {}})
+
+    def jam(self):
+        """More than the two kernels take; the id of the last, which waits in the gateway."""
+        keep = self.enterContext(contextlib.closing(http.client.HTTPConnection("127.0.0.1", self.gateway.port, timeout=10)))
+        for _ in range(1500):
+            keep.request("POST", "/api/commands", '{"subsystem":"JOYSTICK","function":"PING"}',
+                         {"Authorization": f"Bearer {TOKEN}"})
+            answer = json.loads(keep.getresponse().read())
+        return answer["id"]
+
+    def test_past_a_link_that_takes_nothing_safe_all_leaves_at_once(self):
+        self.jam()
+        stop = self.command("SUPERVISOR", "SAFE_ALL")
+        connection = self.enterContext(self.essential.accept()[0])
+        connection.settimeout(10.0)
+        octets = b""
+        while part := connection.recv(4096):
+            octets += part
+        self.assertEqual(octets.hex().upper(), stop["octets"])
+
+    def test_telecommands_that_waited_for_a_link_that_is_lost_are_told_as_not_sent(self):
+        last = self.jam()
+        self.craft.close()
+        self.enterContext(self.link.accept()[0])
+        command = next(one for one in self.gateway.request("/api/commands?limit=1")["commands"] if one["id"] == last)
+        self.assertEqual((command["stage"], command["reason"]), ("failed", "not sent: the link was lost"))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ Station::Station(simulation::Flight& flight, const std::string& archive)
   if (!opened) throw std::runtime_error{opened.error().text};
   archive_ = std::move(*opened);
   ground::Surroundings outside;
-  outside.send = [this](Octets packet) {
+  outside.send = [this](Octets packet, ground::Way) {
     if (linked_) flight_.craft().ground().send(packet);
     return linked_;
   };

@@ -110,13 +110,14 @@ constexpr std::uint16_t tried_ports = 20;
   const SystemClock clock;
   HttpServer::Options server_options;
   server_options.spacecraft = option(options, "--telemetry", mission.ground.telemetry);
+  server_options.telecommand_port = tools::telecommand_port(mission, tools::port_of(server_options.spacecraft));
   server_options.end_with_input = options.contains("--child");
   const auto server = listen(server_options, option(options, "--port"));
   if (!server) return tools::exit_environment;
   HttpServer& shell = **server;
   const fs::path devices = option(options, "--devices", tools::runtime_folder(mission.name).string());
   Surroundings outside;
-  outside.send = [&](Octets packet) { return shell.send(packet); };
+  outside.send = [&](Octets packet, Way way) { return shell.send(packet, way); };
   outside.ask_device = [&](const std::string& device, const std::string& line, auto done) {
     shell.ask((devices / device).string(), line, std::move(done));
   };

@@ -141,6 +141,9 @@ int export_python(const ExportOptions& options);
 [[nodiscard]] std::filesystem::path find_mission(const std::string& name_or_path);
 /// Reads the mission and prints what is wrong with it to standard error.
 [[nodiscard]] std::optional<descriptor::Mission> load_mission(const std::string& name_or_path);
+[[nodiscard]] std::uint16_t port_of(const std::string& address);
+/// As far from the port for telemetry as in the mission, which may be flown on other ports.
+[[nodiscard]] std::uint16_t telecommand_port(const descriptor::Mission& mission, std::uint16_t telemetry_port);
 /// Where a flight keeps its lock and the control sockets of its simulated devices. An instance without a name of its own
 /// has its mission's.
 [[nodiscard]] std::filesystem::path runtime_folder(const std::string& instance);

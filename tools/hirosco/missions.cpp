@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <charconv>
 #include <cstdlib>
 #include <set>
 
@@ -75,6 +76,18 @@ std::optional<descriptor::Mission> load_mission(const std::string& name_or_path)
 fs::path runtime_root() {
   const char* base = std::getenv("XDG_RUNTIME_DIR");
   return base != nullptr && *base != '\0' ? fs::path{base} : fs::temp_directory_path();
+}
+
+std::uint16_t port_of(const std::string& address) {
+  std::uint16_t port = 0;
+  const std::size_t digits = address.rfind(':') + 1;
+  std::from_chars(address.data() + digits, address.data() + address.size(), port);
+  return port;
+}
+
+std::uint16_t telecommand_port(const descriptor::Mission& mission, std::uint16_t telemetry_port) {
+  return static_cast<std::uint16_t>(telemetry_port + port_of(mission.ground.telecommand) -
+                                    port_of(mission.ground.telemetry));
 }
 
 fs::path runtime_folder(const std::string& instance) {

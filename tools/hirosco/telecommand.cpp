@@ -111,18 +111,6 @@ void print_usage(const descriptor::Function& function) {
   });
 }
 
-/// As far from the port for telemetry as in the mission, which may be flown on other ports.
-[[nodiscard]] std::uint16_t telecommand_port(const descriptor::Mission& mission, std::uint16_t telemetry_port) {
-  const auto port_of = [](const std::string& address) {
-    int port = 0;
-    const std::size_t digits = address.rfind(':') + 1;
-    std::from_chars(address.data() + digits, address.data() + address.size(), port);
-    return port;
-  };
-  return static_cast<std::uint16_t>(telemetry_port + port_of(mission.ground.telecommand) -
-                                    port_of(mission.ground.telemetry));
-}
-
 /// Prints one verification report; true when it was the last of the request.
 [[nodiscard]] bool print_report(const pus::TelemetryView& report, double after_ms, bool json, bool& success) {
   OctetReader reader{report.source_data()};
