@@ -496,7 +496,7 @@ void Server::lose_link() {
 
 bool Server::send(Octets packet, Way way) {
   if (way == Way::InTurn) return send_in_turn(packet);
-  if (!linked_) return false;
+  // Also without a link: that port may take what the other, whose places are all taken, does not.
   send_alone(packet);
   return true;
 }

@@ -79,7 +79,7 @@ class HttpServer {
   virtual void stop() = 0;
 
   // --- for the application, from the thread of run() -----------------------------------------------------------------
-  /// To the spacecraft; false without a link, or when it takes nothing. Alone: it leaves though nothing else does.
+  /// To the spacecraft; false without a link, or when it takes nothing. Alone: tried past the link and without one.
   [[nodiscard]] virtual bool send(Octets packet, Way way) = 0;
   /// One line to a UNIX stream socket and its answer, within 2 s; empty when nobody answers.
   virtual void ask(const std::string& socket_path, const std::string& line,

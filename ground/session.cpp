@@ -377,7 +377,7 @@ std::uint16_t Session::next_count() {
 Answered<json> Session::command(const json& body) {
   const auto prepared = prepare(body);
   if (!prepared) return std::unexpected{prepared.error()};
-  if (!connected_) return refuse(503, "no link to the spacecraft");
+  if (!connected_ && prepared->way == Way::InTurn) return refuse(503, "no link to the spacecraft");
   const std::uint16_t count = next_count();
   const auto packet = packet_of(prepared->subsystem->id, prepared->service, 1, pus::ack_all, prepared->data, count);
   if (!packet) return std::unexpected{packet.error()};

@@ -222,6 +222,9 @@ class JammedLink(unittest.TestCase):
 
     def test_past_a_link_that_takes_nothing_safe_all_leaves_at_once(self):
         self.jam()
+        self.safe_all_arrives()
+
+    def safe_all_arrives(self):
         stop = self.command("SUPERVISOR", "SAFE_ALL")
         connection = self.enterContext(self.essential.accept()[0])
         connection.settimeout(10.0)
@@ -229,6 +232,29 @@ class JammedLink(unittest.TestCase):
         while part := connection.recv(4096):
             octets += part
         self.assertEqual(octets.hex().upper(), stop["octets"])
+
+    def lose_the_link(self):
+        self.link.close()
+        self.craft.close()
+        self.gateway.until(lambda status: not status["link"]["connected"])
+
+    def test_without_a_link_safe_all_leaves_and_nothing_else_does(self):
+        self.lose_the_link()
+        with self.assertRaises(urllib.error.HTTPError) as refused:
+            self.command("JOYSTICK", "PING")
+        self.assertEqual(refused.exception.code, 503)
+        refused.exception.close()
+        self.safe_all_arrives()
+
+    def test_safe_all_that_reaches_nobody_is_told_as_not_sent(self):
+        self.lose_the_link()
+        self.essential.close()
+        stop = self.command("SUPERVISOR", "SAFE_ALL")
+
+        def told():
+            return next(one for one in self.gateway.request("/api/commands?limit=1")["commands"] if one["id"] == stop["id"])
+        self.gateway.until(lambda _: told()["stage"] == "failed")
+        self.assertEqual(told()["reason"], "not sent: the link was lost")
 
     def test_telecommands_that_waited_for_a_link_that_is_lost_are_told_as_not_sent(self):
         last = self.jam()
