@@ -5,6 +5,7 @@ telemetry, and the certainty that nothing of it is left afterwards. Python's sta
 
 HIROSCO_BIN names the folder of the executables; by default the one of the release preset."""
 import contextlib
+import ctypes
 import dataclasses
 import json
 import math
@@ -60,6 +61,13 @@ def stolen_s():
     return int(steal) / os.sysconf("SC_CLK_TCK")
 
 
+def spin(pid, thread):
+    """Makes this thread of a `hirosco-spinnable-` program spin for ever (tests/fault/spinnable.cpp)."""
+    number = {"x86_64": 234, "aarch64": 131}[os.uname().machine]
+    if ctypes.CDLL(None, use_errno=True).syscall(number, pid, thread, signal.SIGUSR2) != 0:
+        raise OSError(ctypes.get_errno(), "tgkill")
+
+
 def listens(port):
     try:
         with socket.create_connection(("127.0.0.1", port), 1.0):
@@ -107,7 +115,9 @@ class Line:
 class Flight:
     """`with Flight() as flight:` — at the end of the block the flight is shut down in order if it still runs."""
 
-    def __init__(self, mission=ROKVISS, binaries=None, prefix=(), environment=None, folder=None, owner=None, instance=None):
+    def __init__(self, mission=ROKVISS, binaries=None, prefix=(), environment=None, folder=None, owner=None, instance=None,
+                 quiet=False):
+        self.quiet = quiet              # what failed is told by who catches it
         self.mission, self.binaries = str(mission), pathlib.Path(binaries or BINARIES)
         self.prefix, self.extra = list(prefix), dict(environment or {})
         self.mark = uuid.uuid4().hex
@@ -147,7 +157,7 @@ class Flight:
 
     def __exit__(self, kind, *_):
         try:
-            if kind is not None:
+            if kind is not None and not self.quiet:
                 print(self.story(), file=sys.stderr)
             if self.process.poll() is None:
                 self.process.send_signal(signal.SIGTERM)
@@ -282,6 +292,8 @@ class Flight:
         """`hirosco tc`: (exit code, ["1,1", "1,3", ...])."""
         done = self.hirosco("tc", subsystem, function, *map(str, arguments), "--mission", self.mission, "--json",
                             *self._which(), seconds=seconds)
+        if done.stderr:
+            print(f"hirosco tc {subsystem} {function}: {done.stderr.strip()}", file=sys.stderr)
         return done.returncode, [json.loads(line)["report"] for line in done.stdout.splitlines() if line.startswith("{")]
 
     def fault(self, device, *words):
@@ -290,9 +302,21 @@ class Flight:
             raise AssertionError(f"hirosco fault {device} {words}: {done.stdout}{done.stderr}")
         return done.stdout.strip()
 
+    def ask(self, device, *words):
+        """As fault(), but past the tool, by the control socket of the device: that takes no time."""
+        path, = (self.folder / "runtime").glob(f"hirosco-*/{device}")
+        with socket.socket(socket.AF_UNIX) as control:
+            control.settimeout(2.0)
+            control.connect(str(path))
+            control.sendall(" ".join(map(str, words)).encode() + b"\n")
+            answer = control.makefile().readline().strip()
+        if not answer.startswith("ok"):
+            raise AssertionError(f"{device} {words}: {answer}")
+        return answer
+
     def truth(self, device):
         """{name: number} of the simulated device's world."""
-        return {name: float(value) for name, value in (word.split("=") for word in self.fault(device, "truth").split()
+        return {name: float(value) for name, value in (word.split("=") for word in self.ask(device, "truth").split()
                                                        if "=" in word)}
 
     def wait_at_rest(self, device, since):
