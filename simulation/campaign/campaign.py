@@ -2,18 +2,23 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Flies a mission under random plans and has each flight judged. The drawing aims at what was seldom covered so far."""
-import argparse, collections, concurrent.futures, json, os, pathlib, random, subprocess, sys, tempfile, time
+import argparse, collections, concurrent.futures, json, os, pathlib, random, resource, signal, subprocess, sys, tempfile, time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "judge"))
 from descriptors import STATES, read_mission  # noqa: E402
+from judge import judge  # noqa: E402
 from draw import Draw, commands_of, faults_of, out_of_reach  # noqa: E402
 from shrink import shrink  # noqa: E402
 
 BATCH = 20                 # flights that are drawn from the same coverage
 AIM_COMMANDS, AIM_FAULTS = 50, 10
 COMMAND_GOAL, FAULT_GOAL = 20, 10
-FLIGHT_LIMIT_S = 120
+PROCESSOR_LIMIT_S = 120    # of a flight, which takes one or two: a busy host is no fault of the flight
+
+
+def limited():
+    resource.setrlimit(resource.RLIMIT_CPU, (PROCESSOR_LIMIT_S, PROCESSOR_LIMIT_S + 5))
 
 
 class Pilot:
@@ -21,6 +26,7 @@ class Pilot:
 
     def __init__(self, mission, fly_plan, plant=None):
         self.mission, self.fly_plan, self.plant = mission, fly_plan, plant
+        self.judged = read_mission(mission)
 
     def fly(self, plan, folder=None):
         """{"violations": [[invariant, seconds, text]], ...}"""
@@ -28,18 +34,13 @@ class Pilot:
             folder = pathlib.Path(folder or own)
             (folder / "plan.txt").write_text(plan)
             command = [self.fly_plan, self.mission, folder / "plan.txt", folder] + ([self.plant] if self.plant else [])
-            try:
-                flown = subprocess.run(command, capture_output=True, text=True, timeout=FLIGHT_LIMIT_S)
-            except subprocess.TimeoutExpired:
+            flown = subprocess.run(command, capture_output=True, text=True, preexec_fn=limited)
+            if flown.returncode == -signal.SIGXCPU:
                 return {"violations": [["I1", 0, "the flight does not end"]], "commands": {}, "faults": {}}
             if flown.returncode != 0:
                 last = (flown.stderr.strip().splitlines() or [""])[-1]
                 return {"violations": [["I1", 0, f"the flight ended with {flown.returncode}: {last}"]], "commands": {}, "faults": {}}
-            judged = subprocess.run([sys.executable, "-B", HERE / "judge" / "judge.py", self.mission, folder],
-                                    capture_output=True, text=True)
-            if judged.returncode not in (0, 1) or not judged.stdout:
-                raise RuntimeError(f"the judge failed: {judged.stderr}")
-            return json.loads(judged.stdout)
+            return judge(self.judged, folder)
 
 
 def emptiest(cells, covered, goal, number, turn, seed):
@@ -91,6 +92,7 @@ class Campaign:
                     self.faults.update(result["faults"])
                     if result["violations"] and only in (None, index):
                         self.tell(index, result, plans[index])
+                print(f"{batch.stop} flown, {time.monotonic() - started:.0f} s", file=sys.stderr, flush=True)
         full = self.table()
         flown = last if only is None else 1
         wrong = [cell for cell in self.out_of_reach if self.commands[cell] + self.faults[cell]]

@@ -338,14 +338,31 @@ class Draw:
         if r.random() < 0.5:
             for event in victim.events:
                 self.add(time + 0.05, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
-        fault = r.choice(["fault unplug", "kill", "stop", "SAFE_ALL", "SUPERVISOR"])
-        if fault == "SUPERVISOR":  # may anybody change the state of the supervisor itself?
+        what = r.choice(["fault unplug", "kill", "stop", "strain", "SAFE_ALL", "SUPERVISOR", "late", "twice", "twice"])
+        safe_all = lambda at: self.function(at, mission.supervisor, "SAFE_ALL")
+        if what == "SUPERVISOR":  # may anybody change the state of the supervisor itself?
             for state in (ERROR, POST):
-                self.telecommand(time, "ground", mission.supervisor, "SET_STATE", b"SET_STATE".ljust(16, b"\0") + bytes([1, 1, state]))
-        if fault in ("SAFE_ALL", "SUPERVISOR"):
-            return self.telecommand(time + 0.02, "ground", mission.supervisor, "SAFE_ALL", b"SAFE_ALL".ljust(16, b"\0") + bytes([0]))
-        return self.fault(time + 0.5, fault, victim.name)
+                self.function(time, mission.supervisor, "SET_STATE", state)
+                time += 0.04
+            safe_all(time)
+        elif what == "SAFE_ALL":
+            safe_all(time + 0.02)
+        elif what == "twice":     # who loses its device dies while the plan for that runs
+            self.fault(time + 0.3, "fault unplug", victim.name)
+            later = r.uniform(0.001, 0.004) if r.random() < 0.7 else r.uniform(0, 0.05)
+            self.add(time + 0.3 + later, f"{r.choice(['kill', 'kill', 'kill', 'spin', 'stop'])} {victim.name}")
+        elif what == "late":      # what waits for a slow disk is overtaken by SAFE_ALL, and asked for again after it
+            self.add(time + 0.1, "log slow 1000")
+            self.struck.add("LOG")
+            self.function(time + 0.12, victim, "SET_STATE", SAFE)
+            self.function(time + 0.15, victim, "SET_STATE", OPERATIONAL)
+            safe_all(time + r.uniform(0.152, 0.25))
+            self.function(time + r.uniform(0.4, 0.9), victim, "SET_STATE", OPERATIONAL)
+            self.calm(time + 2)
+        else:
+            self.fault(time + 0.3, what, victim.name)
 
+    # --- all of it ---------------------------------------------------------------------------------------------------
     def text(self):
         aimed = self.aim() if self.wanted_commands or self.wanted_faults else 0.3
         self.roam(self.random.choice([0.3, aimed, aimed]))

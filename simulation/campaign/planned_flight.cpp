@@ -48,8 +48,7 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, FlightPlan plan
       .seed = plan_.seed,
       .make_log = [this](const Clock& clock) { return log_on(disk_, clock); },
       .open_database = [this](supervisor::DatabaseStrategy) { return database_on(disk_); },
-      .wrap_channel = plant_->wrap_channel,
-      .tell_end = plant_->tell_end});
+      .wrap_channel = plant_->wrap_channel});
   plant_->craft = craft_.get();
   observer_.craft = craft_.get();
   trace_ = std::make_unique<WorldTrace>(mission_, *craft_, plant_->clock_percent);

@@ -4,23 +4,20 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "simulation/spacecraft/spacecraft.hpp"
 
-/// Defects that the campaign must find, each put in from outside: between the parts, never inside them, so that nothing
-/// of them is in what flies (adr 0039).
+/// A defect for each invariant, put in from outside: between the parts, never inside them, so that nothing of them is in
+/// what flies (adr 0039). Findings as they were in the code are put back by plants_in_code.py, into a copy of it.
 namespace hirosco::campaign {
 
 struct Plant {
   std::function<void(descriptor::Mission&)> edit{};
   std::function<void(simulation::DeviceCatalogue&)> devices{};
   std::function<std::unique_ptr<Channel>(std::string_view, std::unique_ptr<Channel>)> wrap_channel{};
-  std::function<std::optional<supervisor::ProcessEnd>(std::string_view, std::optional<supervisor::ProcessEnd>)>
-      tell_end{};
   std::function<bool(const supervisor::LogRecord&)> keeps{};
   std::function<void(const std::vector<std::string>&)> after_action{};
   std::function<void()> each_instant{};

@@ -21,7 +21,6 @@ class TamperedChannel final : public Channel {
     std::function<bool(const Message&)> sends{};                 ///< false: swallowed, as if it had been sent
     std::function<bool(Message&, MessageBuffer&)> receives{};    ///< false: never came; may change it
     std::function<bool()> holds_back{};                          ///< true: nothing comes now
-    std::function<bool()> hides_closing{};
   };
   TamperedChannel(std::unique_ptr<Channel> channel, Hooks hooks)
       : channel_{std::move(channel)}, hooks_{std::move(hooks)} {}
@@ -34,7 +33,6 @@ class TamperedChannel final : public Channel {
     while (true) {
       if (hooks_.holds_back && hooks_.holds_back()) return Found{};
       auto found = channel_->receive(buffer);
-      if (!found && hooks_.hides_closing && hooks_.hides_closing()) return Found{};
       if (!found || found->flow == Flow::None || !hooks_.receives || hooks_.receives(found->message, buffer))
         return found;
     }

@@ -211,10 +211,7 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   return launched;
 }
 
-std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) {
-  const Member& member = *members_[process - 1];
-  return parts_.tell_end ? parts_.tell_end(member.described->subsystem.name, member.end) : member.end;
-}
+std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) { return members_[process - 1]->end; }
 
 void Spacecraft::kill(std::uint32_t process) {
   Member& member = *members_[process - 1];

@@ -57,9 +57,6 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     supervisor::DatabaseOpener open_database{};  ///< for SET_DATABASE; empty: one in memory
     /// What stands between the supervisor and a member's channel, for faults of that; empty: nothing.
     std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
-    /// What the supervisor is told of a member's end; empty: the truth.
-    std::function<std::optional<supervisor::ProcessEnd>(std::string_view member, std::optional<supervisor::ProcessEnd>)>
-        tell_end{};
   };
   explicit Spacecraft(const Parts& parts);
   ~Spacecraft() override;

@@ -98,6 +98,7 @@ class Mission:
     initial_mode: str
     links: dict        # id: (from, to, required set)
     devices: dict      # simulated device: (member, device)
+    high_plan: str     # what its recovery does about events of high severity
 
     def by_apid(self, apid):
         if apid == self.supervisor.apid:
@@ -184,4 +185,6 @@ def read_mission(path):
              for link in root.find("Links")}
     devices = {d.get("name"): (d.get("subsystem"), d.get("device")) for d in root.findall("SimulatedDevice")}
     ground = root.find("Supervisor/Ground").get("subsystem")
-    return Mission(supervisor, members, ground, modes, mode_ids, root.find("Modes").get("initial"), links, devices)
+    high = next((plan.find("Do").get("action") for plan in root.findall("Recovery/Plan")
+                 if "high" in (plan.find("When").get("severity") or "").split()), "log")
+    return Mission(supervisor, members, ground, modes, mode_ids, root.find("Modes").get("initial"), links, devices, high)

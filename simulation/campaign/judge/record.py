@@ -6,6 +6,8 @@ import bisect, collections, dataclasses, pathlib
 from packets import report, telecommand
 
 START_NS = 1_000_000_000  # of the craft's clock
+AFTERMATH_US = 1_000_000   # what an end of a fault or a new process may still bring about
+NO_FAULTS = ("hook", "release", "hand")  # of the world, which the craft has to live with
 
 
 class Series:
@@ -148,6 +150,12 @@ class Record:
                 series.set(record.time, record.note[5:])
         return series
 
+    def strained_until(self, name, time, number, calm):
+        """When the member has made this many cycles more: they may begin long after they were strained."""
+        counts = [(at, each[name]) for at, each in self.cycles if each.get(name) is not None]
+        begun = next((count for at, count in reversed(counts) if at <= time), 0)
+        return next((at for at, count in counts if at > time and not begun <= count < begun + number), calm)
+
     # --- whom something was done to ------------------------------------------------------------------------------------
     def victims(self):
         """{name: [(start, end)]}: members, devices and SUPERVISOR while something is done to them; 'LOG' too."""
@@ -158,7 +166,8 @@ class Record:
         for time, words in self.did:
             verb, subject = words[0], words[1] if len(words) > 1 else ""
             if verb in ("kill", "spin"):
-                spans[subject].append((time, forever))
+                back = next((t for t, v in zip(self.alive[subject].times, self.alive[subject].values) if t > time and v), forever)
+                spans[subject].append((time, min(back + AFTERMATH_US, forever)))
                 if verb == "spin":  # one processor for all cycles: all stand until the culprit is gone
                     gone = next((t for t, v in zip(self.alive[subject].times, self.alive[subject].values) if t >= time and not v),
                                 forever)
@@ -171,16 +180,21 @@ class Record:
                 if key in opened:
                     spans[subject].append((opened.pop(key), time + 100_000))
             elif verb == "strain":
-                spans[subject].append((time, time + int(words[2]) * int(words[3]) + 1_000_000))
-            elif verb == "fault":
-                spans[subject].append((time, calm + 100_000))
-                spans[self.mission.devices[subject][0]].append((time, calm + 100_000))
+                spans[subject].append((time, self.strained_until(subject, time, int(words[2]), calm) + int(words[2]) * int(words[3])
+                                       + AFTERMATH_US))
+            elif verb == "fault" and words[2] in ("heal", "plug"):
+                begun = opened.pop((subject, words[2]), None)
+                for name in (subject, self.mission.devices[subject][0]) if begun is not None else ():
+                    spans[name].append((begun, time + AFTERMATH_US))
+            elif verb == "fault" and words[2] not in NO_FAULTS:
+                opened.setdefault((subject, "plug" if words[2] == "unplug" else "heal"), time)
             elif verb == "log":
                 spans["LOG"].append((time, calm + 300_000))
             elif verb == "flood":
                 spans["FLOOD"].append((time, time + 1_000_000))
         for (subject, _), time in opened.items():
-            spans[subject].append((time, calm + 100_000))
+            for name in {subject, self.mission.devices.get(subject, (subject,))[0]}:
+                spans[name].append((time, calm + AFTERMATH_US if subject in self.mission.devices else calm + 100_000))
         return spans
 
 

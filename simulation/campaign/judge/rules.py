@@ -58,10 +58,7 @@ def i4_safe_all_stops_everything(flight, victims):
             yield sent.time, "SAFE_ALL was " + ("refused" if refused is not None else "not answered in its time")
         at = min(done or sent.time + SAFE_ALL_US, sent.time + SAFE_ALL_US)
         for device, (member, _) in flight.mission.devices.items():
-            released = [s.time for s in flight.sent if s.time >= sent.time and is_operational(flight, s, member)]
-            released += [r.time for r in flight.log if r.time >= sent.time and r.kind == "telecommand-received" and r.telecommand
-                         and r.source == supervisor.apid and r.telecommand.first_argument == OPERATIONAL
-                         and r.telecommand.function == "SET_STATE" and r.peer == flight.mission.by_name(member).apid]
+            released = released_after(flight, sent.time, member)
             until = min(released, default=flight.end)
             for start, end in flight.active[device].spans(flight.end):
                 if end > at + STATE_LAG_US and start < until and end > start and max(start, at + STATE_LAG_US) < min(end, until):
@@ -69,9 +66,18 @@ def i4_safe_all_stops_everything(flight, victims):
                     break
 
 
-def is_operational(flight, sent, member):
-    """Whether it may be SET_STATE(Operational); its argument stands in the log only."""
-    return sent.function == "SET_STATE" and sent.apid == flight.mission.by_name(member).apid
+def released_after(flight, time, member):
+    """When what was asked after this time let the member go again. What was asked before it and comes late does not count,
+    nor what was asked after it and refused; where the log has gaps, whatever might have been it does."""
+    apid = flight.mission.by_name(member).apid
+    asked = {s.key for s in flight.sent if s.time >= time}
+    asked |= {r.telecommand.key for r in flight.log if r.time >= time and r.kind == "telecommand-received" and r.telecommand
+              and r.source == flight.mission.supervisor.apid}
+    released = [r.time for r in flight.log if r.time >= time and r.kind == "telecommand-forwarded" and r.peer == apid
+                and r.telecommand.function == "SET_STATE" and r.telecommand.first_argument == OPERATIONAL and r.telecommand.key in asked]
+    if any(r.kind == "gap" for r in flight.log):
+        released += [s.time for s in flight.sent if s.time >= time and s.function == "SET_STATE" and s.apid == apid]
+    return released
 
 
 def ground_link_works(flight, victims, start, end):
@@ -97,7 +103,7 @@ def i4_a_network_goes_down_with_its_member(flight, victims):
             struck = flight.mission.devices[words[1]][0] if words[0] == "fault" else words[1]
         else:
             continue
-        if words[0] == "fault" and flight.state[struck].at(time) != OPERATIONAL:
+        if words[0] == "fault" and (flight.state[struck].at(time) != OPERATIONAL or flight.mission.high_plan != "shut_down_network"):
             continue
         group = next(group for group in networks(flight, time - 1) if struck in group)
         if time + OFFLINE_US > min(flight.finished(), flight.mark("calm") or flight.end):
