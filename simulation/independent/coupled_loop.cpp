@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace hirosco::independent {
 namespace {
@@ -78,9 +79,11 @@ Rail rail_at(double x, double x_rate, double y_rate, double friction) {
 /// Motor angles, their rates; absolute link angles, their rates.
 class Arm {
  public:
-  explicit Arm(Friction friction) : friction_{friction == Friction::On ? 1.0 : 0.0} {
+  explicit Arm(Friction friction, const Spring* spring)
+      : friction_{friction == Friction::On ? 1.0 : 0.0}, spring_{spring} {
     x_ = {home[0], home[1], 0, 0, home[0], home[0] + home[1], 0, 0};
   }
+  void hook() noexcept { hooked_ = spring_ != nullptr; }
   void move(const Pair& motor_n_m) {
     x_ = integrated<8>(x_, tick_s, 1e-10, [&](double, const State<8>& x) { return rates(x, motor_n_m); });
   }
@@ -89,6 +92,10 @@ class Arm {
   [[nodiscard]] Pair link_rad() const { return {x_[4], x_[5] - x_[4]}; }
   [[nodiscard]] Pair torque() const { return torque_of(x_); }
   [[nodiscard]] Rail rail() const { return rail_of(x_); }
+  [[nodiscard]] double spring_n() const {
+    const Pair force = spring_of(x_);
+    return std::hypot(force[0], force[1]);
+  }
 
  private:
   static Pair torque_of(const State<8>& x) {
@@ -98,6 +105,13 @@ class Arm {
     return rail_at(l1 * std::cos(x[4]) + l2 * std::cos(x[5]), -l1 * std::sin(x[4]) * x[6] - l2 * std::sin(x[5]) * x[7],
                    l1 * std::cos(x[4]) * x[6] + l2 * std::cos(x[5]) * x[7], friction_);
   }
+  [[nodiscard]] Pair spring_of(const State<8>& x) const {
+    if (!hooked_) return {};
+    const double away_x = l1 * std::cos(x[4]) + l2 * std::cos(x[5]) - spring_->anchor_m[0];
+    const double away_y = l1 * std::sin(x[4]) + l2 * std::sin(x[5]) - spring_->anchor_m[1];
+    const double length = std::hypot(away_x, away_y), pull = spring_->n_per_m * (length - spring_->free_m);
+    return pull <= 0 ? Pair{} : Pair{-pull * away_x / length, -pull * away_y / length};
+  }
   [[nodiscard]] State<8> rates(const State<8>& x, const Pair& motor_n_m) const {
     const Pair joint = torque_of(x);
     const Rail rail = rail_of(x);
@@ -105,8 +119,10 @@ class Arm {
     // A a1'' + C cos(a1 - a2) a2'' = Q1 - C sin(a1 - a2) a2'^2, and with the roles changed for a2.
     const double A = i1 + m1 * c1 * c1 + m2 * l1 * l1, B = i2 + m2 * c2 * c2, C = m2 * l1 * c2;
     const double mixed = C * std::cos(one - two), turn = C * std::sin(one - two);
-    const double q1 = joint[0] - joint[1] + rail.normal_n * l1 * std::sin(one) + rail.along_n * l1 * std::cos(one);
-    const double q2 = joint[1] + rail.normal_n * l2 * std::sin(two) + rail.along_n * l2 * std::cos(two);
+    const Pair spring = spring_of(x);
+    const double push_x = spring[0] - rail.normal_n, push_y = spring[1] + rail.along_n;
+    const double q1 = joint[0] - joint[1] - push_x * l1 * std::sin(one) + push_y * l1 * std::cos(one);
+    const double q2 = joint[1] - push_x * l2 * std::sin(two) + push_y * l2 * std::cos(two);
     const double r1 = q1 - turn * v * v, r2 = q2 + turn * u * u, det = A * B - mixed * mixed;
     State<8> rate{x[2], x[3], 0, 0, u, v, (B * r1 - mixed * r2) / det, (A * r2 - mixed * r1) / det};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -117,27 +133,31 @@ class Arm {
   }
 
   double friction_;
+  const Spring* spring_;
+  bool hooked_{false};
   State<8> x_{};
 };
 
 /// What the hand wants the handle to do, and the handle with the hand on it.
 class Handle {
  public:
-  explicit Handle(const Conditions& conditions) : conditions_{conditions} {
+  explicit Handle(const Conditions& conditions) : conditions_{conditions}, legs_{conditions.legs} {
+    if (legs_.empty()) legs_.push_back({0, conditions.offset_m, conditions.hand_span_s});
     // J^-1 of home
     const double one = home[0], two = home[0] + home[1];
     const double a = -l1 * std::sin(one) - l2 * std::sin(two), p = -l2 * std::sin(two);
     const double c = l1 * std::cos(one) + l2 * std::cos(two), q = l2 * std::cos(two);
     const double det = a * q - p * c;
-    goal_ = {(q * conditions.offset_m[0] - p * conditions.offset_m[1]) / det,
-             (-c * conditions.offset_m[0] + a * conditions.offset_m[1]) / det};
+    for (const Leg& leg : legs_)
+      goals_.push_back(
+          {(q * leg.offset_m[0] - p * leg.offset_m[1]) / det, (-c * leg.offset_m[0] + a * leg.offset_m[1]) / det});
   }
   void move(const Pair& display) {
     const double start = time_;
     x_ = integrated<4>(x_, tick_s, 1e-10, [&](double past, const State<4>& x) {
       State<4> rate{x[2], x[3], 0, 0};
       for (std::size_t i = 0; i < 2; ++i) {
-        const auto [wish, pace] = wish_at(start + past, goal_[i]);
+        const auto [wish, pace] = wish_at(start + past, i);
         const double motor = std::clamp(display[i], -display_n_m, display_n_m);
         const double beyond = x[i] - std::clamp(x[i], -end_rad, end_rad);
         const double stop = beyond != 0 ? end_k * beyond + end_d * x[2 + i] : 0;
@@ -152,16 +172,25 @@ class Handle {
   [[nodiscard]] Pair rate() const { return {x_[2], x_[3]}; }
 
  private:
-  [[nodiscard]] Pair wish_at(double time, double goal) const {
-    const double s = time / conditions_.hand_span_s;
-    if (s >= 1) return {goal, 0};
-    if (conditions_.hand == Hand::Ramp) return {s * goal, goal / conditions_.hand_span_s};
-    return {goal * (10 * std::pow(s, 3) - 15 * std::pow(s, 4) + 6 * std::pow(s, 5)),
-            goal / conditions_.hand_span_s * 30 * s * s * (1 - 2 * s + s * s)};
+  [[nodiscard]] Pair wish_at(double time, std::size_t axis) const {
+    if (conditions_.hand == Hand::Sine) {
+      const double w = 2 * std::numbers::pi * conditions_.sine_hz, a = conditions_.sine_rad[axis];
+      return {a * std::sin(w * time), a * w * std::cos(w * time)};
+    }
+    std::size_t leg = 0;
+    while (leg + 1 < legs_.size() && time >= legs_[leg + 1].begin_s) ++leg;
+    const double from = leg == 0 ? 0 : goals_[leg - 1][axis], way = goals_[leg][axis] - from;
+    const double span = legs_[leg].span_s, s = (time - legs_[leg].begin_s) / span;
+    if (s >= 1) return {from + way, 0};
+    if (s <= 0) return {from, 0};
+    if (conditions_.hand == Hand::Ramp) return {from + s * way, way / span};
+    return {from + way * (10 * std::pow(s, 3) - 15 * std::pow(s, 4) + 6 * std::pow(s, 5)),
+            way / span * 30 * s * s * (1 - 2 * s + s * s)};
   }
 
   const Conditions& conditions_;
-  Pair goal_{};
+  std::vector<Leg> legs_;
+  std::vector<Pair> goals_;
   State<4> x_{};
   double time_{0};
 };
@@ -183,6 +212,27 @@ class Controller {
 
  private:
   Pair before_ = home, velocity_{};
+};
+
+/// The stop that the joints do by themselves (adr 0025), until their brakes grip: damped and giving way, then holding.
+class Stop {
+ public:
+  Pair torque(const Arm& arm) {
+    const Pair angle = arm.motor_rad(), rate = arm.motor_rate(), joint = arm.torque();
+    if (++ticks_ == half_ticks) held_ = {angle[0] + joint[0] / hold_k, angle[1] + joint[1] / hold_k};
+    Pair motor{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double u = -kd * rate[i] + (ticks_ < half_ticks ? 0 : hold_k * (held_[i] - angle[i]));
+      motor[i] = std::clamp(4 * u - 3 * joint[i], -most_n_m, most_n_m);
+    }
+    return motor;
+  }
+
+ private:
+  static constexpr int half_ticks = 200;
+  static constexpr double hold_k = 600;
+  int ticks_{0};
+  Pair held_{};
 };
 
 /// Position and force, and the passivity observer and controller.
@@ -225,9 +275,10 @@ class Delay {
 }  // namespace
 
 std::vector<Sample> fly(const Conditions& conditions) {
-  Arm arm{conditions.friction};
+  Arm arm{conditions.friction, conditions.spring ? &*conditions.spring : nullptr};
   Handle handle{conditions};
   Controller controller;
+  Stop stop;
   Display display{conditions};
   Delay up{conditions.up_ticks}, down{conditions.down_ticks};
   Pair sent{}, followed{}, shown{};
@@ -245,20 +296,44 @@ std::vector<Sample> fly(const Conditions& conditions) {
     }
     up.put(tick, followed);
     const Pair angles = up.get(tick);
-    Pair motor = controller.torque({home[0] + angles[0], home[1] + angles[1]}, arm);
+    const Pair asked{home[0] + angles[0], home[1] + angles[1]}, met = arm.link_rad();
+    Pair motor = controller.torque(asked, arm);
     const Pair measured = arm.torque();
     const bool above = conditions.torque_limit_n_m > 0 &&
                        std::max(std::abs(measured[0]), std::abs(measured[1])) > conditions.torque_limit_n_m;
     beyond = (beyond << 1 | (above ? 1 : 0)) & 7;
     off = off || beyond == 3 || beyond == 5 || beyond == 6 || beyond == 7;
-    if (off) motor = {};
+    if (off) motor = stop.torque(arm);
+    if (conditions.spring && static_cast<double>(tick) * tick_s >= conditions.hooked_s) arm.hook();
     arm.move(motor);
     handle.move(shown);
     const Rail rail = arm.rail();
-    flight.push_back({static_cast<double>(tick + 1) * tick_s, rail.normal_n, rail.depth, arm.torque(), motor,
-                      arm.motor_rad(), arm.link_rad(), handle.angle(), shown});
+    flight.push_back({static_cast<double>(tick + 1) * tick_s, rail.normal_n, rail.depth, arm.spring_n(), arm.torque(),
+                      motor, arm.motor_rad(), arm.link_rad(), handle.angle(), shown, off, asked, met});
   }
   return flight;
+}
+
+double resting_force_n(double ordinate_m, double depth_m, double gain_n_m_per_rad) {
+  // Inverse kinematics of the tip that is wanted, elbow as at home.
+  const double x = rail_m - finger_m + depth_m, square = x * x + ordinate_m * ordinate_m;
+  const double elbow = std::acos((square - l1 * l1 - l2 * l2) / (2 * l1 * l2));
+  const double shoulder = std::atan2(ordinate_m, x) - std::atan2(l2 * std::sin(elbow), l1 + l2 * std::cos(elbow));
+  // Controller and flexible joint one behind the other: tau = gain (qd - theta) = k (theta - q), and tau = -J^T (F, 0).
+  const double series = 1 / (1 / gain_n_m_per_rad + 1 / k);
+  double force = 0;
+  for (int i = 0; i < 100; ++i) {
+    Pair q{shoulder, elbow};
+    for (int j = 0; j < 100; ++j) {
+      const double one = q[0], two = q[0] + q[1];
+      q = {shoulder + force * (l1 * std::sin(one) + l2 * std::sin(two)) / series,
+           elbow + force * l2 * std::sin(two) / series};
+    }
+    const double depth = l1 * std::cos(q[0]) + l2 * std::cos(q[0] + q[1]) + finger_m - rail_m;
+    // A rail so much stiffer than the joints is come near to by small shares of what it would push.
+    force += 0.05 * (rail_k * depth - force);
+  }
+  return force;
 }
 
 Figures figures_of(const std::vector<Sample>& flight) {

@@ -3,6 +3,7 @@
 #include "simulation/scenarios/coupled_craft.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -21,6 +22,8 @@ ArmParameters arm_of(const CraftOptions& options) {
   arm.contour.bump_height_m = options.bump_m;
   arm.joint.stiffness_n_m_per_rad *= plant.stiffness;
   arm.contour.stiffness_n_per_m *= plant.rail;
+  arm.largest_sub_step = std::chrono::duration_cast<Duration>(
+      plant.sub_step * std::chrono::duration<double, std::nano>{arm.largest_sub_step});
   for (LinkParameters& link : arm.links) {
     link.mass_kg *= plant.mass;
     link.inertia_kg_m2 *= plant.mass;

@@ -21,6 +21,7 @@ struct Plant {
   double mass{1};  ///< of both links, with their inertias
   double force_scale{1};  ///< of what the hand feels
   double hand_clock{1};  ///< how fast time passes for the hand and its handle
+  double sub_step{1};  ///< of the robot's world: largest step of its integrator
   double delay_ms{0};  ///< no factor: by which what the joystick tells comes later
 };
 

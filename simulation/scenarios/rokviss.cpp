@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "simulation/scenarios/beside.hpp"
+
 namespace hirosco::simulation {
 namespace {
 
@@ -147,19 +149,30 @@ Findings fly_tracking(const RunSettings& settings) {
     findings.figures[fmt::format("RO1-both-{}", text)] = both.worst_rad;
     findings.figures[fmt::format("RO1-limit-{}", text)] = std::max(alone.worst_rad, both.worst_rad);
     if (frequency_hz < 1) continue;
-    findings.plots.push_back({.name = "ro1-tracking",
-                              .title = "RO1: joint 1 follows the hand, 1 Hz",
-                              .x_label = "time / s",
-                              .y_label = "joint 1 / rad",
-                              .caption = "Commanded by the handle over the real-time link, and measured behind the "
-                                         "flexible joint; after two periods of start-up.",
-                              .curves = {alone.desired, alone.position}});
-    findings.plots.push_back({.name = "ro1-error",
-                              .title = "RO1: tracking error of joint 1, 1 Hz",
-                              .x_label = "time / s",
-                              .y_label = "q_d - q / mrad",
-                              .caption = "The kinks are the Coulomb friction of the motor where it turns round.",
-                              .curves = {alone.error}});
+    independent::Conditions swings{.hand = independent::Hand::Sine, .sine_rad = {0.15, 0}, .sine_hz = frequency_hz};
+    swings.span_s = 6 / frequency_hz;
+    Plot tracking{.name = "ro1-tracking",
+                  .title = "RO1: joint 1 follows the hand, 1 Hz",
+                  .x_label = "time / s",
+                  .y_label = "joint 1 / rad",
+                  .caption =
+                      "Commanded by the handle over the real-time link, and measured behind the "
+                      "flexible joint; after two periods of start-up.",
+                  .curves = {alone.desired, alone.position}};
+    const double start_s = 2 / frequency_hz;
+    findings.figures["RO1-independent"] =
+        1e3 *
+        draw_beside(tracking, 1, independently(swings, [](const auto& at) { return at.met_rad[0]; }, start_s), "rad");
+    findings.plots.push_back(std::move(tracking));
+    Plot error{.name = "ro1-error",
+               .title = "RO1: tracking error of joint 1, 1 Hz",
+               .x_label = "time / s",
+               .y_label = "q_d - q / mrad",
+               .caption = "The kinks are the Coulomb friction of the motor where it turns round.",
+               .curves = {alone.error}};
+    const auto error_of = [](const auto& at) { return 1e3 * (at.asked_rad[0] - at.met_rad[0]); };
+    draw_beside(error, 0, independently(swings, error_of, start_s), "mrad");
+    findings.plots.push_back(std::move(error));
   }
   identify_inertia(settings, findings);
   return findings;
@@ -188,7 +201,11 @@ Findings fly_rail(const RunSettings& settings) {
     findings.figures[name("tau2")] = craft.report().torque_n_m[1];
     findings.figures[name("windup2")] = (arm.state().motor_rad[1] - arm.state().link_rad[1]) * 1e3;
     plot.curves.push_back(std::move(curve));
-    stroke = stroke == Stroke::Solid ? Stroke::Dashed : Stroke::Dotted;
+    stroke = Stroke::Dashed;
+    independent::Conditions beside{.friction = independent::Friction::Off, .offset_m = {dx_mm * 1e-3, 0}, .span_s = 6};
+    Curve other = independently(beside, [](const auto& at) { return at.force_n; });
+    other.name = fmt::format("independent loop, {:.1f} mm", dx_mm);
+    findings.figures[name("independent")] = draw_beside(plot, plot.curves.size() - 1, std::move(other), "N");
   }
   findings.plots.push_back(std::move(plot));
   return findings;
@@ -215,12 +232,16 @@ Findings fly_display(const RunSettings& settings) {
   const auto contact = craft.arm().contact();
   findings.figures["RO3-display-ratio"] = craft.felt_n_m()[1] / craft.report().torque_n_m[1];
   findings.figures["RO3-force-ratio"] = contact.normal_force_n / (rail_n_per_m * contact.penetration_m);
-  findings.plots.push_back({.name = "ro3-display",
-                            .title = "RO3: the hand feels what the robot feels",
-                            .x_label = "time / s",
-                            .y_label = "torque of axis 2 / N m",
-                            .caption = "One cycle of 0.5 ms lies between the two curves.",
-                            .curves = {std::move(display), std::move(torque)}});
+  Plot plot{.name = "ro3-display",
+            .title = "RO3: the hand feels what the robot feels",
+            .x_label = "time / s",
+            .y_label = "torque of axis 2 / N m",
+            .caption = "One cycle of 0.5 ms lies between the two curves.",
+            .curves = {std::move(display), std::move(torque)}};
+  independent::Conditions beside{.friction = independent::Friction::Off, .offset_m = {0.0226, 0}, .span_s = 1.5};
+  findings.figures["RO3-independent"] =
+      draw_beside(plot, 0, independently(beside, [](const auto& at) { return at.display_n_m[1]; }), "N m");
+  findings.plots.push_back(std::move(plot));
   return findings;
 }
 

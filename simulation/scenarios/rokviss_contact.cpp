@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "simulation/scenarios/beside.hpp"
 #include "simulation/scenarios/rokviss.hpp"
 
 namespace hirosco::simulation {
@@ -17,7 +18,9 @@ struct Bounce {
   double lost_share{0};
   double peak_n{0};
   double steady_n{0};
-  Curve force, energy;
+  int departures{0};  ///< from the rail
+  double last_departure_s{0};
+  Curve force;
 };
 
 constexpr double bounce_span_s = 6, judged_span_s = 2;
@@ -37,6 +40,10 @@ Bounce press_hard(const RunSettings& settings, bool passivity) {
   craft.each_cycle([&] {
     const double force_n = craft.arm().contact().normal_force_n;
     seen.peak_n = std::max(seen.peak_n, force_n);
+    if (seen.steady_n > 0 && force_n <= 0) {
+      ++seen.departures;
+      seen.last_departure_s = craft.time_s();
+    }
     seen.steady_n = force_n;
     seen.force.add(craft.time_s(), force_n);
     if (craft.time_s() <= bounce_span_s - judged_span_s) return;
@@ -67,7 +74,7 @@ struct Trip {
   double time_s{-1};
   double force_n{0};
   double peak_n_m{0};
-  double off_s{-1};  ///< since when the robot's motors are off
+  double off_s{-1};  ///< since when the robot's motors do not obey
   double display_zero_s{-1};  ///< since when the hand feels nothing
   double force_at_80ms_n{-1};
   double force_after_85ms_n{0};
@@ -108,24 +115,43 @@ Curve around(Curve curve, double moment_s, double before_s, double after_s) {
 
 void plot_trip(Findings& findings, Trip& trip) {
   constexpr double before_s = 0.15, after_s = 0.15;
-  findings.plots.push_back({.name = "ro8-torque",
-                            .title = "RO8: the torque limit trips",
-                            .x_label = "time from the trip / ms",
-                            .y_label = "torque / N m",
-                            .caption =
-                                "Two of three samples beyond 12 N m switch the motors off in the same cycle; the "
-                                "joystick's display goes to zero because the link says that the robot is not "
-                                "active.",
-                            .curves = {around(trip.torque, trip.time_s, before_s, after_s),
-                                       around(trip.felt, trip.time_s, before_s, after_s)},
-                            .marks = {{"soft limit -12 N m", -12}, {"motors off", 0, true}}});
-  findings.plots.push_back({.name = "ro8-force",
-                            .title = "RO8: the finger lets go of the rail",
-                            .x_label = "time from the trip / ms",
-                            .y_label = "normal force / N",
-                            .caption = "Without brakes and torque the compressed joints push the finger off.",
-                            .curves = {around(trip.force, trip.time_s, before_s, after_s)},
-                            .marks = {{"80 ms: below 10 %", 80, true}}});
+  const auto near = [&](Curve curve, double moment_s) { return around(std::move(curve), moment_s, before_s, after_s); };
+  const independent::Conditions ramp{.hand = independent::Hand::Ramp,
+                                     .offset_m = {0.065, 0},
+                                     .hand_span_s = 0.065 / 0.04,
+                                     .span_s = 2,
+                                     .torque_limit_n_m = 12};
+  // Its trip is its own.
+  double other_trip_s = 0;
+  Curve other_force{.name = "independent loop", .stroke = Stroke::Dotted}, other_torque = other_force;
+  for (const independent::Sample& at : independent::fly(ramp)) {
+    if (!at.stopping) other_trip_s = at.time_s;
+    other_force.add(at.time_s, at.force_n);
+    other_torque.add(at.time_s, at.torque_n_m[1]);
+  }
+  Plot torque{.name = "ro8-torque",
+              .title = "RO8: the torque limit trips",
+              .x_label = "time from the trip / ms",
+              .y_label = "torque / N m",
+              .caption =
+                  "After two of three samples beyond 12 N m the joints stop by themselves in the same cycle, damped "
+                  "and giving way; the joystick's display goes to zero because the link says that the robot is "
+                  "not active.",
+              .curves = {near(trip.torque, trip.time_s), near(trip.felt, trip.time_s)},
+              .marks = {{"soft limit -12 N m", -12}, {"joints stop by themselves", 0, true}}};
+  findings.figures["RO8-independent-torque"] = draw_beside(torque, 0, near(other_torque, other_trip_s), "N m");
+  findings.plots.push_back(std::move(torque));
+  Plot force{
+      .name = "ro8-force",
+      .title = "RO8: the finger lets go of the rail",
+      .x_label = "time from the trip / ms",
+      .y_label = "normal force / N",
+      .caption =
+          "The joints give way, so that the finger does not stay pressed; then they hold what is left, and brake.",
+      .curves = {near(trip.force, trip.time_s)},
+      .marks = {{"80 ms: below 10 %", 80, true}}};
+  findings.figures["RO8-independent-force"] = draw_beside(force, 0, near(other_force, other_trip_s), "N");
+  findings.plots.push_back(std::move(force));
 }
 
 }  // namespace
@@ -137,19 +163,26 @@ Findings fly_bounce(const RunSettings& settings) {
   findings.figures = {{"RO6-off-lost", without.lost_share}, {"RO6-off-peak", without.peak_n},
                       {"RO6-on-lost", with.lost_share},     {"RO6-on-peak", with.peak_n},
                       {"RO6-on-steady", with.steady_n},     {"RO6-off-limit", limit_ends_bouncing(settings)}};
-  findings.plots.push_back({.name = "ro6-bounce",
-                            .title = "RO6: hard contact without and with time-domain passivity",
-                            .x_label = "time / s",
-                            .y_label = "normal force / N",
-                            .caption = "The same hand, the same rail, force scale 0.08. Without passivity the finger "
-                                       "goes on bouncing; with it the contact comes to rest.",
-                            .curves = {std::move(without.force), with.force}});
-  findings.plots.push_back({.name = "ro6-calm",
-                            .title = "RO6: with passivity, magnified",
-                            .x_label = "time / s",
-                            .y_label = "normal force / N",
-                            .caption = "One overshoot, then contact for good.",
-                            .curves = {std::move(with.force)}});
+  independent::Conditions hard{.force_scale = 0.08, .offset_m = {0.0325, 0}, .span_s = bounce_span_s};
+  const auto force_of = [](const independent::Sample& at) { return at.force_n; };
+  Plot bounce{.name = "ro6-bounce",
+              .title = "RO6: hard contact without time-domain passivity",
+              .x_label = "time / s",
+              .y_label = "normal force / N",
+              .caption = "Force scale 0.08, 32.5 mm in 1 s. The finger goes on bouncing.",
+              .curves = {std::move(without.force)}};
+  draw_beside(bounce, 0, independently(hard, force_of), "N");
+  findings.plots.push_back(std::move(bounce));
+  hard.passivity = independent::Passivity::On;
+  Plot calm{.name = "ro6-calm",
+            .title = "RO6: the same with passivity",
+            .x_label = "time / s",
+            .y_label = "normal force / N",
+            .caption = fmt::format("It leaves the rail {} times in the first {:.1f} s, then the contact comes to rest.",
+                                   with.departures, with.last_departure_s),
+            .curves = {std::move(with.force)}};
+  findings.figures["RO6-on-independent"] = draw_beside(calm, 0, independently(hard, force_of), "N");
+  findings.plots.push_back(std::move(calm));
   return findings;
 }
 

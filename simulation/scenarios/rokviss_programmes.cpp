@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // RO4, RO5 and RO7: springs, the contour programme on board, and the joystick on ground.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "simulation/scenarios/beside.hpp"
 #include "simulation/scenarios/rokviss.hpp"
 
 namespace hirosco::simulation {
@@ -22,33 +24,61 @@ void watch_spring(CoupledCraft& craft, Curve& curve) {
   });
 }
 
-Curve pull_vertical(const CraftOptions& options, Findings& findings) {
-  CoupledCraft craft{options};
+/// What a hand does with a spring, told to the craft and to the independent loop.
+class Puller {
+ public:
+  Puller(const CraftOptions& options, const independent::Pair& anchor_m) : craft_{options} {
+    beside_.friction = independent::Friction::Off;
+    beside_.spring = independent::Spring{.anchor_m = anchor_m};
+  }
+  CoupledCraft& craft() noexcept { return craft_; }
+  void pull(double dx_m, double dy_m, double then_s) {
+    beside_.legs.push_back({craft_.time_s(), {dx_m, dy_m}, 1});
+    craft_.hand(fmt::format("cartesian {} {} 1", dx_m, dy_m));
+    craft_.run(then_s);
+  }
+  void hook(double spring) {
+    craft_.command("MANIPULATOR", "HOOK_SPRING", {spring});
+    beside_.hooked_s = craft_.time_s();
+  }
+  /// The same by the independent loop, so far.
+  Curve beside(const std::string& which) {
+    beside_.span_s = craft_.time_s();
+    Curve curve = independently(beside_, [](const auto& at) { return at.spring_n; });
+    curve.name = "independent loop, " + which;
+    return curve;
+  }
+
+ private:
+  CoupledCraft craft_;
+  independent::Conditions beside_;
+};
+
+std::array<Curve, 2> pull_vertical(const CraftOptions& options, Findings& findings) {
+  Puller puller{options, {0.3275, 0.050}};
+  CoupledCraft& craft = puller.craft();
   Curve force{.name = "vertical"};
-  craft.hand("cartesian 0 0.0215 1");  // to where its slack end hangs
-  craft.run(3);
-  craft.command("MANIPULATOR", "HOOK_SPRING", {1});
+  puller.pull(0, 0.0215, 3);  // to where its slack end hangs
+  puller.hook(1);
   watch_spring(craft, force);
-  craft.hand("cartesian 0 -0.0085 1");
-  craft.run(settling_s);
+  puller.pull(0, -0.0085, settling_s);
   findings.figures["RO4-vertical-tau1"] = craft.report().torque_n_m[0];
   findings.figures["RO4-vertical-tau2"] = craft.report().torque_n_m[1];
-  craft.hand("cartesian 0 0.030 1");
-  craft.run(settling_s);
+  puller.pull(0, 0.030, settling_s);
   findings.figures["RO4-vertical-slack"] = craft.report().torque_n_m[0];
-  return force;
+  return {std::move(force), puller.beside("vertical")};
 }
 
-Curve pull_horizontal(const CraftOptions& options, Findings& findings) {
-  CoupledCraft craft{options};
+std::array<Curve, 2> pull_horizontal(const CraftOptions& options, Findings& findings) {
+  Puller puller{options, {0.280, -0.0215}};
+  CoupledCraft& craft = puller.craft();
   Curve force{.name = "horizontal", .stroke = Stroke::Dashed};
-  craft.command("MANIPULATOR", "HOOK_SPRING", {2});
+  puller.hook(2);
   watch_spring(craft, force);
-  craft.hand("cartesian 0.008 -0.030 1");
-  craft.run(settling_s);
+  puller.pull(0.008, -0.030, settling_s);
   findings.figures["RO4-horizontal-tau1"] = craft.report().torque_n_m[0];
   findings.figures["RO4-horizontal-tau2"] = craft.report().torque_n_m[1];
-  return force;
+  return {std::move(force), puller.beside("horizontal")};
 }
 
 // --- RO5 ---------------------------------------------------------------------------------------------------------------
@@ -141,7 +171,11 @@ Findings fly_springs(const RunSettings& settings) {
             .x_label = "time / s",
             .y_label = "spring force / N",
             .caption = "The hand pulls, rests, and lets the vertical spring go slack again."};
-  plot.curves = {pull_vertical(options, findings), pull_horizontal(options, findings)};
+  auto [vertical, vertical_beside] = pull_vertical(options, findings);
+  auto [horizontal, horizontal_beside] = pull_horizontal(options, findings);
+  plot.curves = {std::move(vertical), std::move(horizontal)};
+  findings.figures["RO4-vertical-independent"] = draw_beside(plot, 0, std::move(vertical_beside), "N");
+  findings.figures["RO4-horizontal-independent"] = draw_beside(plot, 1, std::move(horizontal_beside), "N");
   findings.plots.push_back(std::move(plot));
   return findings;
 }
@@ -162,6 +196,15 @@ Findings fly_contour(const RunSettings& settings) {
     findings.figures[prefix + "torque"] = seen.torque_n_m;
     plot.curves.push_back(std::move(seen.force));
   }
+  Curve rests{.name = "closed form at rest without friction", .stroke = Stroke::Dotted};
+  const auto [least, most] = std::ranges::minmax(plot.curves.front().x);
+  constexpr double over_press_m = 0.006, gain = 125;  // of the configuration `script`
+  constexpr int points = 50;
+  for (int i = 0; i <= points; ++i) {
+    const double ordinate_mm = least + i * (most - least) / points;
+    rests.add(ordinate_mm, independent::resting_force_n(1e-3 * ordinate_mm, over_press_m, gain));
+  }
+  draw_beside(plot, 0, std::move(rests), "N");
   findings.plots.push_back(std::move(plot));
   return findings;
 }
@@ -177,13 +220,29 @@ Findings fly_remote(const RunSettings& settings) {
     findings.figures[prefix + "on-lost"] = calm.lost_share;
     findings.figures[prefix + "on-peak"] = calm.peak_n_m;
     findings.figures[prefix + "on-force"] = calm.end_force_n;
-    if (delay_ms < 60) continue;
-    findings.plots.push_back({.name = "ro7-remote",
-                              .title = "RO7: pressing over a ground link with 60 ms round trip",
-                              .x_label = "time / s",
-                              .y_label = "normal force / N",
-                              .caption = "Force scale 0.02, 500 Hz. Torque limits raised to 100 N m for the bounce.",
-                              .curves = {std::move(free.force), std::move(calm.force)}});
+    // The relay of the craft adds up to 2 ms each way: in the middle of that.
+    constexpr int relay_ticks = 2;
+    independent::Conditions remote{.offset_m = {0.0226, 0}, .hand_span_s = 3, .ticks_per_handle_cycle = 4};
+    remote.up_ticks = remote.down_ticks = static_cast<int>(delay_ms) + relay_ticks;  // of 0.5 ms, each way
+    const auto force_of = [](const independent::Sample& at) { return at.force_n; };
+    Plot off{
+        .name = fmt::format("ro7-{:g}ms-off", delay_ms),
+        .title = fmt::format("RO7: pressing over a ground link of {:g} ms round trip, without passivity", delay_ms),
+        .x_label = "time / s",
+        .y_label = "normal force / N",
+        .caption = "Force scale 0.02, 500 Hz. Torque limits raised to 100 N m for the bounce.",
+        .curves = {std::move(free.force)}};
+    draw_beside(off, 0, independently(remote, force_of), "N");
+    findings.plots.push_back(std::move(off));
+    remote.passivity = independent::Passivity::On;
+    Plot on{.name = fmt::format("ro7-{:g}ms-on", delay_ms),
+            .title = fmt::format("RO7: the same with passivity, {:g} ms", delay_ms),
+            .x_label = "time / s",
+            .y_label = "normal force / N",
+            .caption = "With the torque limits of the mission.",
+            .curves = {std::move(calm.force)}};
+    draw_beside(on, 0, independently(remote, force_of), "N");
+    findings.plots.push_back(std::move(on));
   }
   return findings;
 }

@@ -62,7 +62,10 @@ class Arm:
         raise Unready(f"the arm does not come home: {tip}")
 
     def hand(self, offset, seconds):
-        self.craft.ask("joystick", "hand", "cartesian", *(f"{way:.5f}" for way in offset), seconds)
+        try:
+            self.craft.ask("joystick", "hand", "cartesian", *(f"{way:.5f}" for way in offset), seconds)
+        except AssertionError as problem:
+            raise Unready(f"the hand cannot go there: {problem}") from problem
 
     def wait(self, wanted, what, seconds=6.0):
         end, truth = time.monotonic() + seconds, self.craft.truth("robot")

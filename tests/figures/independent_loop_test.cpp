@@ -41,6 +41,28 @@ TEST(IndependentLoop, RestsOnTheRailWhereTheClosedFormSays) {
   }
 }
 
+TEST(IndependentLoop, RestsOnTheRailWithTheForceOfTheSeriesOfItsSprings) {
+  Conditions conditions = pressing(0.0226, 1);
+  conditions.force_scale = 0;
+  conditions.friction = Friction::Off;
+  conditions.span_s = 6;
+  const Sample end = fly(conditions).back();
+  const double one = end.asked_rad[0], two = one + end.asked_rad[1];
+  const double x = 0.25 * std::cos(one) + 0.22 * std::cos(two), y = 0.25 * std::sin(one) + 0.22 * std::sin(two);
+  EXPECT_NEAR(resting_force_n(y, x + 0.010 - 0.350, 300), end.force_n, 1e-3 * end.force_n);
+}
+
+TEST(IndependentLoop, HangsOnASpringAsTheClosedFormSays) {
+  Conditions conditions = pressing(0, 1);
+  conditions.friction = Friction::Off;
+  conditions.span_s = 8;
+  conditions.spring = Spring{.anchor_m = {0.280, -0.0215}};
+  conditions.legs = {{0, {0.008, -0.030}, 1}};
+  const Sample end = fly(conditions).back();
+  EXPECT_TRUE(row("RO4-horizontal-tau1").holds(end.torque_n_m[0])) << end.torque_n_m[0];
+  EXPECT_TRUE(row("RO4-horizontal-tau2").holds(end.torque_n_m[1])) << end.torque_n_m[1];
+}
+
 TEST(IndependentLoop, BouncesInHardContactWithoutPassivityAndRestsWithIt) {
   Conditions conditions = pressing(0.0325, 1);
   conditions.force_scale = 0.08;

@@ -58,6 +58,7 @@ struct ReportOptions {
   std::vector<std::string> only;     ///< ids of runs; empty = those that a report has by default
   std::vector<std::string> plant;    ///< "NAME=FACTOR": errors put into the model on purpose
   int repetitions{20};               ///< of each fault
+  bool convergence{false};           ///< each run a second time with sub-steps half as long
   bool corners{false};               ///< instead of the runs every corner of the ranges that the mission declares
   bool real{false};                  ///< on real processes, for `real_for`
   Duration real_for{std::chrono::minutes{5}};

@@ -131,6 +131,8 @@ int read_and_do(int argc, char** argv) {
       "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=, hand_clock=, delay_ms=2");
 
   std::string report_for = "5min";
+  report_command->add_flag("--convergence", report_options.convergence,
+                           "Each run a second time with sub-steps half as long: how far its figures move");
   report_command->add_flag("--corners", report_options.corners,
                            "Instead every corner of the declared ranges: largest force, torque, speed and the promise");
   report_command->add_flag("--real", report_options.real, "On real processes: cycle times and links of a flight");

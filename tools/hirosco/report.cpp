@@ -34,6 +34,33 @@ namespace {
   return true;
 }
 
+/// How the world of a run was integrated, and how far its figures move when it is integrated twice as finely.
+[[nodiscard]] std::string integrated(const simulation::Run& run, simulation::RunSettings settings,
+                                     const simulation::Figures& figures, const simulation::ExpectedTable& table,
+                                     bool compare) {
+  const double longest_us = 1e6 * seconds(simulation::ArmParameters{}.largest_sub_step) * settings.plant.sub_step;
+  std::string text =
+      fmt::format("Robot's world: Runge-Kutta 4, sub-steps of at most {:g} us, shorter in hard contact.", longest_us);
+  if (!compare) return text;
+  settings.plant.sub_step /= 2;
+  std::string moved;
+  double largest = 0;
+  for (const auto& [name, finer] : fly(run, settings).figures) {
+    const auto before = figures.find(name);
+    const auto* expected = table.find(name);
+    if (before == figures.end() || expected == nullptr || before->second == finer) continue;
+    // A near zero figure is measured by what the table has it at.
+    const double share = std::abs(finer - before->second) /
+                         std::max({std::abs(before->second), std::abs(expected->value), expected->tolerance});
+    if (share <= largest) continue;
+    largest = share;
+    moved = name;
+  }
+  return text + (moved.empty() ? " Half as long they change no figure."
+                               : fmt::format(" Half as long they move {} by {:.2g} %, all others by less.", moved,
+                                             100 * largest));
+}
+
 /// The runs that were asked for, in the order of the report; empty after a word about one that does not exist.
 [[nodiscard]] std::vector<simulation::Run> chosen(const ReportOptions& options) {
   const auto all = simulation::rokviss_runs();
@@ -128,8 +155,11 @@ int report(const ReportOptions& options) {
   if (options.real) {
     take(fly_for_real(mission, options.real_for));
   } else {
-    for (const simulation::Run& run : runs)
-      take({std::string{run.id}, std::string{run.title}, std::string{run.how}, fly(run, settings), {}});
+    for (const simulation::Run& run : runs) {
+      simulation::Findings findings = fly(run, settings);
+      findings.notes.push_back(integrated(run, settings, findings.figures, *table, options.convergence));
+      take({std::string{run.id}, std::string{run.title}, std::string{run.how}, std::move(findings), {}});
+    }
   }
   if (!options.out.empty()) {
     const std::string name = mission.parent_path().filename().string();

@@ -62,11 +62,15 @@ void write_trace_line(std::FILE* trace, TimePoint now, simulation::Spacecraft& c
   const auto contact = robot->arm().contact();
   const auto torque = robot->arm().joint_torque_n_m();
   const auto& link = robot->arm().state().link_rad;
+  const auto& motor = robot->arm().state().motor_rad;
   const auto& handle = joystick->handle().angle_rad();
-  fmt::print(trace, "{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
+  fmt::print(trace,
+             "{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},"
+             "{:.9g},{:.9g},{:.9g},{:.9g}\n",
              seconds(now - TimePoint{1s}), handle[0], handle[1], link[0], link[1], tip[0], tip[1], torque[0], torque[1],
              contact.penetration_m, contact.normal_force_n, joystick->motor_torque_n_m()[0],
-             joystick->motor_torque_n_m()[1]);
+             joystick->motor_torque_n_m()[1], motor[0], motor[1], robot->motor_torque_n_m()[0],
+             robot->motor_torque_n_m()[1]);
 }
 
 }  // namespace
@@ -110,7 +114,7 @@ int simulate(const SimulateOptions& options) {
     }
     fmt::print(trace.get(),
                "t_s,hand1_rad,hand2_rad,q1_rad,q2_rad,tip_x_m,tip_y_m,torque1_n_m,torque2_n_m,"
-               "penetration_m,contact_n,felt1_n_m,felt2_n_m\n");
+               "penetration_m,contact_n,felt1_n_m,felt2_n_m,motor1_rad,motor2_rad,motor1_n_m,motor2_n_m\n");
   }
   supervisor::MemoryDatabase log;
   Nobody nobody;
