@@ -6,7 +6,6 @@ each commanded apart, and none harmed by what becomes of another."""
 import contextlib
 import json
 import pathlib
-import shutil
 import signal
 import subprocess
 import sys
@@ -25,22 +24,6 @@ def two_flights(**options):
             with flight.Flight(folder=folder, instance="two", **options) as two:
                 two.wait_commissioned()
                 yield one, two
-
-
-@contextlib.contextmanager
-def mission_with_budget(budget_us):
-    """A copy of rokviss whose manipulator declares this much of its 500 us."""
-    with tempfile.TemporaryDirectory(prefix="hirosco-mission-") as folder:
-        root = pathlib.Path(folder)
-        for name in ("supervisor", "subsystems", "missions/rokviss"):
-            for file in (flight.REPOSITORY / name).rglob("*.xml"):
-                copy = root / file.relative_to(flight.REPOSITORY)
-                copy.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(file, copy)
-        manipulator = root / "subsystems/manipulator/manipulator.xml"
-        text = manipulator.read_text()
-        manipulator.write_text(text.replace('sampling_us="500"', f'sampling_us="500" budget_us="{budget_us}"'))
-        yield root / "missions/rokviss/mission.xml"
 
 
 def moving(craft):
@@ -169,13 +152,13 @@ class Instances(unittest.TestCase):
             self.assertEqual(two.end(), 0, two.errors)
 
     def test_a_third_is_refused_when_the_budgets_of_all_do_not_fit(self):
-        with mission_with_budget(200) as mission, two_flights(mission=mission) as (one, two):
-            why = self.refused(one, str(mission), "--instance", "three")
-            self.assertIn("the cycles of all flights need 120 % of the processor that they share: this one 40 %, "
-                          "one 40 %, two 40 %", why)
+        with two_flights() as (one, two):
+            why = self.refused(one, str(flight.ROKVISS), "--instance", "three")
+            self.assertIn("the cycles of all flights need 135 % of the processor that they share: this one 45 %, "
+                          "one 45 %, two 45 %", why)
             self.assertFalse((pathlib.Path(one.folder) / "log/three/rokviss.db").exists(), "nothing of it was started")
             self.assertEqual(two.end(), 0, two.errors)
-            with flight.Flight(mission=mission, folder=one.folder, instance="three") as three:
+            with flight.Flight(folder=one.folder, instance="three") as three:
                 three.wait_commissioned()
                 self.assertEqual(three.end(), 0, three.errors)
             self.assertEqual(one.end(), 0, one.errors)
