@@ -33,6 +33,8 @@ struct Devices : ::testing::Test {
   std::unique_ptr<DataFlow> lamp = open("lamp");
   std::array<std::byte, max_device_frame_octets> frame{};
   double angle{0.5};
+  std::uint32_t heard_epoch{1};
+  std::uint16_t flags{device_flag::over_temperature};
 
   std::unique_ptr<DataFlow> open(const char* address) {
     return std::move(rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), address},
@@ -56,8 +58,8 @@ struct Devices : ::testing::Test {
   }
   void answer(DataFlow& flow, std::uint32_t sequence, Octets payload) {
     std::array<std::byte, max_device_frame_octets> buffer{};
-    const auto status = write_status(
-        buffer, {.epoch = 1, .sequence = sequence, .flags = device_flag::over_temperature, .payload = payload});
+    const auto status =
+        write_status(buffer, {.epoch = heard_epoch, .sequence = sequence, .flags = flags, .payload = payload});
     static_cast<void>(flow.send(status.value()));
   }
   /// One cycle, answered by both devices; gives what the arm was told.
@@ -291,6 +293,24 @@ TEST_F(Devices, ALostDeviceSaysWhetherItWasSilentDamagedOfTheWrongSizeOrRepeated
     answer(*arm, ++sequence, std::as_bytes(std::span{&angle, 1}));
     rig.cycle();
   }
+}
+
+/// On the way up from a stop that its watchdog saw: the guard names the new epoch to it some cycles after the entry.
+TEST_F(Devices, WhatLetGoUnderAnEarlierEpochIsLostOnlyOnceItHasHeardOfThisOne) {
+  flags = device_flag::watchdog_tripped;
+  heard_epoch = 0;
+  bring_up(State::Operational);
+  Command told;
+  for (int i = 0; i < 50; ++i) told = exchange();
+  rig.service();
+  EXPECT_EQ(rig.events(arm_lost), 0);
+  EXPECT_EQ(told.mode, DeviceMode::Active);
+  ASSERT_GT(told.epoch, heard_epoch);
+  heard_epoch = told.epoch;
+  for (int i = 0; i < 5; ++i) exchange();
+  rig.service();
+  EXPECT_EQ(rig.events(arm_lost), 1);
+  EXPECT_EQ(loss_in(rig)[0], static_cast<std::uint32_t>(descriptor::DeviceLoss::LetGo));
 }
 
 TEST(ReducedPromise, WithoutRealtimeRightsTheSecondSetOfLimitsHolds) {

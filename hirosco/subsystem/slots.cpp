@@ -249,8 +249,10 @@ void DeviceSlot::take_frame(Octets frame) noexcept {
   if (!port_->fresh_) count(since_good_.repeated);
   echoed_ = status->sequence;
   port_->flags_ = status->flags;
-  // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say.
-  if ((status->flags & device_flag::watchdog_tripped) == 0 || active_cycles_ <= silence_limit_) return;
+  // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say. Of an epoch
+  // before the commanded one that says nothing: the guard has yet to name this one to it.
+  const bool tripped = (status->flags & device_flag::watchdog_tripped) != 0;
+  if (!tripped || status->epoch < epoch_ || active_cycles_ <= silence_limit_) return;
   if (port_->fresh_) count(since_good_.let_go);
   port_->fresh_ = false;
 }
@@ -277,6 +279,7 @@ DeviceSlot::Loss DeviceSlot::loss() const noexcept {
 void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {
   const bool pass = active || !device_->actuator;
   active_cycles_ = active ? std::min(active_cycles_ + 1, longest_silence) : 0;
+  epoch_ = epoch;
   Octets payload = safe_payload_;
   if (pass) {
     const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());

@@ -136,6 +136,7 @@ class DeviceSlot {
   Loss since_good_;
   bool hung_up_{false};
   std::uint32_t echoed_{0};          ///< command sequence that the newest status frame answers
+  std::uint32_t epoch_{0};           ///< of the newest command
   std::uint32_t active_cycles_{0};   ///< in a row in which outputs were to reach the actuators
   bool heard_{false};
   bool just_lost_{false};
