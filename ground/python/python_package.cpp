@@ -412,7 +412,7 @@ PythonPackage python_package(const Catalogue& catalogue) {
   PythonPackage package;
   package.name = "hirosco_" + PythonNames{{}}.variable(catalogue.mission().name);
   package.files["__init__.py"] = std::string{licence} + module_text(catalogue);
-  package.files["runtime.py"] = std::string{python_runtime};
+  for (const PythonFile& file : python_runtime) package.files[std::string{file.name}] = std::string{file.text};
   return package;
 }
 

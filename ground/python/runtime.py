@@ -3,57 +3,33 @@
 """A spacecraft as a Python object: what every exported mission shares. Python 3.9 or later, standard library only.
 
 The mission's own module beside this file has the classes; they stand on these. One thread keeps reading; every method
-may be called from any thread. Octets follow docs/failure-codes.md and the PUS-C tailoring: CRC-16 of the whole packet,
-CUC 4+3 time of TAI since 1958, numbers big-endian."""
+may be called from any thread. Octets follow docs/failure-codes.md and the PUS-C tailoring."""
 from __future__ import annotations
 
-import binascii
 import collections
 import contextlib
-import dataclasses
-import datetime
-import fcntl
 import math
-import numbers
-import os
-import pathlib
 import random
 import socket
 import struct
 import threading
 import time
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+
+from .descriptors import EventKind, Field, Function, Layout, MissionAbout, Parameter, SubsystemAbout
+from .flights import find_flight, flights
+from .packets import ArgumentError, HiroscoError, LinkLost, NoAnswer, Telemetry, crc16, cuc_seconds, cut, telecommand
+from .reports import SEVERITIES, STAGES, Event, Housekeeping, Verification, failure_parameters, utc_of
+
+__all__ = ["ArgumentError", "CommandFailed", "Craft", "Event", "EventKind", "Field", "Function", "HiroscoError", "Housekeeping",
+           "Layout", "LinkLost", "MissionAbout", "NoAnswer", "Parameter", "Request", "Subsystem", "SubsystemAbout", "Telemetry",
+           "Verification", "code_text", "crc16", "cuc_seconds", "cut", "failure_parameters", "find_flight", "flights",
+           "telecommand", "utc_of"]
 
 STATES = ("Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational",
           "ErrorOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit")
-ACK_ALL = 15                      # acceptance, start, progress, completion
-FORMATS = {"UINT8": "B", "INT8": "b", "UINT16": "H", "INT16": "h", "UINT32": "I", "INT32": "i", "UINT64": "Q",
-           "INT64": "q", "FLOAT": "f", "DOUBLE": "d"}
-LARGEST_PACKET = 4096
-FUNCTION_NAME_OCTETS = 16
-EXACT_INTEGERS = 2**53            # on board an argument travels as a double
-EPOCH = datetime.datetime(1958, 1, 1, tzinfo=datetime.timezone.utc)
-TAI_MINUS_UTC_S = 37
 # Source ids of Python clients; reports find back to the one that asked.
 FIRST_SOURCE, LAST_SOURCE = 0x8000, 0xBFFF
-
-
-# --- what can go wrong -----------------------------------------------------------------------------------------------
-
-class HiroscoError(Exception):
-    """Whatever this client raises."""
-
-
-class ArgumentError(HiroscoError, ValueError):
-    """Not sent: a value outside its range, of another kind, or a name nobody knows."""
-
-
-class LinkLost(HiroscoError, ConnectionError):
-    """The spacecraft's end of the link is gone."""
-
-
-class NoAnswer(HiroscoError, TimeoutError):
-    """What was waited for did not come in time. It may still come, and the request may still be executed."""
 
 
 def code_text(code: int) -> str:
@@ -82,327 +58,6 @@ class CommandFailed(HiroscoError):
         return self.verification.parameters
 
 
-# --- flights on this computer ----------------------------------------------------------------------------------------
-
-def flights(folder: Optional[str] = None) -> List[Dict[str, str]]:
-    """Your flights on this computer: instance, mission, telemetry ("HOST:PORT"), log and more (docs/adr/0037)."""
-    found = []
-    with contextlib.suppress(OSError):
-        for path in sorted(pathlib.Path(folder or f"/tmp/hirosco-flights-{os.getuid()}").iterdir()):
-            with contextlib.suppress(OSError, UnicodeDecodeError), path.open(encoding="utf-8") as file:
-                # Who flies has the file locked; looking takes no lock.
-                query = struct.pack("hhqqi4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
-                if struct.unpack("hhqqi4x", fcntl.fcntl(file, fcntl.F_OFD_GETLK, query))[0] == fcntl.F_UNLCK:
-                    continue
-                entry = dict(line.split("=", 1) for line in file.read().splitlines() if "=" in line)
-                if entry.get("instance") == path.name:
-                    found.append(entry)
-    return found
-
-
-def find_flight(mission: str, instance: Optional[str] = None,
-                folder: Optional[str] = None) -> Optional[Dict[str, str]]:
-    """The flight of this mission; None when none is in the air. LinkLost: the instance does not fly, or several do."""
-    known = flights(folder)
-    of_mission = [flight for flight in known if flight.get("mission") == mission]
-    meant = [flight for flight in of_mission if instance in (None, flight["instance"])]
-    if len(meant) == 1:
-        return meant[0]
-    names = ", ".join(f"{flight['instance']} ({flight.get('mission')})" for flight in known) or "nothing"
-    if instance is not None:
-        raise LinkLost(f"no instance {instance!r} of {mission} flies; on this computer: {names}")
-    if meant:
-        raise LinkLost(f"{len(meant)} flights of {mission} are in the air: say instance=...; on this computer: {names}")
-    return None
-
-
-# --- packets ---------------------------------------------------------------------------------------------------------
-
-def crc16(octets: bytes) -> int:
-    """CCSDS error control: polynomial 0x1021, preset 0xFFFF. 0 over a whole undamaged packet."""
-    return binascii.crc_hqx(octets, 0xFFFF)
-
-
-def telecommand(apid: int, count: int, service: int, subtype: int, source: int, data: bytes = b"",
-                ack: int = ACK_ALL) -> bytes:
-    """A whole telecommand packet with PUS-C header."""
-    header = struct.pack(">HHHBBBH", 0x1800 | apid, 0xC000 | count, len(data) + 6, 0x20 | ack, service, subtype, source)
-    packet = header + data
-    if len(packet) + 2 > LARGEST_PACKET:
-        raise ArgumentError(f"a telecommand has at most {LARGEST_PACKET} octets, this one {len(packet) + 2}")
-    return packet + struct.pack(">H", crc16(packet))
-
-
-@dataclasses.dataclass(frozen=True)
-class Telemetry:
-    """A telemetry packet with PUS-C header."""
-    apid: int
-    count: int
-    service: int
-    subtype: int
-    destination: int
-    time_s: float                 # TAI since 1958
-    data: bytes
-
-    @classmethod
-    def parse(cls, packet: bytes) -> Optional[Telemetry]:
-        """None for what is damaged or is no PUS-C telemetry."""
-        if not 22 <= len(packet) <= LARGEST_PACKET or packet[0] >> 3 != 1 or packet[6] >> 4 != 2 or crc16(packet) != 0:
-            return None
-        first, second, length = struct.unpack(">HHH", packet[:6])
-        if length + 7 != len(packet):
-            return None
-        service, subtype, _, destination = struct.unpack(">BBHH", packet[7:13])
-        return cls(first & 0x7FF, second & 0x3FFF, service, subtype, destination, cuc_seconds(packet[13:20]),
-                   packet[20:-2])
-
-
-def cuc_seconds(octets: bytes) -> float:
-    return int.from_bytes(octets[:4], "big") + int.from_bytes(octets[4:7], "big") / 2**24
-
-
-def cut(stream: bytearray) -> List[bytes]:
-    """Takes the whole packets off the front of a stream. LinkLost: this is no telemetry, so nothing has an end."""
-    packets = []
-    while len(stream) >= 6:
-        size = 7 + int.from_bytes(stream[4:6], "big")
-        if stream[0] >> 4 != 0 or size > LARGEST_PACKET:
-            raise LinkLost("what comes from there is no telemetry")
-        if len(stream) < size:
-            break
-        packets.append(bytes(stream[:size]))
-        del stream[:size]
-    return packets
-
-
-# --- what the descriptors say ----------------------------------------------------------------------------------------
-
-@dataclasses.dataclass(frozen=True)
-class Field:
-    """A typed, named, ranged value. `texts` are the names of its values, when it has such."""
-    name: str
-    type: str
-    count: int = 1
-    unit: str = ""
-    minimum: Optional[float] = None
-    maximum: Optional[float] = None
-    default: Optional[float] = None
-    texts: Tuple[Tuple[int, str], ...] = ()
-    offset: int = 0               # of a column: in the source data of its report
-    words: bool = False           # the octets are text up to the first zero
-
-    @property
-    def octets(self) -> int:
-        return self.count * struct.calcsize(">" + FORMATS[self.type])
-
-    def encode(self, value: Any) -> bytes:
-        """ArgumentError says in words what does not fit."""
-        values = [value] if self.count == 1 else value
-        if isinstance(values, (str, bytes)) or not hasattr(values, "__len__") or len(values) != self.count:
-            raise ArgumentError(f"{self.name}: {self.count} values are wanted, not {value!r}")
-        return struct.pack(f">{self.count}{FORMATS[self.type]}", *(self._checked(one) for one in values))
-
-    def decode(self, data: bytes, offset: int) -> Any:
-        if self.words:
-            return data[offset:offset + self.octets].split(b"\0")[0].decode("ascii", "replace")
-        values = struct.unpack_from(f">{self.count}{FORMATS[self.type]}", data, offset)
-        return values[0] if self.count == 1 else values
-
-    def text_of(self, value: float) -> Optional[str]:
-        return next((text for known, text in self.texts if known == value), None)
-
-    def _checked(self, value: Any) -> Union[int, float]:
-        if isinstance(value, str):
-            value = self._named(value)
-        if not isinstance(value, numbers.Real) or not math.isfinite(value):
-            raise ArgumentError(f"{self.name}: a finite number is wanted, not {value!r}")
-        unit = f" {self.unit}" if self.unit else ""
-        if self.minimum is not None and value < self.minimum:
-            raise ArgumentError(f"{self.name}: {value:g}{unit} is below its minimum {self.minimum:g}{unit}")
-        if self.maximum is not None and value > self.maximum:
-            raise ArgumentError(f"{self.name}: {value:g}{unit} is above its maximum {self.maximum:g}{unit}")
-        if self.type == "DOUBLE":
-            return float(value)
-        if self.type != "FLOAT" and value != int(value):
-            raise ArgumentError(f"{self.name}: a whole number is wanted, not {value!r}")
-        try:
-            number = float(value) if self.type == "FLOAT" else int(value)
-            struct.pack(">" + FORMATS[self.type], number)
-        except (struct.error, OverflowError):
-            raise ArgumentError(f"{self.name}: {value!r} does not fit into {self.type}") from None
-        if self.type != "FLOAT" and abs(number) > EXACT_INTEGERS:
-            raise ArgumentError(f"{self.name}: {value!r} is above 2^53")
-        return number
-
-    def _named(self, text: str) -> int:
-        for known, name in self.texts:
-            if name.lower() == text.lower():
-                return known
-        names = ", ".join(name for _, name in self.texts)
-        raise ArgumentError(f"{self.name}: {text!r} is none of {names}" if names else
-                            f"{self.name}: a number is wanted, not {text!r}")
-
-
-@dataclasses.dataclass(frozen=True)
-class Function:
-    name: str
-    service: int = 8
-    arguments: Tuple[Field, ...] = ()
-
-    def encode(self, values: Sequence[Any]) -> bytes:
-        """Application data of TC[8,1]; None stands for the declared value."""
-        if self.service != 8:
-            return b""
-        data = self.name.encode().ljust(FUNCTION_NAME_OCTETS, b"\0") + bytes([len(self.arguments)])
-        for number, (field, value) in enumerate(zip(self.arguments, values), 1):
-            if value is None:
-                value = field.default if field.count == 1 or field.default is None else [field.default] * field.count
-            if value is None:
-                raise ArgumentError(f"{self.name}: {field.name} is missing")
-            try:
-                data += bytes([number]) + field.encode(value)
-            except ArgumentError as error:
-                raise ArgumentError(f"{self.name}: {error}") from None
-        return data
-
-
-@dataclasses.dataclass(frozen=True)
-class Parameter:
-    """A parameter or a member of one, by its id on the wire. A structure as a whole has several fields."""
-    name: str
-    wire: int
-    fields: Tuple[Field, ...]
-
-
-@dataclasses.dataclass(frozen=True)
-class Layout:
-    """A housekeeping report as it comes; of values that are sampled repeatedly, the newest sample."""
-    sid: int
-    octets: int
-    columns: Tuple[Field, ...]
-
-
-@dataclasses.dataclass(frozen=True)
-class EventKind:
-    id: int
-    name: str
-    arguments: Tuple[Field, ...] = ()
-
-
-@dataclasses.dataclass(frozen=True)
-class SubsystemAbout:
-    """A subsystem's descriptor, as far as a client needs it."""
-    name: str
-    apid: int
-    configurations: Tuple[Tuple[int, str], ...] = ()
-    functions: Tuple[Function, ...] = ()
-    parameters: Tuple[Parameter, ...] = ()
-    layouts: Tuple[Layout, ...] = ()
-    events: Tuple[EventKind, ...] = ()
-
-
-@dataclasses.dataclass(frozen=True)
-class MissionAbout:
-    name: str
-    host: str
-    port: int
-    supervisor: str
-    modes: Tuple[Tuple[int, str], ...]
-    links: Tuple[Tuple[int, str], ...]
-    failures: Tuple[Tuple[int, str], ...]
-
-
-# --- what is heard ---------------------------------------------------------------------------------------------------
-
-def utc_of(time_s: float) -> datetime.datetime:
-    return EPOCH + datetime.timedelta(seconds=time_s - TAI_MINUS_UTC_S)
-
-
-@dataclasses.dataclass(frozen=True)
-class Housekeeping:
-    """One report TM[3,25]. `report["CUR_VALUES.POSITION"]` is a number, or a tuple for an array."""
-    subsystem: str
-    sid: int
-    time_s: float                 # on board: TAI since 1958
-    values: Dict[str, Any]
-
-    def __getitem__(self, name: str) -> Any:
-        return self.values[name]
-
-    @property
-    def utc(self) -> datetime.datetime:
-        return utc_of(self.time_s)
-
-
-@dataclasses.dataclass(frozen=True)
-class Event:
-    """One report TM[5,1] to TM[5,4]."""
-    subsystem: str
-    id: int
-    name: str                     # the number as text when the descriptor has no such event
-    severity: str
-    time_s: float
-    values: Dict[str, Any]
-
-    @property
-    def utc(self) -> datetime.datetime:
-        return utc_of(self.time_s)
-
-
-SEVERITIES = {1: "info", 2: "low", 3: "medium", 4: "high"}
-STAGES = {1: "accepted", 2: "refused", 3: "started", 4: "start failed", 5: "progress", 6: "progress failed",
-          7: "completed", 8: "failed", 10: "not routed"}
-# docs/failure-codes.md: what stands behind a code.
-FAILURE_DATA = {0x02: (("length", "H"),), 0x06: (("service", "B"),), 0x07: (("service", "B"), ("subtype", "B")),
-                0x09: (("offset", "H"),), 0x0A: (("state", "B"),), 0x0D: (("mode", "B"),), 0x0E: (("link", "B"),),
-                0x0F: (("link", "B"),), 0x101: (("index", "B"), ("identifier", "I")),
-                0x102: (("index", "B"), ("identifier", "I")), 0x103: (("index", "B"), ("identifier", "I")),
-                0x104: (("index", "B"),), 0x105: (("index", "B"), ("identifier", "I")), 0x106: (("index", "B"),),
-                0x107: (("index", "B"),), 0x109: (("index", "B"), ("checksum", "H")),
-                0x201: (("executed", "B"), ("rejected", "B"))}
-
-
-@dataclasses.dataclass(frozen=True)
-class Verification:
-    """One report of ST[01] about a request."""
-    subtype: int
-    after_s: float                # since the request was sent
-    step: Optional[int] = None
-    code: Optional[int] = None
-    text: str = ""                # of the code
-    data: bytes = b""             # behind the code
-    parameters: Dict[str, Any] = dataclasses.field(default_factory=dict)
-
-    @property
-    def stage(self) -> str:
-        return STAGES.get(self.subtype, "?")
-
-    @property
-    def detail(self) -> str:
-        return "".join(f", {name} {value}" for name, value in self.parameters.items())
-
-    @property
-    def is_failure(self) -> bool:
-        return self.code is not None
-
-    @property
-    def is_last(self) -> bool:
-        return self.subtype == 7 or (self.is_failure and self.subtype != 6)
-
-
-def failure_parameters(code: int, data: bytes) -> Dict[str, Any]:
-    """The numbers behind a failure code by name; what is not documented stays octets, in hexadecimal."""
-    shape = FAILURE_DATA.get(code, ())
-    form = ">" + "".join(letter for _, letter in shape)
-    if code == 0x101 and len(data) == 1 + FUNCTION_NAME_OCTETS:
-        return {"index": data[0], "name": data[1:].rstrip(b"\0").decode("ascii", "replace")}
-    if len(data) >= 10 and data[0] == 0xFF:
-        return {"reason": data[10:].decode("ascii", "replace"), "number": int.from_bytes(data[2:10], "big", signed=True)}
-    if len(data) != struct.calcsize(form):
-        return {"data": data.hex()}
-    return dict(zip((name for name, _ in shape), struct.unpack(form, data)))
-
-
 class Request:
     """A telecommand that was sent, and what became of it."""
 
@@ -428,8 +83,6 @@ class Request:
                 raise CommandFailed(self, verification)
         return self
 
-
-# --- the spacecraft --------------------------------------------------------------------------------------------------
 
 class Subsystem:
     """Base of the mission's subsystems; the exported classes add a method for every function, parameter and report."""

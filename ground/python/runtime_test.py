@@ -10,16 +10,19 @@ import pathlib
 import re
 import socket
 import struct
+import sys
 import tempfile
 import threading
 import unittest
 import unittest.mock
 
-import runtime
-from runtime import (ArgumentError, CommandFailed, Craft, EventKind, Field, Function, Layout, LinkLost, MissionAbout,
-                     NoAnswer, Parameter, Subsystem, SubsystemAbout, Telemetry)
-
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))            # the files of an exported package know each other by their package
+
+from python import runtime  # noqa: E402
+from python.runtime import (ArgumentError, CommandFailed, Craft, EventKind, Field, Function, Layout, LinkLost, MissionAbout,
+                            NoAnswer, Parameter, Subsystem, SubsystemAbout, Telemetry)
+
 VECTORS = json.loads((HERE.parents[1] / "hirosco/pus/testing/test_vectors.json").read_text())
 
 

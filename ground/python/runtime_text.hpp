@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string_view>
 
 namespace hirosco::ground {
 
-/// The text of runtime.py as it was when this was built.
-extern const std::string_view python_runtime;
+struct PythonFile {
+  std::string_view name, text;
+};
+
+/// What all exported packages share, as it was when this was built. Who uses one imports the package; its files import each other.
+extern const std::array<PythonFile, 5> python_runtime;
 
 }  // namespace hirosco::ground

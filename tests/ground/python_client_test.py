@@ -31,7 +31,7 @@ class Export(unittest.TestCase):
             told = export(flight.HELLO, folder)
             self.assertIn(f"PYTHONPATH={folder}", told)
             package = pathlib.Path(folder, "hirosco_hello")
-            self.assertEqual({path.name for path in package.iterdir()}, {"__init__.py", "runtime.py"})
+            self.assertEqual({path.name for path in package.iterdir()}, {"__init__.py", "packets.py", "flights.py", "descriptors.py", "reports.py", "runtime.py"})
             for path in package.iterdir():
                 compile(path.read_text(), path.name, "exec")
             self.assertIn("class Hello(_r.Subsystem):", (package / "__init__.py").read_text())

@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""What the descriptors of a mission say, as far as a client needs it: values that judge and encode themselves."""
+from __future__ import annotations
+
+import dataclasses
+import math
+import numbers
+import struct
+from typing import Any, Optional, Sequence, Tuple, Union
+
+from .packets import ArgumentError
+
+FORMATS = {"UINT8": "B", "INT8": "b", "UINT16": "H", "INT16": "h", "UINT32": "I", "INT32": "i", "UINT64": "Q",
+           "INT64": "q", "FLOAT": "f", "DOUBLE": "d"}
+FUNCTION_NAME_OCTETS = 16
+EXACT_INTEGERS = 2**53            # on board an argument travels as a double
+
+
+@dataclasses.dataclass(frozen=True)
+class Field:
+    """A typed, named, ranged value. `texts` are the names of its values, when it has such."""
+    name: str
+    type: str
+    count: int = 1
+    unit: str = ""
+    minimum: Optional[float] = None
+    maximum: Optional[float] = None
+    default: Optional[float] = None
+    texts: Tuple[Tuple[int, str], ...] = ()
+    offset: int = 0               # of a column: in the source data of its report
+    words: bool = False           # the octets are text up to the first zero
+
+    @property
+    def octets(self) -> int:
+        return self.count * struct.calcsize(">" + FORMATS[self.type])
+
+    def encode(self, value: Any) -> bytes:
+        """ArgumentError says in words what does not fit."""
+        values = [value] if self.count == 1 else value
+        if isinstance(values, (str, bytes)) or not hasattr(values, "__len__") or len(values) != self.count:
+            raise ArgumentError(f"{self.name}: {self.count} values are wanted, not {value!r}")
+        return struct.pack(f">{self.count}{FORMATS[self.type]}", *(self._checked(one) for one in values))
+
+    def decode(self, data: bytes, offset: int) -> Any:
+        if self.words:
+            return data[offset:offset + self.octets].split(b"\0")[0].decode("ascii", "replace")
+        values = struct.unpack_from(f">{self.count}{FORMATS[self.type]}", data, offset)
+        return values[0] if self.count == 1 else values
+
+    def text_of(self, value: float) -> Optional[str]:
+        return next((text for known, text in self.texts if known == value), None)
+
+    def _checked(self, value: Any) -> Union[int, float]:
+        if isinstance(value, str):
+            value = self._named(value)
+        if not isinstance(value, numbers.Real) or not math.isfinite(value):
+            raise ArgumentError(f"{self.name}: a finite number is wanted, not {value!r}")
+        unit = f" {self.unit}" if self.unit else ""
+        if self.minimum is not None and value < self.minimum:
+            raise ArgumentError(f"{self.name}: {value:g}{unit} is below its minimum {self.minimum:g}{unit}")
+        if self.maximum is not None and value > self.maximum:
+            raise ArgumentError(f"{self.name}: {value:g}{unit} is above its maximum {self.maximum:g}{unit}")
+        if self.type == "DOUBLE":
+            return float(value)
+        if self.type != "FLOAT" and value != int(value):
+            raise ArgumentError(f"{self.name}: a whole number is wanted, not {value!r}")
+        try:
+            number = float(value) if self.type == "FLOAT" else int(value)
+            struct.pack(">" + FORMATS[self.type], number)
+        except (struct.error, OverflowError):
+            raise ArgumentError(f"{self.name}: {value!r} does not fit into {self.type}") from None
+        if self.type != "FLOAT" and abs(number) > EXACT_INTEGERS:
+            raise ArgumentError(f"{self.name}: {value!r} is above 2^53")
+        return number
+
+    def _named(self, text: str) -> int:
+        for known, name in self.texts:
+            if name.lower() == text.lower():
+                return known
+        names = ", ".join(name for _, name in self.texts)
+        raise ArgumentError(f"{self.name}: {text!r} is none of {names}" if names else
+                            f"{self.name}: a number is wanted, not {text!r}")
+
+
+@dataclasses.dataclass(frozen=True)
+class Function:
+    name: str
+    service: int = 8
+    arguments: Tuple[Field, ...] = ()
+
+    def encode(self, values: Sequence[Any]) -> bytes:
+        """Application data of TC[8,1]; None stands for the declared value."""
+        if self.service != 8:
+            return b""
+        data = self.name.encode().ljust(FUNCTION_NAME_OCTETS, b"\0") + bytes([len(self.arguments)])
+        for number, (field, value) in enumerate(zip(self.arguments, values), 1):
+            if value is None:
+                value = field.default if field.count == 1 or field.default is None else [field.default] * field.count
+            if value is None:
+                raise ArgumentError(f"{self.name}: {field.name} is missing")
+            try:
+                data += bytes([number]) + field.encode(value)
+            except ArgumentError as error:
+                raise ArgumentError(f"{self.name}: {error}") from None
+        return data
+
+
+@dataclasses.dataclass(frozen=True)
+class Parameter:
+    """A parameter or a member of one, by its id on the wire. A structure as a whole has several fields."""
+    name: str
+    wire: int
+    fields: Tuple[Field, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class Layout:
+    """A housekeeping report as it comes; of values that are sampled repeatedly, the newest sample."""
+    sid: int
+    octets: int
+    columns: Tuple[Field, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class EventKind:
+    id: int
+    name: str
+    arguments: Tuple[Field, ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class SubsystemAbout:
+    """A subsystem's descriptor, as far as a client needs it."""
+    name: str
+    apid: int
+    configurations: Tuple[Tuple[int, str], ...] = ()
+    functions: Tuple[Function, ...] = ()
+    parameters: Tuple[Parameter, ...] = ()
+    layouts: Tuple[Layout, ...] = ()
+    events: Tuple[EventKind, ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class MissionAbout:
+    name: str
+    host: str
+    port: int
+    supervisor: str
+    modes: Tuple[Tuple[int, str], ...]
+    links: Tuple[Tuple[int, str], ...]
+    failures: Tuple[Tuple[int, str], ...]
