@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ground/json.hpp"
+#include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 
 namespace hirosco::ground {
@@ -241,6 +242,13 @@ class Teller {
     return known ? name : std::string{};
   }
 
+  /// ": watchdog let go": the reason that the framework gives for a loss; its counters stand in the event.
+  [[nodiscard]] static std::string loss(const json& values) {
+    const auto reason = number_in(values, "REASON");
+    const auto text = reason ? to_text(static_cast<descriptor::DeviceLoss>(*reason)) : std::string_view{};
+    return text.empty() ? std::string{} : ": " + std::string{text};
+  }
+
   /// "JOINT 2, VALUE 12.3 N m": arguments with their units.
   [[nodiscard]] std::string arguments(const StoredEvent& event, const json& values) const {
     std::string text;
@@ -273,8 +281,7 @@ class Teller {
     const std::string more = arguments(event, values);
     const std::string device = lost_device(event);
     if (!device.empty())
-      return event.subsystem + " lost its device" + (device == event.subsystem ? "" : " " + device) +
-             (more.empty() ? "" : " (" + more + ")");
+      return event.subsystem + " lost its device" + (device == event.subsystem ? "" : " " + device) + loss(values);
     std::string words = lower_case(event.name);
     std::ranges::replace(words, '_', ' ');
     return event.subsystem + ": " + words + (more.empty() ? "" : " (" + more + ")");
