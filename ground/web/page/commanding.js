@@ -143,7 +143,34 @@ export async function bring_up(mode, told = () => {}, stopped = () => false) {
     // The supervisor tells of everybody's states five times a second: the next step asks what is needed still.
     await new Promise((resolve) => setTimeout(resolve, wait_after_step_ms));
   }
+  if (steps.some((step) => step.stage === 'failed' || step.stage === 'waiting')) return steps;
+  // Every step was taken; who fell meanwhile is told by a later word of the spacecraft only.
+  const fell = await fallen_after(mode.commission ?? []);
+  if (fell.length) {
+    steps.push({text: `${mode.name} holds`, stage: 'failed',
+      reason: await true_reason({reason: `${fell.join(' and ')} did not stay where ${mode.name} has them`}, began_s)});
+    told(steps);
+  }
   return steps;
+}
+
+const settled_after_ms = 3000;
+
+/// Members that are not where the mode has them, or inhibited, by what the gateway says from now on; housekeeping comes late by a moment.
+function fallen_after(members) {
+  const fallen = () => members.filter((member) => !is_on(member.subsystem, member.state) || status_of(member.subsystem)?.inhibited?.length)
+      .map((member) => member.subsystem);
+  return new Promise((resolve) => {
+    const before = status.value;
+    let end = () => {};
+    const finish = () => {
+      clearTimeout(timer);
+      end();
+      resolve(fallen());
+    };
+    const timer = setTimeout(finish, settled_after_ms);
+    end = status.subscribe((now) => { if (now !== before && !fallen().length) queueMicrotask(finish); });
+  });
 }
 
 /// What took the network down while it came up says more than that a step is not permitted in the state that this left.

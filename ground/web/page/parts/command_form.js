@@ -152,7 +152,7 @@ export function CommandForm({subsystem, action, given = {}, focus = false}) {
     ${list.map((argument, i) => html`<${Field} key=${argument.name} subsystem=${subsystem} action=${action}
       argument=${argument} text=${text_of(argument)} result=${results[i]} focus=${focus && i === 0}
       on_text=${(text) => set_texts({...texts, [argument.name]: text})} />`)}
-    <p class="octets" title="the telecommand packet" data-test="octets">${values ? hex_text(answer?.octets) || '…' : ' '}</p>
+    <div class="foot"><p class="octets" title="the telecommand packet" data-test="octets">${values ? hex_text(answer?.octets) || '…' : ''}</p>
     ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` :
       !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : values ?
       html`<${Permission} answer=${answer} problem=${answer?.problem} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
@@ -160,6 +160,6 @@ export function CommandForm({subsystem, action, given = {}, focus = false}) {
       ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : `Send ${action.name}`}</button>
     ${problem ? html`<p class="permission no">${problem}</p>` : null}
     ${mine ? html`<div class=${`verdict ${outcome_of(mine).stage}`} data-test="verdict">
-      <small>${clock_text(mine.t, 3)}</small><${VerdictChain} command=${mine} /></div>` : null}
+      <small>${clock_text(mine.t, 3)}</small><${VerdictChain} command=${mine} /></div>` : null}</div>
   </form>`;
 }

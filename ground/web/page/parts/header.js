@@ -77,8 +77,8 @@ function SafeAll() {
 export function Header({on_faults, faults_open}) {
   const {high, medium} = unseen.value;
   return html`<header>
-    <a class="brand" href="#/overview"><img src="icon.svg" alt="" width="22" height="22" />HIROSCO</a>
-    <span class="pill"><small>mission</small><b>${mission.value?.name ?? '…'}</b>${
+    <a class="brand" href="#/overview"><img src="icon.svg" alt="HIROSCO" width="22" height="22" /><span aria-hidden="true">HIROSCO</span></a>
+    <span class="pill mission"><small>mission</small><b>${mission.value?.name ?? '…'}</b>${
       mission.value?.simulated ? html`<small class="simulated">simulated</small>` : null}</span>
     <${Mode} />
     <${LinkState} />

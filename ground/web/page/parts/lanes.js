@@ -13,8 +13,9 @@ import {is_wanted} from './link_graph.js';
 import {is_known, state_look} from './subsystem_card.js';
 
 const refresh_ms = 2000;
-const label_width = 112, lane_height = 20;
+const label_width = 118, lane_height = 20;
 const longest_ahead_s = 30;
+const shortest_s = 20;
 
 /// The newest on-board time that the ground knows, also while a replay shows an older one.
 export const end_of_time = signal(NaN);
@@ -52,6 +53,9 @@ function spans(changes, value_of, from, to) {
       .filter((span) => span.to >= from && span.from <= to && span.to > span.from);
 }
 
+/// When the first thing happened that a timeline knows of; at its left edge, or before it, where the archive goes on before it.
+const first_s = (data) => Math.min(Infinity, ...['modes', 'states', 'links', 'commands', 'events'].flatMap((kind) => data[kind].map((one) => one.t)));
+
 export function Lanes({window_s = 120, big = false}) {
   const node = useRef(null);
   const [width, set_width] = useState(900);
@@ -65,7 +69,8 @@ export function Lanes({window_s = 120, big = false}) {
   }, []);
   const now = now_s();
   const to = replay.value ? Math.max(data.to, now) : Number.isFinite(now) ? now : data.to;
-  const from = to - Math.max(window_s, data.to - data.from);
+  // Before the flight began there was nothing: an empty stretch would say that nobody knows.
+  const from = Math.max(to - Math.max(window_s, data.to - data.from), Math.min(first_s(data) - 1, to - shortest_s));
   const plot_width = width - label_width - 14;
   const x = (t) => label_width + Math.max(0, Math.min(1, (t - from) / (to - from))) * plot_width;
   const time_at = (event) => from + (event.clientX - node.current.getBoundingClientRect().left - label_width) / plot_width * (to - from);
@@ -116,7 +121,7 @@ export function Lanes({window_s = 120, big = false}) {
       onClick=${(event) => { const at = time_at(event); if (at >= from && at <= to) replay_from(at); }} role="img"
       aria-label="timeline; a click replays from there">
       ${ticks.map((t) => html`<g class="tick"><line x1=${x(t)} x2=${x(t)} y1="0" y2=${height - 18} /><text x=${x(t)} y=${height - 5}>${clock_text(t, 0)}</text></g>`)}
-      ${lanes.map((lane, i) => html`<g transform=${`translate(0 ${i * lane_height})`}><text class="label" x="4" y=${lane_height / 2 + 4}>${lane.label}</text>${lane.body}</g>`)}
+      ${lanes.map((lane, i) => html`<g transform=${`translate(0 ${i * lane_height})`}><text class="label" x="10" y=${lane_height / 2 + 4}>${lane.label}</text>${lane.body}</g>`)}
       ${data.gaps.map((gap) => html`<rect class="gap" x=${x(gap.from)} y="0" width=${Math.max(1, x(gap.to) - x(gap.from))} height=${height - 20}>
         <title>no telemetry came</title></rect>`)}
       ${replay.value ? html`<g class="now replay"><line x1=${x(now)} x2=${x(now)} y1="0" y2=${height - 16} /></g>` :

@@ -73,27 +73,36 @@ function facts_of(link, now, brief) {
   return [`${rate} · age ${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles`, `latency ${latency} · ${lost}`];
 }
 
+/// Where a line from the middle of a box towards `to` leaves it, and a little further.
+function border([x, y], to, node_width) {
+  const dx = to[0] - x, dy = to[1] - y;
+  const part = Math.min((node_width / 2 + 4) / Math.abs(dx || 1e-9), (node_height / 2 + 4) / Math.abs(dy || 1e-9));
+  return [x + dx * part, y + dy * part];
+}
+
 function Edge({link, places, beside, node_width, brief}) {
   const now = live_link(link.id);
   const [x1, y1] = places.get(link.from), [x2, y2] = places.get(link.to);
   const length = Math.hypot(x2 - x1, y2 - y1) || 1;
   const nx = -(y2 - y1) / length, ny = (x2 - x1) / length;
   // Ways there and back, and several of the same way, lie beside each other.
-  const bend = beside * 40, off = beside * 9;
-  const ux = (x2 - x1) / length, uy = (y2 - y1) / length;
-  const cut = Math.min((node_width / 2 + 4) / Math.abs(ux), (node_height / 2 + 4) / Math.abs(uy));
-  const a = [x1 + ux * cut + nx * off, y1 + uy * cut + ny * off], b = [x2 - ux * cut + nx * off, y2 - uy * cut + ny * off];
-  const middle = [(a[0] + b[0]) / 2 + nx * bend, (a[1] + b[1]) / 2 + ny * bend];
+  const bend = beside * 44;
+  const middle = [(x1 + x2) / 2 + nx * bend, (y1 + y2) / 2 + ny * bend];
+  const a = border([x1, y1], middle, node_width), b = border([x2, y2], middle, node_width);
   const facts = facts_of(link, now, brief);
-  // The words outside of the curve.
-  const label = [(a[0] + b[0]) / 2 + nx * bend / 2, (a[1] + b[1]) / 2 + ny * bend / 2 + (ny >= 0 ? 14 : -6 - facts.length * line_height)];
+  // The words outside of the curve: beside a steep one, above or below a flat one.
+  const top = [(a[0] + b[0]) / 4 + middle[0] / 2, (a[1] + b[1]) / 4 + middle[1] / 2];
+  const steep = Math.abs(nx) > 0.4;
+  const anchor = !steep ? 'middle' : nx > 0 ? 'start' : 'end';
+  const label = [top[0] + (steep ? Math.sign(nx) * 8 : 0),
+    top[1] + (steep ? -facts.length * line_height / 2 + 4 : ny >= 0 ? 16 : -8 - facts.length * line_height)];
   const up = now.up === true;
   const look = !is_known() ? 'stale' : up ? 'good' : is_wanted(link) ? 'bad' : 'off';
   const lit = hovered.value && network_of(hovered.value).has(link.from);
   return html`<g class=${`edge ${look} ${lit ? 'lit' : ''}`}>
     <path d=${`M${a} Q${middle} ${b}`} marker-end=${`url(#to_${look})`} />
-    <text x=${label[0]} y=${label[1]}>${link.provides ?? link.name ?? `link ${link.id}`}</text>
-    ${facts.map((line, i) => html`<text class="facts" x=${label[0]} y=${label[1] + (i + 1) * line_height}>${line}</text>`)}
+    <text class=${anchor} x=${label[0]} y=${label[1]}>${link.provides ?? link.name ?? `link ${link.id}`}</text>
+    ${facts.map((line, i) => html`<text class=${`facts ${anchor}`} x=${label[0]} y=${label[1] + (i + 1) * line_height}>${line}</text>`)}
   </g>`;
 }
 

@@ -54,7 +54,7 @@ function options_of(names, size, on_zoom) {
     {scale, stroke: 'transparent', points: {show: false}}, {scale, stroke: 'transparent', points: {show: false}});
     bands.push({series: [3 * i + 3, 3 * i + 2], fill: `${stroke}33`});
   });
-  return {...size, series, bands, legend: {show: false}, padding: [8, units.length > 1 ? 0 : 10, 0, 0],
+  return {...size, series, bands, legend: {show: false}, padding: [8, units.length > 1 ? 0 : 30, 0, 0],
     scales: {x: {time: false}}, plugins: [gap_shade],
     axes: [axis_of_time, ...units.map(axis_of)],
     cursor: {sync: {key: sync.key, scales: ['x', null]}, drag: {x: true, y: false, setScale: false}, points: {size: 6}},

@@ -63,7 +63,9 @@ function contour_mesh(contour) {
   }
   shape.lineTo(contour.rail_x_m + contour.depth_m, contour.to_y_m);
   const geometry = new ExtrudeGeometry(shape, {depth: contour.height_m, bevelEnabled: false});
-  const mesh = new Mesh(geometry, new MeshLambertMaterial({color: 0x8a6f45}));
+  const mesh = new Mesh(geometry, new MeshLambertMaterial({color: 0x8a6f45,
+    // Its edges lie in its own faces: without a distance they would be dashed.
+    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2}));
   mesh.add(new LineSegments(new EdgesGeometry(geometry, 40), new LineBasicMaterial({color: 0xd9b06a})));
   return mesh;
 }
@@ -360,7 +362,12 @@ export class RobotView {
       const what = robot.handle ? 'handle' : robot.tip ? 'tip' : null;
       if (!what) continue;
       const link = robot.body.links[robot[what]];
-      const box = new Box3().setFromObject(link).expandByScalar(what === 'tip' ? 0.012 : 0.004);
+      // Once for each picture, not for each move of a mouse.
+      if (robot.grip_of !== this.frames) {
+        robot.grip_of = this.frames;
+        robot.grip = new Box3().setFromObject(link).expandByScalar(what === 'tip' ? 0.012 : 0.004);
+      }
+      const box = robot.grip;
       const touched = this.ray.ray.intersectBox(box, new Vector3());
       if (!touched) continue;
       return {what, robot, link, held: link.worldToLocal(touched.clone()), from: touched, angles: this.handle_angles()};

@@ -35,21 +35,24 @@ export function SubsystemCard({name, chosen}) {
   const state = state_name(now.state);
   const configuration = configuration_of(name);
   const waits = waits_text(now.waits_for);
-  const facts = [
+  // What a glance is for; all of it stands in the title and in the subsystem's own view.
+  const brief = [
     configuration?.sampling_hz && rate_text(configuration.sampling_hz),
-    now.execution_mean_ns ? `runs ${duration_text(now.execution_mean_ns)}` : null,
     now.latency_max_ns ? `late ≤ ${duration_text(now.latency_max_ns)}` : null,
-    now.overruns > 0 ? `${now.overruns} overruns` : null,
     now.missed ? `${now.missed} missed` : null,
+  ].filter(Boolean);
+  const facts = [...brief,
+    now.execution_mean_ns ? `runs ${duration_text(now.execution_mean_ns)}` : null,
+    now.overruns > 0 ? `${now.overruns} overruns` : null,
     now.memory_kb ? `${(now.memory_kb / 1024).toFixed(1)} MB` : null,
   ].filter(Boolean);
   const stopped = fallen_text(name);
   return html`<a class=${`card ${chosen ? 'chosen' : ''} ${stopped ? 'fallen' : ''} ${is_known() ? '' : 'stale'}`} href=${`#/subsystems/${name}`}
     data-test=${`subsystem-${name}`}>
-    <div class="row"><b>${name} <small>${configuration?.name ?? ''}</small></b><span class=${`state ${stopped ? 'bad' : state_look(state)}`}>${state_text(state)}</span></div>
+    <div class="row"><b class="who_is"><span>${name}</span> <small>${configuration?.name ?? ''}</small></b><span class=${`state ${stopped ? 'bad' : state_look(state)}`}>${state_text(state)}</span></div>
     <${StateStrip} state=${state} />
     ${stopped ? html`<div class="notice bad" data-test=${`stopped-${name}`}>${stopped}</div>` :
-      html`<div class="row facts"><span title=${facts.join(', ')}>${is_switched_off(name) ? 'switched off' : facts.join(' · ')}</span></div>`}
+      html`<div class="row facts"><span title=${facts.join(', ')}>${is_switched_off(name) ? 'switched off' : brief.join(' · ')}</span></div>`}
     ${inhibited_text(now) ? html`<div class="notice bad">actuators inhibited: ${inhibited_text(now)}</div>` : null}
     ${waits ? html`<div class="notice amber">waits for ${waits}</div>` : null}
   </a>`;

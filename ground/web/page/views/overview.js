@@ -75,7 +75,7 @@ export function Overview() {
       ${last ? html`<${Values} name=${last.name} />` : null}</${Panel}>` :
     html`<${Panel} title="3D" area="robot" bare><${Robot} /></${Panel}>`}
     <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>
-    <${Panel} title="Real-time links" area="links" href="#/links"><${LinkGraph} width=${310} height=${190} box=${122} /></${Panel}>
+    <${Panel} title="Real-time links" area="links" href="#/links"><${LinkGraph} width=${320} height=${190} box=${142} /></${Panel}>
     ${[0, 1].map((i) => plots[i] ? html`<${Panel} title=${plot_title(plots[i])} area=${`plot_${i}`} bare
       href=${`#/plots?p=${plots[i].map(encodeURIComponent).join('+')}`}>
       <${Legend} names=${plots[i]} brief /><${TimePlot} names=${plots[i]} window_s=${30} /></${Panel}>` :

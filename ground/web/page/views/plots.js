@@ -83,17 +83,32 @@ function PlotPanel({names, window_s, range, xy, on_zoom, on_remove, on_xy, on_dr
       html`<${TimePlot} names=${names} window_s=${window_s} range=${range} on_zoom=${on_zoom} plot_ref=${plot_ref} />`}</${Panel}>`;
 }
 
+const long_array = 8;
+
+/// [[NAME, its elements]]: a number is an array of one.
+function by_base(list) {
+  const found = new Map();
+  for (const column of list) {
+    const base = column.name.replace(/\[\d+\]$/, '');
+    found.set(base, [...(found.get(base) ?? []), column]);
+  }
+  return [...found.entries()];
+}
+
 function Picker({on_pick}) {
   const [search, set_search] = useState('');
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
-  const all = [...columns.value.values()];
-  const found = all.filter((column) => words.every((word) => column.name.toLowerCase().includes(word)));
-  const groups = new Map();
-  for (const column of found) groups.set(column.subsystem, [...(groups.get(column.subsystem) ?? []), column]);
+  const found = [...columns.value.values()].filter((column) => words.every((word) => column.name.toLowerCase().includes(word)));
+  // The mission's own subsystems before those that every mission has.
+  const own = mission.value?.subsystems.filter((one) => one.id >= 10) ?? [], common = mission.value?.subsystems.filter((one) => one.id < 10) ?? [];
+  const groups = [...own, ...common].map(({name}) => [name, by_base(found.filter((column) => column.subsystem === name))]).filter(([, list]) => list.length);
+  const button = (column, name) => html`<button class="action" onClick=${(event) => on_pick(column.name, event.shiftKey)}>${
+    column.name.slice(name.length + 1)}<small>${column.unit}</small></button>`;
   return html`<${Panel} title="Parameters" hint="click: into the last plot, Shift: a new one">
     <input class="search" type="search" placeholder="search  /" aria-label="search parameters" data-search value=${search} onInput=${(event) => set_search(event.currentTarget.value)} />
-    ${[...groups.entries()].map(([name, list]) => html`<div class="group" key=${name}><h3>${name}</h3>${list.map((column) => html`
-      <button class="action" onClick=${(event) => on_pick(column.name, event.shiftKey)}>${column.name.slice(name.length + 1)}<small>${column.unit}</small></button>`)}</div>`)}
+    ${groups.map(([name, list]) => html`<div class="group" key=${name}><h3>${name}</h3>${list.map(([base, elements]) =>
+      elements.length < long_array || words.length ? elements.map((column) => button(column, name)) :
+      html`<details><summary class="action">${base.slice(name.length + 1)}<small>${elements.length} values</small></summary>${elements.map((column) => button(column, name))}</details>`)}</div>`)}
   </${Panel}>`;
 }
 

@@ -32,7 +32,8 @@ function Commissioning() {
     <div class="commissioning">
       <select aria-label="network" value=${mode.name} disabled=${running} data-test="commission-mode"
         onChange=${(event) => { set_name(event.currentTarget.value); set_steps([]); }}>
-        ${able.map((one) => html`<option value=${one.name}>${one.name}: ${one.commission.map((member) => `${member.subsystem} ${member.configuration}`).join(', ')}</option>`)}</select>
+        ${able.map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select>
+      <p class="about">${mode.commission.map((member) => `${member.subsystem} ${member.configuration}`).join(', ')}</p>
       <button class="primary" data-test="commission" disabled=${running || replay.value || !operator.value || link.value.state !== 'up'} onClick=${run}>
         Bring ${mode.name} up</button>
       ${running ? html`<button class="quiet" onClick=${() => { stop.current = true; }}>stop</button>` : null}
