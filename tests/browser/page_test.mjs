@@ -19,6 +19,14 @@ async function serve(recording) {
   return {url, end: () => process_of.kill()};
 }
 
+/// Whole, in the window, and in front: what a click would hit.
+const is_in_sight = (page, what) => page.locator(what).evaluate((node) => {
+  const box = node.getBoundingClientRect();
+  const at = document.elementFromPoint((box.left + box.right) / 2, box.bottom - 3);
+  return box.width > 0 && box.left >= 0 && box.top >= 0 && box.right <= innerWidth && box.bottom <= innerHeight && node.contains(at);
+});
+const sizes = [[1920, 1080], [1440, 900], [1280, 720], [1024, 768], [910, 700], [720, 1000]];
+
 let browser;
 before(async () => { browser = await open_browser(); });
 after(() => browser.close());
@@ -166,6 +174,19 @@ describe('a flight that means well', () => {
     await page.waitForSelector('[data-test=link].good');
   });
 
+  it('keeps SAFE ALL in sight in every window, and Send beside the robot', async () => {
+    await go(page, 'overview');
+    await page.waitForSelector('[data-test=send]');
+    for (const [width, height] of sizes) {
+      await page.setViewportSize({width, height});
+      await holds(page, (wanted) => innerWidth === wanted, width);
+      assert.ok(await is_in_sight(page, '[data-test=safe-all]'), `SAFE ALL at ${width}x${height}`);
+      // In a window of one column the form stands below the picture.
+      if (width > 900) assert.ok(await is_in_sight(page, '[data-test=send]'), `Send at ${width}x${height}`);
+    }
+    await page.setViewportSize({width: 1600, height: 900});
+  });
+
   it('has no serious finding of axe-core in any view', async () => {
     assert.deepEqual(await serious_findings(page), []);
   });
@@ -189,6 +210,13 @@ describe('a flight that does not', () => {
           .filter((node) => node.scrollWidth > node.clientWidth).map((node) => node.tagName));
       assert.deepEqual(wide, [], view);
     }
+    // Not by the longest names of a mission in the narrowest window either.
+    for (const [width, height] of sizes) {
+      await page.setViewportSize({width, height});
+      await holds(page, (wanted) => innerWidth === wanted, width);
+      assert.ok(await is_in_sight(page, '[data-test=safe-all]'), `SAFE ALL at ${width}x${height}`);
+    }
+    await page.setViewportSize({width: 1600, height: 900});
     await page.click('[data-test=faults]');
     await holds(page, () => document.querySelector('[data-test=faults-drawer]')?.textContent.includes('<img src=x'));
     await page.keyboard.press('Escape');

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// node screenshots.mjs URL FOLDER [VIEW...]: pictures of every view at three sizes, to be looked at.
+// node screenshots.mjs URL FOLDER [VIEW...]: pictures of every view at four sizes, to be looked at.
 import {mkdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {open_browser, open_page} from './browser.mjs';
@@ -14,7 +14,7 @@ const views = {
 const settle_ms = 2500;
 mkdirSync(folder, {recursive: true});
 const browser = await open_browser();
-for (const size of [{width: 1440, height: 900}, {width: 1920, height: 1080}, {width: 1280, height: 720}]) {
+for (const size of [{width: 1440, height: 900}, {width: 1920, height: 1080}, {width: 1280, height: 720}, {width: 1024, height: 768}]) {
   const {page, faults} = await open_page(browser.context, url, size);
   await page.waitForSelector('[data-test^=subsystem-]');
   for (const [name, hash] of Object.entries(views)) {
