@@ -116,8 +116,9 @@ class Flight:
     """`with Flight() as flight:` — at the end of the block the flight is shut down in order if it still runs."""
 
     def __init__(self, mission=ROKVISS, binaries=None, prefix=(), environment=None, folder=None, owner=None, instance=None,
-                 quiet=False):
+                 quiet=False, more=("--no-ground",)):
         self.quiet = quiet              # what failed is told by who catches it
+        self.more = list(more)
         self.mission, self.binaries = str(mission), pathlib.Path(binaries or BINARIES)
         self.prefix, self.extra = list(prefix), dict(environment or {})
         self.mark = uuid.uuid4().hex
@@ -145,7 +146,7 @@ class Flight:
         self.environment = {**os.environ, "XDG_RUNTIME_DIR": str(runtime), "NO_COLOR": "1", MARK: self.mark, **self.extra}
         self.started = time.monotonic()
         self.process = subprocess.Popen(
-            [*self.prefix, str(self.binaries / "hirosco"), "run", self.mission, "--json", "--no-ground", *self._which()],
+            [*self.prefix, str(self.binaries / "hirosco"), "run", self.mission, "--json", *self.more, *self._which()],
             cwd=self.folder,
             env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.errors = []

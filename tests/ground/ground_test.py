@@ -152,60 +152,65 @@ def event_packet(apid, count, seconds, event, severity=1, data=b""):
 
 
 class OnAFlight(unittest.TestCase):
+    """One flight for all: none of them harms it, and each has a gateway with an archive of its own."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.rokviss = cls.enterClassContext(flight.Flight())
+        cls.rokviss.wait_commissioned()
+
     def test_killed_and_restarted_it_loses_nothing_that_the_link_delivered(self):
-        with flight.Flight() as rokviss:
-            rokviss.wait_commissioned()
-            first = Gateway(rokviss.folder)
-            first.until(lambda status: status["link"]["rx"] > 100)
-            history = "/api/history?parameter=MANIPULATOR.TIP_FORCE[0]&last=600"
-            asked = time.monotonic()
-            before = first.request(history)["t"]
-            first.end(signal.SIGKILL)
-            killed = time.monotonic()
-            time.sleep(1.0)
-            with Gateway(rokviss.folder) as second:
-                second.until(lambda status: status["link"]["rx"] > 50)
-                again = time.monotonic()
-                flight.measure(f"telemetry again {again - second.started:.2f} s after the restart")
-                after = second.request(history)
-                subsystems = second.request("/api/status")["subsystems"]
-                for one in subsystems:  # processes of their own: a few MB each, told by the supervisor
-                    self.assertTrue(1000 < one["memory_kb"] < 200000, one)
-                self.assertEqual(after["t"][:len(before)], before)
-                self.assertGreater(len(after["t"]), len(before))
-                self.assertEqual(len(after["gaps"]), 1)
-                gap = after["gaps"][0]
-                self.assertTrue(second.started - killed < gap["to"] - gap["from"] < again - asked + 0.5, gap)
-                self.assertGreaterEqual(gap["from"], before[-1])
-                # Packets of several subsystems may overtake each other a little.
-                self.assertFalse([t for t in after["t"] if gap["from"] + 0.2 < t < gap["to"] - 0.2])
+        rokviss = self.rokviss
+        first = Gateway(rokviss.folder, archive="killed.db")
+        first.until(lambda status: status["link"]["rx"] > 100)
+        history = "/api/history?parameter=MANIPULATOR.TIP_FORCE[0]&last=600"
+        asked = time.monotonic()
+        before = first.request(history)["t"]
+        first.end(signal.SIGKILL)
+        killed = time.monotonic()
+        time.sleep(1.0)
+        with Gateway(rokviss.folder, archive="killed.db") as second:
+            second.until(lambda status: status["link"]["rx"] > 50)
+            again = time.monotonic()
+            flight.measure(f"telemetry again {again - second.started:.2f} s after the restart")
+            after = second.request(history)
+            subsystems = second.request("/api/status")["subsystems"]
+            for one in subsystems:  # processes of their own: a few MB each, told by the supervisor
+                self.assertTrue(1000 < one["memory_kb"] < 200000, one)
+            self.assertEqual(after["t"][:len(before)], before)
+            self.assertGreater(len(after["t"]), len(before))
+            self.assertEqual(len(after["gaps"]), 1)
+            gap = after["gaps"][0]
+            self.assertTrue(second.started - killed < gap["to"] - gap["from"] < again - asked + 0.5, gap)
+            self.assertGreaterEqual(gap["from"], before[-1])
+            # Packets of several subsystems may overtake each other a little.
+            self.assertFalse([t for t in after["t"] if gap["from"] + 0.2 < t < gap["to"] - 0.2])
 
     def test_a_command_returns_its_report_and_pages_hear_of_each_other(self):
-        with flight.Flight() as rokviss:
-            rokviss.wait_commissioned()
-            with Gateway(rokviss.folder) as gateway:
-                gateway.until(lambda status: status["mode"] == "telepresence")
-                one, other = Listener(gateway), Listener(gateway)
-                delays = []
-                for number in range(20):
-                    sent_at = time.monotonic()
-                    sent = gateway.request("/api/commands", {"subsystem": "MANIPULATOR", "function": "PING",
-                                                             "sender": f"operator {number % 2}"})
-                    end = sent_at + 5.0
-                    done = []
-                    while not done and time.monotonic() < end:
-                        done = [at for message, at in zip(list(other.messages), list(other.times))
-                                if message["type"] == "command" and message["id"] == sent["id"] and
-                                message["stage"] == "completed"]
-                        time.sleep(0.001)
-                    delays.append((done[0] - sent_at) * 1000)
-                flight.measure(f"from the click to its last report on another page: median {sorted(delays)[10]:.1f} ms, "
-                               f"greatest {max(delays):.1f} ms")
-                self.assertLess(sorted(delays)[10], 150.0)
-                gateway.until(lambda status: one.count("command") == other.count("command"))
-                self.others_are_named(rokviss, gateway)
-                one.socket.close()
-                other.socket.close()
+        rokviss = self.rokviss
+        with Gateway(rokviss.folder, archive="pages.db") as gateway:
+            gateway.until(lambda status: status["mode"] == "telepresence")
+            one, other = Listener(gateway), Listener(gateway)
+            delays = []
+            for number in range(20):
+                sent_at = time.monotonic()
+                sent = gateway.request("/api/commands", {"subsystem": "MANIPULATOR", "function": "PING",
+                                                         "sender": f"operator {number % 2}"})
+                end = sent_at + 5.0
+                done = []
+                while not done and time.monotonic() < end:
+                    done = [at for message, at in zip(list(other.messages), list(other.times))
+                            if message["type"] == "command" and message["id"] == sent["id"] and
+                            message["stage"] == "completed"]
+                    time.sleep(0.001)
+                delays.append((done[0] - sent_at) * 1000)
+            flight.measure(f"from the click to its last report on another page: median {sorted(delays)[10]:.1f} ms, "
+                           f"greatest {max(delays):.1f} ms")
+            self.assertLess(sorted(delays)[10], 150.0)
+            gateway.until(lambda status: one.count("command") == other.count("command"))
+            self.others_are_named(rokviss, gateway)
+            one.socket.close()
+            other.socket.close()
 
     def others_are_named(self, rokviss, gateway):
         """What `hirosco tc` and another gateway send stands in the history with function, arguments and sender."""
@@ -229,36 +234,35 @@ class OnAFlight(unittest.TestCase):
         self.assertEqual([one["stage"] for one in seen], ["completed", "failed"] + ["completed"] * len(pings))
 
     def test_a_stalled_and_a_killed_browser_cost_the_others_nothing(self):
-        with flight.Flight() as rokviss:
-            rokviss.wait_commissioned()
-            with Gateway(rokviss.folder) as gateway:
-                gateway.until(lambda status: status["mode"] == "telepresence")
-                good = Listener(gateway)
-                time.sleep(1.0)
+        rokviss = self.rokviss
+        with Gateway(rokviss.folder, archive="stalled.db") as gateway:
+            gateway.until(lambda status: status["mode"] == "telepresence")
+            good = Listener(gateway)
+            time.sleep(1.0)
 
-                def rate():
-                    """The best of three windows: a cost is in each of them, a moment without processor in one. Batches that
-                    a moment has piled up come faster than they are made, which says nothing."""
-                    made = 20.0
-                    best = 0.0
-                    for _ in range(3):
-                        since = time.monotonic()
-                        time.sleep(2.0)
-                        times = good.times_of("values", since)
-                        best = max(best, (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0)
-                    return min(best, made)
+            def rate():
+                """The best of three windows: a cost is in each of them, a moment without processor in one. Batches that
+                a moment has piled up come faster than they are made, which says nothing."""
+                made = 20.0
+                best = 0.0
+                for _ in range(3):
+                    since = time.monotonic()
+                    time.sleep(2.0)
+                    times = good.times_of("values", since)
+                    best = max(best, (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0)
+                return min(best, made)
 
-                alone = rate()
-                stalled = [WebSocket(gateway, receive_octets=4096) for _ in range(5)]    # never read
-                killed = WebSocket(gateway)
-                killed.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-                killed.close()
-                beside = rate()
-                flight.measure(f"batches a second: {alone:.2f} alone, {beside:.2f} beside 5 stalled and 1 killed browser")
-                self.assertGreater(beside, alone * 0.95)
-                self.assertGreater(alone, 15.0)
-                for one in [*stalled, good.socket]:
-                    one.close()
+            alone = rate()
+            stalled = [WebSocket(gateway, receive_octets=4096) for _ in range(5)]    # never read
+            killed = WebSocket(gateway)
+            killed.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            killed.close()
+            beside = rate()
+            flight.measure(f"batches a second: {alone:.2f} alone, {beside:.2f} beside 5 stalled and 1 killed browser")
+            self.assertGreater(beside, alone * 0.95)
+            self.assertGreater(alone, 15.0)
+            for one in [*stalled, good.socket]:
+                one.close()
 
 
 class OnAStream(unittest.TestCase):
