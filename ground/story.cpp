@@ -245,8 +245,8 @@ class Teller {
   /// ": watchdog let go": the reason that the framework gives for a loss; its counters stand in the event.
   [[nodiscard]] static std::string loss(const json& values) {
     const auto reason = number_in(values, "REASON");
-    const auto text = reason ? to_text(static_cast<descriptor::DeviceLoss>(*reason)) : std::string_view{};
-    return text.empty() ? std::string{} : ": " + std::string{text};
+    const auto text = reason ? to_text(static_cast<descriptor::DeviceLoss>(*reason)) : std::string_view{"?"};
+    return text == "?" ? std::string{} : ": " + std::string{text};
   }
 
   /// "JOINT 2, VALUE 12.3 N m": arguments with their units.

@@ -70,10 +70,11 @@ export const inject = (page, device, line) => page.evaluate(async ([one, words])
   if (!answer.ok) throw new Error(`${one} ${words}: ${await answer.text()}`);
 }, [device, line]);
 
-/// Waits until both machines of rokviss are told to be coupled and nothing to be stopped.
-export const coupled = (page) => holds(page, () => document.querySelector('[data-test=mode] b')?.textContent === 'telepresence' &&
+/// In the page: both machines of rokviss are told to be coupled and nothing to be stopped.
+export const is_coupled = () => document.querySelector('[data-test=mode] b')?.textContent === 'telepresence' &&
   !document.querySelector('[data-test=mode-stopped]') && ['MANIPULATOR', 'JOYSTICK'].every((name) =>
-    document.querySelector(`[data-test=subsystem-${name}] .state`)?.textContent === 'Operational'));
+    document.querySelector(`[data-test=subsystem-${name}] .state`)?.textContent === 'Operational');
+export const coupled = (page) => holds(page, is_coupled);
 
 /// The whole network by one button of the subsystems' view; a bring-up that fails says at which step and why.
 export async function bring_up(page, mode) {

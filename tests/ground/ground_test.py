@@ -157,7 +157,10 @@ class OnAFlight(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.rokviss = cls.enterClassContext(flight.Flight())
-        cls.rokviss.wait_commissioned()
+        try:
+            cls.rokviss.wait_commissioned()
+        except AssertionError as error:
+            raise AssertionError(cls.rokviss.story()) from error
 
     def test_killed_and_restarted_it_loses_nothing_that_the_link_delivered(self):
         rokviss = self.rokviss
@@ -247,7 +250,7 @@ class OnAFlight(unittest.TestCase):
                 best = 0.0
                 for _ in range(3):
                     since = time.monotonic()
-                    time.sleep(2.0)
+                    time.sleep(1.0)
                     times = good.times_of("values", since)
                     best = max(best, (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0)
                 return min(best, made)

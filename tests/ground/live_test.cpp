@@ -276,7 +276,7 @@ TEST_F(GroundStation, WhyTellsTheCauseFirstThenWhatItBroughtAbout) {
   std::string story;
   for (const json& cause : why["causes"]) story += cause["text"].get<std::string>() + "\n";
   std::size_t at = 0;
-  for (const char* part : {"Fault injected: joystick unplug", "JOYSTICK lost its device: hung up",
+  for (const char* part : {"Fault injected: joystick unplug", "JOYSTICK lost its device: ",
                            "MANIPULATOR and JOYSTICK: plan network-down wants Error-Operational",
                            "MANIPULATOR and JOYSTICK → Error-Operational", "MANIPULATOR and JOYSTICK → Offline"}) {
     at = story.find(part, at);
@@ -290,7 +290,9 @@ TEST_F(GroundStation, WhyTellsTheCauseFirstThenWhatItBroughtAbout) {
   EXPECT_EQ(why["severity"], "high");
   EXPECT_EQ(why["plan"], "network-down");
   EXPECT_EQ(why["mode"], "telepresence");
-  EXPECT_EQ(why["title"], "JOYSTICK lost its device: hung up. JOYSTICK and MANIPULATOR were stopped.");
+  EXPECT_THAT(why["title"].get<std::string>(),
+              ::testing::ContainsRegex("^JOYSTICK lost its device: [a-z ]+. JOYSTICK and MANIPULATOR were stopped.$"))
+      << "a reason in words, no counters";
   EXPECT_THAT(
       why["detail"].get<std::string>(),
       ::testing::ContainsRegex("JOYSTICK and MANIPULATOR went Offline within [0-9.]+ ms, by plan network-down"));
