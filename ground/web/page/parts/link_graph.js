@@ -46,7 +46,7 @@ function layout(names, links, width, height, node_width) {
   if (linked.length > 2) {
     linked.forEach((name, i) => {
       const angle = 2 * Math.PI * i / linked.length - Math.PI / 2;
-      places.set(name, [width / 2 + Math.cos(angle) * (width / 2 - node_width / 2 - 60), height * 0.58 + Math.sin(angle) * height * 0.33]);
+      places.set(name, [width / 2 + Math.cos(angle) * (width / 2 - node_width / 2 - 12), height * 0.58 + Math.sin(angle) * height * 0.33]);
     });
   } else {
     linked.forEach((name, i) => places.set(name, [node_width / 2 + 8 + (width - node_width - 16) * i, height * 0.66]));
