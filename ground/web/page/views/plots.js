@@ -3,7 +3,7 @@
 import {useRef, useState} from 'preact/hooks';
 import {token} from '../api.js';
 import {say} from '../commanding.js';
-import {clock_text} from '../format.js';
+import {clock_text, unit_text} from '../format.js';
 import {html} from '../html.js';
 import {Panel} from '../parts/panel.js';
 import {Legend, TimePlot, XyPlot} from '../parts/plot.js';
@@ -103,12 +103,12 @@ function Picker({on_pick}) {
   const own = mission.value?.subsystems.filter((one) => one.id >= 10) ?? [], common = mission.value?.subsystems.filter((one) => one.id < 10) ?? [];
   const groups = [...own, ...common].map(({name}) => [name, by_base(found.filter((column) => column.subsystem === name))]).filter(([, list]) => list.length);
   const button = (column, name) => html`<button class="action" onClick=${(event) => on_pick(column.name, event.shiftKey)}>${
-    column.name.slice(name.length + 1)}<small>${column.unit}</small></button>`;
+    column.name.slice(name.length + 1)}<small>${unit_text(column.unit)}</small></button>`;
   return html`<${Panel} title="Parameters" hint="click: into the last plot, Shift: a new one">
     <input class="search" type="search" placeholder="search  /" aria-label="search parameters" data-search value=${search} onInput=${(event) => set_search(event.currentTarget.value)} />
     ${groups.map(([name, list]) => html`<div class="group" key=${name}><h3>${name}</h3>${list.map(([base, elements]) =>
       elements.length < long_array || words.length ? elements.map((column) => button(column, name)) :
-      html`<details><summary class="action">${base.slice(name.length + 1)}<small>${elements.length} values</small></summary>${elements.map((column) => button(column, name))}</details>`)}</div>`)}
+      html`<details><summary class="action">${base.slice(name.length + 1)}<small>${elements.length}×</small></summary>${elements.map((column) => button(column, name))}</details>`)}</div>`)}
   </${Panel}>`;
 }
 
