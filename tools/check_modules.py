@@ -18,7 +18,7 @@ COLUMNS = {
 }
 MARKER = re.compile(r"^// Safety module: (.+) \(docs/safety/modules\.csv\)\.$", re.MULTILINE)
 HEAD_LINES = 6
-NEXT_LINE = " // "
+NEXT_LINE = " ;; "
 
 
 def table(name):

@@ -73,6 +73,7 @@ TEST_F(RealtimeLink, AGlanceTellsTheCountAndTheTimeOfTheNewestSampleAndTakesNoth
   EXPECT_FALSE(glance_at_link(LinkMemory{payload_octets}.all()));
   EXPECT_FALSE(glance_at_link(memory_.all().first(64)));
   EXPECT_FALSE(glance_at_link({}));
+  EXPECT_FALSE(glance_at_link(memory_.all().subspan(8))) << "not on a line";
 }
 
 TEST_F(RealtimeLink, HasNothingBeforeTheFirstSample) {

@@ -79,6 +79,25 @@ TEST(States, TheWayDownPassesThroughTheDeinitStates) {
   EXPECT_EQ(way->states[3], State::Offline);
 }
 
+TEST(States, TheLimitOfSilenceIsOneCycleAtLeastWhateverThePeriod) {
+  EXPECT_EQ(supervisor_silence_cycles(Duration{0}), 1u);
+  EXPECT_EQ(supervisor_silence_cycles(Duration{-5}), 1u);
+  EXPECT_EQ(supervisor_silence_cycles(std::chrono::hours{1}), 1u);
+}
+
+/// Written by hand from figure 4: - leads nowhere, S and H to the deinit states, E to Error-Operational.
+TEST(States, AFailureLeadsWhereFigure4Says) {
+  constexpr std::string_view targets = "-SHEEE----";
+  for (std::size_t i = 0; i < all_states.size(); ++i) {
+    const auto target = failure_target(all_states[i]);
+    const State wanted = targets[i] == 'S'   ? State::SoftwareDeinit
+                         : targets[i] == 'H' ? State::HardwareDeinit
+                                             : State::ErrorOperational;
+    EXPECT_EQ(target.has_value(), targets[i] != '-') << to_text(all_states[i]);
+    EXPECT_EQ(target.value_or(wanted), wanted) << to_text(all_states[i]);
+  }
+}
+
 TEST(States, AFailureLeadsAlongAnEdge) {
   for (const State state : all_states) {
     const auto target = failure_target(state);

@@ -298,11 +298,10 @@ void Guard::observe_cycle(Watched& member, TimePoint now) {
     member.still = 0;
     return;
   }
-  // A cycle that goes on and does not see what it is permitted looks somewhere else (findings SF13).
-  if (moves && ++member.still >= member.hang_limit()) doom(member, GuardFinding::Kind::PageDamaged, now);
-  if (moves) return;
   if (member.still++ == 0 && member.grip) member.processor_time = member.grip->processor_time();
   if (member.still < member.hang_limit()) return;
+  // A cycle that goes on and does not see what it is permitted looks somewhere else (findings SF13).
+  if (moves) return doom(member, GuardFinding::Kind::PageDamaged, now);
   Watched& culprit = spinner(member);
   for (Watched& other : members_) other.still = 0;  // who waited for the processor starts anew
   doom(culprit, GuardFinding::Kind::CycleHangs, now);
@@ -421,10 +420,11 @@ bool Guard::has_stopped(const Watched& member) const noexcept {
 bool Guard::says_stopped(const Watched& member) const noexcept {
   if (member.vital == nullptr) return true;  // there is no process that could move anything
   const auto state = member.state();
-  if (state && *state == State::Offline) return true;
+  if (!state) return false;  // what a damaged page says is nothing
+  if (*state == State::Offline) return true;
   const bool rests = member.vital->cycling.load(std::memory_order_acquire) == 0;
   const bool knows = member.vital->seen_epoch.load(std::memory_order_acquire) == member.epoch;
-  const bool inhibited = state != State::Operational || member.vital->inhibited.load(std::memory_order_acquire) != 0;
+  const bool inhibited = *state != State::Operational || member.vital->inhibited.load(std::memory_order_acquire) != 0;
   return rests || (knows && inhibited);
 }
 

@@ -92,6 +92,44 @@ TEST(LogQueue, RefusesAPacketThatCanNeverFit) {
   EXPECT_EQ(queue.lost(), 0U);
 }
 
+TEST(LogQueue, RefusesAPacketLongerThanAnySpacePacketThoughThereIsRoom) {
+  constexpr std::size_t room = 1'000'000;
+  LogQueue queue{{.telemetry_records = 4, .telemetry_octets = room, .vital_records = 8, .vital_octets = room}, {}};
+  const std::vector<std::byte> packet(Database::max_packet_octets + 1);
+  EXPECT_EQ(push(queue, queued_telemetry(packet)), 0U);
+  EXPECT_EQ(push(queue, {.kind = LogKind::TelecommandReceived, .packet = packet}), 0U);
+  EXPECT_NE(push(queue, queued_telemetry(Octets{packet}.first(Database::max_packet_octets))), 0U);
+  EXPECT_EQ(queue.refused(), 2U);
+}
+
+TEST(LogQueue, KeepsTheLastQuarterForEventsActionsAndTheNoteOfASwitch) {
+  for (const LogKind kind : {LogKind::Event, LogKind::Action, LogKind::Switched, LogKind::TelecommandRefused}) {
+    LogQueue queue{{.telemetry_records = 4, .telemetry_octets = 100, .vital_records = 8, .vital_octets = 100}, {}};
+    for (int i = 0; i < 6; ++i) push(queue, queued_telecommand());
+    const bool kept = kind != LogKind::TelecommandRefused;
+    EXPECT_EQ(push(queue, {.kind = kind, .packet = {}}) != 0, kept) << static_cast<int>(kind);
+  }
+}
+
+/// A secondary header as far as the label needs it: version and flags, service, subtype.
+TEST(LogQueue, MayLoseInformativeAndLowEventsOnly) {
+  std::array<std::byte, 32> packet{};
+  packet[0] = std::byte{0x08};
+  packet[5] = std::byte{packet.size() - 7};
+  const auto lost = [&](std::uint8_t service, std::uint8_t subtype) {
+    packet[7] = std::byte{service};
+    packet[8] = std::byte{subtype};
+    return may_be_lost({.kind = LogKind::Event, .packet = packet});
+  };
+  EXPECT_TRUE(lost(5, 1));
+  EXPECT_TRUE(lost(5, 2));
+  EXPECT_FALSE(lost(5, 3));
+  EXPECT_FALSE(lost(5, 4));
+  EXPECT_FALSE(lost(1, 1));
+  EXPECT_FALSE(may_be_lost({.kind = LogKind::TelecommandReceived, .packet = packet}));
+  EXPECT_TRUE(may_be_lost({.kind = LogKind::Telemetry, .packet = packet}));
+}
+
 TEST(LogQueue, TakesUpToANumberOnly) {
   LogQueue queue{{}, {}};
   for (int i = 0; i < 5; ++i) push(queue, queued_telecommand());

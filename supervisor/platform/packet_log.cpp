@@ -239,7 +239,8 @@ class ThreadedPacketLog::Writer {
     std::unique_ptr<Database> old;  // closed after the lock is given back: closing may take its time
     const LockGuard lock{mutex_};
     const bool old_is_done = queue_.next_waiting() > switch_after_;
-    if (!next_database_ || (batch_.empty() ? !old_is_done : !failure_ && !pause_)) return;
+    const bool due = batch_.empty() ? old_is_done : failure_.has_value() || pause_;
+    if (!next_database_ || !due) return;
     old = std::exchange(database_, std::move(next_database_));
     failure_.reset();
     trouble_.present = false;

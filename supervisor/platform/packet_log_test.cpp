@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <latch>
 #include <thread>
@@ -67,6 +68,36 @@ class BreakingDatabase final : public Database {
   Result<LogPage> do_read(const LogQuery& query) override { return real_->read(query); }
   [[nodiscard]] std::string_view do_strategy() const noexcept override { return "breaking"; }
   int good_;
+  std::shared_ptr<Database> real_;
+};
+
+/// Somebody else holds the database for the first so many tries; in trouble as long as the test says.
+class HeldDatabase final : public Database {
+ public:
+  struct Hold {
+    std::atomic<int> tries{0};
+    std::atomic<std::uint64_t> troubles{0};
+    Semaphore tried;
+  };
+  HeldDatabase(std::shared_ptr<Hold> hold, std::shared_ptr<Database> real)
+      : hold_{std::move(hold)}, real_{std::move(real)} {}
+
+ private:
+  Result<> do_append(std::span<const LogRecord> batch) override {
+    hold_->tried.post();
+    if (hold_->tries-- > 0) return fail(ErrorCode::Unavailable, "held");
+    return real_->append(batch);
+  }
+  Result<LogPage> do_read(const LogQuery& query) override { return real_->read(query); }
+  [[nodiscard]] std::string_view do_strategy() const noexcept override { return "held"; }
+  [[nodiscard]] StoreTrouble do_trouble() const override {
+    StoreTrouble trouble;
+    trouble.count = hold_->troubles;
+    trouble.present = trouble.count != 0;
+    trouble.error = {ErrorCode::SystemFailure, "held", ENOSPC};
+    return trouble;
+  }
+  std::shared_ptr<Hold> hold_;
   std::shared_ptr<Database> real_;
 };
 
@@ -200,6 +231,127 @@ TEST(ThreadedPacketLog, EndsEvenWhenTheDiskNeverAnswers) {
   EXPECT_EQ(all_of(*memory).size(), 0U);
   stall->release.count_down();
   while (all_of(*memory).empty()) std::this_thread::yield();   // the writer ends by itself
+}
+
+TEST(ThreadedPacketLog, TelemetryWaitsForCompanyAndIsWrittenWithoutATelecommand) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  Semaphore progress;
+  ThreadedPacketLog log{
+      clock, std::make_unique<Shared>(memory), {.delay = 1ms, .on_progress = [&] { progress.post(); }}};
+  for (int i = 0; i < 5; ++i) ASSERT_NE(log.append(telemetry()), 0U);
+  while (log.durable() < 5) progress.wait();
+  expect_complete(all_of(*memory), 5);
+  EXPECT_EQ(log.run(), all_of(*memory).front().run);
+}
+
+TEST(ThreadedPacketLog, ADatabaseThatSomebodyElseHoldsIsAskedAgainAndNothingIsLostOrToldAsDurable) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  hold->tries = 2;
+  ThreadedPacketLog log{clock, std::make_unique<HeldDatabase>(hold, memory), {}};
+  ASSERT_EQ(log.append(telecommand()), 1U);
+  hold->tried.wait();
+  EXPECT_EQ(log.durable(), 0U);
+  hold->tried.wait();
+  hold->tried.wait();
+  ASSERT_TRUE(log.flush(long_enough));
+  EXPECT_EQ(log.durable(), 1U);
+  EXPECT_FALSE(log.failure()) << "held is not failed";
+  EXPECT_EQ(log.counters().failures, 0U);
+}
+
+TEST(ThreadedPacketLog, EndsWhileSomebodyElseHoldsItsDatabase) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  hold->tries = 1'000'000'000;
+  {
+    ThreadedPacketLog log{clock, std::make_unique<HeldDatabase>(hold, memory), {.flush_limit = long_enough}};
+    ASSERT_EQ(log.append(telecommand()), 1U);
+    hold->tried.wait();
+  }
+  EXPECT_TRUE(all_of(*memory).empty());
+}
+
+TEST(ThreadedPacketLog, WhatAHeldDatabaseDidNotTakeGoesToTheNext) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  hold->tries = 1'000'000'000;
+  ThreadedPacketLog log{clock, std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>()), {}};
+  ASSERT_EQ(log.append(telecommand()), 1U);
+  hold->tried.wait();
+  log.switch_to(std::make_unique<Shared>(memory));
+  ASSERT_NE(log.append(telecommand()), 0U);
+  ASSERT_TRUE(log.flush(long_enough));
+  expect_complete(all_of(*memory), 3);
+}
+
+TEST(ThreadedPacketLog, TelemetryWaitsNoLongerOnceABatchIsFullOrSomebodyWaitsForIt) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  Semaphore progress;
+  ThreadedPacketLog log{
+      clock,
+      std::make_unique<Shared>(memory),
+      {.batch_records = 4, .delay = 3600s, .flush_limit = long_enough, .on_progress = [&] { progress.post(); }}};
+  for (int i = 0; i < 4; ++i) ASSERT_NE(log.append(telemetry()), 0U);
+  while (log.durable() < 4) progress.wait();
+  ASSERT_NE(log.append(telemetry()), 0U);
+  ASSERT_TRUE(log.flush(long_enough));
+  expect_complete(all_of(*memory), 5);
+}
+
+TEST(ThreadedPacketLog, EndsAtOnceWhenItsDatabaseHasFailed) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  {
+    Semaphore progress;
+    ThreadedPacketLog log{clock,
+                          std::make_unique<BreakingDatabase>(0, memory),
+                          {.flush_limit = 3600s, .on_progress = [&] { progress.post(); }}};
+    ASSERT_EQ(log.append(telecommand()), 1U);
+    while (!log.failure()) progress.wait();
+  }
+  EXPECT_TRUE(all_of(*memory).empty());
+}
+
+TEST(ThreadedPacketLog, AFlushThatComesToNoEndSaysSoAtItsLimit) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  auto stall = std::make_shared<Stall>();
+  ThreadedPacketLog log{clock, std::make_unique<StalledDatabase>(stall, memory), {}};
+  ASSERT_EQ(log.append(telecommand()), 1U);
+  stall->reached.wait();
+  const auto flushed = log.flush(1ms);
+  ASSERT_FALSE(flushed);
+  EXPECT_EQ(flushed.error().code, ErrorCode::Timeout);
+  stall->release.count_down();
+  EXPECT_TRUE(log.flush(long_enough));
+}
+
+TEST(ThreadedPacketLog, TroublesOfItsDatabasesAreToldAndCountedOverAllOfThem) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  ThreadedPacketLog log{clock, std::make_unique<HeldDatabase>(hold, memory), {}};
+  ASSERT_NE(log.append(telecommand()), 0U);
+  ASSERT_TRUE(log.flush(long_enough));
+  EXPECT_FALSE(log.failure());
+  EXPECT_EQ(log.trouble().count, 0U);
+  hold->troubles = 3;
+  ASSERT_NE(log.append(telecommand()), 0U);
+  while (log.trouble().count < 3) std::this_thread::yield();
+  ASSERT_TRUE(log.failure()) << "as long as it is in trouble";
+  EXPECT_EQ(log.failure()->value, ENOSPC);
+  auto second = std::make_shared<HeldDatabase::Hold>();
+  second->troubles = 2;
+  log.switch_to(std::make_unique<HeldDatabase>(second, memory));
+  ASSERT_NE(log.append(telecommand()), 0U);
+  while (log.trouble().count < 5) std::this_thread::yield();
+  EXPECT_EQ(log.counters().switches, 1U);
 }
 
 TEST(ThreadedPacketLog, WritesWhatWaitsBeforeItEnds) {

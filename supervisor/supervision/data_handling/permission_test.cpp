@@ -257,6 +257,74 @@ TEST(Permission, ASubsystemMayStopTheCraftAndAsksTheSupervisorForNothingElse) {
   EXPECT_TRUE(permitted("SAFE_ALL", Sender::Subsystem));
 }
 
+/// Two writes of eight octets, of which `octets` of application data arrive; the first names `id`.
+TEST(Permission, AParameterWriteThatCannotBeReadToItsEndIsItsAddresseesToRefuse) {
+  auto mission = testing::small_mission();
+  descriptor::Parameter gain;
+  gain.field.name = "GAIN";
+  gain.id = 3;
+  gain.writable_states = testing::in_states({State::Operational});
+  mission.subsystems[0].subsystem.parameters = {gain};
+  mission.modes[open_mode].permits.front().parameters = {"GAIN"};
+  const LinkGraph links{mission};
+  const auto refused = [&](std::uint8_t id, std::size_t octets) {
+    std::vector<std::byte> data(1 + 2 * (4 + sizeof(double)));
+    OctetWriter writer{data};
+    writer.put(std::uint8_t{2});
+    for (int i = 0; i < 2; ++i) writer.put(ParameterId{arm, Type::Double, id}.wire()).put(1.0);
+    const auto packet = testing::telecommand(arm, 20, 3, Octets{data}.first(octets));
+    return !decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+                   {mission, mission.modes[open_mode], links, State::Operational, 0});
+  };
+  EXPECT_FALSE(refused(3, 25));
+  for (std::size_t octets = 0; octets < 25; ++octets) EXPECT_FALSE(refused(3, octets)) << octets;
+  EXPECT_FALSE(refused(4, 25)) << "nobody knows how long an unknown one is";
+}
+
+TEST(Permission, APermitOfOneSubsystemOpensNoParameterOfAnother) {
+  auto mission = testing::small_mission();
+  descriptor::Parameter gain;
+  gain.field.name = "GAIN";
+  gain.id = 3;
+  gain.writable_states = testing::in_states({State::Operational});
+  mission.subsystems[0].subsystem.parameters = mission.subsystems[1].subsystem.parameters = {gain};
+  mission.modes[narrow_mode].permits = {
+      {.subsystem = "ARM", .functions = {}, .services = {}, .parameters = {"GAIN"}, .at = {}},
+      {.subsystem = "*", .functions = {}, .services = {20}, .parameters = {}, .at = {}}};
+  const LinkGraph links{mission};
+  const auto permitted = [&](std::uint16_t apid, std::uint8_t subtype) {
+    std::vector<std::byte> data(1 + 4 + sizeof(double));
+    OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{apid, Type::Double, 3}.wire()).put(1.0);
+    const auto packet = testing::telecommand(apid, 20, subtype, data);
+    return decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+                  {mission, mission.modes[narrow_mode], links, State::Operational, 0})
+        .has_value();
+  };
+  EXPECT_TRUE(permitted(arm, 3));
+  EXPECT_FALSE(permitted(hand, 3));
+  EXPECT_TRUE(permitted(hand, 1)) << "who reads changes nothing";
+}
+
+TEST(Permission, ALinkThatIsUsefulButNotRequiredIsNotWaitedFor) {
+  auto mission = testing::small_mission();
+  mission.subsystems[0].subsystem.configurations[0].requires_[0].required = false;
+  const LinkGraph links{mission};
+  const auto packet = testing::telecommand(arm, 8, 1, set_state(State::SafeOperational));
+  const auto decision = decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+                               {mission, mission.modes[open_mode], links, State::PreOperational, 2});
+  EXPECT_TRUE(decision);
+}
+
+TEST(Permission, ASetStateWithoutItsStateIsNotTowardsSafety) {
+  const auto mission = testing::small_mission();
+  const LinkGraph links{mission};
+  const auto packet = testing::telecommand(arm, 8, 1, call("SET_STATE"));
+  const auto decision = decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+                               {mission, mission.modes[open_mode], links, State::Operational, 0});
+  ASSERT_TRUE(decision) << "its addressee says what is missing";
+  EXPECT_FALSE(decision->essential);
+}
+
 TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
   const auto packet = testing::telecommand(arm, 8, 1, testing::call_data("SET_STATE", 5));
   const auto view = pus::TelecommandView::parse(packet).value();
@@ -266,6 +334,8 @@ TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
   EXPECT_EQ(called->first_argument, 5);
   const auto other = testing::telecommand(arm, 20, 1, testing::call_data("SET_STATE", 5));
   EXPECT_FALSE(called_function(pus::TelecommandView::parse(other).value()));
+  const auto report = testing::telecommand(arm, 8, 2, testing::call_data("SET_STATE", 5));
+  EXPECT_FALSE(called_function(pus::TelecommandView::parse(report).value()));
   const auto without = testing::telecommand(arm, 8, 1, testing::call_data("HOLD"));
   EXPECT_FALSE(called_function(pus::TelecommandView::parse(without).value())->first_argument);
 }

@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hirosco/subsystem/testing/probe.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+
+/// What is commanded while something else is under way, and configurations that cannot be had.
+namespace hirosco {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::Probe;
+using testing::probe_descriptor;
+using testing::Rig;
+using ::testing::StartsWith;
+
+constexpr const char* busy = "1 4:0108";
+
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = probe_descriptor;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+struct Commissioning : ::testing::Test {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+};
+
+TEST_F(Commissioning, NothingOverridesAWayThroughTransientStates) {
+  probe.nodes[State::HardwareInit].again = 2;
+  const auto up = rig.set_state(State::PreOperational);
+  rig.service();
+  const auto error = rig.set_state(State::ErrorOperational);
+  const auto configure = rig.configure(1);
+  rig.service();
+  EXPECT_EQ(rig.outcome(error), busy);
+  EXPECT_EQ(rig.outcome(configure), busy);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(up), "1 3 7");
+}
+
+TEST_F(Commissioning, ErrorOperationalOverridesNeitherTheWayToItselfNorTheWayDown) {
+  rig.bring_to(State::Operational);
+  const auto first = rig.set_state(State::ErrorOperational);
+  const auto again = rig.set_state(State::ErrorOperational);
+  rig.service();
+  rig.service();  // the cycle has not confirmed it yet
+  EXPECT_EQ(rig.outcome(again), busy);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(first), "1 3 7");
+  const auto down = rig.set_state(State::PostOperational);
+  rig.service();
+  const auto back = rig.set_state(State::ErrorOperational);
+  rig.service();
+  EXPECT_EQ(rig.outcome(back), busy);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(down), "1 3 7");
+}
+
+TEST_F(Commissioning, AChangeWaitsForTheCycleUntilItsTimeIsOver) {
+  rig.bring_to(State::Operational);
+  const auto to_safe = rig.set_state(State::SafeOperational);
+  rig.service();
+  rig.advance(10s);
+  rig.service();
+  EXPECT_EQ(rig.outcome(to_safe), "1 3");
+  rig.advance(1ms);
+  rig.service();
+  EXPECT_THAT(rig.outcome(to_safe), StartsWith("1 3 8:0202"));
+}
+
+TEST_F(Commissioning, ASoftwareInitThatTakesItsTimeIsCalledAgainUntilItIsDone) {
+  probe.nodes[State::SoftwareInit].again = 3;
+  const auto up = rig.set_state(State::PreOperational);
+  rig.service();
+  EXPECT_EQ(rig.state(), State::SoftwareInit);
+  EXPECT_EQ(rig.outcome(up), "1 3");
+  rig.settle();
+  EXPECT_EQ(rig.outcome(up), "1 3 7");
+  EXPECT_EQ(probe.nodes[State::SoftwareInit].calls, 4);
+}
+
+TEST_F(Commissioning, ADeviceThatSomebodyElseHoldsFailsTheConfigurationByItsName) {
+  const auto held =
+      rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "arm"}, FlowSide::Subsystem);
+  ASSERT_TRUE(held);
+  rig.set_state_now(State::PreOperational);
+  EXPECT_THAT(rig.configure_now(3), StartsWith("1 3 8:"));
+  EXPECT_THAT(rig.explanations.back(), HasSubstr("device ARM"));
+  EXPECT_EQ(rig.vital.configuration.load(), 0u);
+  EXPECT_FALSE(rig.subsystem.cycle_demand().wanted);
+}
+
+/// Leaves out what its descriptor lets it use.
+struct Forgetful final : Probe {
+  bool device{true};
+  bool link{true};
+
+ protected:
+  Result<Step> software_init() override {
+    publish("CUR_VALUES", current);
+    publish("DES_POSITION", goal);
+    publish("KP", kp);
+    publish("KD", kd);
+    publish("SEEN", seen);
+    if (link) require_link("HAND", hand);
+    if (device) use_device("ARM", arm);
+    use_device("LAMP", lamp);
+    on_function("SET_GOAL", [](double) -> Result<> { return ok(); });
+    on_function("MOVE", [](Call) -> Outcome { return running; });
+    return done;
+  }
+};
+
+TEST_F(Commissioning, AConfigurationWithoutThePortsThatItNeedsNeverRuns) {
+  for (const bool device : {true, false}) {
+    Forgetful author;
+    (device ? author.device : author.link) = false;
+    Rig forgetful{author, probe_descriptor};
+    const std::string up = forgetful.set_state_now(State::PreOperational);
+    if (up == "1 3 7") {
+      EXPECT_THAT(forgetful.configure_now(device ? 3 : 2), StartsWith("1 3 8:"));
+    }
+    EXPECT_FALSE(forgetful.subsystem.cycle_demand().wanted);
+    EXPECT_THAT(forgetful.explanations.back(), HasSubstr(device ? "ARM" : "HAND"));
+  }
+}
+
+TEST_F(Commissioning, AnInitialValueOfAMemberIsSetAndTheOthersStay) {
+  Probe author;
+  Rig other{author, changed(R"(<Initial><ParamRef name="KP" value="30"/></Initial>)",
+                            R"(<Initial><ParamRef name="CUR_VALUES.STATE" value="7"/></Initial>)")};
+  other.set_state_now(State::PreOperational);
+  const auto configured = other.configure(2);
+  other.service();
+  EXPECT_EQ(other.outcome(configured), "1 3 7");
+  EXPECT_EQ(author.current.load().state, 7);
+  EXPECT_EQ(author.current.load().position, 0.0);
+}
+
+TEST_F(Commissioning, WhatTheCycleNeverTookIsGivenBackWithItsConfiguration) {
+  rig.bring_to(State::PreOperational, 2);
+  static_cast<void>(
+      rig.attach(1, pus::st128::Role::Consumer, "HAND", {{"ANGLE", Type::Double, 1}, {"ENABLE", Type::Uint8, 1}}));
+  static_cast<void>(rig.detach(1));
+  rig.service();
+  const auto down = rig.set_state(State::PostOperational);
+  rig.service();
+  rig.subsystem.cycle_parked(rig.subsystem.cycle_demand().ticket);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(down), "1 3 7");
+  EXPECT_EQ(rig.vital.configuration.load(), 0u);
+  EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
+}
+
+TEST_F(Commissioning, AConfigurationIsGivenBackOnTheWayDownWhenItsCycleRestsAtLast) {
+  rig.bring_to(State::SafeOperational);
+  probe.nodes[State::HardwareDeinit].again = 5;
+  const auto down = rig.set_state(State::Offline);
+  rig.service();  // the cycle is told to rest, and hangs
+  rig.advance(11s);
+  rig.service();
+  rig.service();
+  EXPECT_EQ(rig.state(), State::HardwareDeinit);
+  EXPECT_EQ(rig.vital.configuration.load(), 1u);
+  rig.cycle();  // it rests
+  rig.service();
+  EXPECT_EQ(rig.state(), State::HardwareDeinit);
+  EXPECT_EQ(rig.vital.configuration.load(), 0u);
+  rig.settle();
+  EXPECT_EQ(rig.state(), State::Offline);
+  EXPECT_THAT(rig.outcome(down), StartsWith("1 3 8:"));
+}
+
+TEST_F(Commissioning, TimesAndCountsOfTheCycleAreParametersWhereTheDescriptorDeclaresThem) {
+  Probe author;
+  Rig other{author, changed("</Parameters>", R"(
+    <StructRef name="CYCLE_STATS" id="39" type="STRUCT" read_only="yes">
+      <ParamRef name="OVERRUNS" id="100" type="UINT32"/>
+      <ParamRef name="MAX_US" id="101" type="FLOAT"/>
+      <ParamRef name="AVG_US" id="102" type="FLOAT"/>
+    </StructRef>
+    <StructRef name="CYCLE_TIMES" id="40" type="STRUCT" read_only="yes">
+      <ParamRef name="EXECUTION" id="240" type="UINT32" count="16"/>
+      <ParamRef name="LATENCY" id="241" type="UINT32" count="16"/>
+    </StructRef>
+    <StructRef name="LINK_STATS" id="41" type="STRUCT" read_only="yes">
+      <ParamRef name="RECEIVED" id="242" type="UINT32"/>
+      <ParamRef name="LOST" id="243" type="UINT32"/>
+    </StructRef>
+  </Parameters>)")};
+  EXPECT_EQ(other.set_state_now(State::PreOperational), "1 3 7");
+}
+
+/// Names what its descriptor does not declare, twice.
+struct Mistaken final : Probe {
+  bool mistaken{true};
+
+ protected:
+  Result<Step> software_init() override {
+    if (mistaken)
+      for (const char* name : {"NOBODY", "KNOWS"}) publish(name, spare);
+    return Probe::software_init();
+  }
+  Parameter<double> spare;
+};
+
+/// Nobody listens to explanations: what fails fails all the same.
+TEST_F(Commissioning, FailuresAreReportedThoughNobodyWantsTheirExplanation) {
+  Mistaken author;
+  ChannelPair channels{4096};
+  VitalPage vital{};
+  PermitPage permit{};
+  GenericSubsystem quiet{author,
+                         testing::read_descriptor(probe_descriptor),
+                         {.clock = rig.clock, .memory = rig.memory, .flows = rig.flows},
+                         channels.subsystem_end(),
+                         vital,
+                         permit};
+  const auto call = [&](const char* function, double argument) {
+    std::array<std::byte, 64> buffer{};
+    const auto functions = pus::common_functions();
+    const auto data =
+        pus::encode_call(*std::ranges::find(functions, function, &descriptor::Function::name), std::array{argument});
+    const auto packet = pus::write_telecommand(
+        buffer, {.apid = 10, .sequence_count = 1, .ack = pus::ack_all, .service = 8, .subtype = 1, .source = 7}, *data);
+    ASSERT_TRUE(channels.supervisor_end().send({.packet = packet.value(), .memory = {}}));
+    for (int i = 0; i < 5; ++i) static_cast<void>(quiet.service_step(rig.clock.now()));
+  };
+  call("SET_STATE", static_cast<double>(State::PreOperational));
+  EXPECT_EQ(quiet.state(), State::Offline);
+  author.mistaken = false;
+  author.configure_fails = true;
+  call("SET_STATE", static_cast<double>(State::PreOperational));
+  EXPECT_EQ(quiet.state(), State::PreOperational);
+  call("CONFIGURE", 1);
+  EXPECT_EQ(vital.configuration.load(), 0u);
+}
+
+}  // namespace
+}  // namespace hirosco
