@@ -18,6 +18,8 @@ LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
 # How long the craft is left alone with a fault that was aimed: what ends or stops a process takes longest.
 LEFT_ALONE_S = {**dict.fromkeys(DEVICE_FAULTS, 0.7), **dict.fromkeys(MEMBER_FAULTS, 1.6)}
 MOST_STRIKES = 2        # of a member in one flight by what may end it: who dies too often stays down
+# Of every subsystem, beside those of its descriptor: states, failures, lost devices and stale sets.
+FRAMEWORK_EVENTS = [*range(0xF000, 0xF006), *range(0xF100, 0xF103), *range(0xF200, 0xF204)]
 COUPLED = ["COUPLED", "COUPLED", "COUPLED_FEEL", "STANDALONE"]
 # The states that last; the others are passed in one instant of virtual time. Down first, whatever state there is.
 DOWN = [SAFE, OFFLINE]
@@ -124,7 +126,7 @@ class Draw:
             if service == 3:
                 return service, subtype, ids([r.choice([*structures, 9000])], 2)
             if service == 5 and subtype != 7:
-                return service, subtype, ids([r.choice(list(subsystem.events) or [1])], 2)
+                return service, subtype, ids([r.choice([*subsystem.events, *FRAMEWORK_EVENTS])], 2)
             if (service, subtype) == (20, 1):
                 return service, subtype, ids(some_ids(), 4)
             if (service, subtype) == (20, 3):
@@ -336,7 +338,7 @@ class Draw:
         time = self.bring_up(r.uniform(0.5, FINALE_S - 4))
         victim = r.choice(self.acting)
         if r.random() < 0.5:
-            for event in victim.events:
+            for event in [*victim.events, *FRAMEWORK_EVENTS]:
                 self.add(time + 0.05, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
         what = r.choice(["fault unplug", "kill", "stop", "strain", "SAFE_ALL", "SUPERVISOR", "late", "twice", "twice"])
         safe_all = lambda at: self.function(at, mission.supervisor, "SAFE_ALL")

@@ -21,6 +21,8 @@ void PlannedFlight::end_faults() {
     if (auto* simulated = craft_->device(device.name)) {
       static_cast<void>(simulated->fault("heal"));
       static_cast<void>(simulated->fault("plug"));
+      // The hand moves as at the beginning: one that stirs the robot against the rail trips limits, and rightly so.
+      for (const auto& [name, value] : device.settings) static_cast<void>(simulated->fault(name + " " + value));
     }
   }
   for (const auto& member : mission_.subsystems) {

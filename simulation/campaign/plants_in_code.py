@@ -128,7 +128,7 @@ def find(copy, finding, arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("finding", nargs="*", default=list(PLANTS))
-    parser.add_argument("--flights", type=int, default=60, help="at most, for each")
+    parser.add_argument("--flights", type=int, default=100, help="at most, for each")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     if gone := misfits():
