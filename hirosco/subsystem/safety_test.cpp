@@ -313,6 +313,19 @@ TEST_F(Devices, WhatLetGoUnderAnEarlierEpochIsLostOnlyOnceItHasHeardOfThisOne) {
   EXPECT_EQ(loss_in(rig)[0], static_cast<std::uint32_t>(descriptor::DeviceLoss::LetGo));
 }
 
+TEST_F(Devices, WhatLetGoAndNeverHearsOfThisEpochIsLostAfterAll) {
+  flags = device_flag::watchdog_tripped;
+  heard_epoch = 0;
+  bring_up(State::Operational);
+  constexpr int silence_limit = 3, introduction = 40 * silence_limit;
+  for (int i = 0; i < introduction - silence_limit; ++i) exchange();
+  rig.service();
+  EXPECT_EQ(rig.events(arm_lost), 0);
+  for (int i = 0; i < 3 * silence_limit; ++i) exchange();
+  rig.service();
+  EXPECT_EQ(rig.events(arm_lost), 1);
+}
+
 TEST(ReducedPromise, WithoutRealtimeRightsTheSecondSetOfLimitsHolds) {
   Probe probe;
   Rig rig{probe, probe_descriptor, false};

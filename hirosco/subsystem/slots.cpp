@@ -15,6 +15,8 @@ static_assert(descriptor::max_device_octets == max_device_payload_octets);
 
 /// Cycles without news are counted up to here, so that a counter never wraps back to "fresh".
 constexpr std::uint32_t longest_silence = 1'000'000'000;
+/// How long a device may follow an epoch before the commanded one, in silence limits: the guard names it every 5 ms.
+constexpr std::uint32_t longest_introduction = 40;
 
 [[nodiscard]] std::endian endian_of(descriptor::ByteOrder order) noexcept {
   return order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
@@ -250,9 +252,10 @@ void DeviceSlot::take_frame(Octets frame) noexcept {
   echoed_ = status->sequence;
   port_->flags_ = status->flags;
   // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say. Of an epoch
-  // before the commanded one that says nothing: the guard has yet to name this one to it.
+  // before the commanded one that says nothing at first: the guard has yet to name this one to it.
   const bool tripped = (status->flags & device_flag::watchdog_tripped) != 0;
-  if (!tripped || status->epoch < epoch_ || active_cycles_ <= silence_limit_) return;
+  const std::uint32_t patience = status->epoch < epoch_ ? longest_introduction * silence_limit_ : silence_limit_;
+  if (!tripped || active_cycles_ <= patience) return;
   if (port_->fresh_) count(since_good_.let_go);
   port_->fresh_ = false;
 }
