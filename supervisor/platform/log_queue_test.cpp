@@ -108,6 +108,7 @@ TEST(LogQueue, KeepsTheLastQuarterForEventsActionsAndTheNoteOfASwitch) {
     for (int i = 0; i < 6; ++i) push(queue, queued_telecommand());
     const bool kept = kind != LogKind::TelecommandRefused;
     EXPECT_EQ(push(queue, {.kind = kind, .packet = {}}) != 0, kept) << static_cast<int>(kind);
+    EXPECT_EQ(push(queue, queued_telecommand()), 0U) << "also once somebody uses it";
   }
 }
 
