@@ -89,7 +89,7 @@ describe('the tour', () => {
     await flight.end();
     const file = join(sources, 'subsystems/joystick/joystick.xml');
     const before = readFileSync(file, 'utf8');
-    const changed = before.replace(/(name="SCALE"[^>]*maximum=")0\.1"/, '$10.2"');
+    const changed = before.replace(/(name="FORCE_SCALE"[^>]*maximum=")0\.1"/, '$10.2"');
     assert.notEqual(changed, before);
     writeFileSync(file, changed);
     await open_tour('rokviss');

@@ -78,7 +78,7 @@ const steps = [
     act: ['Plug in and couple', plug_in_and_couple],
     done: () => sent('MOVE_TO', 'failed')},
   {title: 'Change one line of XML', view: '#/commands/JOYSTICK/SET_FORCE_SCALE',
-    text: 'This form stands in subsystems/joystick/joystick.xml: look for SET_FORCE_SCALE, change its maximum, end the flight with Ctrl-C and start “hirosco tour” again. The form takes the new range, the supervisor refuses by it, no code was touched.',
+    text: 'This form stands in subsystems/joystick/joystick.xml: look for the parameter FORCE_SCALE, change its maximum, end the flight with Ctrl-C and start “hirosco tour” again. The form takes the new range, the supervisor refuses by it, no code was touched.',
     done: () => { const before = localStorage.getItem(kept_mission); return Boolean(before) && before !== told_by_descriptors(); }},
   {title: 'A new subsystem', view: '#/help',
     text: 'docs/guide/writing_a_subsystem.md writes one in a quarter of an hour: a descriptor and a step function. missions/hello is the smallest that flies: end this flight and start “hirosco tour hello”. Its forms, values and plots are here without a word about it in the page.',
