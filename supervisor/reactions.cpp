@@ -282,7 +282,8 @@ void Supervisor::watch_ground_link(TimePoint now) {
   restore_ground_link(*link);
 }
 
-/// Without the ground link nobody could command anything: it comes back to what its mode asks for by itself.
+/// Without the ground link nobody could command anything: it comes back to what its mode asks for by itself, or, while links
+/// that this requires are down, to a configuration that requires none that is.
 void Supervisor::restore_ground_link(Member& subject) {
   const descriptor::CommissionStep* wanted = nullptr;
   for (const descriptor::Mode* mode : {mode_, mission_.find_mode(mission_.start_mode)}) {
@@ -293,6 +294,11 @@ void Supervisor::restore_ground_link(Member& subject) {
   if (wanted == nullptr) return;
   const descriptor::Subsystem& subsystem = subject.descriptor();
   const auto* configuration = subsystem.find_configuration(wanted->configuration);
+  const auto able = [&](const descriptor::Configuration& one) { return !links().absent_for(subsystem.id, one); };
+  if (!able(*configuration)) {
+    const auto other = std::ranges::find_if(subsystem.configurations, able);
+    if (other != subsystem.configurations.end()) configuration = &*other;
+  }
   std::vector<Sequence::Stage> stages;
   const auto add = [&](std::string_view function, double argument, std::string text) {
     stages.push_back({{subsystem.id, subsystem.name, std::string{function}, argument, std::move(text)}});

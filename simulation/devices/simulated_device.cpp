@@ -85,6 +85,7 @@ void SimulatedDevice::step(TimePoint now) {
     count_down(cycle);
   }
   cycles_ += static_cast<std::uint64_t>(due);
+  if (output_ == DeviceOutput::Active) obeyed_cycles_ = cycles_;
   if (!exchanged) own_cycles_ += static_cast<std::uint64_t>(due);
   if (due > 0 || exchanged) answer(now);
   send_due(now);
@@ -285,7 +286,9 @@ Result<> SimulatedDevice::fault(std::string_view line) {
 }
 
 std::string SimulatedDevice::truth() const {
-  return fmt::format("{} world_s={:.4f}", do_truth(), static_cast<double>(cycles_) * seconds(settings_.cycle));
+  const double cycle_s = seconds(settings_.cycle);
+  return fmt::format("{} world_s={:.4f} obeyed_s={:.4f}", do_truth(), static_cast<double>(cycles_) * cycle_s,
+                     static_cast<double>(obeyed_cycles_) * cycle_s);
 }
 
 void SimulatedDevice::heal() noexcept {

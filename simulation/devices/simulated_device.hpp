@@ -177,6 +177,7 @@ class SimulatedDevice {
   TimePoint enable_until_{};
   std::optional<std::uint32_t> enable_asked_;  ///< not yet answered
   DeviceOutput output_{DeviceOutput::Off};
+  std::uint64_t obeyed_cycles_{0};  ///< `cycles_` when commands reached the motors last
   Duration stop_left_{};
   Duration starved_{};  ///< steps since the last command that the watchdog does not count
 

@@ -401,6 +401,18 @@ TEST(Truth, TellsHowMuchTimeHasPassedInTheWorld) {
       << bench.device.truth();
 }
 
+TEST(Truth, TellsWhenCommandsReachedTheMotorsLast) {
+  RobotBench bench;
+  for (int k = 0; k < 40; ++k) bench.active();
+  const auto obeyed = fmt::format("obeyed_s={:.4f}", static_cast<double>(bench.device.cycles()) * 500e-6);
+  EXPECT_NE(bench.device.truth().find(obeyed), std::string::npos) << bench.device.truth();
+  for (int k = 0; k < 10; ++k) {
+    bench.command(DeviceMode::Off, 1);
+    bench.step();
+  }
+  EXPECT_NE(bench.device.truth().find(obeyed), std::string::npos) << bench.device.truth();
+}
+
 TEST(Faults, CorruptDamagesExactlyThatManyFrames) {
   RobotBench bench;
   ASSERT_TRUE(bench.device.fault("corrupt 20"));

@@ -27,9 +27,10 @@ ROBOT, JOYSTICK, GROUND = "hirosco-spinnable-manipulator", "hirosco-spinnable-jo
 # What the supervisor may take to answer, and what `hirosco tc` itself takes to start on a busy computer.
 ANSWER_S, TOOL_S = 0.2, 0.3
 CYCLE_S = 0.0005
-# How long a cycle may stand still until it hangs (five looks, 10 ms apart, and the one that it moved in), until the others
-# cycle again once it has lost its priority, and what the watch's own grid adds.
-HANG_S, AGAIN_S, GRID_S = 0.060, 0.005, 2 * pages.PERIOD_S
+# How long a cycle may stand still until it hangs (20 looks of the guard, 10 ms apart, and the one that it moved in), until the
+# others cycle again once it has lost its priority, and what the watch's own grid adds. The robot does not wait for that: it
+# obeys nobody once its watchdog has run out.
+HANG_S, AGAIN_S, GRID_S, WATCHDOG_S, LOOK_S = 0.220, 0.005, 2 * pages.PERIOD_S, 0.010, 0.010
 
 
 class Violation(Exception):
@@ -90,22 +91,32 @@ class Trial:
     def spinning(self):
         victim = self.victim()
         pid = self.craft.pid_of(victim)
-        self.hangs_and_dies(victim, lambda: flight.spin(pid, pages.cycle_thread(pid)))
+        self.hangs_and_dies(victim, lambda: flight.spin(pid, pages.cycle_thread(pid)), self.others_go_on_without_its_priority)
 
     def stopped(self):
         victim = self.victim()
-        self.hangs_and_dies(victim, lambda: self.craft.kill(victim, signal.SIGSTOP))
+        self.hangs_and_dies(victim, lambda: self.craft.kill(victim, signal.SIGSTOP), self.others_go_on)
 
-    def hangs_and_dies(self, victim, happens):
+    def hangs_and_dies(self, victim, happens, judge_others):
         name = self.name(victim)
         other = JOYSTICK if victim == ROBOT else ROBOT
         with pages.Watch(self.craft, (ROBOT, JOYSTICK)) as watch:
+            before = self.craft.truth("robot")
             happened = time.monotonic()
             happens()
             hang = self.craft.wait_told(f"{name} hangs", 3.0, self.begin)
             time.sleep(0.05)
             self.craft.wait_at_rest("robot", hang.received)
-        self.judge(watch, victim, other, happened)
+        # In the time of its world, which leaves out how late the host was; `before` is as old as a look takes.
+        obeyed = self.craft.truth("robot")["obeyed_s"] - before["world_s"]
+        expect(obeyed <= WATCHDOG_S + LOOK_S, f"the robot obeyed for another {1e3 * obeyed:.1f} ms")
+        self.took("the robot obeys nobody", max(0.0, obeyed))
+        # The watch itself was late by worst_s: nobody was earlier than it could see.
+        expect(set(watch.fenced) == {ROBOT, JOYSTICK}, f"fenced were only {set(watch.fenced)}")
+        fenced = max(watch.fenced.values()) - happened
+        expect(fenced <= HANG_S + 5 * CYCLE_S + GRID_S + watch.worst_s, f"the network was fenced only after {1e3 * fenced:.1f} ms")
+        self.took("network fenced", fenced)
+        judge_others(watch, victim, other, happened)
         expect(not [line for line in self.craft.told(self.begin) if f"{self.name(other)} hangs" in line.told],
                f"{other} was blamed for what {name} did")
         self.answers()
@@ -113,18 +124,19 @@ class Trial:
         expect(0.9 < died.at_s - hang.at_s < 1.5, f"grace was {died.at_s - hang.at_s:.2f} s")
         self.only_died(name)
 
-    def judge(self, watch, victim, other, happened):
-        """What the pages said from outside. The watch itself was late by worst_s: nobody was earlier than it could see."""
-        expect(set(watch.fenced) == {ROBOT, JOYSTICK}, f"fenced were only {set(watch.fenced)}")
-        fenced = max(watch.fenced.values()) - happened
-        expect(fenced <= HANG_S + 5 * CYCLE_S + GRID_S + watch.worst_s, f"the network was fenced only after {1e3 * fenced:.1f} ms")
-        self.took("network fenced", fenced)
+    def others_go_on_without_its_priority(self, watch, victim, other, _):
         expect(victim in watch.demoted, f"{victim} has kept its priority")
         demoted = watch.demoted[victim]
         again = next((at for at, _ in watch.counts[other] if at >= demoted), None)
         expect(again is not None, f"{other} does not cycle again")
         expect(again - demoted <= AGAIN_S + GRID_S + watch.worst_s, f"{other} cycled again only {1e3 * (again - demoted):.1f} ms later")
         self.took("others cycle again", again - demoted)
+
+    def others_go_on(self, watch, victim, other, happened):
+        """Who stands still takes no processor from anybody, until its network goes down with it."""
+        pause = watch.longest_pause_s(other, happened, watch.fenced[other])
+        expect(pause <= AGAIN_S + GRID_S + watch.worst_s, f"{other} did not cycle for {1e3 * pause:.1f} ms")
+        self.took("longest pause of others", pause)
 
     def killed(self):
         victim = self.victim()

@@ -148,6 +148,16 @@ TEST_F(Remote, AnUnpluggedJoystickTakesTheNetworkDownButNotTheGroundLink) {
   EXPECT_EQ(flight->state("COMMUNICATION"), State::Operational);
 }
 
+TEST_F(Remote, AGroundLinkWhoseSetsAreGoneWithItComesBackWithoutThem) {
+  commission();
+  flight->craft().kill("COMMUNICATION");
+  flight->craft().run(2s);
+  EXPECT_TRUE(flight->story().has("the ground link is back")) << flight->story().text();
+  EXPECT_FALSE(flight->story().has("the ground link did not come back"));
+  EXPECT_EQ(flight->state("COMMUNICATION"), State::Operational);
+  EXPECT_TRUE(command("SUPERVISOR", "SAFE_ALL", {}).completed);
+}
+
 TEST_F(Remote, ADelayIsRefusedWhereNoSetsTravelOverTheGroundLink) {
   commission("telepresence");
   EXPECT_EQ(command("COMMUNICATION", "SET_DELAY", {20, 0}).failure, FailureCode::WrongMode);

@@ -91,16 +91,10 @@ constexpr std::uint16_t supervisor_apid = 1;
   return std::nullopt;
 }
 
-/// A required link of the configuration in force that is not up (paper 4.3); 0 when the mission has none for the set.
 [[nodiscard]] std::optional<std::uint8_t> absent_link(const descriptor::Subsystem& subsystem,
                                                       const Situation& situation) {
   const auto* configuration = subsystem.find_configuration(situation.configuration);
-  if (configuration == nullptr) return std::nullopt;
-  for (const descriptor::Requires& wanted : configuration->requires_) {
-    const std::uint8_t link = situation.links.link_into(subsystem.id, wanted.name);
-    if (wanted.required && !situation.links.is_up(link)) return link;
-  }
-  return std::nullopt;
+  return configuration == nullptr ? std::nullopt : situation.links.absent_for(subsystem.id, *configuration);
 }
 
 /// Most that the addressee's configuration in force draws.

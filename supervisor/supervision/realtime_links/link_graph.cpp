@@ -58,4 +58,13 @@ std::uint8_t LinkGraph::link_into(std::uint16_t consumer, std::string_view requi
   return first;
 }
 
+std::optional<std::uint8_t> LinkGraph::absent_for(std::uint16_t consumer,
+                                                  const descriptor::Configuration& configuration) const noexcept {
+  for (const descriptor::Requires& wanted : configuration.requires_) {
+    const std::uint8_t link = link_into(consumer, wanted.name);
+    if (wanted.required && !is_up(link)) return link;
+  }
+  return std::nullopt;
+}
+
 }  // namespace hirosco::supervisor

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,9 @@ class LinkGraph {
   [[nodiscard]] std::vector<std::uint8_t> links_of(std::uint16_t apid) const;
   /// The mission's link into a required set: the one that is up, else the first; 0 when there is none.
   [[nodiscard]] std::uint8_t link_into(std::uint16_t consumer, std::string_view required_set) const noexcept;
+  /// A link that this configuration requires and that is not up (paper 4.3); its id, or 0 when the mission has none.
+  [[nodiscard]] std::optional<std::uint8_t> absent_for(std::uint16_t consumer,
+                                                       const descriptor::Configuration& configuration) const noexcept;
 
  private:
   struct Edge {
