@@ -26,6 +26,9 @@
 namespace hirosco {
 namespace {
 
+/// Of the cycle's thread. All memory is locked, so that every octet of it is taken from the computer.
+constexpr std::size_t cycle_stack_octets = std::size_t{1} << 20;
+
 /// Real-time, but below every cycle: a busy core cannot hold up a command to stop (decision 8a).
 constexpr int service_priority = 20;
 constexpr int exit_usage = 2;
@@ -70,7 +73,7 @@ class CycleThread {
   explicit CycleThread(GenericSubsystem& subsystem, const Clock& clock, bool realtime)
       : subsystem_{subsystem}, clock_{clock}, realtime_{realtime} {}
   [[nodiscard]] Result<> start() {
-    HIROSCO_TRY_LET(thread_, Thread::start("cycle", [this] { run(); }));
+    HIROSCO_TRY_LET(thread_, Thread::start("cycle", [this] { run(); }, cycle_stack_octets));
     return ok();
   }
   void wake() { wanted_.post(); }

@@ -28,6 +28,7 @@ double foot_point(const ContourParameters& contour, const Vec2& tip) noexcept {
   for (int i = 0; i < 8; ++i) {
     const CurvePoint at = contour_at(contour, y);
     const double residual = (at.x - tip[0]) * at.slope + (y - tip[1]);
+    if (residual == 0) break;  // at once where the rail is straight
     const double gradient = 1 + at.slope * at.slope + (at.x - tip[0]) * at.curvature;
     y -= residual / std::max(gradient, 0.1);
   }

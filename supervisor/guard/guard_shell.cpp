@@ -17,6 +17,9 @@
 namespace hirosco::supervisor {
 namespace {
 
+/// Of the guard's thread: all memory is locked.
+constexpr std::size_t stack_octets = std::size_t{256} << 10;
+
 constexpr std::size_t most_clients = 8;
 constexpr Duration patience = std::chrono::seconds{1};
 
@@ -44,7 +47,7 @@ Result<std::unique_ptr<GuardShell>> GuardShell::start(Guard& guard, const Clock&
   }
   HIROSCO_TRY(shell->waits_.add(shell->signals_.get()));
   HIROSCO_TRY(shell->waits_.add(shell->ending_.descriptor()));
-  HIROSCO_TRY_LET(shell->thread_, Thread::start("guard", [self = shell.get()] { self->run(); }));
+  HIROSCO_TRY_LET(shell->thread_, Thread::start("guard", [self = shell.get()] { self->run(); }, stack_octets));
   return shell;
 }
 
