@@ -348,7 +348,10 @@ void Supervisor::command(std::uint16_t apid, std::string_view name, std::optiona
 }
 
 void Supervisor::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) {
-  send_own(apid, pus::st128::service_type, subtype, data, memory, nullptr);
+  const auto link = data.empty() ? std::uint8_t{0} : std::to_integer<std::uint8_t>(data[0]);
+  send_own(apid, pus::st128::service_type, subtype, data, memory, [=, this](bool success, const std::string& why) {
+    if (!success) links_.failed(apid, subtype, link, name_of(apid) + ": " + why);
+  });
 }
 
 void Supervisor::send_own(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,

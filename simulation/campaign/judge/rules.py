@@ -49,6 +49,8 @@ def i4_safe_all_stops_everything(flight, victims):
         # Either way it ends with a report: all have stopped, or who has not.
         done = next((r.time for r in flight.log if r.report and r.report.service == 1 and r.report.subtype in (7, 8)
                      and r.report.request_key == sent.key), None)
+        if done is None:  # not in a log that had no room: ground has it all the same
+            done = next((d[0] for d in flight.down if d[3] == 1 and d[4] in (7, 8) and (d[5], d[6]) == sent.key), None)
         asked = next((r for r in flight.log if r.telecommand and r.telecommand.key == sent.key), None)
         if asked and asked.kind != "telecommand-refused" and not asked.telecommand.ack & 8:
             done = asked.time  # nobody asked for its report

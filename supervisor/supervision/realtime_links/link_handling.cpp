@@ -190,6 +190,19 @@ bool LinkHandling::is_end_of(std::uint8_t link, std::uint16_t apid) const {
          (described->from == subsystem->subsystem.name || described->to == subsystem->subsystem.name);
 }
 
+void LinkHandling::failed(std::uint16_t apid, std::uint8_t subtype, std::uint8_t link, const std::string& why) {
+  const auto found = handshakes_.find(link);
+  if (found == handshakes_.end()) return;
+  Handshake& handshake = found->second;
+  // What belonged to an earlier handshake, or takes one down, ends none.
+  const bool of_stage =
+      handshake.stage == Stage::AwaitOffer       ? subtype == st128::request_offer && apid == handshake.consumer
+      : handshake.stage == Stage::AwaitAgreement ? subtype == st128::negotiate_terms && apid == handshake.producer
+      : handshake.stage == Stage::AwaitProducer  ? subtype == st128::attach && apid == handshake.producer
+                                                 : subtype == st128::attach && apid == handshake.consumer;
+  if (of_stage) handshake.failure = why;
+}
+
 void LinkHandling::forget(std::uint16_t apid) {
   std::vector<std::uint8_t> broken;
   for (const auto& [link, handshake] : handshakes_)
@@ -199,10 +212,11 @@ void LinkHandling::forget(std::uint16_t apid) {
 }
 
 void LinkHandling::step(TimePoint now) {
-  std::vector<std::uint8_t> late;
+  std::map<std::uint8_t, std::string> over;
   for (const auto& [link, handshake] : handshakes_)
-    if (now > handshake.deadline) late.push_back(link);
-  for (const std::uint8_t link : late) give_up(link, "time limit of the handshake");
+    if (!handshake.failure.empty()) over[link] = handshake.failure;
+    else if (now > handshake.deadline) over[link] = "time limit of the handshake";
+  for (const auto& [link, why] : over) give_up(link, why);
   std::vector<Done> unanswered;
   for (auto entry = releases_.begin(); entry != releases_.end();) {
     Release& release = entry->second;

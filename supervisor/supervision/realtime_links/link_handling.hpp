@@ -44,6 +44,9 @@ class LinkHandling {
   [[nodiscard]] MemoryHandle memory_of(std::uint8_t link) const;
   /// Reports of service 128.
   void handle(std::uint16_t from, const pus::TelemetryView& report);
+  /// What was sent for a handshake, TC[128,subtype], did not reach its addressee or failed there: the handshake ends with the
+  /// next step().
+  void failed(std::uint16_t apid, std::uint8_t subtype, std::uint8_t link, const std::string& why);
   /// A subsystem is gone without reporting: all its links are down.
   void forget(std::uint16_t apid);
   /// Time limits of handshakes.
@@ -57,6 +60,7 @@ class LinkHandling {
     std::uint16_t consumer{};
     Stage stage{Stage::AwaitOffer};
     TimePoint deadline{};
+    std::string failure{};  ///< why it ends before its deadline
     std::uint32_t epoch{};
     pus::st128::Agreement agreement;
     MemoryHandle memory;
@@ -80,7 +84,7 @@ class LinkHandling {
   std::map<std::uint8_t, MemoryHandle> established_;
   struct Release {
     Done done;
-    TimePoint deadline{};            ///< set by the first step() after it was asked for
+    TimePoint deadline{};  ///< set by the first step() after it was asked for
   };
   std::map<std::uint8_t, Release> releases_;
   std::uint32_t epoch_{0};

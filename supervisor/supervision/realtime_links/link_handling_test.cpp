@@ -173,6 +173,30 @@ TEST_F(LinkHandlingTest, ATimeLimitAtEveryStageEndsTheHandshakeAndFreesWhoMayBeA
   }
 }
 
+TEST_F(LinkHandlingTest, ATelecommandThatFailsEndsTheHandshakeOfItsStageOnly) {
+  struct Sent {
+    std::uint16_t apid;
+    std::uint8_t subtype;
+  };
+  const std::array<Sent, 4> sent{
+      {{arm, st128::request_offer}, {hand, st128::negotiate_terms}, {hand, st128::attach}, {arm, st128::attach}}};
+  for (std::size_t stage = 0; stage < 4; ++stage) {
+    ends.clear();
+    advance(static_cast<int>(stage));
+    for (std::size_t other = 0; other < 4; ++other)
+      if (other != stage) links.failed(sent[other].apid, sent[other].subtype, 2, "of another stage");
+    for (const std::uint16_t partner : {arm, hand}) links.failed(partner, st128::detach, 2, "of an earlier life");
+    links.failed(sent[stage].apid, sent[stage].subtype, 1, "of another link");
+    links.step(now);
+    EXPECT_THAT(ends, IsEmpty()) << stage;
+    links.failed(sent[stage].apid, sent[stage].subtype, 2, "HAND: unknown APID");
+    EXPECT_THAT(ends, IsEmpty()) << "not before the step: who asked for it may not have its answer yet";
+    links.step(now);
+    EXPECT_THAT(ends, ElementsAre(false)) << stage;
+    EXPECT_EQ(supervisor.changes.back(), "2 down: HAND: unknown APID");
+  }
+}
+
 TEST_F(LinkHandlingTest, AfterTheTimeLimitALateAnswerChangesNothing) {
   advance(3);
   links.step(now + 1min);
