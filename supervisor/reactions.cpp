@@ -269,12 +269,13 @@ void Supervisor::restart_due(TimePoint now) {
   }
 }
 
-/// In Offline the ground link hears nobody who could bring it up again, whether a fault or a telecommand put it there.
+/// In Offline, and after that until a configuration is in force, the ground link hears nobody who could bring it up again,
+/// whether a fault or a telecommand put it there.
 void Supervisor::watch_ground_link(TimePoint now) {
   const auto link = std::ranges::find_if(members_, [&](const Member& subject) { return is_ground_link(subject); });
   if (link == members_.end()) return;
-  const bool lost = link->alive() && link->state() == State::Offline && !shutting_down_ && !sequence_.running() &&
-                    !ground_link_.running();
+  const bool deaf = link->state() == State::Offline || link->configuration() == 0;
+  const bool lost = link->alive() && deaf && !shutting_down_ && !sequence_.running() && !ground_link_.running();
   if (!lost) return ground_link_lost_at_.reset();
   if (!ground_link_lost_at_) ground_link_lost_at_ = now;
   if (now - *ground_link_lost_at_ < ground_link_patience_) return;
@@ -303,10 +304,12 @@ void Supervisor::restore_ground_link(Member& subject) {
   const auto add = [&](std::string_view function, double argument, std::string text) {
     stages.push_back({{subsystem.id, subsystem.name, std::string{function}, argument, std::move(text)}});
   };
-  add("SET_STATE", static_cast<double>(State::PreOperational), "PreOperational");
+  const auto take_to = [&](State state) { add("SET_STATE", static_cast<double>(state), std::string{to_text(state)}); };
+  if (subject.state() == State::ErrorOperational) take_to(State::PostOperational);
+  if (subject.state() != State::PreOperational) take_to(State::PreOperational);
   add("CONFIGURE", configuration->id, "configuration " + configuration->name);
   for (const State state : {State::SafeOperational, State::Operational})
-    if (state <= wanted->state) add("SET_STATE", static_cast<double>(state), std::string{to_text(state)});
+    if (state <= wanted->state) take_to(state);
   ground_link_.start(std::move(stages), Sequence::OnFailure::Stop, [this](bool success, const std::string& why) {
     ground_link_patience_ = success ? ground_link_pause : std::min(2 * ground_link_patience_, Restarts::longest_pause);
     tell(success ? "the ground link is back" : "the ground link did not come back: " + why);

@@ -215,6 +215,21 @@ TEST_F(Stops, AGroundLinkThatATelecommandClosedComesBackByItself) {
   EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed);
 }
 
+/// In Pre-Operational it listens to nobody either until a configuration is in force.
+TEST_F(Stops, AGroundLinkThatATelecommandLeftWithoutConfigurationComesBackByItself) {
+  open_for_bring_up();
+  const auto send = [&](State state, Duration limit) {
+    static_cast<void>(flight.craft().command("COMMUNICATION", "SET_STATE", {static_cast<double>(state)}, limit));
+  };
+  send(State::SafeOperational, 50ms);
+  send(State::PostOperational, 50ms);
+  send(State::Offline, 10ms);  // there it hears nobody: the next is on its way before
+  send(State::PreOperational, 100ms);
+  ASSERT_EQ(flight.state("COMMUNICATION"), State::PreOperational);
+  ASSERT_TRUE(flight.run_until_state("COMMUNICATION", State::Operational, 3s)) << flight.story().text();
+  EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed);
+}
+
 TEST_F(Stops, AGroundLinkThatDiesAgainAndAgainComesBackAgainAndAgain) {
   for (int death = 1; death <= 8; ++death) {
     flight.craft().kill("COMMUNICATION");
