@@ -69,21 +69,26 @@ function(hirosco_compile_as_test name)
   target_precompile_headers(${name} REUSE_FROM hirosco_test_headers)
 endfunction()
 
-# What ./check builds with the sanitizers: the tests with these labels and nothing else.
+# ./check builds each test once: with the sanitizers those with these two labels, optimised all others, and what flies.
 add_custom_target(unit_tests)
 add_custom_target(concurrency_tests)
+add_custom_target(optimised)
 
 # hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit])
 # One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast. Labels: unit (the default) beside
-# the code; concurrency: threads meet, so also under TSan; endtoend, realtime, fault: real processes, alone on the
-# machine; long: in ./check --all only.
+# the code; concurrency: threads meet, so under TSan; figures: flies simulations, which takes minutes under a sanitizer;
+# allocations (whoever counts them): a sanitizer owns the heap functions; endtoend, realtime, fault: real processes, alone on
+# the machine; long: in ./check --all only.
 function(hirosco_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
     return()
   endif()
-  if(HIROSCO_SANITIZE AND "hirosco_malloc_hook" IN_LIST ARG_DEPENDS)
-    return()  # a sanitizer owns the heap functions; what counts them is judged in the other builds
+  if("hirosco_malloc_hook" IN_LIST ARG_DEPENDS)
+    if(HIROSCO_SANITIZE)
+      return()
+    endif()
+    set(ARG_LABELS allocations)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE hirosco_options ${ARG_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
@@ -95,6 +100,9 @@ function(hirosco_test name)
     set(ARG_LABELS unit)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
+  if(NOT ARG_LABELS MATCHES "unit|concurrency|long")
+    add_dependencies(optimised ${name})
+  endif()
   foreach(label IN LISTS ARG_LABELS)
     if(TARGET ${label}_tests)
       add_dependencies(${label}_tests ${name})
@@ -105,21 +113,22 @@ function(hirosco_test name)
   endforeach()
 endfunction()
 
-# hirosco_library(NAME SOURCES *.cpp TESTS *_test.cpp DEPENDS targets... [EXAMPLE example.cpp])
+# hirosco_library(NAME SOURCES *.cpp TESTS *_test.cpp DEPENDS targets... [LABELS of the test...] [EXAMPLE example.cpp])
 # Makes the library hirosco::NAME, its test NAME_test, and its example NAME_example (run as a test).
 function(hirosco_library name)
-  cmake_parse_arguments(ARG "" "EXAMPLE" "SOURCES;TESTS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "EXAMPLE" "SOURCES;TESTS;DEPENDS;LABELS" ${ARGN})
   add_library(hirosco_${name} STATIC ${ARG_SOURCES})
   add_library(hirosco::${name} ALIAS hirosco_${name})
   target_link_libraries(hirosco_${name} PUBLIC hirosco_options ${ARG_DEPENDS})
   if(ARG_TESTS)
-    hirosco_test(${name}_test SOURCES ${ARG_TESTS} DEPENDS hirosco::${name})
+    hirosco_test(${name}_test SOURCES ${ARG_TESTS} DEPENDS hirosco::${name} LABELS ${ARG_LABELS})
   endif()
   if(ARG_EXAMPLE AND BUILD_TESTING)
     add_executable(${name}_example ${ARG_EXAMPLE})
     target_link_libraries(${name}_example PRIVATE hirosco::${name})
     add_test(NAME ${name}_example COMMAND ${name}_example)
     set_tests_properties(${name}_example PROPERTIES LABELS example)
+    add_dependencies(optimised ${name}_example)
   endif()
 endfunction()
 
@@ -128,4 +137,8 @@ function(hirosco_executable name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE hirosco_options ${ARG_DEPENDS})
+  get_directory_property(on_demand EXCLUDE_FROM_ALL)  # as bench/
+  if(NOT on_demand)
+    add_dependencies(optimised ${name})
+  endif()
 endfunction()
