@@ -10,7 +10,6 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 from campaign import Campaign, Pilot, parse  # noqa: E402
 from plants_in_code import misfits  # noqa: E402
-from packet_rules import i11_nothing_goes_back  # noqa: E402
 from shrink import shrink, split  # noqa: E402
 
 MISSION = str(HERE.parents[1] / "missions" / "rokviss")
@@ -54,22 +53,8 @@ def fly_plan():
     return parse([MISSION]).fly_plan
 
 
-def judged_order(*reports):
-    """What I11 says of reports (count, service, subtype) of one subsystem in the order of the log."""
-    import types
-    log = [types.SimpleNamespace(kind="telemetry", time=place, stored=place,
-                                 report=types.SimpleNamespace(apid=11, count=count, service=service, subtype=subtype, time=count))
-           for place, (count, service, subtype) in enumerate(reports)]
-    named = types.SimpleNamespace(by_apid=lambda apid: None)
-    return list(i11_nothing_goes_back(types.SimpleNamespace(log=log, mission=named), {}))
-
-
 def tools():
     check(not misfits(), "every finding that is put back into a copy of the code still has its place there")
-    check(not judged_order((7, 1, 7), (9, 5, 1), (3, 3, 25), (4, 3, 25), (10, 1, 1)), "kinds of reports may overtake one another")
-    check(judged_order((7, 3, 25), (9, 1, 7), (6, 3, 25)), "within a kind no report may go back")
-    steps = [(count % 16384, 3, 25) for count in range(1, 16000, 4000)]
-    check(not judged_order((0, 5, 1), *steps, (15000, 5, 1)), "an event long after the last one does not go back")
     plan = Campaign(parse([MISSION, "--seed", "7"])).plan(3)
     check(plan == Campaign(parse([MISSION, "--seed", "7"])).plan(3), "the same seed draws the same plan")
     octets = []

@@ -154,10 +154,8 @@ def permitted(mission, record, source, mode, state):
 
 
 def may_write(mission, addressee, tc, mode, state):
-    """Of TC[20,3], once the descriptors say who may write what."""
+    """Of TC[20,3]."""
     declared = {p.wire_id: p for s in [mission.supervisor, *mission.members] for p in s.parameters}
-    if all(p.writable is None for p in declared.values()):
-        return True
     names = set().union(*(parameters for subject, _, _, parameters in mission.modes[mode] if subject in ("*", addressee.name)))
     known = [declared[i] for i in written(tc, declared) if i in declared]
     return all(p.writable is not None and state in p.writable and names & {"*", p.name} for p in known)

@@ -28,8 +28,6 @@ def i4_actuators_are_off_outside_operational(flight, victims):
             watchdog_us = 12_000 + 2 * period_us  # of the device itself, when its member says nothing any more
             late = STATE_LAG_US + CYCLES_TO_SAFE * period_us
             for first, last in flight.state[member].spans(flight.end, lambda state: state != OPERATIONAL):
-                if meets(victims[member] + victims[device], first - 1, first + 1):
-                    late = max(late, watchdog_us)
                 first, last = max(first + late, start + STATE_LAG_US), min(last, end)
                 if last - first > STATE_LAG_US:
                     yield first, f"{device} acts while {member} is {STATES[flight.state[member].at(first)]}"
@@ -113,7 +111,7 @@ def i4_a_network_goes_down_with_its_member(flight, victims):
         if meets(victims["SUPERVISOR"], time - OFFLINE_US, time + OFFLINE_US):
             continue
         for name in group - {struck, flight.mission.ground}:
-            if meets(victims[name], time - 1, time + OFFLINE_US) or not flight.alive[name].at(time):
+            if meets(victims[name], time - 1, time + OFFLINE_US):
                 continue
             if OFFLINE not in flight.state[name].during(time, time + OFFLINE_US):
                 yield time, (f"{name} is not Offline 2 s after {' '.join(words)}, but "
@@ -157,7 +155,7 @@ def i9_only_edges_of_the_table(flight, _):
             continue
         event = int.from_bytes(record.report.data[:2], "big")
         # One that fails on arrival is told of as failed.
-        if event not in (0xF000, 0xF001) and subsystem.events.get(event, ("",))[0] not in ("STATE_CHANGED", "STATE_FAILED"):
+        if event not in (0xF000, 0xF001):
             continue
         state, previous = record.report.data[2], told.get(record.source)
         if previous is not None and state != previous and (previous, state) not in EDGES and not muted(flight, record.source):
