@@ -10,31 +10,34 @@ ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE))
 from campaign import Campaign, parse  # noqa: E402
 
-HANDLING, REACTIONS, SUPERVISOR = "supervisor/data_handling.cpp", "supervisor/reactions.cpp", "supervisor/supervisor.cpp"
+SUPERVISION = "supervisor/supervision"
+TELECOMMANDS, REACTIONS = f"{SUPERVISION}/data_handling/telecommands.cpp", f"{SUPERVISION}/event_handling/reactions.cpp"
+STOPS, SHUTDOWN = f"{SUPERVISION}/event_handling/stops.cpp", f"{SUPERVISION}/modes/shutdown.cpp"
+PROCESSES = f"{SUPERVISION}/subsystem_handling/processes.cpp"
 REFUSED = "return refused(pus::FailureCode::ExecutionError);"
 CHOSEN = "HIROSCO_PLANTED_FINDING"  # which of them a flight has
 # {finding: (invariant, [(file, as it is, as it was where the finding is chosen)])}
 PLANTS = {
     # States of the supervisor were anybody's to command, and SAFE_ALL a function that some of them do not permit.
     "SF1": ("I4", [
-        ("supervisor/supervision/data_handling/permission.cpp", "return apid == supervisor_apid && (call.name",
+        (f"{SUPERVISION}/data_handling/permission.cpp", "return apid == supervisor_apid && (call.name",
          'return !planted("SF1") && apid == supervisor_apid && (call.name'),
-        (HANDLING, "apid == 1 && call && carry_out_at_once(", '!planted("SF1") && apid == 1 && call && carry_out_at_once('),
-        (SUPERVISOR, f'on_function("SAFE_ALL", []() -> Outcome {{ {REFUSED} }});',
+        (TELECOMMANDS, "apid == supervisor_apid && call ? at_once_", '!planted("SF1") && apid == supervisor_apid && call ? at_once_'),
+        (STOPS, f'on_function("SAFE_ALL", []() -> Outcome {{ {REFUSED} }});',
          f'on_function("SAFE_ALL", [this]() -> Outcome {{ if (!planted("SF1")) {REFUSED}\n'
-         '    parts_.guard.stop_all(); after_stop("SAFE_ALL"); return ok(); });'),
-        (SUPERVISOR, f'on_function("SHUTDOWN", []() -> Outcome {{ {REFUSED} }});',
-         f'on_function("SHUTDOWN", [this]() -> Outcome {{ if (!planted("SF1")) {REFUSED}\n    request_shutdown(); return ok(); }});')]),
+         '    craft_.guard.stop_all(); after_stop("SAFE_ALL"); return ok(); });'),
+        (SHUTDOWN, f'on_function("SHUTDOWN", []() -> Outcome {{ {REFUSED} }});',
+         f'on_function("SHUTDOWN", [this]() -> Outcome {{ if (!planted("SF1")) {REFUSED}\n    request(); return ok(); }});')]),
     # The stop was lifted when SET_STATE(Operational) was permitted, and what waited for the disk was forwarded whatever
     # had happened in between.
     "SF4": ("I4", [
-        (HANDLING, "  if (asks_only) return answer_query(incoming, *telecommand);",
-         "  if (asks_only) return answer_query(incoming, *telecommand);\n"
-         '  if (planted("SF4") && decision->releases_stop && apid != 1)\n'
-         "    static_cast<void>(parts_.guard.release(apid, parts_.guard.fences(apid)));"),
-        (HANDLING, "if (parts_.guard.fences(next.apid) != next.fences) {",
-         'if (!planted("SF4") && parts_.guard.fences(next.apid) != next.fences) {'),
-        (HANDLING, "if (releases_stop && apid != 1 && !parts_.guard", 'if (!planted("SF4") && releases_stop && apid != 1 && !parts_.guard')]),
+        (TELECOMMANDS, "  if (asks_only) return answer_question(incoming, *telecommand);",
+         "  if (asks_only) return answer_question(incoming, *telecommand);\n"
+         '  if (planted("SF4") && decision->releases_stop && apid != supervisor_apid)\n'
+         "    static_cast<void>(craft_.guard.release(apid, craft_.guard.fences(apid)));"),
+        (TELECOMMANDS, "if (craft_.guard.fences(next.apid) != next.fences) {",
+         'if (!planted("SF4") && craft_.guard.fences(next.apid) != next.fences) {'),
+        (TELECOMMANDS, "if (releases_stop && !to_itself && !craft_.guard", 'if (!planted("SF4") && releases_stop && !to_itself && !craft_.guard')]),
     # Death was swallowed while a plan of the same severity ran. This mission's plans take the network down all the same;
     # it shows where the plan for high severity is milder.
     "SF5": ("I4", [
@@ -53,8 +56,8 @@ PLANTS = {
          "  } else {\n    member->permit->release();\n  }")]),
     # Nobody remembered what the dead had been asked.
     "LW1": ("I2", [
-        (REACTIONS, "for (const pus::Request& request : outstanding_.take(apid))",
-         'for (const pus::Request& request : planted("LW1") ? decltype(outstanding_.take(apid)){} : outstanding_.take(apid))')]),
+        (PROCESSES, "for (const pus::Request& request : parts_.outstanding.take(apid))",
+         'for (const pus::Request& request : planted("LW1") ? std::vector<pus::Request>{} : parts_.outstanding.take(apid))')]),
     # An exchange moved a device's clock by at least one cycle, and the rest was forgotten.
     "LW13": ("I13", [
         ("simulation/devices/simulated_device.cpp", "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;",

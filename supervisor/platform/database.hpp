@@ -158,6 +158,9 @@ class MemoryDatabase final : public Database {
 enum class DatabaseStrategy : std::uint8_t { Sqlite, Ascii, Memory };
 enum class DatabaseAccess : std::uint8_t { Write, Read };  ///< Read never creates or changes the store
 
+/// Opens another database while a flight goes on (SET_DATABASE); null when it cannot.
+using DatabaseOpener = std::function<std::unique_ptr<Database>(DatabaseStrategy)>;
+
 /// NotFound: nothing to read there; Mismatch: another program's file or a later version; SystemFailure: errno.
 [[nodiscard]] Result<std::unique_ptr<Database>> open_database(DatabaseStrategy strategy,
                                                               const std::filesystem::path& path,

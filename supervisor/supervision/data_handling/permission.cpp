@@ -16,7 +16,6 @@ using pus::FailureCode;
 using pus::FailureNotice;
 
 constexpr std::size_t name_octets = 16;
-constexpr std::uint16_t supervisor_apid = 1;
 
 /// Services of every subsystem, and the subtypes that are requests.
 [[nodiscard]] bool known_subtype(std::uint8_t service, std::uint8_t subtype) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/power/power_ledger.hpp"
+#include "supervisor/supervision/resource_management/power_ledger.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/subsystem/generic_subsystem.hpp"
+#include "supervisor/guard/guard.hpp"
+#include "supervisor/platform/launcher.hpp"
+#include "supervisor/platform/packet_log.hpp"
+#include "supervisor/supervision/observer.hpp"
+#include "supervisor/supervision/subsystem_handling/member.hpp"
+
+namespace hirosco::supervisor {
+
+/// What every part of the supervisor looks at: the mission, its members, the mode, the time, and whom to tell. It decides
+/// nothing. Thread: the supervisor's.
+struct Craft {
+  Craft(const descriptor::Mission& described, const World& outside, ProcessLauncher& processes, Guard& watcher,
+        PacketLog& packets, Observer& who);
+  Craft(const Craft&) = delete;
+  Craft& operator=(const Craft&) = delete;
+
+  /// Nullptr: nobody has this APID, or only the supervisor.
+  [[nodiscard]] Member* member(std::uint16_t apid);
+  [[nodiscard]] const Member* member(std::uint16_t apid) const;
+  [[nodiscard]] bool is_ground_link(const Member& member) const;
+  /// Nullptr: the mission has none.
+  [[nodiscard]] Member* ground_link();
+  [[nodiscard]] std::string name_of(std::uint16_t apid) const;
+  /// One line of the story, into the log and to the observer; `subject` is whom it is about.
+  void tell(std::string_view line, std::uint16_t subject = 0);
+
+  descriptor::Mission mission;
+  World world;
+  ProcessLauncher& launcher;
+  Guard& guard;  ///< stepped by its own thread, or by who steps the supervisor
+  PacketLog& log;
+  Observer& observer;
+  std::vector<Member> members;
+  const descriptor::Mode* mode;
+  std::uint32_t mode_epoch{1};
+  TimePoint now{};
+  bool shutting_down{false};
+  bool failed{false};  ///< commissioning failed, or something that the end is not orderly without
+  bool restoring_ground_link{false};
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/own_telecommands.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "hirosco/pus/st08_function.hpp"
+
+namespace hirosco::supervisor {
+
+namespace {
+/// Generous: a slow disk alone may hold a telecommand back for seconds (decision 24). No less than it may wait for the disk, so
+/// that none is executed after it was reported as failed.
+constexpr Duration answer_limit = Telecommands::durable_limit;
+}  // namespace
+
+void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::optional<double> argument,
+                              CommandDone done) {
+  const auto* member = apid == supervisor_apid ? nullptr : craft_.mission.find_subsystem(apid);
+  const descriptor::Subsystem& subsystem = member != nullptr ? member->subsystem : craft_.mission.supervisor;
+  static const auto built_in = pus::common_functions();
+  const auto common = std::ranges::find(built_in, name, &descriptor::Function::name);
+  const descriptor::Function* function = common != built_in.end() ? &*common : subsystem.find_function(name);
+  std::vector<double> values;
+  if (argument) values.push_back(*argument);
+  const auto data = function != nullptr ? pus::encode_call(*function, std::span<const double>{values})
+                                        : Result<std::vector<std::byte>>{fail(ErrorCode::NotFound, "unknown function")};
+  if (!data) {
+    if (done) done(false, data.error().text);
+    return;
+  }
+  send(apid, 8, 1, *data, {}, std::move(done));
+}
+
+void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
+                           const MemoryHandle& memory, CommandDone done) {
+  std::array<std::byte, max_packet_octets> buffer;
+  constexpr std::uint16_t modulo = 16'384;
+  const std::uint16_t count = next_sequence_count_;
+  next_sequence_count_ = static_cast<std::uint16_t>((count + 1) % modulo);
+  const auto packet = pus::write_telecommand(buffer,
+                                             {.apid = apid,
+                                              .sequence_count = count,
+                                              .ack = pus::ack_acceptance | pus::ack_completion,
+                                              .service = service,
+                                              .subtype = subtype,
+                                              .source = supervisor_apid},
+                                             data);
+  if (!packet) {
+    if (done) done(false, packet.error().text);
+    return;
+  }
+  const auto telecommand = pus::TelecommandView::parse(*packet);
+  sent_[telecommand->request_id()] = {std::move(done), craft_.now + answer_limit,
+                                      craft_.name_of(apid) + " " + telecommand_text(*telecommand), apid};
+  telecommands_.take({.packet = *packet, .sender = Sender::Supervisor, .source = supervisor_apid, .memory = memory});
+}
+
+void OwnTelecommands::hear(std::uint16_t, const pus::TelemetryView& report) {
+  if (report.service() != 1 || report.destination() != supervisor_apid) return;
+  OctetReader reader{report.source_data()};
+  const auto found = sent_.find(reader.get<std::uint32_t>());
+  if (found == sent_.end() || !reader.good()) return;
+  const bool failure = report.subtype() % 2 == 0;
+  const bool completed = report.subtype() == 7;
+  if (!failure && !completed) return;
+  const Sent ended = std::move(found->second);
+  sent_.erase(found);
+  if (report.subtype() == 6) static_cast<void>(reader.get<std::uint16_t>());
+  const auto code = static_cast<pus::FailureCode>(failure ? reader.get<std::uint16_t>() : 0);
+  if (failure) craft_.tell(ended.what + " failed: " + std::string{to_text(code)}, report.apid());
+  if (ended.done) ended.done(completed, failure ? std::string{to_text(code)} : std::string{});
+}
+
+void OwnTelecommands::watch(TimePoint now) {
+  std::vector<Sent> expired;
+  std::erase_if(sent_, [&](auto& entry) {
+    if (entry.second.deadline > now) return false;
+    expired.push_back(std::move(entry.second));
+    return true;
+  });
+  for (const Sent& late : expired) {
+    craft_.tell(late.what + ": no answer");
+    if (late.done) late.done(false, "no answer");
+  }
+}
+
+void OwnTelecommands::fail_all_to(std::uint16_t apid, const std::string& why) {
+  std::vector<CommandDone> ended;
+  std::erase_if(sent_, [&](auto& entry) {
+    if (entry.second.apid != apid) return false;
+    ended.push_back(std::move(entry.second.done));
+    return true;
+  });
+  for (const CommandDone& done : ended)
+    if (done) done(false, why);
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/reception.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "supervisor/supervision/event_handling/reactions.hpp"
+
+namespace hirosco::supervisor {
+
+namespace {
+
+constexpr int messages_per_step = 256;
+/// Fewer than its own engine and a subsystem work off in one step, with all their reports.
+constexpr int ground_messages_per_step = 32;
+constexpr Duration unreadable_period = 1s;
+/// With so many under way the ground's next ones wait for a report instead of finding a full channel; but hardly for
+/// addressees that stand still: SAFE_ALL may be behind them.
+constexpr std::size_t most_outstanding = 128;
+constexpr Duration outstanding_patience = 1ms;
+
+}  // namespace
+
+bool Reception::reads(const Member& member) const {
+  if (!craft_.is_ground_link(member)) return true;
+  const bool addressees_behind =
+      parts_.outstanding.size() >= most_outstanding && craft_.now - answered_ < outstanding_patience;
+  return !addressees_behind && parts_.telemetry.ground().takes_telecommands(craft_.now);
+}
+
+void Reception::read(Member& member) {
+  MessageBuffer buffer;
+  const int most = craft_.is_ground_link(member) ? ground_messages_per_step : messages_per_step;
+  for (int left = most; left > 0 && member.alive() && reads(member); --left) {
+    const auto found = member.channel()->receive(buffer);
+    if (!found && found.error().code != ErrorCode::Unavailable) {
+      // Damage is no loss: it is counted and told, and what follows is read.
+      ++member.unreadable;
+      continue;
+    }
+    if (!found && !member.closed_at) {
+      // Whoever can be neither commanded nor heard moves nothing any more.
+      member.closed_at = craft_.now;
+      craft_.guard.fence(member.apid());
+    }
+    if (!found || found->flow == Flow::None) return;
+    take(member, found->message);
+  }
+}
+
+void Reception::take(Member& member, const Message& message) {
+  const std::uint16_t from = member.apid();
+  if (message.kind == MessageKind::Event) {
+    read_own();
+    if (!parts_.reactions.take_event(from, message.packet)) count_unreadable(from);
+    return;
+  }
+  const auto header = pus::read_primary_header(message.packet);
+  // Only the ground link brings what ground sent.
+  const bool from_ground = message.kind == MessageKind::GroundTelecommand;
+  if (!header || (from_ground && (!craft_.is_ground_link(member) || !header->telecommand))) {
+    ++member.unreadable;
+  } else if (!header->telecommand) {
+    // Before an answer, what was said before it: the copy of the telecommand that it answers.
+    read_own();
+    if (!parts_.telemetry.take(from, message.packet)) count_unreadable(from);
+  } else if (from_ground) {
+    parts_.telecommands.take({.packet = message.packet, .sender = Sender::Ground, .source = 0, .memory = {}});
+    read_own();  // what it said about that: its own backlog must not overflow in a flood
+  } else {
+    parts_.telecommands.take({.packet = message.packet, .sender = Sender::Subsystem, .source = from, .memory = {}});
+  }
+}
+
+void Reception::read_own() {
+  MessageBuffer buffer;
+  for (int left = messages_per_step; left > 0; --left) {
+    const auto found = parts_.own.channel().receive(buffer);
+    if (!found || found->flow == Flow::None) return;
+    const Message& message = found->message;
+    const bool taken = message.kind == MessageKind::Event ? parts_.reactions.take_event(supervisor_apid, message.packet)
+                                                          : parts_.telemetry.take(supervisor_apid, message.packet);
+    if (!taken) count_unreadable(supervisor_apid);
+  }
+}
+
+void Reception::hear(std::uint16_t, const pus::TelemetryView& report) {
+  const std::size_t under_way = parts_.outstanding.size();
+  parts_.outstanding.reported(report);
+  if (parts_.outstanding.size() < under_way) answered_ = craft_.now;
+}
+
+/// What is damaged or claims another sender is no loss: it is counted and told, and what follows is read (findings SF9).
+void Reception::count_unreadable(std::uint16_t from) {
+  ++parts_.traffic.counts.misdirected;
+  if (Member* origin = craft_.member(from)) ++origin->unreadable;
+}
+
+void Reception::tell_unreadable(Member& member) {
+  if (member.unreadable == member.unreadable_told || craft_.now < member.next_unreadable_told) return;
+  member.next_unreadable_told = craft_.now + unreadable_period;
+  craft_.tell(fmt::format("{}: {} messages could not be read", member.descriptor().name,
+                          member.unreadable - std::exchange(member.unreadable_told, member.unreadable)),
+              member.apid());
+}
+
+void Reception::tell_last_unreadable(Member& member) {
+  member.next_unreadable_told = craft_.now;
+  tell_unreadable(member);
+}
+
+}  // namespace hirosco::supervisor

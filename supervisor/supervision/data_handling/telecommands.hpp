@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <expected>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hirosco/data_transfer/memory.hpp"
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/outstanding.hpp"
+#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/data_handling/traffic.hpp"
+#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+
+namespace hirosco::supervisor {
+
+class PowerHandling;
+class Links;
+
+/// A telecommand as it came in.
+struct Incoming {
+  Octets packet;
+  Sender sender{Sender::Ground};
+  std::uint16_t source{0};  ///< APID of the sender, 0 = ground
+  MemoryHandle memory;
+};
+
+/// Permits or refuses, logs and forwards every telecommand (paper 4.3). One that is not essential leaves when it is on the
+/// disk and not before (decision 24). Thread: the supervisor's.
+class Telecommands final : public Watch {
+ public:
+  struct Parts {
+    Craft& craft;
+    OwnSubsystem& own;
+    const Links& links;
+    PowerHandling& power;
+    Outstanding& outstanding;
+    Traffic& traffic;
+  };
+  /// A telecommand that is not durable after this time is refused: late execution surprises whoever gave it up.
+  static constexpr Duration durable_limit = std::chrono::seconds{15};
+
+  explicit Telecommands(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
+
+  void take(const Incoming& incoming);
+  /// What has become durable leaves.
+  void forward_durable();
+  /// What does not become durable in its time is refused.
+  void watch(TimePoint now) override;
+  /// Since when the oldest waits for the disk; empty when none does.
+  [[nodiscard]] std::optional<TimePoint> waiting_since() const;
+
+  /// An essential function of the supervisor that is carried out where it is received, by no cycle and no queue. Whoever
+  /// carries it out reports on it.
+  void at_once(std::string function, std::function<void(const pus::Request&)> carry_out) {
+    at_once_.emplace(std::move(function), std::move(carry_out));
+  }
+
+ private:
+  struct Waiting {
+    std::uint64_t number{};
+    std::uint16_t apid{};
+    std::vector<std::byte> packet;
+    MemoryHandle memory;
+    pus::Request request;
+    std::uint32_t mode_epoch{0};
+    TimePoint since{};
+    bool releases_stop{false};
+    std::uint64_t fences{0};
+  };
+  /// A permitted telecommand on its way to the addressee.
+  struct Outgoing {
+    std::uint16_t apid{};
+    Octets packet;
+    MemoryHandle memory;
+    pus::Request request;
+    std::uint32_t mode_epoch{0};  ///< at permission; 0 = not bound to the mode
+    bool essential{false};
+    bool releases_stop{false};
+    std::uint64_t fences{0};  ///< of the addressee at permission
+  };
+  [[nodiscard]] std::expected<Permitted, pus::FailureNotice> judge(const pus::TelecommandView& telecommand,
+                                                                   Sender sender) const;
+  [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
+  void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
+  void answer_question(const Incoming& incoming, const pus::TelecommandView& question);
+  void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
+  void forward(const Outgoing& outgoing);
+
+  Parts parts_;
+  Craft& craft_;
+  std::map<std::string, std::function<void(const pus::Request&)>, std::less<>> at_once_;
+  std::deque<Waiting> waiting_;
+  TimePoint report_window_{};
+  int reports_in_window_{0};
+};
+
+/// For logs: the function with its first number, or the numbers of service and subtype.
+[[nodiscard]] std::string telecommand_text(const pus::TelecommandView& telecommand);
+
+}  // namespace hirosco::supervisor

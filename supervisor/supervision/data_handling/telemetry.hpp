@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/ground_route.hpp"
+#include "supervisor/supervision/data_handling/traffic.hpp"
+#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+
+namespace hirosco::supervisor {
+
+/// Logs every telemetry packet and routes it: to the ground, then to all parts that hear (paper 4.3).
+/// Thread: the supervisor's.
+class Telemetry {
+ public:
+  Telemetry(Craft& craft, OwnSubsystem& own, Traffic& traffic, std::vector<Hearer*> hearers)
+      : craft_{craft}, own_{own}, traffic_{traffic}, hearers_{std::move(hearers)} {}
+
+  /// False: it cannot be read, or claims another sender than whose channel brought it (decision 2).
+  [[nodiscard]] bool take(std::uint16_t from, Octets packet);
+  /// What waits for the ground link goes on as soon as that takes it; what it could not take is told once a second.
+  void serve_ground();
+  [[nodiscard]] const GroundRoute& ground() const noexcept { return ground_; }
+
+ private:
+  /// Nullptr: it is not there, or in Offline.
+  [[nodiscard]] Channel* to_ground();
+
+  Craft& craft_;
+  OwnSubsystem& own_;
+  Traffic& traffic_;
+  std::vector<Hearer*> hearers_;
+  GroundRoute ground_;
+  GroundRoute::Lost lost_told_{};
+  TimePoint next_loss_told_{};
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/event_handling/stops.hpp"
+
+#include <string>
+
+#include "supervisor/supervision/modes/commissioning.hpp"
+
+namespace hirosco::supervisor {
+
+void Stops::provide(Telecommands& telecommands) {
+  own_.on_function("SAFE_ALL", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
+  telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) {
+    pending_.push_back({craft_.guard.stop_all(), request});
+    own_.verification().accepted(request);
+    own_.verification().started(request);
+    after_stop("SAFE_ALL");
+  });
+}
+
+void Stops::asked() {
+  pending_.push_back({craft_.guard.stop_all(), std::nullopt});
+  after_stop("stop by signal or local socket");
+}
+
+void Stops::after_stop(std::string_view why) {
+  craft_.tell(std::string{why} + ": every actuator inhibited", supervisor_apid);
+  // Commissioning would lift the fences again with its next step.
+  commissioning_.cancel(why);
+  for (Member& subject : craft_.members) {
+    // The ground link has no actuators and is needed now more than ever.
+    if (!subject.alive() || craft_.is_ground_link(subject) || subject.state() != State::Operational) continue;
+    desk_.command(subject.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+  }
+}
+
+void Stops::follow() {
+  for (auto pending = pending_.begin(); pending != pending_.end();) {
+    const auto answers = craft_.guard.stop_outcome(pending->stop);
+    if (!answers) return;
+    tell_outcome(*pending, *answers);
+    pending = pending_.erase(pending);
+  }
+}
+
+void Stops::tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers) {
+  pus::FailureNotice notice{pus::FailureCode::DeviceError};
+  bool all = true;
+  for (const StopAnswer& answer : answers) {
+    const std::string who = craft_.name_of(answer.apid);
+    if (answer.killed) craft_.tell(who + " was ended: " + answer.name + " had not stopped in time", answer.apid);
+    if (answer.stopped) continue;
+    all = false;
+    craft_.tell(answer.name + " of " + who + " did not confirm that it stopped", answer.apid);
+    if (notice.data().size() + sizeof answer.apid <= pus::FailureNotice::max_data_octets) notice.with(answer.apid);
+  }
+  if (all) craft_.tell("everything has stopped", supervisor_apid);
+  if (pending.request && all) own_.verification().completed(*pending.request);
+  if (pending.request && !all) own_.verification().completion_failed(*pending.request, notice);
+}
+
+}  // namespace hirosco::supervisor

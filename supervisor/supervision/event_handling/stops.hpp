@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/telecommands.hpp"
+#include "supervisor/supervision/modes/sequence.hpp"
+
+namespace hirosco::supervisor {
+
+class Commissioning;
+
+/// SAFE_ALL, however it was asked for: the guard stops everything, the states follow, and what became of it is told by who
+/// was to stop. Thread: the supervisor's; the stop itself is the guard's.
+class Stops {
+ public:
+  Stops(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Commissioning& commissioning)
+      : craft_{craft}, own_{own}, desk_{desk}, commissioning_{commissioning} {}
+
+  /// SAFE_ALL, which no cycle and no queue holds up.
+  void provide(Telecommands& telecommands);
+  /// A signal or the local socket asked for a stop.
+  void asked();
+  /// Everything was stopped already: nothing starts it again, and the states follow.
+  void after_stop(std::string_view why);
+  /// Tells what became of the stops that are under way.
+  void follow();
+
+ private:
+  struct Pending {
+    std::uint64_t stop{0};
+    std::optional<pus::Request> request;  ///< empty: asked for by signal or local socket
+  };
+  void tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers);
+
+  Craft& craft_;
+  OwnSubsystem& own_;
+  CommandDesk& desk_;
+  Commissioning& commissioning_;
+  std::vector<Pending> pending_;
+};
+
+}  // namespace hirosco::supervisor

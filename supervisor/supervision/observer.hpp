@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "hirosco/pus/packet.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco::supervisor {
+
+/// Who wants to see what happens: a console, a test. Called in the supervisor's thread; must not block.
+struct Observer {
+  virtual ~Observer() = default;
+  /// One line of the story, as the log has it too.
+  virtual void told(OnboardTime when, std::string_view line) = 0;
+  /// Every telemetry packet that is routed.
+  virtual void routed(const pus::TelemetryView& packet) { static_cast<void>(packet); }
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/own_subsystem.hpp"
+
+#include <algorithm>
+
+namespace hirosco::supervisor {
+
+OwnSubsystem::OwnSubsystem(const descriptor::Subsystem& described, const World& world, Author& author)
+    : author_{author},
+      vital_{std::make_unique<VitalPage>()},
+      permit_{std::make_unique<PermitPage>()},
+      engine_{*this, described, world, channels_.subsystem_end(), *vital_, *permit_} {}
+
+Result<Step> OwnSubsystem::software_init() {
+  author_.provide(*this);
+  return done;
+}
+
+void OwnSubsystem::start(std::uint32_t mode_epoch) {
+  permit_->release();
+  permit_->mode_epoch.store(mode_epoch);
+  permit_->heartbeat.store(1);
+}
+
+TimePoint OwnSubsystem::step(TimePoint now) {
+  const TimePoint wake = engine_.service_step(now);
+  const auto demand = engine_.cycle_demand();
+  if (demand.wanted && !cycles_) next_cycle_ = now;
+  cycles_ = demand.wanted;
+  if (!demand.wanted) {
+    engine_.cycle_parked(demand.ticket);
+    return wake;
+  }
+  if (now >= next_cycle_) next_cycle_ = engine_.cycle_step(next_cycle_);
+  return std::min(wake, next_cycle_);
+}
+
+}  // namespace hirosco::supervisor

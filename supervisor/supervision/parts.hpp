@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/log_watch.hpp"
+#include "supervisor/supervision/data_handling/own_telecommands.hpp"
+#include "supervisor/supervision/data_handling/reception.hpp"
+#include "supervisor/supervision/data_handling/telecommands.hpp"
+#include "supervisor/supervision/data_handling/telemetry.hpp"
+#include "supervisor/supervision/event_handling/reactions.hpp"
+#include "supervisor/supervision/event_handling/stops.hpp"
+#include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/modes/modes.hpp"
+#include "supervisor/supervision/modes/shutdown.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/realtime_links/links.hpp"
+#include "supervisor/supervision/resource_management/power_handling.hpp"
+#include "supervisor/supervision/status/housekeeping.hpp"
+#include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
+#include "supervisor/supervision/subsystem_handling/processes.hpp"
+#include "supervisor/supervisor.hpp"
+
+namespace hirosco::supervisor {
+
+/// The boxes of the paper's figure 6 and what joins them. Here alone they are made and named; whoever watches or hears stands in
+/// a list, in the order in which it is asked. They know each other from before they begin to live: nothing is called until
+/// all are made.
+struct SupervisorParts final : OwnSubsystem::Author {
+  explicit SupervisorParts(const Supervisor::Parts& outside)
+      : craft{outside.mission, outside.world, outside.launcher, outside.guard, outside.log, outside.observer},
+        log_watch{craft, own, telecommands, outside.open_database},
+        own_telecommands{craft, telecommands, outside.first_sequence_count} {}
+
+  void provide(OwnSubsystem&) override {
+    housekeeping.provide();
+    modes.provide();
+    links.provide();
+    log_watch.provide();
+    power.provide();
+    stops.provide(telecommands);
+    shutdown.provide(telecommands);
+  }
+  void show() noexcept override { housekeeping.show(); }
+
+  Craft craft;
+  OwnSubsystem own{craft.mission.supervisor, craft.world, *this};
+  Outstanding outstanding;
+  Restarts restarts;
+  Traffic traffic;
+  // data handling
+  Telecommands telecommands{{craft, own, links, power, outstanding, traffic}};
+  LogWatch log_watch;
+  OwnTelecommands own_telecommands;
+  Telemetry telemetry{craft, own, traffic, {&traffic, &reception, &power, &own_telecommands, &links}};
+  Reception reception{{craft, own, telecommands, telemetry, reactions, outstanding, traffic}};
+  // real-time links, resource management
+  Links links{craft, own, own_telecommands};
+  PowerHandling power{craft, own, reactions};
+  // modes
+  Modes modes{craft, own};
+  Commissioning commissioning{craft, own_telecommands};
+  Shutdown shutdown{craft, own, own_telecommands, commissioning};
+  // event handling
+  Reactions reactions{{craft, own, own_telecommands, links, commissioning, restarts}};
+  Stops stops{craft, own, own_telecommands, commissioning};
+  // subsystem handling, status
+  GroundLinkCare ground_link{craft, own_telecommands, links, commissioning};
+  Processes processes{
+      {craft, own, reception, reactions, stops, links, outstanding, own_telecommands, ground_link, restarts}};
+  Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
+  std::array<Watch*, 8> watches{&processes, &ground_link, &housekeeping, &power,
+                                &links,     &log_watch,   &telecommands, &own_telecommands};
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/realtime_links/links.hpp"
+
+#include "hirosco/pus/st128_realtime_link.hpp"
+#include "supervisor/supervision/data_handling/own_telecommands.hpp"
+
+namespace hirosco::supervisor {
+
+void Links::provide() {
+  own_.on_function("LINK", [this](double link, Call call) -> Outcome {
+    const bool begun = handling_.establish(static_cast<std::uint8_t>(link), craft_.now, [this, call](bool success) {
+      if (success) own_.finish(call);
+      else own_.abort(call, pus::FailureCode::ExecutionError);
+    });
+    return begun ? running : refused(pus::FailureCode::WrongStatus);
+  });
+  own_.on_function("UNLINK", [this](double link, Call call) -> Outcome {
+    const bool begun = handling_.release(static_cast<std::uint8_t>(link), [this, call](bool success) {
+      if (success) own_.finish(call);
+      else own_.abort(call, pus::FailureCode::Timeout);
+    });
+    return begun ? running : refused(pus::FailureCode::WrongStatus);
+  });
+}
+
+const Mapping* Links::memory_of(std::uint8_t link) const {
+  const auto found = seen_.find(link);
+  return found != seen_.end() ? &found->second : nullptr;
+}
+
+void Links::hear(std::uint16_t from, const pus::TelemetryView& report) {
+  if (report.service() == pus::st128::service_type) handling_.handle(from, report);
+}
+
+void Links::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) {
+  const auto link = data.empty() ? std::uint8_t{0} : std::to_integer<std::uint8_t>(data[0]);
+  telecommands_.send(apid, pus::st128::service_type, subtype, data, memory,
+                     [=, this](bool success, const std::string& why) {
+                       if (!success) handling_.failed(apid, subtype, link, craft_.name_of(apid) + ": " + why);
+                     });
+}
+
+void Links::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {
+  seen_.erase(link.id);
+  // Without a mapping the link is only not told about.
+  if (auto mapping = up ? craft_.world.memory.map(handling_.memory_of(link.id), Access::ReadOnly)
+                        : Result<Mapping>{fail(ErrorCode::NotFound, "link is down")})
+    seen_.emplace(link.id, std::move(*mapping));
+  craft_.tell("link " + std::to_string(link.id) + " " + link.from + "." + link.provides + " -> " + link.to +
+              (up ? " up: " : " down: ") + text);
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/resource_management/power_ledger.hpp"
+
+namespace hirosco::supervisor {
+
+class Reactions;
+
+/// Keeps the ledger of electrical power true, and acts when the budget falls (paper 4.3 resource management).
+/// Thread: the supervisor's.
+class PowerHandling final : public Watch, public Hearer {
+ public:
+  PowerHandling(Craft& craft, OwnSubsystem& own, Reactions& reactions)
+      : craft_{craft}, own_{own}, reactions_{reactions}, ledger_{craft.mission.power_budget_w} {}
+
+  /// SET_POWER_BUDGET.
+  void provide();
+  [[nodiscard]] PowerLedger& ledger() noexcept { return ledger_; }
+  [[nodiscard]] const PowerLedger& ledger() const noexcept { return ledger_; }
+  /// What everybody draws by its state and configuration.
+  void observe();
+  void tell_shortage(std::uint16_t apid, const pus::FailureNotice& notice);
+  /// A failure of any stage, or completion: what was reserved for the telecommand is over.
+  void hear(std::uint16_t from, const pus::TelemetryView& report) override;
+  void watch(TimePoint now) override;
+
+ private:
+  void set_budget(double budget_w);
+  void shed_load();
+
+  Craft& craft_;
+  OwnSubsystem& own_;
+  Reactions& reactions_;
+  PowerLedger ledger_;
+};
+
+}  // namespace hirosco::supervisor

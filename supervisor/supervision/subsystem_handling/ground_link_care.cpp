@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
+
+#include <algorithm>
+
+#include "supervisor/supervision/realtime_links/links.hpp"
+#include "supervisor/supervision/subsystem_handling/restarts.hpp"
+
+namespace hirosco::supervisor {
+
+using descriptor::State;
+
+void GroundLinkCare::watch(TimePoint now) {
+  const Member* link = craft_.ground_link();
+  if (link == nullptr) return;
+  // In Offline, and after that until a configuration is in force, it hears nobody who could bring it up again.
+  const bool deaf = link->state() == State::Offline || link->configuration() == 0;
+  const bool others_at_it = craft_.shutting_down || commissioning_.running() || sequence_.running();
+  if (!link->alive() || !deaf || others_at_it) return lost_at_.reset();
+  if (!lost_at_) lost_at_ = now;
+  if (now - *lost_at_ < patience_) return;
+  lost_at_.reset();
+  restore(*link);
+}
+
+const descriptor::CommissionStep* GroundLinkCare::wanted(const Member& link) const {
+  for (const descriptor::Mode* mode : {craft_.mode, craft_.mission.find_mode(craft_.mission.start_mode)}) {
+    if (mode == nullptr) continue;
+    const auto found =
+        std::ranges::find(mode->commission, link.descriptor().name, &descriptor::CommissionStep::subsystem);
+    if (found != mode->commission.end()) return &*found;
+  }
+  return nullptr;
+}
+
+const descriptor::Configuration& GroundLinkCare::able(const descriptor::Subsystem& link,
+                                                      const std::string& configuration) const {
+  const auto& wished = *link.find_configuration(configuration);
+  const auto can = [&](const descriptor::Configuration& one) { return !links_.graph().absent_for(link.id, one); };
+  if (can(wished)) return wished;
+  const auto other = std::ranges::find_if(link.configurations, can);
+  return other != link.configurations.end() ? *other : wished;
+}
+
+void GroundLinkCare::restore(const Member& link) {
+  const descriptor::CommissionStep* step = wanted(link);
+  if (step == nullptr) return;
+  const descriptor::Subsystem& subsystem = link.descriptor();
+  const auto& configuration = able(subsystem, step->configuration);
+  std::vector<Sequence::Stage> stages;
+  const auto add = [&](std::string_view function, double argument, std::string text) {
+    stages.push_back({{subsystem.id, subsystem.name, std::string{function}, argument, std::move(text)}});
+  };
+  const auto take_to = [&](State state) { add("SET_STATE", static_cast<double>(state), std::string{to_text(state)}); };
+  if (link.state() == State::ErrorOperational) take_to(State::PostOperational);
+  if (link.state() != State::PreOperational) take_to(State::PreOperational);
+  add("CONFIGURE", configuration.id, "configuration " + configuration.name);
+  for (const State state : {State::SafeOperational, State::Operational})
+    if (state <= step->state) take_to(state);
+  craft_.restoring_ground_link = true;
+  sequence_.start(std::move(stages), Sequence::OnFailure::Stop, [this](bool success, const std::string& why) {
+    craft_.restoring_ground_link = false;
+    patience_ = success ? pause : std::min(2 * patience_, Restarts::longest_pause);
+    craft_.tell(success ? "the ground link is back" : "the ground link did not come back: " + why);
+  });
+}
+
+}  // namespace hirosco::supervisor

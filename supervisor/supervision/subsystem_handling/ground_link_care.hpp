@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/modes/sequence.hpp"
+
+namespace hirosco::supervisor {
+
+class Links;
+
+/// Without the ground link nobody could command anything: it comes back by itself, whether a fault or a telecommand took it
+/// away (adr 0043). Thread: the supervisor's.
+class GroundLinkCare final : public Watch {
+ public:
+  GroundLinkCare(Craft& craft, CommandDesk& desk, const Links& links, const Commissioning& commissioning)
+      : craft_{craft}, links_{links}, commissioning_{commissioning}, sequence_{desk} {}
+
+  void watch(TimePoint now) override;
+  /// To what its mode asks for, or, while links that this requires are down, to a configuration that requires none that is.
+  void restore(const Member& link);
+
+ private:
+  static constexpr Duration pause = std::chrono::seconds{1};
+  [[nodiscard]] const descriptor::CommissionStep* wanted(const Member& link) const;
+  [[nodiscard]] const descriptor::Configuration& able(const descriptor::Subsystem& link,
+                                                      const std::string& configuration) const;
+
+  Craft& craft_;
+  const Links& links_;
+  const Commissioning& commissioning_;
+  Sequence sequence_;
+  std::optional<TimePoint> lost_at_;
+  Duration patience_{pause};  ///< longer after each time that it did not come back
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/subsystem_handling/processes.hpp"
+
+#include <string>
+
+#include "supervisor/supervision/data_handling/own_telecommands.hpp"
+#include "supervisor/supervision/data_handling/reception.hpp"
+#include "supervisor/supervision/event_handling/reactions.hpp"
+#include "supervisor/supervision/event_handling/stops.hpp"
+#include "supervisor/supervision/realtime_links/links.hpp"
+#include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
+
+namespace hirosco::supervisor {
+
+using descriptor::Severity;
+
+namespace {
+/// How long a process may live on with its channel closed; what it does then cannot be known.
+constexpr Duration closed_channel_limit = 1s;
+}  // namespace
+
+void Processes::start_all() {
+  for (Member& member : craft_.members) {
+    const std::string& name = member.descriptor().name;
+    if (const auto guarded = craft_.guard.add(member.described(), craft_.is_ground_link(member)); !guarded) {
+      craft_.tell("cannot hold the second inhibit of " + name + "'s devices: " + guarded.error().text, member.apid());
+      craft_.failed = true;
+    }
+    launch(member);
+    for (const auto device : descriptor::actuators_without_enable(member.descriptor()))
+      craft_.tell(name + "'s " + std::string{device} + " has no second inhibit: that it has stopped is known from " +
+                      name + " only",
+                  member.apid());
+    for (const auto& changed : member.described().overrides)
+      craft_.tell(name + " begins with " + to_string(changed), member.apid());
+  }
+}
+
+void Processes::launch(Member& member) {
+  auto launched = craft_.launcher.launch(member.described());
+  if (!launched) {
+    craft_.tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
+    craft_.failed = true;
+    return;
+  }
+  craft_.guard.adopt(member.apid(), *launched);
+  member.started(std::move(*launched));
+  member.permit()->mode_epoch.store(craft_.mode_epoch, std::memory_order_release);
+  craft_.tell("started " + member.descriptor().name, member.apid());
+}
+
+void Processes::watch(TimePoint now) {
+  watch_ends(Whom::All);
+  while (const auto apid = parts_.restarts.take_due(now)) {
+    Member* subject = craft_.member(*apid);
+    if (subject == nullptr || subject->alive() || craft_.shutting_down) continue;
+    launch(*subject);
+    if (subject->alive() && craft_.is_ground_link(*subject)) parts_.ground_link.restore(*subject);
+  }
+}
+
+void Processes::watch_ends(Whom whom) {
+  for (Member& subject : craft_.members) {
+    if (!subject.alive() || (whom == Whom::Closed && !subject.closed_at)) continue;
+    if (const auto end = craft_.launcher.ended(subject.process())) {
+      parts_.reception.read(subject);  // its last words
+      parts_.reception.tell_last_unreadable(subject);
+      if (subject.alive()) died(subject, *end);
+      continue;
+    }
+    parts_.reception.tell_unreadable(subject);
+    if (subject.closed_at && craft_.now > *subject.closed_at + closed_channel_limit)
+      craft_.launcher.kill(subject.process());
+  }
+}
+
+void Processes::died(Member& subject, const ProcessEnd& end) {
+  const std::uint16_t apid = subject.apid();
+  if (craft_.shutting_down) {
+    subject.died();
+    return parts_.desk.fail_all_to(apid, "process ended");
+  }
+  craft_.guard.forget(apid);
+  const std::string how = (end.by_signal ? "signal " : "exit code ") + std::to_string(end.value);
+  craft_.tell(subject.descriptor().name + " died: " + how, apid);
+  parts_.own.announce("PROCESS_DIED", {static_cast<double>(apid)});
+  // The network is what it was before the death: the others are told while the graph still has the links.
+  // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
+  subject.died();
+  // Whatever it had begun will never be reported by itself (findings LW1).
+  for (const pus::Request& request : parts_.outstanding.take(apid))
+    parts_.own.verification().completion_failed(request, pus::FailureNotice{pus::FailureCode::OutcomeUnknown});
+  parts_.reactions.react(subject, "PROCESS_DIED", Severity::High);
+  parts_.links.forget(apid);
+  parts_.desk.fail_all_to(apid, "process died");
+}
+
+void Processes::take_guard_findings() {
+  using enum GuardFinding::Kind;
+  for (const GuardFinding& finding : craft_.guard.take_findings()) {
+    if (Member* subject = craft_.member(finding.apid); subject != nullptr) {
+      hear_of(*subject, finding.kind);
+    } else if (finding.kind == StopAsked) {
+      parts_.stops.asked();
+    } else if (finding.kind == SupervisorStill) {
+      parts_.own.announce("SUPERVISOR_STILL");
+      parts_.stops.after_stop("the supervisor itself stood still");
+    }
+  }
+}
+
+void Processes::hear_of(Member& subject, GuardFinding::Kind what) {
+  using enum GuardFinding::Kind;
+  if (!subject.alive()) return;
+  const auto tell = [&](std::string_view line) {
+    craft_.tell(subject.descriptor().name + std::string{line}, subject.apid());
+  };
+  switch (what) {
+    case CycleHangs: tell(" hangs: its cycle stands still"); break;
+    case ServiceHangs: tell(" hangs: its service loop stands still"); break;
+    case PageDamaged: tell(" hangs: its vital or permit page is damaged"); break;
+    case Back: return tell(" moves again");
+    case Killed: return tell(" was ended: it did not come back or had not stopped in time");
+    default: return;
+  }
+  parts_.own.announce("HANG", {static_cast<double>(subject.apid())});
+  parts_.reactions.react(subject, "HANG", Severity::High);
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/subsystem_handling/restarts.hpp"
+
+namespace hirosco::supervisor {
+
+class GroundLinkCare;
+class Links;
+class Outstanding;
+class OwnTelecommands;
+class Reactions;
+class Reception;
+class Stops;
+
+/// Starts the processes of the subsystems, sees them end or hang, and starts them again (paper 4.3 subsystem handling).
+/// Thread: the supervisor's.
+class Processes final : public Watch {
+ public:
+  struct Parts {
+    Craft& craft;
+    OwnSubsystem& own;
+    Reception& reception;
+    Reactions& reactions;
+    Stops& stops;
+    Links& links;
+    Outstanding& outstanding;
+    OwnTelecommands& desk;
+    GroundLinkCare& ground_link;
+    Restarts& restarts;
+  };
+  explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
+
+  void start_all();
+  void take_guard_findings();
+  /// Those whose channel is closed: how they ended is known at once.
+  void watch_closed() { watch_ends(Whom::Closed); }
+  void watch(TimePoint now) override;
+
+ private:
+  enum class Whom : std::uint8_t { All, Closed };
+  void launch(Member& member);
+  void watch_ends(Whom whom);
+  void hear_of(Member& member, GuardFinding::Kind what);
+  void died(Member& member, const ProcessEnd& end);
+
+  Parts parts_;
+  Craft& craft_;
+};
+
+}  // namespace hirosco::supervisor
