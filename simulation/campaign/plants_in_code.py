@@ -13,7 +13,6 @@ from campaign import Campaign, parse  # noqa: E402
 SUPERVISION = "supervisor/supervision"
 TELECOMMANDS, REACTIONS = f"{SUPERVISION}/data_handling/telecommands.cpp", f"{SUPERVISION}/event_handling/reactions.cpp"
 STOPS, SHUTDOWN = f"{SUPERVISION}/event_handling/stops.cpp", f"{SUPERVISION}/modes/shutdown.cpp"
-PROCESSES = f"{SUPERVISION}/subsystem_handling/processes.cpp"
 REFUSED = "return refused(pus::FailureCode::ExecutionError);"
 CHOSEN = "HIROSCO_PLANTED_FINDING"  # which of them a flight has
 # {finding: (invariant, [(file, as it is, as it was where the finding is chosen)])}
@@ -56,7 +55,7 @@ PLANTS = {
          "  } else {\n    member->permit->release();\n  }")]),
     # Nobody remembered what the dead had been asked.
     "LW1": ("I2", [
-        (PROCESSES, "for (const pus::Request& request : parts_.outstanding.take(apid))",
+        (TELECOMMANDS, "for (const pus::Request& request : parts_.outstanding.take(apid))",
          'for (const pus::Request& request : planted("LW1") ? std::vector<pus::Request>{} : parts_.outstanding.take(apid))')]),
     # An exchange moved a device's clock by at least one cycle, and the rest was forgotten.
     "LW13": ("I13", [

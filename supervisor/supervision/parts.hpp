@@ -42,7 +42,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
     log_watch.provide();
     power.provide();
     stops.provide(telecommands);
-    shutdown.provide(telecommands);
+    shutdown.provide();
   }
   void show() noexcept override { housekeeping.show(); }
 
@@ -63,14 +63,14 @@ struct SupervisorParts final : OwnSubsystem::Author {
   // modes
   Modes modes{craft, own};
   Commissioning commissioning{craft, own_telecommands};
-  Shutdown shutdown{craft, own, own_telecommands, commissioning};
+  Shutdown shutdown{{craft, own, own_telecommands, commissioning, telecommands}};
   // event handling
   Reactions reactions{{craft, own, own_telecommands, links, commissioning, restarts}};
   Stops stops{craft, own, own_telecommands, commissioning};
   // subsystem handling, status
   GroundLinkCare ground_link{craft, own_telecommands, links, commissioning};
   Processes processes{
-      {craft, own, reception, reactions, stops, links, outstanding, own_telecommands, ground_link, restarts}};
+      {craft, own, reception, reactions, stops, links, telecommands, own_telecommands, ground_link, restarts}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
   std::array<Watch*, 8> watches{&processes, &ground_link, &housekeeping, &power,
                                 &links,     &log_watch,   &telecommands, &own_telecommands};

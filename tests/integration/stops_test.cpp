@@ -245,6 +245,31 @@ TEST_F(Stops, AModeWhoseMembersAreDeadIsRefused) {
   EXPECT_EQ(flight.set_mode("telepresence").failure, FailureCode::WrongStatus);
 }
 
+/// Who stands still is not waited for, and what it was asked has an end all the same, before the ground link goes.
+TEST_F(Stops, WhatWasAskedOfWhoStandsStillAtShutdownEndsWithOutcomeUnknown) {
+  ASSERT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed);
+  for (const State state : {State::SafeOperational, State::PostOperational, State::Offline})
+    static_cast<void>(flight.set_state("JOYSTICK", state));
+  ASSERT_EQ(flight.state("JOYSTICK"), State::Offline);
+  std::vector<std::uint16_t> codes;
+  flight.story().on_telemetry = [&](const pus::TelemetryView& report) {
+    if (report.service() != 1 || report.subtype() != 8) return;
+    OctetReader reader{report.source_data()};
+    static_cast<void>(reader.get<std::uint32_t>());
+    codes.push_back(reader.get<std::uint16_t>());
+  };
+  flight.craft().stop("JOYSTICK", true);
+  const auto asked =
+      flight.craft().command("JOYSTICK", "SET_STATE", {static_cast<double>(State::PreOperational)}, 50ms);
+  ASSERT_FALSE(asked.completed);
+  ASSERT_FALSE(flight.craft().supervisor().finished());
+  flight.craft().supervisor().request_shutdown();
+  flight.craft().run(6s);
+  ASSERT_TRUE(flight.craft().supervisor().finished());
+  EXPECT_TRUE(flight.craft().supervisor().succeeded());
+  EXPECT_EQ(codes, std::vector{static_cast<std::uint16_t>(FailureCode::OutcomeUnknown)});
+}
+
 TEST_F(Stops, AMotionWhoseSubsystemDiesEndsWithOutcomeUnknown) {
   open_for_bring_up();
   for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})

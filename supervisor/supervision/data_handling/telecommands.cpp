@@ -185,11 +185,22 @@ std::optional<TimePoint> Telecommands::waiting_since() const {
 }
 
 void Telecommands::watch(TimePoint now) {
-  while (!waiting_.empty() && now - waiting_.front().since >= durable_limit) {
-    const Waiting late = std::move(waiting_.front());
-    waiting_.pop_front();
-    reject({.packet = late.packet, .memory = {}}, late.request, FailureNotice{FailureCode::QueueFull});
-  }
+  while (!waiting_.empty() && now - waiting_.front().since >= durable_limit) refuse_oldest(FailureCode::QueueFull);
+}
+
+void Telecommands::refuse_waiting() {
+  while (!waiting_.empty()) refuse_oldest(FailureCode::NotPermittedNow);
+}
+
+void Telecommands::outcome_unknown(std::uint16_t apid) {
+  for (const pus::Request& request : parts_.outstanding.take(apid))
+    parts_.own.verification().completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});
+}
+
+void Telecommands::refuse_oldest(FailureCode why) {
+  const Waiting oldest = std::move(waiting_.front());
+  waiting_.pop_front();
+  reject({.packet = oldest.packet, .memory = {}}, oldest.request, FailureNotice{why});
 }
 
 void Telecommands::forward(const Outgoing& outgoing) {

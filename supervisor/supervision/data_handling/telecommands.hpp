@@ -53,6 +53,10 @@ class Telecommands final : public Watch {
   void forward_durable();
   /// What does not become durable in its time is refused.
   void watch(TimePoint now) override;
+  /// Nothing of what waits for the disk leaves any more.
+  void refuse_waiting();
+  /// Who is gone will never report what it had begun (findings LW1).
+  void outcome_unknown(std::uint16_t apid);
   /// Since when the oldest waits for the disk; empty when none does.
   [[nodiscard]] std::optional<TimePoint> waiting_since() const;
 
@@ -90,6 +94,7 @@ class Telecommands final : public Watch {
   [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
   void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
   void answer_question(const Incoming& incoming, const pus::TelecommandView& question);
+  void refuse_oldest(pus::FailureCode why);
   void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
   void forward(const Outgoing& outgoing);
 

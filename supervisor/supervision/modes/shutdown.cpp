@@ -10,13 +10,13 @@ namespace {
 constexpr Duration limit = 5s;
 }
 
-void Shutdown::provide(Telecommands& telecommands) {
-  own_.on_function("SHUTDOWN", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
-  telecommands.at_once("SHUTDOWN", [this](const pus::Request& asked) {
-    own_.verification().accepted(asked);
-    own_.verification().started(asked);
+void Shutdown::provide() {
+  parts_.own.on_function("SHUTDOWN", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
+  parts_.telecommands.at_once("SHUTDOWN", [this](const pus::Request& asked) {
+    parts_.own.verification().accepted(asked);
+    parts_.own.verification().started(asked);
     request();
-    own_.verification().completed(asked);
+    parts_.own.verification().completed(asked);
   });
 }
 
@@ -25,37 +25,59 @@ void Shutdown::request() {
   craft_.shutting_down = true;
   deadline_ = craft_.now + limit;
   craft_.tell("shutdown");
-  commissioning_.drop();
-  Sequence::Stage safe, offline, ground;
+  parts_.commissioning.drop();
+  Sequence::Stage safe, offline;
   for (const Member& member : craft_.members) {
     const auto add = [&](Sequence::Stage& stage, State target) {
       stage.push_back({member.apid(), member.descriptor().name, "SET_STATE", static_cast<double>(target),
                        std::string{to_text(target)}});
     };
-    if (!member.alive()) continue;
-    const bool moves = member.state() == State::Operational;
-    const bool away = member.state() && member.state() != State::Offline;
-    if (moves) add(safe, State::SafeOperational);
-    // The ground link goes last, so that the ground sees the others go.
-    if (craft_.is_ground_link(member)) add(ground, State::Offline);
-    else if (away) add(offline, State::Offline);
+    if (!member.alive() || !member.state() || member.state() == State::Offline) continue;
+    if (member.state() == State::Operational) add(safe, State::SafeOperational);
+    if (!craft_.is_ground_link(member)) add(offline, State::Offline);
   }
-  sequence_.start({safe, offline, ground}, Sequence::OnFailure::GoOn, [this](bool success, const std::string& why) {
+  sequence_.start({safe, offline}, Sequence::OnFailure::GoOn, [this](bool success, const std::string& why) {
     if (!success) craft_.tell("shutdown: " + why);
-    for (Member& member : craft_.members) member.died();  // closing the channel ends the process
-    finished_ = true;
+    bring_down_ground_link();
   });
 }
 
+/// Last, so that the ground sees the others go, and hears what became of what it had asked them.
+void Shutdown::bring_down_ground_link() {
+  parts_.telecommands.refuse_waiting();
+  for (const Member& member : craft_.members)
+    if (!craft_.is_ground_link(member)) parts_.telecommands.outcome_unknown(member.apid());
+  Sequence::Stage ground;
+  if (const Member* link = craft_.ground_link(); link != nullptr && link->alive())
+    ground.push_back(
+        {link->apid(), link->descriptor().name, "SET_STATE", static_cast<double>(State::Offline), "Offline"});
+  sequence_.start({ground}, Sequence::OnFailure::GoOn, [this](bool success, const std::string& why) {
+    if (!success) craft_.tell("shutdown: " + why);
+    end();
+  });
+}
+
+void Shutdown::end() {
+  parts_.telecommands.refuse_waiting();
+  for (Member& member : craft_.members) {
+    parts_.telecommands.outcome_unknown(member.apid());
+    member.died();  // closing the channel ends the process
+  }
+  ended_ = true;
+}
+
 void Shutdown::enforce(TimePoint now) {
-  if (!craft_.shutting_down || finished_ || now <= deadline_) return;
-  craft_.tell("shutdown: time limit, ending what is left");
-  for (Member& member : craft_.members)
-    if (member.alive()) craft_.launcher.kill(member.process());
-  for (Member& member : craft_.members) member.died();
-  sequence_.cancel();
-  craft_.failed = true;
-  finished_ = true;
+  if (!craft_.shutting_down || finished_) return;
+  if (ended_) {
+    finished_ = true;
+  } else if (now > deadline_) {
+    craft_.tell("shutdown: time limit, ending what is left");
+    for (Member& member : craft_.members)
+      if (member.alive()) craft_.launcher.kill(member.process());
+    sequence_.cancel();
+    craft_.failed = true;
+    end();
+  }
 }
 
 }  // namespace hirosco::supervisor

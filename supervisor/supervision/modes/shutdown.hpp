@@ -15,23 +15,33 @@ namespace hirosco::supervisor {
 /// The orderly end of a flight: everybody back to Offline, the ground link last, within a time. Thread: the supervisor's.
 class Shutdown final {
  public:
-  Shutdown(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Commissioning& commissioning)
-      : craft_{craft}, own_{own}, commissioning_{commissioning}, sequence_{desk} {}
+  struct Parts {
+    Craft& craft;
+    OwnSubsystem& own;
+    CommandDesk& desk;
+    Commissioning& commissioning;
+    Telecommands& telecommands;
+  };
+  explicit Shutdown(const Parts& parts) : parts_{parts}, craft_{parts.craft}, sequence_{parts.desk} {}
 
   /// SHUTDOWN, which no cycle and no queue holds up.
-  void provide(Telecommands& telecommands);
+  void provide();
   void request();
-  /// Ends what is left when the time has run out.
+  /// Ends what is left when the time has run out. The flight is over one step after the last member: what is said of that
+  /// is in the log.
   void enforce(TimePoint now);
   [[nodiscard]] bool finished() const noexcept { return finished_; }
   [[nodiscard]] std::string waiting_for() const { return sequence_.waiting_for(); }
 
  private:
+  void bring_down_ground_link();
+  void end();
+
+  Parts parts_;
   Craft& craft_;
-  OwnSubsystem& own_;
-  Commissioning& commissioning_;
   Sequence sequence_;
   TimePoint deadline_{};
+  bool ended_{false};
   bool finished_{false};
 };
 

@@ -6,6 +6,7 @@
 
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
+#include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 #include "supervisor/supervision/event_handling/stops.hpp"
 #include "supervisor/supervision/realtime_links/links.hpp"
@@ -79,6 +80,7 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   const std::uint16_t apid = subject.apid();
   if (craft_.shutting_down) {
     subject.died();
+    parts_.telecommands.outcome_unknown(apid);
     return parts_.desk.fail_all_to(apid, "process ended");
   }
   craft_.guard.forget(apid);
@@ -88,9 +90,7 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   // The network is what it was before the death: the others are told while the graph still has the links.
   // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();
-  // Whatever it had begun will never be reported by itself (findings LW1).
-  for (const pus::Request& request : parts_.outstanding.take(apid))
-    parts_.own.verification().completion_failed(request, pus::FailureNotice{pus::FailureCode::OutcomeUnknown});
+  parts_.telecommands.outcome_unknown(apid);
   parts_.reactions.react(subject, "PROCESS_DIED", Severity::High);
   parts_.links.forget(apid);
   parts_.desk.fail_all_to(apid, "process died");

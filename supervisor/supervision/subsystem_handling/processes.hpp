@@ -11,11 +11,11 @@ namespace hirosco::supervisor {
 
 class GroundLinkCare;
 class Links;
-class Outstanding;
 class OwnTelecommands;
 class Reactions;
 class Reception;
 class Stops;
+class Telecommands;
 
 /// Starts the processes of the subsystems, sees them end or hang, and starts them again (paper 4.3 subsystem handling).
 /// Thread: the supervisor's.
@@ -28,7 +28,7 @@ class Processes final : public Watch {
     Reactions& reactions;
     Stops& stops;
     Links& links;
-    Outstanding& outstanding;
+    Telecommands& telecommands;
     OwnTelecommands& desk;
     GroundLinkCare& ground_link;
     Restarts& restarts;
