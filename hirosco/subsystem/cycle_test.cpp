@@ -37,6 +37,49 @@ TEST(CyclePermission, ThatEndsUnderTheSameEpochEndsInTheSameCycle) {
   EXPECT_FALSE(probe.last.active);
 }
 
+TEST(CyclePermission, IsToldAsTheEpochSeenAndTheCycleOfTheFirstInhibition) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  rig.bring_to(State::Operational);
+  rig.permit.fence();
+  const std::uint64_t before = rig.vital.cycles.load();
+  rig.cycle(3);
+  EXPECT_EQ(rig.vital.cycles.load(), before + 3);
+  EXPECT_EQ(rig.vital.inhibited_at_cycle.load(), before + 1);
+  EXPECT_EQ(rig.vital.seen_epoch.load(), rig.permit.epoch.load());
+}
+
+TEST(CyclePermission, EndsWithTheStopFlagInEveryStateAndThoughTheWordStillHolds) {
+  for (const State state : {State::SafeOperational, State::Operational}) {
+    Probe probe;
+    Rig rig{probe, probe_descriptor};
+    rig.bring_to(state);
+    rig.permit.stop.store(1);
+    rig.cycle();
+    EXPECT_EQ(rig.inhibited(), inhibited_by_stop) << to_text(state);
+  }
+}
+
+TEST(CycleStates, AreFirstOnceAndCountOn) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  rig.bring_to(State::PreOperational);
+  for (const State state : {State::SafeOperational, State::Operational, State::SafeOperational}) {
+    const std::uint64_t before = probe.last.count;
+    rig.set_state(state);
+    rig.service();
+    rig.cycle();
+    EXPECT_EQ(probe.last.state, state);
+    EXPECT_TRUE(probe.last.first) << to_text(state);
+    EXPECT_EQ(probe.last.count, before + 1);
+    EXPECT_EQ(probe.last.planned, rig.clock.now());
+    EXPECT_EQ(probe.last.period, 500us);
+    rig.cycle();
+    EXPECT_FALSE(probe.last.first) << to_text(state);
+    rig.service();
+  }
+}
+
 TEST(CycleInputs, ThatMayBeHeldWhenMissingAreReportedAndInhibitNothing) {
   Probe probe;
   Rig rig{probe, with(R"(missing="inhibit")", R"(missing="hold")")};

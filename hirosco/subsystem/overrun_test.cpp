@@ -82,5 +82,70 @@ TEST_F(CycleTime, FallsIntoBinsOfPowersOfTwo) {
   EXPECT_THAT(times.latency, ElementsAre(1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0));
 }
 
+TEST_F(CycleTime, CyclesThatCameDueBeforeTheLastHadEndedAreCountedAsMissed) {
+  cycle(1ms);
+  EXPECT_EQ(rig.vital.missed.load(), 0u) << "it ends just as the next is due";
+  cycle(1ms + 1ns);
+  EXPECT_EQ(rig.vital.missed.load(), 1u);
+  EXPECT_EQ(rig.vital.overruns.load(), 1u);
+  cycle(4500us);
+  EXPECT_EQ(rig.vital.missed.load(), 5u);
+}
+
+TEST_F(CycleTime, ACycleThatEndsInTimeBreaksTheRowAndOneOfExactlyItsPeriodEndsInTime) {
+  for (const Duration takes : {1001us, 1001us, 1000us, 1001us, 1001us}) cycle(takes);
+  rig.service();
+  EXPECT_THAT(rig.reports(5, 3), ::testing::IsEmpty());
+  cycle(1001us);
+  rig.service();
+  EXPECT_THAT(rig.reports(5, 3), ElementsAre("f00300000003"));
+}
+
+TEST_F(CycleTime, TheMeanFollowsByAThousandthOfTheDifferenceAndIsToldBesideTheLongest) {
+  const auto mean = [&] { return rig.vital.execution_mean_ns.load(); };
+  ASSERT_EQ(mean(), 0u);
+  cycle(1s);
+  EXPECT_EQ(mean(), 1'000'000u);
+  cycle(2s);
+  EXPECT_EQ(mean(), 2'999'000u);
+  cycle(0us);
+  EXPECT_EQ(mean(), 2'996'001u);
+  const CycleStatistics told = rig.subsystem.cycle().statistics().load();
+  EXPECT_EQ(told.overruns, 2u);
+  EXPECT_FLOAT_EQ(told.max_us, 2e6F);
+  EXPECT_FLOAT_EQ(told.avg_us, 2996.001F);
+}
+
+TEST_F(CycleTime, OfAnEarlierConfigurationIsForgottenInTheNext) {
+  slow.inhibits = true;
+  for (int i = 0; i < 2; ++i) cycle(2500us, 40us);
+  slow.inhibits = false;
+  slow.takes = 0us;
+  rig.set_state_now(State::PostOperational);
+  rig.set_state_now(State::PreOperational);
+  const auto configured = rig.configure(2);
+  rig.service();
+  ASSERT_EQ(rig.outcome(configured), "1 3 7");
+  const CycleStatistics statistics = rig.subsystem.cycle().statistics().load();
+  EXPECT_EQ(statistics.overruns, 0u);
+  EXPECT_EQ(statistics.max_us, 0.0F);
+  EXPECT_EQ(statistics.avg_us, 0.0F);
+  const CycleTimes times = rig.subsystem.cycle().times().load();
+  EXPECT_THAT(times.execution, ::testing::Each(0));
+  EXPECT_THAT(times.latency, ::testing::Each(0));
+  planned = rig.clock.now();
+  cycle(2500us);
+  EXPECT_EQ(slow.last.count, 0u);
+  EXPECT_TRUE(slow.last.first);
+  EXPECT_EQ(rig.inhibited(), 0u);
+  EXPECT_EQ(rig.vital.overruns.load(), 1u);
+  EXPECT_EQ(rig.vital.latency_max_ns.load(), 0u);
+  EXPECT_EQ(rig.vital.execution_max_ns.load(), 2'500'000u);
+  EXPECT_EQ(rig.vital.execution_mean_ns.load(), 2'500u);
+  EXPECT_EQ(rig.subsystem.cycle().times().load().execution[12], 1u);
+  rig.service();
+  EXPECT_THAT(rig.reports(5, 3), ::testing::IsEmpty()) << "two and one are no three in a row";
+}
+
 }  // namespace
 }  // namespace hirosco

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 namespace hirosco {
@@ -13,11 +14,11 @@ constexpr std::array all_states{
     State::Offline,     State::SoftwareInit,     State::HardwareInit,    State::PreOperational, State::SafeOperational,
     State::Operational, State::ErrorOperational, State::PostOperational, State::HardwareDeinit, State::SoftwareDeinit};
 
-/// Figure 4 written by hand: row = from, column = to, in the order of all_states.
+/// Figure 4 written by hand: row = from, column = to, in the order of all_states; f is an edge of a failure only.
 constexpr std::array<std::string_view, 10> figure_4{
     ".1........",  // Offline
-    "..1......1",  // SoftwareInit
-    "...1....1.",  // HardwareInit
+    "..1......f",  // SoftwareInit
+    "...1....f.",  // HardwareInit
     "....1.11..",  // PreOperational
     ".....111..",  // SafeOperational
     "....1.1...",  // Operational
@@ -30,8 +31,26 @@ constexpr std::array<std::string_view, 10> figure_4{
 TEST(States, AreConnectedAsFigure4Says) {
   for (std::size_t from = 0; from < 10; ++from)
     for (std::size_t to = 0; to < 10; ++to)
-      EXPECT_EQ(is_edge(all_states[from], all_states[to]), figure_4[from][to] == '1')
+      EXPECT_EQ(is_edge(all_states[from], all_states[to]), figure_4[from][to] != '.')
           << to_text(all_states[from]) << " -> " << to_text(all_states[to]);
+}
+
+TEST(States, AnEdgeIsOfTheKindThatFigure4Says) {
+  const auto place = [](State state) {
+    return static_cast<std::size_t>(std::ranges::find(all_states, state) - all_states.begin());
+  };
+  for (const Edge& edge : transitions)
+    EXPECT_EQ(edge.kind == EdgeKind::Failure, figure_4[place(edge.from)][place(edge.to)] == 'f')
+        << to_text(edge.from) << " -> " << to_text(edge.to);
+}
+
+/// Written by hand, in the order of all_states: t goes on by itself, c runs in cycles.
+TEST(States, AreTransientOrCyclicAsThePaperSays) {
+  constexpr std::string_view kinds = ".ttcccc.tt";
+  for (std::size_t i = 0; i < all_states.size(); ++i) {
+    EXPECT_EQ(is_transient(all_states[i]), kinds[i] == 't') << to_text(all_states[i]);
+    EXPECT_EQ(is_cyclic(all_states[i]), kinds[i] == 'c') << to_text(all_states[i]);
+  }
 }
 
 /// Which commands are legal, written by hand: O offline, P pre, S safe, X operational, E error, T post.
@@ -83,6 +102,14 @@ TEST(States, TheLimitOfSilenceIsOneCycleAtLeastWhateverThePeriod) {
   EXPECT_EQ(supervisor_silence_cycles(Duration{0}), 1u);
   EXPECT_EQ(supervisor_silence_cycles(Duration{-5}), 1u);
   EXPECT_EQ(supervisor_silence_cycles(std::chrono::hours{1}), 1u);
+}
+
+TEST(States, TheLimitOfSilenceIsTwoSecondsInWholeCyclesAndNotShorter) {
+  EXPECT_EQ(supervisor_silence_cycles(1ms), 2000u);
+  EXPECT_EQ(supervisor_silence_cycles(500us), 4000u);
+  EXPECT_EQ(supervisor_silence_cycles(3ms), 667u);
+  EXPECT_EQ(supervisor_silence_cycles(2s), 1u);
+  EXPECT_EQ(supervisor_silence_cycles(2s - 1ns), 2u);
 }
 
 /// Written by hand from figure 4: - leads nowhere, S and H to the deinit states, E to Error-Operational.

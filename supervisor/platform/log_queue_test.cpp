@@ -46,6 +46,94 @@ TEST(LogQueue, GivesRecordsBackInTheOrderOfTheirNumbers) {
   EXPECT_EQ(all[0].run, OnboardTime{5s});
 }
 
+TEST(LogQueue, GivesBackAllThatARecordWasMadeOfThoughItsPlaceInTheBatchWasUsedBefore) {
+  LogQueue queue{{.telemetry_records = 1, .telemetry_octets = 100, .vital_records = 8, .vital_octets = 100},
+                 OnboardTime{5s}};
+  LogBatch batch{1};
+  const std::array packet{std::byte{1}, std::byte{2}, std::byte{3}};
+  const LogEntry entry{
+      .kind = LogKind::TelecommandRefused, .source = 11, .peer = 12, .packet = packet, .note = Note{"why"}};
+  const LogRecord wanted{.run = OnboardTime{5s},
+                         .number = 1,
+                         .stored = OnboardTime{7s},
+                         .monotonic = TimePoint{2s},
+                         .kind = entry.kind,
+                         .source = 11,
+                         .peer = 12,
+                         .note = entry.note,
+                         .packet = {packet.begin(), packet.end()}};
+  queue.push(entry, wanted.stored, wanted.monotonic);
+  queue.take(batch);
+  EXPECT_EQ(batch.records().front(), wanted);
+  batch.clear();
+  queue.push(queued_telemetry(), OnboardTime{8s}, TimePoint{3s});
+  queue.push(queued_telemetry(), OnboardTime{9s}, TimePoint{4s});
+  queue.take(batch);
+  EXPECT_EQ(batch.records().front(), (LogRecord{.run = OnboardTime{5s},
+                                                .number = 2,
+                                                .stored = OnboardTime{8s},
+                                                .monotonic = TimePoint{3s},
+                                                .kind = LogKind::Gap,
+                                                .lost = 1,
+                                                .note = Note{"no room before the database, up to number 2"}}));
+  batch.clear();
+  queue.take(batch);
+  EXPECT_EQ(batch.records().front().lost, 0U);
+  EXPECT_TRUE(queue.empty());
+}
+
+TEST(LogQueue, AGapBeginsWithTheOldestThatIsMissingThoughALaterOneWasRefusedBefore) {
+  LogQueue queue{{.telemetry_records = 1, .telemetry_octets = 10, .vital_records = 8, .vital_octets = 10}, {}};
+  const std::vector<std::byte> long_packet(11);
+  queue.push(queued_telemetry(), OnboardTime{1s}, TimePoint{1s});
+  EXPECT_EQ(queue.push(queued_telemetry(long_packet), OnboardTime{2s}, TimePoint{2s}), 0U);
+  queue.push(queued_telemetry(), OnboardTime{3s}, TimePoint{3s});  // costs the first its place
+  EXPECT_EQ(queue.waiting(), 2U);
+  const auto all = take_all(queue);
+  ASSERT_THAT(numbers(all), ElementsAre(1, 3));
+  EXPECT_EQ(all[0].lost, 2U);
+  EXPECT_EQ(all[0].stored, OnboardTime{1s});
+  EXPECT_EQ(all[0].monotonic, TimePoint{1s});
+  EXPECT_EQ(all[0].note, Note{"no room before the database, up to number 2"});
+  EXPECT_EQ(queue.refused(), 1U);
+  EXPECT_EQ(queue.lost(), 1U);
+}
+
+TEST(LogQueue, UsesItsRingOfTelemetryToTheLastOctetAndThatOfTelecommandsToThreeQuarters) {
+  LogQueue queue{{.telemetry_records = 8, .telemetry_octets = 10, .vital_records = 80, .vital_octets = 40}, {}};
+  const std::vector<std::byte> packet(40);
+  const auto telecommand = [&](std::size_t octets) {
+    return push(queue, {.kind = LogKind::TelecommandForwarded, .packet = Octets{packet}.first(octets)});
+  };
+  for (int i = 0; i < 2; ++i) EXPECT_NE(push(queue, queued_telemetry(Octets{packet}.first(5))), 0U);
+  EXPECT_EQ(queue.lost(), 0U);
+  EXPECT_EQ(telecommand(31), 0U);
+  EXPECT_NE(telecommand(30), 0U);
+  EXPECT_EQ(telecommand(1), 0U);
+  EXPECT_NE(telecommand(0), 0U);
+  const LogEntry action{.kind = LogKind::Action, .packet = Octets{packet}.first(10)};
+  EXPECT_NE(push(queue, action), 0U);
+  EXPECT_EQ(push(queue, action), 0U);
+}
+
+TEST(LogQueue, ABatchIsFullWhenItHasAllItsRecordsOrAMillionOctets) {
+  LogBatch few{2};
+  EXPECT_TRUE(few.empty());
+  static_cast<void>(few.add(0));
+  EXPECT_FALSE(few.full());
+  static_cast<void>(few.add(0));
+  EXPECT_TRUE(few.full());
+  LogBatch many{2};
+  static_cast<void>(many.add(LogBatch::full_octets - 1));
+  EXPECT_FALSE(many.full());
+  many.clear();
+  EXPECT_TRUE(many.empty());
+  EXPECT_TRUE(many.add(1).packet.size() == 1 && !many.full()) << "octets are of this batch only";
+  many.clear();
+  static_cast<void>(many.add(LogBatch::full_octets));
+  EXPECT_TRUE(many.full());
+}
+
 TEST(LogQueue, PushesOutTheOldestTelemetryAndSaysExactlyHowMuch) {
   LogQueue queue{{.telemetry_records = 2, .telemetry_octets = 100, .vital_records = 8, .vital_octets = 100}, {}};
   push(queue, queued_telecommand());

@@ -364,6 +364,82 @@ TEST(ThreadedPacketLog, WritesWhatWaitsBeforeItEnds) {
   expect_complete(all_of(*memory), 10);
 }
 
+TEST(ThreadedPacketLog, WritesTelemetryTogetherWithTheTelecommandThatItWaitedFor) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  Semaphore progress;
+  ThreadedPacketLog log{
+      clock, std::make_unique<Shared>(memory), {.delay = 3600s, .on_progress = [&] { progress.post(); }}};
+  for (int i = 0; i < 200; ++i) ASSERT_NE(log.append(telemetry()), 0U);
+  ASSERT_NE(log.append(telecommand()), 0U);
+  while (log.durable() < 201) progress.wait();
+  const LogCounters counters = log.counters();
+  EXPECT_EQ(counters.accepted, 201U);
+  EXPECT_EQ(counters.durable, 201U);
+  EXPECT_EQ(counters.batches, 1U) << "though the queue is locked for some records at a time only";
+  EXPECT_EQ(counters.high_water, 201U);
+  EXPECT_EQ(counters.lost + counters.refused + counters.failures + counters.switches, 0U);
+  expect_complete(all_of(*memory), 201);
+}
+
+TEST(ThreadedPacketLog, EndsAWorkingDatabaseWithANoteOfTheNextThatGoesOnBehindIt) {
+  const SystemClock clock;
+  auto first = std::make_shared<MemoryDatabase>();
+  auto second = std::make_shared<MemoryDatabase>();
+  ThreadedPacketLog log{clock, std::make_unique<Shared>(first), {}};
+  ASSERT_EQ(log.append(telecommand()), 1U);
+  log.switch_to(std::make_unique<Shared>(second));
+  ASSERT_EQ(log.append(telecommand()), 3U);
+  ASSERT_TRUE(log.flush(long_enough));
+  expect_complete(all_of(*first), 2);
+  EXPECT_EQ(all_of(*first).back().kind, LogKind::Switched);
+  EXPECT_EQ(all_of(*first).back().note, Note{"the log goes on in: shared"});
+  ASSERT_EQ(all_of(*second).size(), 1U);
+  EXPECT_EQ(all_of(*second).front().number, 3U);
+  EXPECT_EQ(log.counters().switches, 1U);
+}
+
+TEST(ThreadedPacketLog, CountsWhatItRefusesBehindAStalledDisk) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  auto stall = std::make_shared<Stall>();
+  ThreadedPacketLog log{
+      clock,
+      std::make_unique<StalledDatabase>(stall, memory),
+      {.limits = {.telemetry_records = 2, .telemetry_octets = 10, .vital_records = 4, .vital_octets = 10}}};
+  ASSERT_EQ(log.append(telecommand()), 1U);
+  stall->reached.wait();
+  for (int i = 0; i < 3; ++i) ASSERT_NE(log.append(telecommand()), 0U);
+  EXPECT_EQ(log.append(telecommand()), 0U);
+  for (int i = 0; i < 3; ++i) ASSERT_NE(log.append(telemetry()), 0U);
+  const LogCounters counters = log.counters();
+  EXPECT_EQ(counters.refused, 1U);
+  EXPECT_EQ(counters.lost, 1U);
+  EXPECT_EQ(counters.accepted, 6U);
+  EXPECT_EQ(counters.high_water, 6U) << "three telecommands, two of telemetry, one gap";
+  stall->release.count_down();
+  ASSERT_TRUE(log.flush(long_enough));
+  EXPECT_EQ(log.durable(), 8U);
+  expect_complete(all_of(*memory), 8);
+}
+
+TEST(ThreadedPacketLog, TellsNobodyOfProgressOnceItIsGone) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  auto stall = std::make_shared<Stall>();
+  auto told = std::make_shared<std::atomic<int>>(0);
+  {
+    ThreadedPacketLog log{clock,
+                          std::make_unique<StalledDatabase>(stall, memory),
+                          {.flush_limit = 1ms, .on_progress = [told] { ++*told; }}};
+    ASSERT_NE(log.append(telecommand()), 0U);
+    stall->reached.wait();
+  }
+  stall->release.count_down();
+  while (told.use_count() > 1 || all_of(*memory).empty()) std::this_thread::yield();
+  EXPECT_EQ(*told, 0);
+}
+
 /// Appends for ever and tells `pipe` what is durable. Ends by the signal of its parent only.
 [[noreturn]] void log_until_killed(const std::filesystem::path& path, int pipe) {
   const SystemClock clock;
@@ -456,6 +532,49 @@ TEST(DirectPacketLog, ClosesAWorkingDatabaseWithASwitchedRecord) {
   ASSERT_EQ(log.append(telecommand()), 3U);
   EXPECT_EQ(all_of(*first).back().kind, LogKind::Switched);
   EXPECT_EQ(all_of(*second).size(), 1U);
+}
+
+TEST(DirectPacketLog, CountsWhatItTookLostRefusedStoredAndSwitched) {
+  const ManualClock clock;
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  auto memory = std::make_shared<MemoryDatabase>();
+  hold->tries = 4;
+  DirectPacketLog log{clock,
+                      std::make_unique<HeldDatabase>(hold, memory),
+                      {.telemetry_records = 2, .telemetry_octets = 10, .vital_records = 8, .vital_octets = 10}};
+  const std::vector<std::byte> long_packet(11);
+  for (int i = 0; i < 3; ++i) ASSERT_NE(log.append(telemetry()), 0U);
+  EXPECT_EQ(log.append({.kind = LogKind::TelecommandReceived, .packet = long_packet}), 0U);
+  EXPECT_EQ(log.durable(), 0U);
+  EXPECT_FALSE(log.failure()) << "held is not failed";
+  EXPECT_EQ(log.counters().batches, 0U);
+  ASSERT_EQ(log.append(telecommand()), 5U);
+  EXPECT_EQ(log.durable(), 5U);
+  expect_complete(all_of(*memory), 5);
+  log.switch_to(std::make_unique<BreakingDatabase>(0, memory));
+  EXPECT_EQ(all_of(*memory).back().note, Note{"the log goes on in: breaking"});
+  ASSERT_EQ(log.append(telecommand()), 7U);
+  EXPECT_TRUE(log.failure());
+  const LogCounters counters = log.counters();
+  EXPECT_EQ(counters.accepted, 6U);
+  EXPECT_EQ(counters.lost, 0U);
+  EXPECT_EQ(counters.refused, 1U);
+  EXPECT_EQ(counters.durable, 6U);
+  EXPECT_EQ(counters.batches, 3U);
+  EXPECT_EQ(counters.failures, 1U);
+  EXPECT_EQ(counters.switches, 1U);
+}
+
+TEST(DirectPacketLog, ADatabaseInTroubleIsAFailureAsLongAsItIs) {
+  const ManualClock clock;
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  DirectPacketLog log{clock, std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>())};
+  EXPECT_FALSE(log.failure());
+  hold->troubles = 1;
+  ASSERT_TRUE(log.failure());
+  EXPECT_EQ(log.failure()->value, ENOSPC);
+  hold->troubles = 0;
+  EXPECT_FALSE(log.failure());
 }
 
 }  // namespace
