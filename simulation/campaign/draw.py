@@ -17,6 +17,8 @@ MEMBER_FAULTS = ["kill", "stop", "spin", "stick", "strain"]
 LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
 # How long the craft is left alone with a fault that was aimed: what ends or stops a process takes longest.
 LEFT_ALONE_S = {**dict.fromkeys(DEVICE_FAULTS, 0.7), **dict.fromkeys(MEMBER_FAULTS, 1.6)}
+SILENCED_EVERY, SILENCED_AT = 5, 3   # flights that end with an unplug that ground silenced (finding SF6)
+SILENCED_S = 5.5        # of the end of such a flight, in which nothing else happens
 MOST_STRIKES = 2        # of a member in one flight by what may end it: who dies too often stays down
 # Of every subsystem, beside those of its descriptor: states, failures, lost devices and stale sets.
 FRAMEWORK_EVENTS = [*range(0xF000, 0xF006), *range(0xF100, 0xF103), *range(0xF200, 0xF204)]
@@ -65,6 +67,7 @@ class Draw:
     def __init__(self, mission, seed, index, wanted_commands=(), wanted_faults=()):
         self.mission = mission
         self.random = random.Random(f"{seed}/{index}")
+        self.index = index
         self.lines = []           # (time, words)
         self.struck = set()       # whom something was done to that may last
         self.wanted_commands, self.wanted_faults = list(wanted_commands), list(wanted_faults)
@@ -338,8 +341,7 @@ class Draw:
         time = self.bring_up(r.uniform(0.5, FINALE_S - 4))
         victim = r.choice(self.acting)
         if r.random() < 0.5:
-            for event in [*victim.events, *FRAMEWORK_EVENTS]:
-                self.add(time + 0.05, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
+            self.silence(time + 0.05, victim)
         what = r.choice(["fault unplug", "kill", "stop", "strain", "SAFE_ALL", "SUPERVISOR", "late", "twice", "twice"])
         safe_all = lambda at: self.function(at, mission.supervisor, "SAFE_ALL")
         if what == "SUPERVISOR":  # may anybody change the state of the supervisor itself?
@@ -364,11 +366,30 @@ class Draw:
         else:
             self.fault(time + 0.3, what, victim.name)
 
+    def strike_silenced(self):
+        """Nothing else happens: ground silences every event by which a recovery hears of a lost device, and it is unplugged."""
+        begin = FINALE_S - SILENCED_S
+        self.lines = [line for line in self.lines if line[0] < begin]
+        self.struck = {"LOG", *(member.name for member in self.mission.members)}
+        self.calm(begin)
+        time = self.drive(begin + 1.0, OPERATIONAL, "COUPLED")  # who died is back by then
+        victim = self.acting[self.index // SILENCED_EVERY % len(self.acting)]
+        self.silence(time + 0.05, victim)
+        device = next(device for device, (owner, _) in self.mission.devices.items() if owner == victim.name)
+        self.add(time + 0.3, f"fault {device} unplug")
+        self.struck.add(victim.name)
+
+    def silence(self, time, victim):
+        for event in [*victim.events, *FRAMEWORK_EVENTS]:
+            self.add(time, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
+
     # --- all of it ---------------------------------------------------------------------------------------------------
     def text(self):
         aimed = self.aim() if self.wanted_commands or self.wanted_faults else 0.3
         self.roam(self.random.choice([0.3, aimed, aimed]))
         self.strike_in_use()
+        if self.index % SILENCED_EVERY == SILENCED_AT:
+            self.strike_silenced()
         self.lines.sort(key=lambda line: line[0])
         head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}"]
         return "\n".join(head + [f"{time:.6f} {words}" for time, words in self.lines]) + "\n"

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Findings as they were in the code. All are put back into a copy of the sources, which is built once; each is flown until
-the judge sees it. Nothing of them is ever in what flies. plants_in_code.py [--flights N] [--seed S] [FINDING...]"""
+the judge sees it, and the same flights without it, of which the judge must say nothing. Nothing of them is ever in what flies.
+plants_in_code.py [--flights N] [--seed S] [FINDING...]"""
 import argparse, os, pathlib, shutil, subprocess, sys, tempfile, time
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -115,6 +116,21 @@ class Copy:
             raise RuntimeError(f"{' '.join(words)}: {(done.stdout + done.stderr)[-2000:]}")
 
 
+def control(copy, finding, arguments, number, flown):
+    """What the judge says of the same flights without the defect: nothing, or it was found for another reason. Flights of the
+    mission as it is are flown once for all findings."""
+    os.environ[CHOSEN] = ""
+    of_mission = finding if any(name.endswith(".xml") for name, _, _ in PLANTS[finding][1]) else ""
+    campaign = Campaign(parse([str(copy.root / "missions" / "rokviss"), "--seed", str(arguments.seed), "--fly-plan", str(copy.fly_plan)]))
+    for index in range(number):
+        key = of_mission, index
+        if key not in flown:
+            flown[key] = campaign.pilot.fly(campaign.plan(index))["violations"]
+        if flown[key]:
+            return f"without it flight {index + 1} says {flown[key][0]}"
+    return ""
+
+
 def find(copy, finding, arguments):
     """(flights until the judge saw it or 0, what it said)"""
     os.environ[CHOSEN] = finding
@@ -135,17 +151,18 @@ def main():
     arguments = parser.parse_args()
     if gone := misfits():
         sys.exit("\n".join(gone))
-    missed = 0
+    missed, flown = 0, {}
     with tempfile.TemporaryDirectory() as folder:
         copy = Copy(pathlib.Path(folder) / "sources")
         for finding in arguments.finding:
             begun = time.monotonic()
             copy.replace(finding, of_mission=True)
             number, text = find(copy, finding, arguments)
+            other = control(copy, finding, arguments, number, flown)
             copy.replace(finding, of_mission=True, back=True)
-            missed += number == 0
+            missed += number == 0 or bool(other)
             where = f"found in flight {number}, {PLANTS[finding][0]} {text}" if number else f"NOT FOUND in {arguments.flights} flights"
-            print(f"{finding:<5} {where} ({time.monotonic() - begun:.0f} s)", flush=True)
+            print(f"{finding:<5} {where}; {other or 'the same flights without it: nothing'} ({time.monotonic() - begun:.0f} s)", flush=True)
     print(f"{len(arguments.finding) - missed} of {len(arguments.finding)} findings found again")
     return 1 if missed else 0
 
