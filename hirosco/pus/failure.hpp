@@ -153,7 +153,7 @@ struct EnumTexts<pus::FailureCode> {
       {Timeout, "timeout"},
       {Aborted, "aborted"},
       {DeviceError, "device error"},
-      {OutcomeUnknown, "outcome unknown: its addressee died"},
+      {OutcomeUnknown, "outcome unknown: its addressee is gone"},
   });
 };
 }  // namespace hirosco

@@ -76,6 +76,42 @@ def vanished(w, time=1 * S, **how):
     return w.sent(time, ROBOT, 17, 1, **how)
 
 
+def unknown(w, code=0x0206, of=SUPERVISOR):
+    w.report(2 * S, of, 1, 8, struct.pack(">IH", forwarded(w), code))
+
+
+@case(FINAL_RULE, found="TC[8,1] to MANIPULATOR was given up though nothing was done to it")
+def a_telecommand_to_who_lives_is_given_up(w):
+    unknown(w)
+
+
+@case(FINAL_RULE)
+def a_telecommand_to_who_died_is_given_up(w):
+    w.at(1500 * MS, "did kill MANIPULATOR")
+    unknown(w)
+
+
+@case(FINAL_RULE)
+def a_telecommand_to_who_was_killed_as_it_left_is_given_up(w):
+    w.at(900 * MS, "did kill MANIPULATOR")
+    unknown(w)
+
+
+@case(FINAL_RULE)
+def a_telecommand_that_fails_for_another_reason(w):
+    unknown(w, code=5)
+
+
+@case(FINAL_RULE)
+def a_telecommand_whose_addressee_says_so_itself(w):
+    unknown(w, of=ROBOT)
+
+
+@case(FINAL_RULE)
+def a_request_that_nobody_forwarded_is_given_up(w):
+    w.report(2 * S, SUPERVISOR, 1, 8, struct.pack(">IH", 0x180AC7FF, 0x0206))
+
+
 @case(FINAL_RULE, found="TC[17,1] of ground vanished")
 def a_telecommand_that_vanishes(w):
     vanished(w)
@@ -164,6 +200,38 @@ def a_report_that_is_not_logged(w):
 @case(LOG_RULE)
 def a_report_that_the_log_says_it_lost(w):
     w.record(1 * S, "gap", lost=1).down(1 * S, ROBOT, 17, 2, logged=False)
+
+
+def ended_without_disk(w, *fault):
+    w.at(800 * MS, *(f"did log {each}" for each in fault))
+    w.down(1 * S, ROBOT, 17, 2, logged=False).down(1 * S, ROBOT, 1, 1, 0x180AC005, logged=False)
+
+
+@case(LOG_RULE)
+def a_flight_that_ends_while_the_disk_fails(w):
+    ended_without_disk(w, "failing")
+
+
+@case(LOG_RULE, found="2 reports came to ground and are not in the log")
+def a_flight_that_ends_behind_a_disk_that_works_again(w):
+    ended_without_disk(w, "full", "heal")
+
+
+@case(LOG_RULE, found="2 reports came to ground and are not in the log")
+def a_flight_that_was_calm_at_its_end(w):
+    ended_without_disk(w, "failing")
+    w.at(3 * S, "calm")
+
+
+@case(LOG_RULE, found="2 reports came to ground and are not in the log")
+def a_log_that_was_deleted_in_flight(w):
+    ended_without_disk(w, "deleted")
+
+
+@case(LOG_RULE, found="1 reports came to ground and are not in the log")
+def a_report_before_the_disk_failed(w):
+    w.down(700 * MS, ROBOT, 17, 2, logged=False)
+    ended_without_disk(w, "failing")
 
 
 @case(LOG_RULE, found="was acknowledged and is not in the log")

@@ -10,6 +10,7 @@ from rules import ground_link_works
 PING_US = 200_000
 FLOODED_PING_US = 500_000
 LAST_SECOND_US = 1_000_000
+OUTCOME_UNKNOWN = bytes([2, 6])
 
 
 def lost_records(flight):
@@ -42,6 +43,7 @@ def i2_one_final_report(flight, victims):
         if wants_end and not finals[key] and key not in starts_failed and key not in ended_below:
             yield record.time, f"TC[{record.telecommand.service},{record.telecommand.subtype}] {record.telecommand.function or ''} to " \
                                f"{name_of(flight, record.peer)} has no final report"
+    yield from given_up(flight, victims)
     # A damaged packet may bear any request id.
     whole = {sent.key for sent in flight.sent} | {r.telecommand.key for r in flight.log if r.kind == "telecommand-forwarded"}
     for key, number in finals.items():
@@ -52,6 +54,27 @@ def i2_one_final_report(flight, victims):
         if quiet and sent.time < late and sent.key not in logged | reported:
             yield sent.time, f"TC[{sent.service},{sent.subtype}] of ground vanished without a word"
             break
+
+
+def given_up(flight, victims):
+    """The supervisor ends a telecommand in the place of who is gone, and of nobody else."""
+    forwarded = {r.telecommand.key: r for r in flight.log if r.kind == "telecommand-forwarded" and r.telecommand}
+    for record in flight.log:
+        said = record.report
+        if said is None or (said.apid, said.service, said.subtype) != (flight.mission.supervisor.apid, 1, 8):
+            continue
+        if said.data[4:6] != OUTCOME_UNKNOWN or said.request_key not in forwarded:
+            continue
+        asked = forwarded[said.request_key]
+        name = name_of(flight, asked.peer)
+        if not meets(victims[name], asked.time - LAST_SECOND_US, record.time):
+            yield record.time, f"TC[{asked.telecommand.service},{asked.telecommand.subtype}] to {name} was given up though nothing was done to it"
+
+
+def unstored_from(flight):
+    """When the disk stopped taking what came until the end of the flight: whoever ends it then has that on ground only."""
+    last = next((d for d in reversed(flight.did) if d[1][0] == "log"), None)
+    return last[0] if last and last[1][1] in ("failing", "full", "slow") and flight.mark("calm") is None else flight.end + 1
 
 
 def i3_everything_is_logged_once(flight, victims):
@@ -74,11 +97,12 @@ def i3_everything_is_logged_once(flight, victims):
         if number > 1:
             yield 0, f"request {key[1]:08x} of source {key[0]} was received {number} times"
     in_log = {(r.report.apid, r.report.count) for r in flight.log if r.report is not None}
-    missing = [down for down in flight.down if (down[1], down[2]) not in in_log]
+    unstored = unstored_from(flight)
+    missing = [down for down in flight.down if (down[1], down[2]) not in in_log and down[0] < unstored]
     if len(missing) > lost_records(flight):
         time, apid, count = missing[0][:3]
         yield time, f"{len(missing)} reports came to ground and are not in the log, the first {name_of(flight, apid)} {count}"
-    accepted = {(down[5], down[6]) for down in flight.down if down[3] == 1 and down[4] == 1 and down[5] == 0}
+    accepted = {(down[5], down[6]) for down in flight.down if down[3] == 1 and down[4] == 1 and down[5] == 0 and down[0] < unstored}
     for key in accepted:
         if received[key] == 0:
             yield 0, f"request {key[1]:08x} was acknowledged and is not in the log"
