@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "ground/http_server.hpp"
 #include "ground/session.hpp"
+#include "ground/shell/http_server.hpp"
 
 /// ground/api/README.md as code: who may ask, what is asked, what is answered. No I/O but reading the page's files.
 namespace hirosco::ground {

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "ground/api.hpp"
-#include "ground/http_server.hpp"
+#include "ground/shell/http_server.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"

@@ -16,7 +16,7 @@
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
-/// The shell of the ground station: loop, sockets, timer. All of Boost stands behind this interface, in one file.
+/// The shell of the ground station: loop, sockets, timer. All of Boost stands behind this interface, in this folder.
 namespace hirosco::ground {
 
 struct HttpRequest {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "ground/http_server.hpp"
+#include "ground/shell/http_server.hpp"
 
 #include <utility>  // before Asio: Boost 1.74 forgets it
 
@@ -11,26 +11,19 @@
 #include <deque>
 #include <set>
 
-/// The only file that knows Boost. One thread, nothing blocks; every queue has a limit.
+#include "ground/shell/craft_link.hpp"
+
+/// One thread, nothing blocks; every queue has a limit.
 namespace hirosco::ground {
 namespace {
 
-namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
-using asio::ip::tcp;
-using Failure = boost::system::error_code;
-
 constexpr auto request_limit = std::chrono::seconds{30};
-constexpr auto device_limit = std::chrono::seconds{2};
-/// Of telecommands in the kernel: what became of those nobody can tell when the link is lost, so that few may be there.
-constexpr int link_send_octets = 4096;
-constexpr auto errand_limit = std::chrono::seconds{2};
-constexpr auto reconnect_pause = std::chrono::milliseconds{300};
+constexpr auto accept_pause = std::chrono::milliseconds{300};
 constexpr std::size_t most_header_octets = std::size_t{16} << 10;
 constexpr std::size_t most_message_octets = std::size_t{4} << 10;
-constexpr std::size_t most_waiting_telecommands = std::size_t{256} << 10;
 
 class Server;
 
@@ -152,9 +145,11 @@ class Server final : public HttpServer {
   void stop() override {
     asio::post(io_, [this] { shut(); });
   }
-  [[nodiscard]] bool send(Octets packet, Way way) override;
+  [[nodiscard]] bool send(Octets packet, Way way) override { return link_->send(packet, way); }
   void ask(const std::string& socket_path, const std::string& line,
-           std::function<void(std::optional<std::string>)> done) override;
+           std::function<void(std::optional<std::string>)> done) override {
+    ask_device(io_, socket_path, line, std::move(done));
+  }
 
   [[nodiscard]] Application& application() noexcept { return *application_; }
   std::set<std::shared_ptr<SocketPeer>> peers;
@@ -167,18 +162,11 @@ class Server final : public HttpServer {
   void tick();
   void shut();
   void watch_input();
-  void connect();
-  void read_link();
-  void write_link();
-  void lose_link();
-  [[nodiscard]] bool send_in_turn(Octets packet);
-  void send_alone(Octets packet);
 
   Options options_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
   asio::steady_timer ticker_{io_};
-  asio::steady_timer pause_{io_};
   asio::steady_timer accept_pause_{io_};
   asio::signal_set signals_{io_, SIGINT, SIGTERM};
   asio::posix::stream_descriptor input_{io_};
@@ -188,12 +176,7 @@ class Server final : public HttpServer {
   bool ending_{false};
 
   tcp::endpoint spacecraft_;
-  tcp::socket link_{io_};
-  bool linked_{false};
-  bool link_writing_{false};
-  std::array<std::byte, std::size_t{64} << 10> link_buffer_{};
-  std::deque<std::vector<std::byte>> link_queue_;
-  std::size_t link_pending_{0};
+  std::optional<CraftLink> link_;
 };
 
 // --- WebSocket -------------------------------------------------------------------------------------------------------
@@ -377,7 +360,8 @@ void Server::run(Application& application) {
     if (!failed) watch_input();
   }
   accept();
-  connect();
+  link_.emplace(io_, application, spacecraft_, options_.telecommand_port);
+  link_->open();
   ticker_.expires_after(options_.tick_period);
   tick();
   io_.run();
@@ -401,9 +385,8 @@ void Server::shut() {
   acceptor_.close(ignored);
   signals_.cancel(ignored);
   ticker_.cancel();
-  pause_.cancel();
   accept_pause_.cancel();
-  link_.close(ignored);
+  link_->close();
   if (input_.is_open()) static_cast<void>(input_.release());
   for (const auto& peer : std::set{peers}) peer->drop();
   for (Connection* connection : std::set{connections}) connection->drop();
@@ -416,7 +399,7 @@ void Server::accept() {
     if (ending_) return;
     // Out of descriptors, say: asking again at once would take a processor.
     if (failed) {
-      accept_pause_.expires_after(reconnect_pause);
+      accept_pause_.expires_after(accept_pause);
       return accept_pause_.async_wait([this](Failure) {
         if (!ending_) accept();
       });
@@ -451,162 +434,6 @@ void Server::tick() {
         ticker_.expiry() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(options_.tick_period);
     ticker_.expires_at(std::max(next, std::chrono::steady_clock::now()));
     tick();
-  });
-}
-
-// --- the spacecraft's link -------------------------------------------------------------------------------------------
-
-void Server::connect() {
-  link_ = tcp::socket{io_};
-  Failure unlimited;
-  link_.open(spacecraft_.protocol(), unlimited);
-  link_.set_option(asio::socket_base::send_buffer_size{link_send_octets}, unlimited);
-  link_.async_connect(spacecraft_, [this](Failure failed) {
-    if (ending_) return;
-    if (failed) return lose_link();
-    Failure ignored;
-    link_.set_option(tcp::no_delay{true}, ignored);
-    linked_ = true;
-    application_->link_up();
-    read_link();
-  });
-}
-
-void Server::read_link() {
-  link_.async_read_some(asio::buffer(link_buffer_), [this](Failure failed, std::size_t octets) {
-    if (ending_) return;
-    if (failed || !application_->link_received(Octets{link_buffer_}.first(octets))) return lose_link();
-    read_link();
-  });
-}
-
-void Server::lose_link() {
-  Failure ignored;
-  link_.close(ignored);
-  // What the next link would bring late is told as not sent instead: its sender may want something else by then.
-  for (const auto& packet : std::exchange(link_queue_, {})) application_->not_sent(packet);
-  link_pending_ = 0;
-  if (linked_) application_->link_down();
-  linked_ = false;
-  pause_.expires_after(reconnect_pause);
-  pause_.async_wait([this](Failure failed) {
-    if (!failed && !ending_) connect();
-  });
-}
-
-bool Server::send(Octets packet, Way way) {
-  if (way == Way::InTurn) return send_in_turn(packet);
-  // Also without a link: that port may take what the other, whose places are all taken, does not.
-  send_alone(packet);
-  return true;
-}
-
-bool Server::send_in_turn(Octets packet) {
-  if (!linked_ || link_pending_ + packet.size() > most_waiting_telecommands) return false;
-  link_pending_ += packet.size();
-  link_queue_.emplace_back(packet.begin(), packet.end());
-  if (!link_writing_) write_link();
-  return true;
-}
-
-void Server::write_link() {
-  link_writing_ = true;
-  auto packet = std::make_shared<std::vector<std::byte>>(std::move(link_queue_.front()));
-  link_queue_.pop_front();
-  asio::async_write(link_, asio::buffer(*packet), [this, packet](Failure failed, std::size_t) {
-    link_writing_ = false;
-    // A failure shows to the reader too, which makes a new link.
-    if (failed && !ending_) application_->not_sent(*packet);
-    link_pending_ -= std::min(link_pending_, packet->size());
-    if (linked_ && !link_queue_.empty()) write_link();
-  });
-}
-
-namespace {
-
-/// A connection for one telecommand.
-struct Errand {
-  explicit Errand(asio::io_context& io) : socket{io}, limit{io} {}
-  tcp::socket socket;
-  asio::steady_timer limit;
-  std::vector<std::byte> packet;
-  std::array<std::byte, 1> nothing{};
-};
-
-}  // namespace
-
-void Server::send_alone(Octets packet) {
-  auto errand = std::make_shared<Errand>(io_);
-  errand->packet.assign(packet.begin(), packet.end());
-  errand->limit.expires_after(errand_limit);
-  errand->limit.async_wait([errand](Failure failed) {
-    Failure ignored;
-    if (!failed) errand->socket.close(ignored);
-  });
-  // Without that port the link has to do.
-  const auto or_in_turn = [this, errand] {
-    errand->limit.cancel();
-    if (!ending_ && !send_in_turn(errand->packet)) application_->not_sent(errand->packet);
-  };
-  errand->socket.async_connect({spacecraft_.address(), options_.telecommand_port}, [errand,
-                                                                                    or_in_turn](Failure failed) {
-    if (failed) return or_in_turn();
-    asio::async_write(errand->socket, asio::buffer(errand->packet), [errand, or_in_turn](Failure lost, std::size_t) {
-      if (lost) return or_in_turn();
-      Failure ignored;
-      errand->socket.shutdown(tcp::socket::shutdown_send, ignored);
-      // The other side ends it when it has taken what came.
-      errand->socket.async_read_some(asio::buffer(errand->nothing),
-                                     [errand](Failure, std::size_t) { errand->limit.cancel(); });
-    });
-  });
-}
-
-// --- devices ---------------------------------------------------------------------------------------------------------
-
-namespace {
-
-/// One question to one control socket.
-struct Question final : std::enable_shared_from_this<Question> {
-  explicit Question(asio::io_context& io) : socket{io}, timer{io} {}
-  void finish(std::optional<std::string> result) {
-    if (!done) return;
-    const auto tell = std::exchange(done, nullptr);
-    Failure ignored;
-    socket.close(ignored);
-    timer.cancel();
-    tell(std::move(result));
-  }
-  asio::local::stream_protocol::socket socket;
-  asio::steady_timer timer;
-  std::string line;
-  std::string answer;
-  std::function<void(std::optional<std::string>)> done;
-};
-
-}  // namespace
-
-void Server::ask(const std::string& socket_path, const std::string& line,
-                 std::function<void(std::optional<std::string>)> done) {
-  constexpr std::size_t longest_path = 107;
-  if (socket_path.size() > longest_path) return done(std::nullopt);
-  auto question = std::make_shared<Question>(io_);
-  question->line = line + "\n";
-  question->done = std::move(done);
-  question->timer.expires_after(device_limit);
-  question->timer.async_wait([question](Failure failed) {
-    if (!failed) question->finish(std::nullopt);
-  });
-  question->socket.async_connect(asio::local::stream_protocol::endpoint{socket_path}, [question](Failure failed) {
-    if (failed) return question->finish(std::nullopt);
-    asio::async_write(question->socket, asio::buffer(question->line), [question](Failure lost, std::size_t) {
-      if (lost) return question->finish(std::nullopt);
-      asio::async_read_until(question->socket, asio::dynamic_buffer(question->answer, std::size_t{4096}), '\n',
-                             [question](Failure cut, std::size_t octets) {
-                               if (cut) return question->finish(std::nullopt);
-                               question->finish(question->answer.substr(0, octets - 1));
-                             });
-    });
   });
 }
 
