@@ -245,6 +245,10 @@ class Cases {
   std::vector<CornerCase> cases_;
 };
 
+constexpr std::string_view torque_limit_event = "TORQUE_LIMIT_EXCEEDED", hard_limit_event = "TORQUE_HARD_EXCEEDED";
+/// Far above what the law can ask for.
+constexpr double no_limit_n_m = 1000;
+
 double largest_of(const descriptor::Field& field) noexcept {
   return std::max(std::abs(field.minimum.value_or(0)), std::abs(field.maximum.value_or(0)));
 }
@@ -286,7 +290,12 @@ CornerTable fly_corners(const CornerSettings& settings) {
         options.initial[limit] = settings.planted_limit_n_m;
     CornerFlight flight{options};
     one.fly(flight);
-    table.corners.push_back({one.mode, one.what, flight.loads(), flight.end()});
+    Corner& corner = table.corners.emplace_back(one.mode, one.what, flight.loads(), flight.end());
+    if (corner.end.find(torque_limit_event) == std::string::npos) continue;
+    options.initial["MANIPULATOR.TORQUE_LIMIT"] = no_limit_n_m;
+    CornerFlight unstopped{options};
+    one.fly(unstopped);
+    corner.unstopped = {unstopped.loads().torque_n_m, unstopped.end()};
   }
   return table;
 }
@@ -294,6 +303,17 @@ CornerTable fly_corners(const CornerSettings& settings) {
 std::size_t CornerTable::beyond() const noexcept {
   return static_cast<std::size_t>(
       std::ranges::count_if(corners, [&](const Corner& corner) { return !corner.loads.within(promise); }));
+}
+
+std::size_t CornerTable::tripped() const noexcept {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(corners, [](const Corner& corner) { return corner.unstopped.has_value(); }));
+}
+
+std::size_t CornerTable::tripping_harder() const {
+  return static_cast<std::size_t>(std::ranges::count_if(corners, [](const Corner& corner) {
+    return corner.unstopped && corner.unstopped->end.find(hard_limit_event) != std::string::npos;
+  }));
 }
 
 std::string CornerTable::text() const {
@@ -305,6 +325,10 @@ std::string CornerTable::text() const {
     const Loads& loads = corner.loads;
     text += fmt::format(fmt::runtime(numbers), corner.mode, corner.what, loads.torque_n_m, loads.force_n,
                         loads.speed_rad_s, loads.motor_n_m, loads.within(promise) ? "holds " : "BEYOND", corner.end);
+    if (corner.unstopped) {
+      text.pop_back();
+      text += fmt::format("; without the limit {:.1f} N m, {}\n", corner.unstopped->torque_n_m, corner.unstopped->end);
+    }
     worst = {std::max(worst.torque_n_m, loads.torque_n_m), std::max(worst.force_n, loads.force_n),
              std::max(worst.speed_rad_s, loads.speed_rad_s), std::max(worst.motor_n_m, loads.motor_n_m)};
   }
@@ -316,6 +340,8 @@ std::string CornerTable::text() const {
   row("promise", promise);
   text += fmt::format("{} of {} corners are within what the descriptor promises\n", corners.size() - beyond(),
                       corners.size());
+  text += fmt::format("{} trip the torque limit; without it {} of them would go on to the hard limit\n", tripped(),
+                      tripping_harder());
   return text;
 }
 

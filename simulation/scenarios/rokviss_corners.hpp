@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,18 @@ struct Loads {
 /// of the device's TORQUE. What declares none promises nothing and is held by nothing: 0.
 [[nodiscard]] Loads promised_loads(const descriptor::Mission& mission);
 
+/// A corner that trips the torque limit, flown again without that limit (adr 0048).
+struct Unstopped {
+  double torque_n_m{0};  ///< largest of a joint
+  std::string end{};
+};
+
 struct Corner {
   std::string mode{};
   std::string what{};
   Loads loads{};
   std::string end{};  ///< state of the manipulator and what it told of its limits
+  std::optional<Unstopped> unstopped{};
 };
 
 struct CornerSettings {
@@ -48,6 +56,9 @@ struct CornerTable {
   std::vector<Corner> corners{};
 
   [[nodiscard]] std::size_t beyond() const noexcept;  ///< corners that are not within the promise
+  [[nodiscard]] std::size_t tripped() const noexcept;  ///< that trip the torque limit
+  [[nodiscard]] std::size_t tripping_harder()
+      const;  ///< of these, that go on to the hard limit where nothing stops them
   [[nodiscard]] std::string text() const;  ///< one line per corner, the promise and the verdict
 };
 

@@ -17,6 +17,9 @@ TEST(RokvissCorners, StayWithinWhatTheDescriptorPromises) {
   const CornerTable table = fly_corners({.mission = mission, .one_in = 7});
   EXPECT_GT(table.corners.size(), 20U);
   EXPECT_EQ(table.beyond(), 0U) << table.text();
+  // Who trips was stopped on the way to more: the milder limit comes first (adr 0048).
+  EXPECT_GT(table.tripped(), 5U);
+  EXPECT_LE(table.tripped() - table.tripping_harder(), 2U) << table.text();
 }
 
 TEST(RokvissCorners, AreBeyondItWhenTheLawKeepsToNoLimit) {
