@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/own_telecommands.hpp"
+
+#include "supervisor/supervision/testing/parts_rig.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using enum descriptor::State;
+
+struct OwnTelecommandsTest : PartsTest {
+  std::vector<std::string> ends;
+  void SetUp() override {
+    PartsTest::SetUp();
+    start_all(SafeOperational);
+  }
+  std::uint32_t send() {
+    parts.own_telecommands.command(arm, "SET_STATE", static_cast<double>(PostOperational),
+                                   [this](bool success, const std::string& why) { ends.push_back(success ? "done" : why); });
+    const auto sent = received(arm);
+    return sent.empty() ? 0 : sent.front().request;
+  }
+};
+
+TEST_F(OwnTelecommandsTest, ItsSenderHearsOfItsCompletion) {
+  const auto request = send();
+  verify(arm, request, 1);
+  EXPECT_THAT(ends, IsEmpty());
+  verify(arm, request, 7);
+  verify(arm, request, 7);
+  EXPECT_THAT(ends, ElementsAre("done"));
+}
+
+TEST_F(OwnTelecommandsTest, ItsSenderHearsWhyItFailed) {
+  verify(arm, send(), 4, pus::FailureCode::WrongState);
+  EXPECT_THAT(ends, ElementsAre(std::string{to_text(pus::FailureCode::WrongState)}));
+  EXPECT_TRUE(was_told("ARM SET_STATE 7 failed: "));
+}
+
+TEST_F(OwnTelecommandsTest, AReportToSomebodyElseEndsNothing) {
+  verify(arm, send(), 7, {}, 0);
+  EXPECT_THAT(ends, IsEmpty());
+}
+
+TEST_F(OwnTelecommandsTest, OneThatNobodyAnswersEndsAfterFifteenSeconds) {
+  send();
+  wait(15s - 1ms);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_THAT(ends, IsEmpty());
+  wait(1ms);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_THAT(ends, ElementsAre("no answer"));
+}
+
+TEST_F(OwnTelecommandsTest, WhoHasDiedAnswersAtOnce) {
+  send();
+  parts.own_telecommands.fail_all_to(hand, "process died");
+  EXPECT_THAT(ends, IsEmpty());
+  parts.own_telecommands.fail_all_to(arm, "process died");
+  EXPECT_THAT(ends, ElementsAre("process died"));
+}
+
+TEST_F(OwnTelecommandsTest, AFunctionThatNobodyHasFailsAtOnce) {
+  parts.own_telecommands.command(arm, "DANCE", std::nullopt,
+                                 [this](bool, const std::string& why) { ends.push_back(why); });
+  EXPECT_THAT(ends, ElementsAre("unknown function"));
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

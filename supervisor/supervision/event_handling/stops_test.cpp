@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/event_handling/stops.hpp"
+
+#include "supervisor/supervision/testing/parts_rig.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using enum descriptor::State;
+
+struct StopsTest : PartsTest {
+  void answered() {
+    for (const TimePoint end = clock.now() + 1s; clock.now() < end; wait(Guard::period)) {
+      guard.beat();
+      for (auto& [apid, member] : played) {
+        ++member.vital->cycles;
+        ++member.vital->service_steps;
+        member.vital->seen_epoch = member.permit->epoch.load();
+      }
+      static_cast<void>(guard.step(clock.now()));
+    }
+    parts.stops.follow();
+  }
+};
+
+TEST_F(StopsTest, TheStatesFollowOfWhoActsButNotOfTheGroundLink) {
+  start_all(Operational);
+  set(hand, SafeOperational);
+  parts.stops.asked();
+  EXPECT_THAT(texts(arm), ElementsAre(to(SafeOperational)));
+  EXPECT_THAT(texts(hand), IsEmpty());
+  EXPECT_THAT(texts(camera), IsEmpty());
+  EXPECT_TRUE(was_told("stop by signal or local socket: every actuator inhibited"));
+}
+
+TEST_F(StopsTest, TheGuardHasStoppedEverythingBeforeAnythingIsSent) {
+  start_all(Operational);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  parts.stops.asked();
+  EXPECT_TRUE(guard.fenced(arm));
+}
+
+TEST_F(StopsTest, WhatBecameOfItIsToldWhenAllHaveStopped) {
+  start_all(SafeOperational);
+  parts.stops.asked();
+  parts.stops.follow();
+  EXPECT_FALSE(was_told("everything has stopped"));
+  answered();
+  EXPECT_TRUE(was_told("everything has stopped"));
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

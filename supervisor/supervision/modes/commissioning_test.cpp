@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/modes/commissioning.hpp"
+
+#include "supervisor/supervision/testing/parts_rig.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using ::testing::ElementsAre;
+using enum descriptor::State;
+
+/// Keeps what it is asked to send; the test answers.
+struct Desk final : CommandDesk {
+  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
+               CommandDone done) override {
+    sent.push_back(std::to_string(apid) + " " + std::string{function} + " " +
+                   std::to_string(static_cast<int>(argument.value_or(-1))));
+    answers.push_back(std::move(done));
+  }
+  /// The oldest that was not answered.
+  void answer(bool success, const std::string& why = {}) {
+    const CommandDone done = std::move(answers.front());
+    answers.erase(answers.begin());
+    done(success, why);
+  }
+  std::vector<std::string> sent;
+  std::vector<CommandDone> answers;
+};
+
+struct CommissioningTest : PartsTest {
+  Desk desk;
+  Commissioning commissioning{craft, desk};
+  int failures{0};
+  void start() {
+    start_all(Offline);
+    auto& mode = craft.mission.modes.front();
+    mode.commission = {{.subsystem = "ARM", .configuration = "COUPLED", .state = Operational, .at = {}},
+                       {.subsystem = "CAMERA", .configuration = "ONLY", .state = SafeOperational, .at = {}}};
+    mode.establish = {1};
+    commissioning.start([this] { ++failures; });
+  }
+  void answer_all() {
+    while (!desk.answers.empty()) desk.answer(true);
+  }
+};
+
+TEST_F(CommissioningTest, TheSupervisorComesFirstThenAllMembersStageByStageThenTheMode) {
+  start();
+  for (int own = 0; own < 4; ++own) {
+    EXPECT_EQ(desk.sent.size(), own + 1U);
+    desk.answer(true);
+  }
+  set(arm, Operational);
+  set(camera, SafeOperational);
+  answer_all();
+  desk.sent.erase(desk.sent.begin(), desk.sent.begin() + 4);
+  EXPECT_THAT(desk.sent, ElementsAre("10 SET_STATE 3", "12 SET_STATE 3", "10 CONFIGURE 2", "12 CONFIGURE 1", "1 LINK 1",
+                                     "10 SET_STATE 4", "12 SET_STATE 4", "10 SET_STATE 5", "1 SET_MODE 1"));
+  EXPECT_TRUE(commissioning.succeeded());
+  EXPECT_TRUE(was_told("commissioned: mode open"));
+  EXPECT_FALSE(craft.failed);
+}
+
+TEST_F(CommissioningTest, WhoWasTakenDownAfterItsOwnStepIsMissed) {
+  start();
+  set(arm, Operational);
+  set(camera, ErrorOperational);
+  answer_all();
+  EXPECT_FALSE(commissioning.succeeded());
+  EXPECT_TRUE(was_told("commissioning stopped: CAMERA is not SafeOperational"));
+  EXPECT_TRUE(craft.failed);
+}
+
+TEST_F(CommissioningTest, AMemberThatFailsEndsIt) {
+  start();
+  for (int own = 0; own < 4; ++own) desk.answer(true);
+  desk.answer(false, "no hardware");
+  answer_all();
+  EXPECT_FALSE(commissioning.running());
+  EXPECT_TRUE(was_told("no hardware"));
+  EXPECT_TRUE(craft.failed);
+  EXPECT_EQ(failures, 0) << "the others can be commanded";
+}
+
+TEST_F(CommissioningTest, ASupervisorThatCannotStartEndsTheFlight) {
+  start();
+  desk.answer(false, "no memory");
+  EXPECT_EQ(failures, 1);
+  EXPECT_TRUE(was_told("supervisor cannot start: "));
+}
+
+TEST_F(CommissioningTest, ItIsCancelledOnceWithAReasonAndNotDuringTheShutdown) {
+  start();
+  EXPECT_TRUE(commissioning.cancel("SAFE_ALL"));
+  EXPECT_TRUE(was_told("commissioning stopped: SAFE_ALL"));
+  EXPECT_FALSE(commissioning.cancel("SAFE_ALL"));
+  start();
+  craft.shutting_down = true;
+  EXPECT_FALSE(commissioning.cancel("plan"));
+  EXPECT_TRUE(commissioning.running());
+  commissioning.drop();
+  EXPECT_FALSE(commissioning.running());
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
