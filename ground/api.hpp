@@ -17,19 +17,10 @@
 
 #include "ground/session.hpp"
 #include "ground/shell/http_server.hpp"
+#include "ground/target.hpp"
 
 /// ground/api/README.md as code: who may ask, what is asked, what is answered. No I/O but reading the page's files.
 namespace hirosco::ground {
-
-/// Path and decoded parameters of a request's target.
-struct Target {
-  std::string path;
-  std::multimap<std::string, std::string> parameters;
-  [[nodiscard]] std::optional<std::string> text(const std::string& name) const;
-  [[nodiscard]] std::optional<double> number(const std::string& name) const;
-};
-/// Empty: broken percent signs or a NUL.
-[[nodiscard]] std::optional<Target> read_target(std::string_view target);
 
 /// One edge of the ten states' table, which belongs to the generic subsystem.
 struct Transition {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ground/json.hpp"
+#include "ground/views.hpp"
 
 namespace hirosco::ground {
 namespace {

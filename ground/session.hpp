@@ -158,13 +158,4 @@ class Session {
   TimePoint next_housekeeping_{};
 };
 
-// --- shared with replay and the requests -----------------------------------------------------------------------------
-[[nodiscard]] nlohmann::json event_json(const StoredEvent& event);
-[[nodiscard]] nlohmann::json command_json(const StoredCommand& command);
-[[nodiscard]] nlohmann::json report_json(const StoredReport& report);
-/// What a model says of mode, subsystems and links at a time; without `link` and `values`.
-[[nodiscard]] nlohmann::json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now);
-/// {NAME: [v, t]} of what is newer than a revision.
-[[nodiscard]] nlohmann::json values_json(const Catalogue& catalogue, const Model& model, std::uint64_t since);
-
 }  // namespace hirosco::ground

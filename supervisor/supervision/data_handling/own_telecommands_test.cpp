@@ -19,8 +19,9 @@ struct OwnTelecommandsTest : PartsTest {
     start_all(SafeOperational);
   }
   std::uint32_t send() {
-    parts.own_telecommands.command(arm, "SET_STATE", static_cast<double>(PostOperational),
-                                   [this](bool success, const std::string& why) { ends.push_back(success ? "done" : why); });
+    parts.own_telecommands.command(
+        arm, "SET_STATE", static_cast<double>(PostOperational),
+        [this](bool success, const std::string& why) { ends.push_back(success ? "done" : why); });
     const auto sent = received(arm);
     return sent.empty() ? 0 : sent.front().request;
   }

@@ -138,8 +138,8 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
     return found;
   }
   /// A report of a member, heard by the supervisor.
-  void report(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data, std::uint16_t destination = 0,
-              std::optional<std::uint16_t> as = std::nullopt) {
+  void report(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
+              std::uint16_t destination = 0, std::optional<std::uint16_t> as = std::nullopt) {
     std::array<std::byte, pus::max_telemetry_octets> buffer;
     const auto packet = pus::write_telemetry(buffer,
                                              {.apid = as.value_or(apid),
