@@ -73,6 +73,16 @@ TEST(MissionDescriptor, FillsModesAndPlans) {
   EXPECT_EQ(mission.plans.at(2).severities, (std::vector{Severity::Low, Severity::Info}));
 }
 
+TEST(MissionDescriptor, APlanForWhatIsToldOfASubsystemNamesThatOneOrTheSupervisorOrNeither) {
+  for (const char* when : {R"(subsystem="JOYSTICK" event="HANG")", R"(subsystem="SUPERVISOR" event="HANG")",
+                           R"(event="HANG")", R"(subsystem="JOYSTICK" event="PROCESS_DIED" severity="high")"}) {
+    const auto reading = read_mission(
+        data / "mission.xml",
+        overlay({{"mission.xml", changed(R"(<When severity="low info"/>)", "<When " + std::string{when} + "/>")}}));
+    EXPECT_TRUE(reading.value) << when << '\n' << rendered(reading.problems, file_system());
+  }
+}
+
 struct Mistake {
   const char* code;
   const char* from;
@@ -147,6 +157,10 @@ constexpr Mistake mistakes[] = {
     {"E0109", R"(parameters="DES_POSITION")", R"(parameters="@ ")"},
     {"E0105", R"( functions="*" services="3 20" parameters="DES_POSITION")", ""},
     {"E0325", R"(severity="medium" subsystem)", R"(severity="@high low" subsystem)", "leave severity out"},
+    {"E0325", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When event="@RECOVERY_STEP"/>)", "the other plan"},
+    {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When severity="low info"/><Do action="log"/><Restart/>)", "PROCESS_DIED"},
+    {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When event="HANG"/><Do action="log"/><Restart/>)", "PROCESS_DIED"},
+    {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="JOYSTICK" event="@LOG_STORE"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
 };
 // clang-format on

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/detail/mission_reader.hpp"
+#include "hirosco/descriptor/supervisor_events.hpp"
 
 namespace hirosco::descriptor::detail {
 namespace {
@@ -288,6 +289,7 @@ void MissionReader::read_plan(const xml::Element& element) {
                },
                1},
               {"Restart", [&](const auto& child) { read_restart(child, plan); }, 1}});
+  check_restart(element, plan);
   if (!condition) problems_.add(element, "E0106", "<Plan> needs a <When>");
   if (!action) problems_.add(element, "E0106", "<Plan> needs a <Do>");
   if (!plan.name.empty()) plan_names_.add(plan.name, plan.at, problems_, element.name.size() + 1);
@@ -317,8 +319,9 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
   std::vector<std::string_view> known;
   bool fires = plan.severities.empty();
   const auto add = [&](const Subsystem& candidate) {
-    if (found != nullptr && found != &candidate) return;
     for (const Event& e : candidate.events) {
+      const bool told_of_it = &candidate == &mission_.supervisor && is_about_subsystem(e.name);
+      if (found != nullptr && found != &candidate && !told_of_it) continue;
       known.push_back(e.name);
       fires =
           fires || (e.name == plan.event && std::ranges::find(plan.severities, e.severity) != plan.severities.end());
@@ -335,6 +338,21 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
     problems_.add(*element.find("severity"), "E0325",
                   fmt::format("the plan never begins: event {} has another severity", in_quotes(plan.event)),
                   "leave severity out, or name the event's");
+  else if (plan.event == event_of_plans)
+    problems_.add(*event, "E0325", fmt::format("the plan never begins: {} tells of a plan's steps", plan.event),
+                  "name the event that the other plan answers");
+}
+
+/// A restart that can answer no death would be a promise that is never kept.
+void MissionReader::check_restart(const xml::Element& element, const Plan& plan) {
+  if (!whole() || !plan.restart) return;
+  const auto* death = mission_.supervisor.find_event(event_of_death);
+  const bool named = plan.event.empty() || plan.event == event_of_death;
+  const bool severe = plan.severities.empty() || death == nullptr ||
+                      std::ranges::find(plan.severities, death->severity) != plan.severities.end();
+  if (!named || !severe)
+    problems_.add(element, "E0326", fmt::format("plan '{}' restarts nobody: it never answers a death", plan.name),
+                  fmt::format("<Restart> belongs to the plan for {}", event_of_death));
 }
 
 void MissionReader::read_restart(const xml::Element& element, Plan& plan) {

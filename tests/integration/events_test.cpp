@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <memory>
 
 #include "hirosco/descriptor/framework_events.hpp"
+#include "supervisor/platform/packet_log.hpp"
 #include "tests/integration/flight.hpp"
 #include "tests/stand_in.hpp"
 
@@ -70,6 +72,97 @@ TEST(Events, OfASubsystemThatDeclaresNoneStartItsRecovery) {
                  "plan default: network {HELLO}", "HELLO is Offline"}),
             "")
       << flight.story().text();
+}
+
+// --- plans for what the supervisor tells (findings LW3) ------------------------------------------------------------------
+
+/// Stores in memory until it is told to fail.
+struct FailingStore final : supervisor::Database {
+  explicit FailingStore(const std::atomic<bool>& fails) : fails_{fails} {}
+  Result<> do_append(std::span<const supervisor::LogRecord>) override {
+    return fails_ ? fail(ErrorCode::SystemFailure, "disk", 5) : ok();
+  }
+  Result<supervisor::LogPage> do_read(const supervisor::LogQuery&) override { return supervisor::LogPage{}; }
+  [[nodiscard]] std::string_view do_strategy() const noexcept override { return "memory"; }
+  const std::atomic<bool>& fails_;
+};
+
+descriptor::Plan to_safe(std::string subsystem, std::string event) {
+  descriptor::Plan plan;
+  plan.name = "of ours";
+  plan.subsystem = std::move(subsystem);
+  plan.event = std::move(event);
+  plan.action = descriptor::Action::SetState;
+  plan.state = State::SafeOperational;
+  return plan;
+}
+
+TEST(PlansForTheSupervisorsOwnEvents, TakeAllThatActsToSafeOperationalWhenTheLogFails) {
+  for (const char* subsystem : {"", "SUPERVISOR"})
+    for (const char* event : {"", "LOG_STORE"}) {
+      const bool named = *subsystem != '\0' || *event != '\0';
+      std::atomic<bool> fails{false};
+      auto mission = Flight{{}}.mission();
+      hand_rests(mission);
+      auto added = to_safe(subsystem, event);
+      added.severities = {descriptor::Severity::Medium};
+      mission.plans.insert(mission.plans.begin(), std::move(added));
+      const auto subsystems = simulation::known_subsystems();
+      const auto devices = simulation::known_devices();
+      supervisor::MemoryDatabase unused;
+      Story story;
+      simulation::Spacecraft craft{{.mission = mission,
+                                    .subsystems = subsystems,
+                                    .devices = devices,
+                                    .log = unused,
+                                    .observer = story,
+                                    .make_log = [&](const Clock& clock) -> std::unique_ptr<supervisor::PacketLog> {
+                                      return std::make_unique<supervisor::DirectPacketLog>(
+                                          clock, std::make_unique<FailingStore>(fails));
+                                    }}};
+      ASSERT_TRUE(craft.run_until([&] { return story.has("commissioned: mode telepresence"); }, 5s)) << story.text();
+      fails = true;
+      craft.run(1s);
+      EXPECT_TRUE(story.has("SUPERVISOR medium LOG_STORE"));
+      const auto state_of = [&](const char* name) { return static_cast<State>(craft.vital(name)->state.load()); };
+      for (const char* acting : {"MANIPULATOR", "JOYSTICK"})
+        EXPECT_EQ(state_of(acting), named ? State::SafeOperational : State::Operational)
+            << acting << ": a plan for everything of medium severity means the subsystems";
+      EXPECT_EQ(state_of("COMMUNICATION"), State::Operational);
+      EXPECT_EQ(story.has("plan of ours: all subsystems because of LOG_STORE"), named) << story.text();
+    }
+}
+
+TEST(PlansForTheSupervisorsOwnEvents, AboutASubsystemBeginWhetherTheyNameThatOneOrTheSupervisor) {
+  for (const char* subsystem : {"", "SUPERVISOR", "MANIPULATOR", "JOYSTICK"}) {
+    const bool meant = std::string_view{subsystem} != "JOYSTICK";
+    Flight dying{{.edit = [&](descriptor::Mission& mission) {
+      auto plan = to_safe(subsystem, "PROCESS_DIED");
+      plan.action = descriptor::Action::ShutDownNetwork;
+      mission.plans = {std::move(plan)};
+    }}};
+    ASSERT_TRUE(dying.commission());
+    dying.craft().kill("MANIPULATOR");
+    dying.craft().run(1s);
+    EXPECT_EQ(dying.story().has("plan of ours: network"), meant) << subsystem;
+    EXPECT_EQ(dying.story().has("plan default: network"), !meant) << subsystem;
+
+    Flight powerless{{.edit = [&](descriptor::Mission& mission) {
+      hand_rests(mission);
+      auto plan = to_safe(subsystem, "POWER_REFUSED");
+      plan.state = State::ErrorOperational;
+      mission.plans.push_back(std::move(plan));
+    }}};
+    ASSERT_TRUE(powerless.commission());
+    ASSERT_TRUE(powerless.set_mode("commissioning").completed);
+    for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})
+      ASSERT_TRUE(powerless.set_state("MANIPULATOR", state).completed);
+    ASSERT_TRUE(powerless.configure("MANIPULATOR", "STANDALONE").completed);
+    ASSERT_TRUE(powerless.craft().command("SUPERVISOR", "SET_POWER_BUDGET", {104.9}).completed);
+    EXPECT_FALSE(powerless.set_state("MANIPULATOR", State::SafeOperational).completed);
+    powerless.craft().run(100ms);
+    EXPECT_EQ(powerless.state("MANIPULATOR"), meant ? State::ErrorOperational : State::PreOperational) << subsystem;
+  }
 }
 
 }  // namespace

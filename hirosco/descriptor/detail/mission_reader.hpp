@@ -70,6 +70,7 @@ class MissionReader {
   void read_plan(const xml::Element& element);
   void read_when(const xml::Element& element, Plan& plan);
   void read_restart(const xml::Element& element, Plan& plan);
+  void check_restart(const xml::Element& element, const Plan& plan);
   void read_do(const xml::Element& element, Plan& plan);
   [[nodiscard]] State read_steady_state(Attributes& attributes, State fallback);
   void check_functions(const xml::Attribute& at, const Permit& permit);

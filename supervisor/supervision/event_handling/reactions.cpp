@@ -3,9 +3,9 @@
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "hirosco/descriptor/supervisor_events.hpp"
 #include "hirosco/pus/event_message.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/event_handling/recovery.hpp"
@@ -18,12 +18,8 @@ using descriptor::Severity;
 
 namespace {
 
-/// Events of the supervisor that are about a subsystem: the reaction is that subsystem's, where they are raised.
-constexpr std::array about_subsystems{"PROCESS_DIED", "HANG",      "POWER_REFUSED",
-                                      "POWER_LOW",    "LOAD_SHED", "RECOVERY_STEP"};
-
 /// What nothing overrides: whoever is gone must be stopped and taken down whatever else runs for it (findings SF5).
-[[nodiscard]] bool is_loss(std::string_view event) { return event == "PROCESS_DIED" || event == "HANG"; }
+[[nodiscard]] bool is_loss(std::string_view event) { return event == descriptor::event_of_death || event == "HANG"; }
 
 }  // namespace
 
@@ -47,12 +43,19 @@ bool Reactions::take_event(std::uint16_t from, Octets message) {
   return true;
 }
 
+/// What we tell of a subsystem is answered where it is told: by the plan that names it or us, or the event, as severe as our
+/// descriptor calls it (findings LW3).
 void Reactions::react(Member& origin, std::string_view event, Severity severity) {
+  const descriptor::Subsystem& supervisor = craft_.mission.supervisor;
+  const bool ours = descriptor::is_about_subsystem(event) && origin.descriptor().find_event(event) == nullptr;
+  const auto* declared = ours ? supervisor.find_event(event) : nullptr;
+  if (declared != nullptr) severity = declared->severity;
   const Reaction reaction =
-      choose_reaction(craft_.mission, {origin.descriptor().name, event, severity, craft_.mode->name});
+      choose_reaction(craft_.mission, {origin.descriptor().name, event, severity, craft_.mode->name,
+                                       ours ? std::string_view{supervisor.name} : std::string_view{}});
   if (craft_.shutting_down) return;  // everything is on its way down already
   using enum Restarts::AtLimit;
-  if (reaction.restart && event == "PROCESS_DIED" &&
+  if (reaction.restart && event == descriptor::event_of_death &&
       !parts_.restarts.plan(origin.apid(), *reaction.restart, craft_.now,
                             craft_.is_ground_link(origin) ? GoesOn : StaysDown))
     craft_.tell(origin.descriptor().name + " stays down: it died too often", origin.apid());
@@ -84,9 +87,10 @@ void Reactions::react(Member& origin, std::string_view event, Severity severity)
 
 /// The supervisor has no network and no actuators: what a plan asks for concerns all that have.
 void Reactions::react_to_own(std::string_view event, Severity severity) {
-  if (std::ranges::find(about_subsystems, event) != about_subsystems.end()) return;
-  const Reaction reaction = choose_reaction(craft_.mission, {craft_.mission.supervisor.name, event, severity,
-                                                             craft_.mode->name, RaisedEvent::Origin::Supervisor});
+  if (descriptor::is_about_subsystem(event) || event == descriptor::event_of_plans) return;
+  const Reaction reaction = choose_reaction(
+      craft_.mission,
+      {craft_.mission.supervisor.name, event, severity, craft_.mode->name, {}, RaisedEvent::Origin::Supervisor});
   if (reaction.action == descriptor::Action::Log || craft_.shutting_down) return;
   craft_.tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event}, 1);
   if (parts_.commissioning.cancel("plan " + std::string{reaction.plan})) craft_.failed = true;

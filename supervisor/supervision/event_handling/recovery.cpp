@@ -10,7 +10,8 @@ namespace {
 /// How specific a matching plan is; empty when it does not match.
 [[nodiscard]] std::optional<int> specificity(const descriptor::Plan& plan, const RaisedEvent& event) {
   if (!plan.event.empty() && plan.event != event.event) return std::nullopt;
-  if (!plan.subsystem.empty() && plan.subsystem != event.subsystem) return std::nullopt;
+  if (!plan.subsystem.empty() && plan.subsystem != event.subsystem && plan.subsystem != event.teller)
+    return std::nullopt;
   if (!plan.mode.empty() && plan.mode != event.mode) return std::nullopt;
   if (!plan.severities.empty() && std::ranges::find(plan.severities, event.severity) == plan.severities.end())
     return std::nullopt;

@@ -15,6 +15,7 @@ struct RaisedEvent {
   std::string_view event;            ///< name, or the number as text when the descriptor does not know it
   descriptor::Severity severity{};
   std::string_view mode;
+  std::string_view teller{};         ///< who told of it where that is not the subsystem: a plan may name either
   enum class Origin : std::uint8_t { Subsystem, Supervisor } origin{Origin::Subsystem};
 };
 

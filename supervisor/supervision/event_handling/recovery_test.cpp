@@ -59,6 +59,17 @@ TEST(Recovery, EventCountsMoreThanSubsystemThanModeThanSeverityThanNothing) {
   EXPECT_EQ(choose_reaction(mission, raised).plan, "anything");
 }
 
+TEST(Recovery, APlanForWhatTheSupervisorTellsOfASubsystemMayNameEither) {
+  descriptor::Mission mission;
+  mission.plans = {plan("of the other", "HANG", "HAND", "", {}), plan("of ours", "HANG", "SUPERVISOR", "", {})};
+  RaisedEvent hang{.subsystem = "ARM", .event = "HANG", .severity = Severity::High, .mode = "open"};
+  EXPECT_EQ(choose_reaction(mission, hang).plan, "default") << "an event of its own by that name";
+  hang.teller = "SUPERVISOR";
+  EXPECT_EQ(choose_reaction(mission, hang).plan, "of ours");
+  mission.plans.insert(mission.plans.begin(), plan("of the arm", "HANG", "ARM", "", {}));
+  EXPECT_EQ(choose_reaction(mission, hang).plan, "of the arm");
+}
+
 TEST(Recovery, OfEquallySpecificPlansTheFirstIsTaken) {
   descriptor::Mission mission;
   mission.plans = {plan("first", "HOT", "", "", {}), plan("second", "HOT", "", "", {})};

@@ -37,6 +37,8 @@ void PowerHandling::tell_shortage(std::uint16_t apid, const pus::FailureNotice& 
                           reserved_w, budget_w),
               apid);
   own_.announce("POWER_REFUSED", {static_cast<double>(apid), budget_w, reserved_w, requested_w});
+  if (Member* subject = craft_.member(apid); subject != nullptr && subject->alive())
+    reactions_.react(*subject, "POWER_REFUSED", Severity::Low);
 }
 
 void PowerHandling::hear(std::uint16_t, const pus::TelemetryView& report) {
