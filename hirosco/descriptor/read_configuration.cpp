@@ -53,8 +53,13 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   configuration.requires_ = requires_;
 
   Unique structure_ids = structure_ids_, provided = provided_, required = required_;
-  Services services{
-      configuration.housekeeping, configuration.provides, configuration.requires_, structure_ids, provided, required};
+  Services services{configuration.housekeeping,
+                    configuration.provides,
+                    configuration.requires_,
+                    structure_ids,
+                    provided,
+                    required,
+                    true};
   Unique devices{"device", "E0201"};
   auto children = service_children(services);
   children.push_back({"Device", [&](const auto& child) { read_device_use(child, configuration, devices); }, 255});

@@ -39,11 +39,13 @@ std::vector<Child> SubsystemReader::service_children(Services& services) {
       if (first_service(element, services)) read(element);
     };
   };
-  return {{"EventService", service([this](const xml::Element& element) {
-             each_child(element, problems_, {{"Event", [this](const auto& child) { read_event(child); }}});
+  return {{"EventService", service([this, &services](const xml::Element& element) {
+             each_child(element, problems_,
+                        {{"Event", [this, &services](const auto& child) { read_event(child, services); }}});
            })},
-          {"FunctionService", service([this](const xml::Element& element) {
-             each_child(element, problems_, {{"Function", [this](const auto& child) { read_function(child); }}});
+          {"FunctionService", service([this, &services](const xml::Element& element) {
+             each_child(element, problems_,
+                        {{"Function", [this, &services](const auto& child) { read_function(child, services); }}});
            })},
           {"TestService", service([this](const xml::Element& element) { no_children(element, problems_); })},
           {"HKService", [this, &services](const xml::Element& element) { read_housekeeping(element, services); },
@@ -65,7 +67,7 @@ bool SubsystemReader::first_service(const xml::Element& element, Services& servi
   return first;
 }
 
-void SubsystemReader::read_event(const xml::Element& element) {
+void SubsystemReader::read_event(const xml::Element& element, const Services& services) {
   Attributes attributes{element, problems_};
   Event event;
   event.at = place(element.at);
@@ -82,6 +84,7 @@ void SubsystemReader::read_event(const xml::Element& element) {
   if (octets > max_event_octets)
     problems_.add(element, "E0215", fmt::format("event '{}' takes {} octets in one report", event.name, octets),
                   fmt::format("at most {}", max_event_octets));
+  expect_for_all(element, services, event.name);
   if (!event.name.empty()) event_names_.add(event.name, event.at, problems_, element.name.size() + 1);
   // Without an id it can only be one of the framework's; those are known when the whole descriptor is.
   if (of_framework) {
@@ -114,7 +117,7 @@ void SubsystemReader::imply_framework_events() {
   }
 }
 
-void SubsystemReader::read_function(const xml::Element& element) {
+void SubsystemReader::read_function(const xml::Element& element, const Services& services) {
   Attributes attributes{element, problems_};
   Function function;
   function.at = place(element.at);
@@ -133,11 +136,20 @@ void SubsystemReader::read_function(const xml::Element& element) {
                },
                1}});
   check_arguments(element, function);
+  expect_for_all(element, services, function.name);
   if (function.name == "SET_STATE" || function.name == "CONFIGURE")
     problems_.add(*element.find("name"), "E0213",
                   fmt::format("'{}' is built in: every subsystem has it", function.name));
   else if (!function.name.empty()) function_names_.add(function.name, function.at, problems_, element.name.size() + 1);
   subsystem_.functions.push_back(std::move(function));
+}
+
+/// Functions and events are the subsystem's, whatever is configured: nothing may look as if it held in one configuration only.
+void SubsystemReader::expect_for_all(const xml::Element& element, const Services& services, std::string_view name) {
+  if (!services.of_configuration || configurations_ < 2) return;
+  problems_.add(element, "E0230",
+                fmt::format("'{}' stands in one of {} configurations and would hold in all", name, configurations_),
+                "declare it under <Subsystem>; a function that makes no sense now is its author's to refuse");
 }
 
 void SubsystemReader::check_arguments(const xml::Element& element, const Function& function) {

@@ -70,6 +70,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   for (const Child& row : service_rows) children.push_back({row.name, later(services_elements), row.most});
   each_child(root, problems_, children);
   index_references();
+  configurations_ = configurations.size();
   for (const xml::Element* element : services_elements)
     std::ranges::find(service_rows, element->name, &Child::name)->read(*element);
   for (const xml::Element* element : configurations) read_configuration(*element);

@@ -35,6 +35,7 @@ class SubsystemReader {
     Unique& structure_ids;
     Unique& provided;
     Unique& required;
+    bool of_configuration{false};
     std::map<std::string, Location> seen{};
   };
 
@@ -88,9 +89,10 @@ class SubsystemReader {
   /// Rows for each_child(): the services, read into `services`.
   [[nodiscard]] std::vector<Child> service_children(Services& services);
   bool first_service(const xml::Element& element, Services& services);
-  void read_event(const xml::Element& element);
+  void read_event(const xml::Element& element, const Services& services);
   void imply_framework_events();
-  void read_function(const xml::Element& element);
+  void expect_for_all(const xml::Element& element, const Services& services, std::string_view name);
+  void read_function(const xml::Element& element, const Services& services);
   [[nodiscard]] static std::uint16_t read_states(Attributes& attributes, std::string_view name,
                                                  std::vector<State> fallback);
   void read_range_of(Attributes& attributes, Function::Argument& argument);
@@ -128,6 +130,7 @@ class SubsystemReader {
   Unique required_{"required set", "E0201"};
   std::vector<Provides> provides_;   ///< under <Subsystem>: valid in every configuration
   std::vector<Requires> requires_;
+  std::size_t configurations_{0};    ///< that the descriptor has
   std::vector<EnumerationUse> enumeration_uses_;
   std::vector<std::pair<const xml::Element*, Event>> framework_severities_;  ///< as the descriptor wants them
   std::map<std::string, std::vector<ParameterRef>, std::less<>> references_;  ///< by every spelling
