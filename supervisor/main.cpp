@@ -17,6 +17,7 @@
 #include "hirosco/data_transfer/flows/system_flow_factory.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/shared_memory.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
@@ -24,6 +25,7 @@
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/begin_log.hpp"
 #include "supervisor/platform/epoch_file.hpp"
 #include "supervisor/platform/log_store.hpp"
 #include "supervisor/platform/process_launcher.hpp"
@@ -68,21 +70,6 @@ struct Options {
 [[nodiscard]] std::unique_ptr<Database> make_store(DatabaseStrategy strategy, std::filesystem::path path) {
   if (strategy == DatabaseStrategy::Ascii) path.replace_extension(".log");
   return std::make_unique<LogStore>(strategy, std::move(path));
-}
-
-/// Nothing flies whose telecommands nobody could find again: the first record must reach the disk. Empty when it did,
-/// else why not.
-[[nodiscard]] std::optional<std::string> begin_log(ThreadedPacketLog& log, const Clock& clock) {
-  static_cast<void>(log.append({.kind = LogKind::Action, .source = 1, .peer = 1, .packet = {}, .note = "log begins"}));
-  const TimePoint limit = clock.now() + log_start_limit;
-  for (;;) {
-    // A store in trouble fails the wait at once, and heals by itself if it can.
-    if (log.flush(limit - clock.now())) return std::nullopt;
-    if (clock.now() >= limit) break;
-    sleep_until(clock.now() + 20ms);
-  }
-  const StoreTrouble trouble = log.trouble();
-  return trouble.present ? trouble.text : "the disk of the log does not answer";
 }
 
 /// Those reactions that no injection into a simulated device had caused: each device writes the monotonic time of what it
@@ -154,13 +141,18 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   const auto log_path = options.log.empty() ? std::filesystem::path{mission.database.path} : options.log;
   auto log_progress = WakeEvent::create();
   auto guard_found = WakeEvent::create();
-  if (!log_progress || !guard_found) return exit_environment;
+  if (!log_progress || !guard_found) {
+    const Error& why = (log_progress ? guard_found : log_progress).error();
+    fmt::print(stderr, "hirosco: nothing to wake the supervisor by: {} ({})\n", why.text,
+               std::strerror(static_cast<int>(why.value)));
+    return exit_environment;
+  }
   Console console{mission, options.style};
   Causes causes{clock, console};
   ThreadedPacketLog::Options log_options;
   log_options.on_progress = [&] { log_progress->notify(); };
   ThreadedPacketLog log{clock, make_store(strategy, log_path), std::move(log_options)};
-  if (const auto why_not = begin_log(log, clock)) {
+  if (const auto why_not = begin_log(log, clock, log_start_limit)) {
     fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
     return exit_environment;
   }
@@ -268,6 +260,7 @@ int named_failures(const descriptor::Mission& mission, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  say_last_words("hirosco-supervisor");
   const Options options = read_options(argc, argv);
   if (options.mission.empty()) {
     fmt::print(stderr, "{}: started by 'hirosco run MISSION'\n  --mission FILE [--json|--quiet]\n", argv[0]);

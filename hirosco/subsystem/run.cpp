@@ -19,6 +19,7 @@
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
@@ -155,6 +156,7 @@ void serve(GenericSubsystem& subsystem, const Clock& clock, const Channel& chann
 }  // namespace
 
 int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Subsystem>()>& make) {
+  say_last_words(argv[0]);
   // A terminal or pipe that is gone takes no words any more; that must not end a subsystem.
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
   const Options options = read_options(argc, argv);

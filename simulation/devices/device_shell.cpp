@@ -21,6 +21,7 @@
 
 #include "hirosco/data_transfer/flows/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "simulation/devices/control_socket.hpp"
 
@@ -149,6 +150,7 @@ Result<> prepare(SimulatedDevice& device, ControlSocket& control, const Options&
 }  // namespace
 
 int run_device(int argc, char** argv, const char* name, const MakeDevice& make) {
+  say_last_words(name);
   Options options;
   if (const auto code = read_options(argc, argv, name, options)) return *code;
   hold_back_ending_signals();

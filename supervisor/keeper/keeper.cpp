@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstring>
 #include <new>
 #include <string_view>
 
@@ -98,6 +99,12 @@ void end_orphans(const std::vector<Process>& devices, const sigset_t& set, const
   }
 }
 
+/// Nothing ends here without a word of what the system refused (findings LW24).
+int refused(const char* what, std::int64_t number) {
+  std::fprintf(stderr, "hirosco: %s: %s\n", what, std::strerror(static_cast<int>(number)));
+  return exit_environment;
+}
+
 }  // namespace
 
 int keep(KeeperPlan plan) {
@@ -105,7 +112,7 @@ int keep(KeeperPlan plan) {
   const sigset_t set = handled_signals();
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return exit_environment;
+  if (::pipe2(ends, O_CLOEXEC) != 0) return refused("no pipe to watch over the flight", errno);
   const FileDescriptor watched{ends[0]};
   const FileDescriptor held{ends[1]};
 
@@ -113,7 +120,10 @@ int keep(KeeperPlan plan) {
   const auto page_memory = memfd::create("hirosco-keeper", sizeof(KeeperPage));
   auto mapped = page_memory ? MappedMemory::map(page_memory->get(), sizeof(KeeperPage), MapMode::ReadWrite)
                             : Result<MappedMemory>{fail(ErrorCode::SystemFailure, "memory of the keeper")};
-  if (!mapped) return exit_environment;
+  if (!mapped) {
+    const Error& why = page_memory ? mapped.error() : page_memory.error();
+    return refused("no memory to watch over the flight", why.value);
+  }
   auto& page = *::new (mapped->octets().data()) KeeperPage;
 
   std::vector<Process> devices;
@@ -123,9 +133,8 @@ int keep(KeeperPlan plan) {
     start.inherited.push_back({watched.get(), STDIN_FILENO});
     auto device = Process::spawn(start);
     if (!device) {
-      std::fprintf(stderr, "hirosco: cannot start %s: %s\n", start.executable.c_str(), device.error().text);
       end_devices(devices, set, clock);
-      return exit_environment;
+      return refused(("cannot start " + start.executable).c_str(), device.error().value);
     }
     devices.push_back(std::move(*device));
   }
@@ -135,9 +144,8 @@ int keep(KeeperPlan plan) {
   plan.supervisor.blocked = {SIGTERM, SIGINT, SIGUSR1};
   auto supervisor = Process::spawn(plan.supervisor);
   if (!supervisor) {
-    std::fprintf(stderr, "hirosco: cannot start %s: %s\n", plan.supervisor.executable.c_str(), supervisor.error().text);
     end_devices(devices, set, clock);
-    return exit_environment;
+    return refused(("cannot start " + plan.supervisor.executable).c_str(), supervisor.error().value);
   }
 
   const TimePoint started = clock.now();

@@ -195,6 +195,23 @@ TEST_F(Sqlite, RefusesALaterSchema) {
   EXPECT_EQ(database.error().value, 2);
 }
 
+/// Findings LW21: TORQUE missed TORQUE_LIMIT_EXCEEDED, which only the words of a packet have, and case mattered.
+TEST(LogSearch, FindsWhatIsShownWhateverItsCase) {
+  const LogRecord stored = record(7);
+  const auto finds = [&](std::string_view text, bool in_words) {
+    LogQuery query{.text = std::string{text}};
+    if (in_words)
+      query.words = [](const LogRecord& one) {
+        return std::to_string(one.number) + " TORQUE_LIMIT_EXCEEDED LIMIT=6 N m";
+      };
+    return matches(stored, query);
+  };
+  for (const char* text : {"", "TORQUE", "torque_limit", "limit=6 n m", "7 torque"})
+    EXPECT_TRUE(finds(text, true)) << text;
+  EXPECT_FALSE(finds("TORQUE", false)) << "no words of the packet are there to be searched";
+  EXPECT_FALSE(finds("FORCE", true));
+}
+
 TEST_F(Sqlite, RefusesAFileThatIsNone) {
   std::ofstream{path()} << std::string(5000, 'x');
   EXPECT_FALSE(open_database(DatabaseStrategy::Sqlite, path()));

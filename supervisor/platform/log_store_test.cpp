@@ -9,6 +9,7 @@
 #include <map>
 
 #include "hirosco/utilities/os/clock.hpp"
+#include "supervisor/platform/begin_log.hpp"
 #include "supervisor/platform/packet_log.hpp"
 #include "supervisor/platform/test_folder.hpp"
 
@@ -138,6 +139,24 @@ TEST(LogStore, LeavesASegmentAfterAFailedFsyncAndWritesWhatWasNotAcknowledgedToT
   EXPECT_FALSE(store.trouble().present);
   EXPECT_EQ(disk.files[folder.path() / "log.txt"].size(), 3U) << "the doubtful segment is not touched again";
   EXPECT_EQ(disk.files[folder.path() / "log.2.txt"].size(), 3U);
+}
+
+/// Findings LW24: one error at the start left the craft uncommissioned, with exit code 0.
+TEST(BeginLog, GetsOverErrorsOfTheDiskAndSaysWhyWhereTheyLast) {
+  const SystemClock clock;
+  for (const std::size_t errors : {0U, 1U, 3U}) {
+    const TestFolder folder;
+    Disk disk{.answers = {errors, failed_fsync}, .files = {}};
+    ThreadedPacketLog log{
+        clock, std::unique_ptr<Database>{new LogStore{store_on(disk, folder.path() / "log.txt")}}, {}};
+    EXPECT_EQ(begin_log(log, clock, 1min), std::nullopt) << errors;
+  }
+  const TestFolder folder;
+  Disk disk{.answers = {100'000, failed_fsync}, .files = {}};
+  ThreadedPacketLog log{clock, std::unique_ptr<Database>{new LogStore{store_on(disk, folder.path() / "log.txt")}}, {}};
+  const auto why_not = begin_log(log, clock, 100ms);
+  ASSERT_TRUE(why_not);
+  EXPECT_NE(why_not->find("fdatasync of the log file, 5"), std::string::npos) << *why_not;
 }
 
 TEST(LogStore, LeavesNoTrailOfSegmentsOnADiskThatFailsForGood) {

@@ -5,6 +5,7 @@ so, in words, and never by a crash (findings LW15)."""
 
 import os
 import pathlib
+import resource
 import subprocess
 import tempfile
 import unittest
@@ -36,6 +37,21 @@ class Output(unittest.TestCase):
             with self.subTest(words):
                 self.refused(ENVIRONMENT, "No space left on device", *words, to="/dev/full")
         self.refused(ENVIRONMENT, "No space left on device", "simulate", ROKVISS, "--for", "0.2s", "--trace", "/dev/full")
+
+    def test_a_computer_without_memory_is_named(self):
+        told = set()
+        for megabytes in (12, 16, 20, 24, 28, 32, 36, 40, 60):
+            limit = megabytes << 20
+            done = subprocess.run([HIROSCO, "simulate", ROKVISS, "--for", "0.2s"], capture_output=True, text=True, check=False,
+                                  env={**os.environ, "NO_COLOR": "1"},
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+            if done.returncode == 127:  # not even its libraries have room
+                continue
+            with self.subTest(megabytes):
+                self.assertIn(done.returncode, (0, ENVIRONMENT), done.stderr)
+                self.assertTrue(done.returncode == 0 or done.stderr.startswith("hirosco: "), done.stderr)
+            told.add(done.returncode)
+        self.assertIn(ENVIRONMENT, told, "no limit was too low")
 
     def test_a_seed_that_is_none_is_named(self):
         for seed in ("-1", "18446744073709551616", "1e3", "x"):

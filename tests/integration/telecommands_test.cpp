@@ -185,6 +185,21 @@ TEST_F(Telecommands, OfTwoThatAreAskedForAtOnceOnlyWhatFitsIsGranted) {
   EXPECT_TRUE(flight.run_until_state("MANIPULATOR", State::SafeOperational, 1s));
 }
 
+/// Findings LW12: what was granted and not yet carried out counts, and is taken back, when the budget falls.
+TEST_F(Telecommands, ABudgetThatFallsInTheSameInstantTakesBackWhatWasJustGranted) {
+  take_out("MANIPULATOR");
+  std::vector<std::byte> up = call_data("SET_STATE", {});
+  up.back() = std::byte{1};
+  for (const int octet : {1, static_cast<int>(State::SafeOperational)}) up.push_back(static_cast<std::byte>(octet));
+  flight.craft().ground().send(function_packet(manipulator_apid, first_count, up));
+  expect_done(flight.craft().command("SUPERVISOR", "SET_POWER_BUDGET", {50}));
+  EXPECT_TRUE(flight.story().has("power budget 50 W, 105 W are reserved")) << flight.story().text();
+  EXPECT_TRUE(flight.run_until_state("MANIPULATOR", State::Offline, 1s)) << flight.story().text();
+  EXPECT_TRUE(flight.run_until_state("JOYSTICK", State::Offline, 1s));
+  flight.craft().run(1s);
+  EXPECT_EQ(flight.state("MANIPULATOR"), State::Offline);
+}
+
 TEST(PowerShort, IsToldOnceWhereTheMissionDoesNothingAboutIt) {
   Flight flight{{.edit = [](descriptor::Mission& mission) {
     mission.plans.insert(

@@ -19,6 +19,7 @@
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/last_words.hpp"
 #include "tools/hirosco/commands.hpp"
 
 /// `hirosco-ground`: the process behind `hirosco ground` and `hirosco why`, which check the command line. Options in
@@ -158,6 +159,7 @@ constexpr std::uint16_t tried_ports = 20;
 }  // namespace
 
 int main(int argc, char** argv) {
+  hirosco::say_last_words("hirosco-ground");
   Options options;
   const std::set<std::string> flags{"--child", "--json", "--quiet", "--why", "--tour"};
   for (int i = 1; i < argc; ++i) {

@@ -10,6 +10,7 @@
 #include <new>
 #include <system_error>
 
+#include "hirosco/utilities/os/last_words.hpp"
 #include "tools/hirosco/commands.hpp"
 
 /// `hirosco`: one command for everything. The command line is read here and nowhere else.
@@ -251,6 +252,7 @@ int read_and_do(int argc, char** argv) {
 
 /// What was printed must have arrived: a full device or a closed file is an error like any other.
 int main(int argc, char** argv) {
+  hirosco::say_last_words("hirosco");  // of its threads: what main itself meets is caught
   int code = exit_internal;
   try {
     code = read_and_do(argc, argv);
