@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "supervisor/supervision/parts.hpp"
+#include "supervisor/parts.hpp"
 
 namespace hirosco::supervisor {
 

@@ -12,6 +12,7 @@
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launcher.hpp"
 #include "supervisor/platform/packet_log.hpp"
+#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/observer.hpp"
 #include "supervisor/supervision/subsystem_handling/member.hpp"
 

@@ -11,6 +11,9 @@
 /// in parts.hpp.
 namespace hirosco::supervisor {
 
+/// The supervisor's, and the source id of its own telecommands (decision 27).
+inline constexpr std::uint16_t supervisor_apid = 1;
+
 /// Looks after something: called in every watch period of the supervisor.
 class Watch {
  public:
@@ -23,6 +26,16 @@ class Hearer {
  public:
   virtual ~Hearer() = default;
   virtual void hear(std::uint16_t from, const pus::TelemetryView& report) = 0;
+};
+
+/// Keeps what telecommands are under way, and says how they end when nobody else will.
+class Accounts {
+ public:
+  virtual ~Accounts() = default;
+  /// Nothing of what waits for the disk leaves any more.
+  virtual void refuse_waiting() = 0;
+  /// Who is gone will never report what it had begun (findings LW1).
+  virtual void outcome_unknown(std::uint16_t apid) = 0;
 };
 
 }  // namespace hirosco::supervisor

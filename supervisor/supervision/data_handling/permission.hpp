@@ -10,15 +10,13 @@
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/pus/failure.hpp"
 #include "hirosco/pus/packet.hpp"
+#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
 
 /// The one decision whether a telecommand may be executed (paper 4.3: by state and mode). Pure: what is asked before
 /// sending and what is decided on sending are the same function.
 namespace hirosco::supervisor {
-
-/// The supervisor's, and the source id of its own telecommands (decision 27).
-inline constexpr std::uint16_t supervisor_apid = 1;
 
 enum class Sender : std::uint8_t { Ground, Subsystem, Supervisor };
 

@@ -9,7 +9,6 @@
 
 #include "hirosco/pus/st129_supervision.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
-#include "supervisor/supervision/realtime_links/links.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 
 namespace hirosco::supervisor {
@@ -126,7 +125,7 @@ std::expected<Permitted, FailureNotice> Telecommands::judge(const pus::Telecomma
 Situation Telecommands::situation_of(std::uint16_t apid) const {
   Situation situation{.mission = craft_.mission,
                       .mode = *craft_.mode,
-                      .links = parts_.links.graph(),
+                      .links = parts_.links,
                       .state = std::nullopt,
                       .power = &parts_.power.ledger()};
   if (apid == supervisor_apid) {

@@ -21,7 +21,6 @@
 namespace hirosco::supervisor {
 
 class PowerHandling;
-class Links;
 
 /// A telecommand as it came in.
 struct Incoming {
@@ -33,12 +32,12 @@ struct Incoming {
 
 /// Permits or refuses, logs and forwards every telecommand (paper 4.3). One that is not essential leaves when it is on the
 /// disk and not before (decision 24). Thread: the supervisor's.
-class Telecommands final : public Watch {
+class Telecommands final : public Watch, public Accounts {
  public:
   struct Parts {
     Craft& craft;
     OwnSubsystem& own;
-    const Links& links;
+    const LinkGraph& links;
     PowerHandling& power;
     Outstanding& outstanding;
     Traffic& traffic;
@@ -53,10 +52,8 @@ class Telecommands final : public Watch {
   void forward_durable();
   /// What does not become durable in its time is refused.
   void watch(TimePoint now) override;
-  /// Nothing of what waits for the disk leaves any more.
-  void refuse_waiting();
-  /// Who is gone will never report what it had begun (findings LW1).
-  void outcome_unknown(std::uint16_t apid);
+  void refuse_waiting() override;
+  void outcome_unknown(std::uint16_t apid) override;
   /// Since when the oldest waits for the disk; empty when none does.
   [[nodiscard]] std::optional<TimePoint> waiting_since() const;
 

@@ -7,10 +7,8 @@
 
 #include "hirosco/descriptor/supervisor_events.hpp"
 #include "hirosco/pus/event_message.hpp"
-#include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/event_handling/recovery.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
-#include "supervisor/supervision/realtime_links/links.hpp"
 
 namespace hirosco::supervisor {
 
@@ -121,7 +119,7 @@ void Reactions::recovered(std::uint16_t apid, Severity severity) {
 }
 
 void Reactions::shut_down_network(Member& origin, std::string_view plan) {
-  auto network = parts_.links.graph().network_of(origin.apid());
+  auto network = parts_.links.network_of(origin.apid());
   // The ground link may carry sets of the network; it has no actuators, and ground must hear what goes on.
   std::erase_if(network, [&](std::uint16_t apid) {
     const Member* subject = craft_.member(apid);

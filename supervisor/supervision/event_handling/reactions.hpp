@@ -6,15 +6,15 @@
 #include <string_view>
 
 #include "hirosco/pus/describe.hpp"
+#include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/modes/sequence.hpp"
+#include "supervisor/supervision/event_handling/restarts.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/subsystem_handling/restarts.hpp"
+#include "supervisor/supervision/realtime_links/link_graph.hpp"
 
 namespace hirosco::supervisor {
 
 class Commissioning;
-class Links;
 
 /// Events are heard here and nowhere else, and answered by the recovery plans of the mission (paper 4.3 and 5): whether
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Thread: the supervisor's.
@@ -24,7 +24,7 @@ class Reactions {
     Craft& craft;
     OwnSubsystem& own;
     CommandDesk& desk;
-    const Links& links;
+    const LinkGraph& links;
     Commissioning& commissioning;
     Restarts& restarts;
   };

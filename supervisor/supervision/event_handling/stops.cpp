@@ -8,14 +8,15 @@
 
 namespace hirosco::supervisor {
 
-void Stops::provide(Telecommands& telecommands) {
+void Stops::provide() {
   own_.on_function("SAFE_ALL", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
-  telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) {
-    pending_.push_back({craft_.guard.stop_all(), request});
-    own_.verification().accepted(request);
-    own_.verification().started(request);
-    after_stop("SAFE_ALL");
-  });
+}
+
+void Stops::safe_all(const pus::Request& request) {
+  pending_.push_back({craft_.guard.stop_all(), request});
+  own_.verification().accepted(request);
+  own_.verification().started(request);
+  after_stop("SAFE_ALL");
 }
 
 void Stops::asked() {

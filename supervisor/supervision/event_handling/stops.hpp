@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/data_handling/telecommands.hpp"
-#include "supervisor/supervision/modes/sequence.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
 
 namespace hirosco::supervisor {
 
@@ -22,8 +22,9 @@ class Stops {
   Stops(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Commissioning& commissioning)
       : craft_{craft}, own_{own}, desk_{desk}, commissioning_{commissioning} {}
 
-  /// SAFE_ALL, which no cycle and no queue holds up.
-  void provide(Telecommands& telecommands);
+  void provide();
+  /// SAFE_ALL, carried out where it is received.
+  void safe_all(const pus::Request& request);
   /// A signal or the local socket asked for a stop.
   void asked();
   /// Everything was stopped already: nothing starts it again, and the states follow.

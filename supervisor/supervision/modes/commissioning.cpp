@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/commissioning.hpp"
 
-#include "supervisor/supervision/data_handling/permission.hpp"
-
 namespace hirosco::supervisor {
 
 using descriptor::State;

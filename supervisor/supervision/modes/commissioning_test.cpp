@@ -25,6 +25,7 @@ struct Desk final : CommandDesk {
     answers.erase(answers.begin());
     done(success, why);
   }
+  void send(std::uint16_t, std::uint8_t, std::uint8_t, Octets, const MemoryHandle&, CommandDone) override {}
   std::vector<std::string> sent;
   std::vector<CommandDone> answers;
 };

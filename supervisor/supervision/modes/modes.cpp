@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "supervisor/supervision/data_handling/permission.hpp"
-
 namespace hirosco::supervisor {
 
 void Modes::provide() {

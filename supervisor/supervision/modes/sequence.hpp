@@ -6,23 +6,13 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "supervisor/supervision/command_desk.hpp"
 
 /// A list of telecommands in stages: all of a stage are sent at once, the next stage waits for the last of them
 /// (decision 5: commissioning uses the same telecommands as an operator).
 namespace hirosco::supervisor {
-
-/// Told once how a telecommand ended.
-using CommandDone = std::function<void(bool success, const std::string& why)>;
-
-/// Sends a function through permit, route and log.
-class CommandDesk {
- public:
-  virtual ~CommandDesk() = default;
-  virtual void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
-                       CommandDone done) = 0;
-};
 
 class Sequence {
  public:

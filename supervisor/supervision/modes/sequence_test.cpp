@@ -22,6 +22,7 @@ struct Desk final : CommandDesk {
     answers.push_back(std::move(done));
     if (at_once) answers.back()(*at_once, "at once");
   }
+  void send(std::uint16_t, std::uint8_t, std::uint8_t, Octets, const MemoryHandle&, CommandDone) override {}
   std::vector<std::string> sent;
   std::vector<CommandDone> answers;
   std::optional<bool> at_once;

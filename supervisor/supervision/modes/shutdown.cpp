@@ -12,12 +12,13 @@ constexpr Duration limit = 5s;
 
 void Shutdown::provide() {
   parts_.own.on_function("SHUTDOWN", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
-  parts_.telecommands.at_once("SHUTDOWN", [this](const pus::Request& asked) {
-    parts_.own.verification().accepted(asked);
-    parts_.own.verification().started(asked);
-    request();
-    parts_.own.verification().completed(asked);
-  });
+}
+
+void Shutdown::command(const pus::Request& asked) {
+  parts_.own.verification().accepted(asked);
+  parts_.own.verification().started(asked);
+  request();
+  parts_.own.verification().completed(asked);
 }
 
 void Shutdown::request() {
@@ -44,9 +45,9 @@ void Shutdown::request() {
 
 /// Last, so that the ground sees the others go, and hears what became of what it had asked them.
 void Shutdown::bring_down_ground_link() {
-  parts_.telecommands.refuse_waiting();
+  parts_.accounts.refuse_waiting();
   for (const Member& member : craft_.members)
-    if (!craft_.is_ground_link(member)) parts_.telecommands.outcome_unknown(member.apid());
+    if (!craft_.is_ground_link(member)) parts_.accounts.outcome_unknown(member.apid());
   Sequence::Stage ground;
   if (const Member* link = craft_.ground_link(); link != nullptr && link->alive())
     ground.push_back(
@@ -58,9 +59,9 @@ void Shutdown::bring_down_ground_link() {
 }
 
 void Shutdown::end() {
-  parts_.telecommands.refuse_waiting();
+  parts_.accounts.refuse_waiting();
   for (Member& member : craft_.members) {
-    parts_.telecommands.outcome_unknown(member.apid());
+    parts_.accounts.outcome_unknown(member.apid());
     member.died();  // closing the channel ends the process
   }
   ended_ = true;

@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
 #include "supervisor/supervision/modes/sequence.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
 
 namespace hirosco::supervisor {
 
@@ -20,12 +20,13 @@ class Shutdown final {
     OwnSubsystem& own;
     CommandDesk& desk;
     Commissioning& commissioning;
-    Telecommands& telecommands;
+    Accounts& accounts;
   };
   explicit Shutdown(const Parts& parts) : parts_{parts}, craft_{parts.craft}, sequence_{parts.desk} {}
 
-  /// SHUTDOWN, which no cycle and no queue holds up.
   void provide();
+  /// SHUTDOWN, carried out where it is received.
+  void command(const pus::Request& asked);
   void request();
   /// Ends what is left when the time has run out. The flight is over one step after the last member: what is said of that
   /// is in the log.

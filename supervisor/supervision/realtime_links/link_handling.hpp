@@ -32,8 +32,8 @@ class LinkHandling {
   /// Called once with the outcome of an establish or release.
   using Done = std::function<void(bool success)>;
 
-  LinkHandling(const descriptor::Mission& mission, MemoryProvider& memory, LinkOperator& supervisor)
-      : mission_{mission}, memory_{memory}, operator_{supervisor}, graph_{mission} {}
+  LinkHandling(const descriptor::Mission& mission, LinkGraph& graph, MemoryProvider& memory, LinkOperator& supervisor)
+      : mission_{mission}, memory_{memory}, operator_{supervisor}, graph_{graph} {}
 
   [[nodiscard]] const LinkGraph& graph() const noexcept { return graph_; }
   /// Begins the handshake. False: unknown link, already up, or a handshake of it is under way.
@@ -79,7 +79,7 @@ class LinkHandling {
   const descriptor::Mission& mission_;
   MemoryProvider& memory_;
   LinkOperator& operator_;
-  LinkGraph graph_;
+  LinkGraph& graph_;
   std::map<std::uint8_t, Handshake> handshakes_;
   std::map<std::uint8_t, MemoryHandle> established_;
   struct Release {

@@ -42,7 +42,8 @@ struct LinkHandlingTest : ::testing::Test {
   descriptor::Mission mission = testing::small_mission();
   HeapMemory memory;
   Operator supervisor;
-  LinkHandling links{mission, memory, supervisor};
+  LinkGraph graph{mission};
+  LinkHandling links{mission, graph, memory, supervisor};
   std::vector<bool> ends;
   TimePoint now{};
   const st128::Offer offer{.set = "HAND_STATE", .period = 1ms, .terms = {}, .fields = {{"ANGLE", Type::Double, 2}}};

@@ -3,7 +3,6 @@
 #include "supervisor/supervision/realtime_links/links.hpp"
 
 #include "hirosco/pus/st128_realtime_link.hpp"
-#include "supervisor/supervision/data_handling/own_telecommands.hpp"
 
 namespace hirosco::supervisor {
 
@@ -35,10 +34,9 @@ void Links::hear(std::uint16_t from, const pus::TelemetryView& report) {
 
 void Links::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) {
   const auto link = data.empty() ? std::uint8_t{0} : std::to_integer<std::uint8_t>(data[0]);
-  telecommands_.send(apid, pus::st128::service_type, subtype, data, memory,
-                     [=, this](bool success, const std::string& why) {
-                       if (!success) handling_.failed(apid, subtype, link, craft_.name_of(apid) + ": " + why);
-                     });
+  desk_.send(apid, pus::st128::service_type, subtype, data, memory, [=, this](bool success, const std::string& why) {
+    if (!success) handling_.failed(apid, subtype, link, craft_.name_of(apid) + ": " + why);
+  });
 }
 
 void Links::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "hirosco/data_transfer/memory.hpp"
+#include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
@@ -13,14 +14,12 @@
 
 namespace hirosco::supervisor {
 
-class OwnTelecommands;
-
 /// The real-time links of the mission in a flight: LINK and UNLINK, the handshakes, and a look into the memory of the links
 /// that are up. Thread: the supervisor's.
 class Links final : public Watch, public Hearer, private LinkOperator {
  public:
-  Links(Craft& craft, OwnSubsystem& own, OwnTelecommands& telecommands)
-      : craft_{craft}, own_{own}, telecommands_{telecommands}, handling_{craft.mission, craft.world.memory, *this} {}
+  Links(Craft& craft, OwnSubsystem& own, CommandDesk& desk, LinkGraph& graph)
+      : craft_{craft}, own_{own}, desk_{desk}, handling_{craft.mission, graph, craft.world.memory, *this} {}
 
   /// LINK and UNLINK.
   void provide();
@@ -38,7 +37,7 @@ class Links final : public Watch, public Hearer, private LinkOperator {
 
   Craft& craft_;
   OwnSubsystem& own_;
-  OwnTelecommands& telecommands_;
+  CommandDesk& desk_;
   LinkHandling handling_;
   std::map<std::uint8_t, Mapping> seen_;
 };

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
 namespace hirosco::supervisor {

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "supervisor/supervision/realtime_links/links.hpp"
-#include "supervisor/supervision/subsystem_handling/restarts.hpp"
+#include "supervisor/supervision/event_handling/restarts.hpp"
 
 namespace hirosco::supervisor {
 
@@ -37,7 +36,7 @@ const descriptor::CommissionStep* GroundLinkCare::wanted(const Member& link) con
 const descriptor::Configuration& GroundLinkCare::able(const descriptor::Subsystem& link,
                                                       const std::string& configuration) const {
   const auto& wished = *link.find_configuration(configuration);
-  const auto can = [&](const descriptor::Configuration& one) { return !links_.graph().absent_for(link.id, one); };
+  const auto can = [&](const descriptor::Configuration& one) { return !links_.absent_for(link.id, one); };
   if (can(wished)) return wished;
   const auto other = std::ranges::find_if(link.configurations, can);
   return other != link.configurations.end() ? *other : wished;

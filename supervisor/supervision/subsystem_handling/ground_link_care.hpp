@@ -8,16 +8,15 @@
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
 #include "supervisor/supervision/modes/sequence.hpp"
+#include "supervisor/supervision/realtime_links/link_graph.hpp"
 
 namespace hirosco::supervisor {
-
-class Links;
 
 /// Without the ground link nobody could command anything: it comes back by itself, whether a fault or a telecommand took it
 /// away (adr 0043). Thread: the supervisor's.
 class GroundLinkCare final : public Watch {
  public:
-  GroundLinkCare(Craft& craft, CommandDesk& desk, const Links& links, const Commissioning& commissioning)
+  GroundLinkCare(Craft& craft, CommandDesk& desk, const LinkGraph& links, const Commissioning& commissioning)
       : craft_{craft}, links_{links}, commissioning_{commissioning}, sequence_{desk} {}
 
   void watch(TimePoint now) override;
@@ -31,7 +30,7 @@ class GroundLinkCare final : public Watch {
                                                       const std::string& configuration) const;
 
   Craft& craft_;
-  const Links& links_;
+  const LinkGraph& links_;
   const Commissioning& commissioning_;
   Sequence sequence_;
   std::optional<TimePoint> lost_at_;

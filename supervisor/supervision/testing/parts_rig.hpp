@@ -16,7 +16,7 @@
 #include "hirosco/data_transfer/simulated/heap_memory.hpp"
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
 #include "hirosco/descriptor/read.hpp"
-#include "supervisor/supervision/parts.hpp"
+#include "supervisor/parts.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
 /// All parts of a supervisor on virtual time, in a small mission whose members the test plays: each has a channel, pages and a

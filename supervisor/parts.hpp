@@ -41,34 +41,38 @@ struct SupervisorParts final : OwnSubsystem::Author {
     links.provide();
     log_watch.provide();
     power.provide();
-    stops.provide(telecommands);
+    stops.provide();
     shutdown.provide();
+    // No cycle and no queue holds these up.
+    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { stops.safe_all(request); });
+    telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
   }
   void show() noexcept override { housekeeping.show(); }
 
   Craft craft;
   OwnSubsystem own{craft.mission.supervisor, craft.world, *this};
+  LinkGraph graph{craft.mission};
   Outstanding outstanding;
   Restarts restarts;
   Traffic traffic;
   // data handling
-  Telecommands telecommands{{craft, own, links, power, outstanding, traffic}};
+  Telecommands telecommands{{craft, own, graph, power, outstanding, traffic}};
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
   Telemetry telemetry{craft, own, traffic, {&traffic, &reception, &power, &own_telecommands, &links}};
   Reception reception{{craft, own, telecommands, telemetry, reactions, outstanding, traffic}};
   // real-time links, resource management
-  Links links{craft, own, own_telecommands};
+  Links links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
   // modes
   Modes modes{craft, own};
   Commissioning commissioning{craft, own_telecommands};
   Shutdown shutdown{{craft, own, own_telecommands, commissioning, telecommands}};
   // event handling
-  Reactions reactions{{craft, own, own_telecommands, links, commissioning, restarts}};
+  Reactions reactions{{craft, own, own_telecommands, graph, commissioning, restarts}};
   Stops stops{craft, own, own_telecommands, commissioning};
   // subsystem handling, status
-  GroundLinkCare ground_link{craft, own_telecommands, links, commissioning};
+  GroundLinkCare ground_link{craft, own_telecommands, graph, commissioning};
   Processes processes{
       {craft, own, reception, reactions, stops, links, telecommands, own_telecommands, ground_link, restarts}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/utilities/octets.hpp"
+
+namespace hirosco::supervisor {
+
+/// Told once how a telecommand ended.
+using CommandDone = std::function<void(bool success, const std::string& why)>;
+
+/// Sends the supervisor's own telecommands through permit, route and log.
+class CommandDesk {
+ public:
+  virtual ~CommandDesk() = default;
+  /// A function, by its name.
+  virtual void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
+                       CommandDone done) = 0;
+  /// Any other request; memory travels beside it.
+  virtual void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
+                    const MemoryHandle& memory, CommandDone done) = 0;
+};
+
+}  // namespace hirosco::supervisor
