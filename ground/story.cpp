@@ -64,6 +64,16 @@ struct Line {
   std::string text;  ///< after the names
 };
 
+/// The first that belongs to the newest story; they come newest first.
+[[nodiscard]] StoredEvent first_of(const std::vector<StoredEvent>& severe) {
+  const StoredEvent* first = &severe.front();
+  for (const StoredEvent& event : severe) {
+    if (first->t - event.t > same_story) break;
+    first = &event;
+  }
+  return *first;
+}
+
 class Teller {
  public:
   Teller(const Catalogue& catalogue, Archive& archive) : catalogue_{catalogue}, archive_{archive} {}
@@ -74,14 +84,9 @@ class Teller {
     const auto safe_all = newest_safe_all(to);
     if (severe.empty() && !safe_all) return {{"causes", json::array()}};
     if (safe_all && (severe.empty() || severe.front().t < safe_all->t)) return told_by_hand(*safe_all);
-    begin_ = severe.front().t;
-    cause_ = severe.front();
-    for (const StoredEvent& event : severe) {
-      if (begin_ - event.t > same_story) break;
-      begin_ = event.t;
-      cause_ = event;
-    }
-    // Who notices a loss by its effect may report in the very cycle of who has lost: of one instant the gravest is the cause.
+    cause_ = first_of(severe);
+    begin_ = cause_.t;
+    // Who notices a loss by its effect may report in the very cycle of who has lost: the gravest of one instant is the cause.
     for (const StoredEvent& event : severe)
       if (event.t >= begin_ && event.t - begin_ <= same_instant && event.severity > cause_.severity) cause_ = event;
     mode_ = mode_at(begin_);
