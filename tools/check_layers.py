@@ -8,7 +8,7 @@ may = {"hirosco": ["hirosco"], "subsystems": ["hirosco"], "supervisor": ["hirosc
        "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything
 shells = ("hirosco/utilities/os/", "hirosco/data_transfer/flows/", "supervisor/guard/guard_shell", "supervisor/keeper/", "supervisor/platform/", "tools/",
           "tests/", "bench/", "simulation/devices/", "subsystems/communication/tcp_server.")
-# These, and tests, main.cpp and run.cpp anywhere, may ask the operating system.
+# These, and tests, their rigs, main.cpp and run.cpp anywhere, may ask the operating system.
 system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|sched|spawn|signal|semaphore|mqueue|"
                     r"termios|dirent|netdb|dlfcn|ifaddrs)\.h$|csignal$")
 include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
@@ -17,7 +17,8 @@ def rank(path):
 def wrong(path, to):
     top, target = path.split("/")[0], to.split("/")[0]
     if system.match(to):
-        return not path.startswith(shells) and not path.endswith(("_test.cpp", "main.cpp", "run.cpp")) and "the operating system"
+        asks = path.startswith(shells) or path.endswith(("_test.cpp", "main.cpp", "run.cpp")) or "/testing/" in path
+        return not asks and "the operating system"
     if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
     if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return False  # assemble and fly all parts
     same = path.split("/")[:2] == to.split("/")[:2]
