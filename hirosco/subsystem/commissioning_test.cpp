@@ -93,6 +93,77 @@ TEST_F(Commissioning, ADeviceThatSomebodyElseHoldsFailsTheConfigurationByItsName
   EXPECT_FALSE(rig.subsystem.cycle_demand().wanted);
 }
 
+TEST_F(Commissioning, SeveralTransientStatesAreDoneInOneStepOfTheServiceLoop) {
+  const auto up = rig.set_state(State::PreOperational);
+  rig.service();
+  EXPECT_EQ(rig.state(), State::PreOperational);
+  EXPECT_EQ(rig.outcome(up), "1 3 7");
+  const auto down = rig.set_state(State::Offline);
+  rig.service();
+  EXPECT_EQ(rig.state(), State::Offline);
+  EXPECT_EQ(rig.outcome(down), "1 3 7");
+}
+
+TEST_F(Commissioning, AChangeThatFindsNoRoomBeforeTheCycleIsHandedOverOnceThereIsSome) {
+  rig.bring_to(State::SafeOperational);
+  std::vector<testing::Sent> calls;
+  for (int i = 0; i < 64; ++i) calls.push_back(rig.call("SET_GOAL", {0.5}));
+  const auto up = rig.set_state(State::Operational);
+  for (int i = 0; i < 3; ++i) rig.service();
+  EXPECT_EQ(rig.outcome(up), "1 3");
+  rig.settle();
+  EXPECT_EQ(rig.outcome(up), "1 3 7");
+  EXPECT_EQ(rig.state(), State::Operational);
+  for (const auto& call : calls) EXPECT_EQ(rig.outcome(call), "1 3 7");
+}
+
+TEST_F(Commissioning, WhatFailedIsExplainedByNameOfSubsystemAndStateOrConfiguration) {
+  probe.nodes[State::HardwareInit].fails = true;
+  rig.set_state_now(State::PreOperational);
+  EXPECT_THAT(rig.explanations, ::testing::ElementsAre("PROBE: HardwareInit failed: planted"));
+  probe.nodes[State::HardwareInit].fails = false;
+  rig.set_state_now(State::PreOperational);
+  probe.configure_fails = true;
+  rig.configure_now(3);
+  EXPECT_EQ(rig.explanations.back(), "PROBE: CONFIGURE WITH_ARM failed: planted");
+  probe.configure_fails = false;
+  EXPECT_EQ(rig.configure_now(3), "1 3 7") << "its devices were given back";
+}
+
+TEST_F(Commissioning, ErrorOperationalOverridesAChangeOnlyOnce) {
+  rig.bring_to(State::Operational);
+  rig.set_state(State::SafeOperational);
+  const auto error = rig.set_state(State::ErrorOperational);
+  const auto safe = rig.set_state(State::SafeOperational);
+  rig.service();
+  rig.service();
+  EXPECT_EQ(rig.outcome(error), "1 3");
+  EXPECT_EQ(rig.outcome(safe), busy);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(error), "1 3 7");
+}
+
+TEST_F(Commissioning, EachDeviceOfAConfigurationIsMissedByItsOwnEvent) {
+  rig.bring_to(State::PreOperational, 3);
+  rig.set_state(State::SafeOperational);
+  rig.service();
+  rig.cycle(20);
+  rig.service();
+  EXPECT_EQ(rig.heard(testing::arm_lost), 1);
+  EXPECT_EQ(rig.heard(testing::lamp_lost), 1);
+}
+
+TEST_F(Commissioning, EachConfigurationIsAnotherGenerationOfTheCycle) {
+  rig.bring_to(State::PreOperational);
+  const auto first = rig.subsystem.cycle_demand().generation;
+  rig.set_state_now(State::PostOperational);
+  rig.set_state_now(State::PreOperational);
+  EXPECT_EQ(rig.configure_now(1), "1 3 7");
+  EXPECT_EQ(rig.subsystem.cycle_demand().generation, first + 1);
+  EXPECT_EQ(rig.configure_now(1), "1 3 7");
+  EXPECT_EQ(rig.subsystem.cycle_demand().generation, first + 1) << "the same once more is none";
+}
+
 /// Leaves out what its descriptor lets it use.
 struct Forgetful final : Probe {
   bool device{true};

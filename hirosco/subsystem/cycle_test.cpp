@@ -125,6 +125,47 @@ TEST(CycleOutputs, OfAFailedNodeAreAFaultInTheSameCycle) {
   EXPECT_EQ(arm.reader.read(payload).status, LinkStatus::Fault);
 }
 
+TEST(CycleOutputs, OfASetLieOneBehindTheOther) {
+  Probe probe;
+  Rig rig{probe, with(R"(<ParamRef name="SEEN"/></Provides>)",
+                      R"(<ParamRef name="CUR_VALUES.STATE"/><ParamRef name="KP"/><ParamRef name="KD"/></Provides>)")};
+  rig.bring_to(State::PreOperational, 2);
+  auto arm = rig.attach(
+      2, Role::Producer, "ARM_STATE",
+      {{"POSITION", Type::Double, 1}, {"STATE", Type::Int32, 1}, {"KP", Type::Double, 1}, {"KD", Type::Double, 1}});
+  rig.cycle();
+  std::array<std::byte, 28> payload{};
+  ASSERT_EQ(arm.reader.read(payload).flow, Flow::New);
+  OctetReader values{payload, std::endian::little};
+  EXPECT_EQ(values.get<double>(), 0.25 * static_cast<double>(probe.last.count));
+  EXPECT_EQ(values.get<std::int32_t>(), static_cast<std::int32_t>(State::PreOperational));
+  EXPECT_EQ(values.get<double>(), 30.0);
+  EXPECT_EQ(values.get<double>(), 4.0);
+}
+
+TEST(CycleInputs, SaySoAtTheFirstCycleThatTheyAreStaleAndAgainOnceTheyHaveComeBack) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  rig.bring_to(State::PreOperational, 2);
+  auto hand = rig.attach(1, Role::Consumer, "HAND", hand_set);
+  const auto sample = [&] {
+    hand.writer.write(std::array<std::byte, 9>{}, rig.clock.now(), LinkStatus::Valid);
+    rig.cycle();
+  };
+  sample();
+  rig.set_state(State::SafeOperational);
+  rig.service();
+  for (int times = 1; times <= 2; ++times) {
+    sample();
+    rig.cycle(3);
+    rig.service();
+    EXPECT_EQ(rig.heard(hand_stale), times - 1);
+    rig.cycle();
+    rig.service();
+    EXPECT_EQ(rig.heard(hand_stale), times);
+  }
+}
+
 TEST(CycleInputs, AreToldAsFarAsThePageHasRoom) {
   struct Many final : Probe {
     std::array<LinkInput<Hand>, told_incoming_links + 1> sets;

@@ -200,6 +200,62 @@ TEST_F(Links, WhatAnEarlierLinkBroughtIsNoSampleOfTheNext) {
   EXPECT_TRUE(probe.hand.valid());
 }
 
+TEST_F(Links, WhatAnEarlierLinkCountedIsNotCountedForTheNext) {
+  couple();
+  sample(0.5);
+  rig.cycle();
+  for (int i = 0; i < 3; ++i) sample(0.5, LinkStatus::Degraded);
+  rig.cycle(5);
+  const IncomingLink& told = rig.vital.incoming[0];
+  ASSERT_EQ(probe.hand.received(), 2u);
+  ASSERT_EQ(probe.hand.lost(), 2u);
+  ASSERT_EQ(probe.hand.age_cycles(), 4u);
+  ASSERT_EQ(probe.hand.status(), LinkStatus::Degraded);
+  rig.detach(1);
+  rig.service();
+  rig.cycle();
+  EXPECT_EQ(probe.hand.status(), LinkStatus::None);
+  hand = rig.attach(2, Role::Consumer, "HAND", hand_fields);
+  EXPECT_EQ(probe.hand.received(), 0u);
+  EXPECT_EQ(probe.hand.lost(), 0u);
+  EXPECT_EQ(probe.hand.count(), 0u);
+  EXPECT_EQ(probe.hand.age_cycles(), 1u);
+  EXPECT_EQ(told.link.load(), 2u);
+  EXPECT_EQ(told.lost.load(), 0u);
+  EXPECT_EQ(told.latency_mean_ns.load(), 0u);
+  EXPECT_EQ(told.latency_max_ns.load(), 0u);
+}
+
+TEST_F(Links, OfAnEarlierConfigurationLeaveNothingBehind) {
+  couple();
+  sample(0.5);
+  rig.cycle(2);
+  ASSERT_TRUE(probe.hand.valid());
+  rig.set_state_now(State::PostOperational);
+  EXPECT_EQ(rig.vital.inhibited.load(), 0u);
+  rig.set_state_now(State::PreOperational);
+  const auto configured = rig.configure(2);
+  rig.service();
+  ASSERT_EQ(rig.outcome(configured), "1 3 7");
+  EXPECT_FALSE(probe.hand.valid());
+  EXPECT_EQ(probe.hand.count(), 0u);
+  EXPECT_EQ(probe.hand.age_cycles(), 0u);
+  EXPECT_EQ(probe.hand.status(), LinkStatus::None);
+  EXPECT_EQ(rig.vital.incoming[0].link.load(), 0u);
+  EXPECT_EQ(rig.subsystem.cycle().link_statistics().load().received, 0u);
+}
+
+TEST_F(Links, TheMeanOfALatencyIsThatOfAllSamplesWhileTheyAreFew) {
+  couple();
+  for (const Duration latency : {1ms, 2ms, 3ms, 6ms}) {
+    sample(0.5);
+    rig.advance(latency - 1ms);
+    rig.cycle();
+  }
+  EXPECT_EQ(rig.vital.incoming[0].latency_mean_ns.load(), 3'000'000u);
+  EXPECT_EQ(rig.vital.incoming[0].latency_max_ns.load(), 6'000'000u);
+}
+
 TEST_F(Links, AnAgreementThatLacksAFieldIsRefused) {
   std::string outcome;
   rig.attach(1, Role::Consumer, "HAND", {{"ANGLE", Type::Double, 1}}, &outcome);

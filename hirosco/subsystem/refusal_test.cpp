@@ -124,6 +124,16 @@ TEST(ParameterWrites, ThatTheNextCycleWouldOverwriteAreRefused) {
   rig.settle();
   EXPECT_EQ(rig.outcome(lasting), "1 3 7");
   EXPECT_EQ(probe.kp.load(), 7.0);
+  const CycleLoop& cycle = rig.subsystem.cycle();
+  EXPECT_TRUE(cycle.writes_itself(0));
+  EXPECT_FALSE(cycle.writes_itself(2));
+  EXPECT_FALSE(cycle.writes_itself(99)) << "nobody declared it";
+  rig.set_state_now(State::ErrorOperational);
+  rig.set_state_now(State::PostOperational);
+  rig.set_state_now(State::PreOperational);
+  rig.configure(1);
+  rig.service();
+  EXPECT_FALSE(cycle.writes_itself(0)) << "no cycle of this configuration has run";
 }
 
 TEST(ParameterWrites, InAStateThatTheDescriptorDoesNotNameAreRefused) {

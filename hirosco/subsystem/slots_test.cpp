@@ -203,6 +203,72 @@ TEST_F(MotorSlot, AFrameLongerThanAnyIsNoNews) {
   EXPECT_EQ(port.damaged_frames(), 3u);
 }
 
+TEST_F(MotorSlot, ANewConfigurationKnowsNothingOfWhatTheDeviceSaidInAnEarlierOne) {
+  {
+    DeviceSlot earlier = slot();
+    static_cast<void>(motor->send(std::array<std::byte, 30>{}));
+    earlier.read(true);
+    say(1);
+    earlier.read(true);
+    ASSERT_TRUE(port.alive() && port.fresh());
+    ASSERT_EQ(port.damaged_frames(), 1u);
+  }
+  const DeviceSlot made = slot();
+  EXPECT_FALSE(port.alive());
+  EXPECT_FALSE(port.fresh());
+  EXPECT_EQ(port.damaged_frames(), 0u);
+}
+
+TEST_F(MotorSlot, TellsWhatItHeardMostOfAsTheReasonOfALossAndForgetsItWithAGoodFrame) {
+  DeviceSlot made = slot();
+  say(1);
+  made.read(true);
+  const auto noise = [&] {
+    static_cast<void>(motor->send(std::array<std::byte, 30>{}));
+    made.read(true);
+  };
+  noise();
+  for (int i = 0; i < 2; ++i) {
+    say(1);  // a repetition
+    made.read(true);
+  }
+  EXPECT_TRUE(made.just_lost());
+  const DeviceSlot::Loss loss = made.loss();
+  EXPECT_EQ(loss.reason, descriptor::DeviceLoss::Repeated);
+  EXPECT_EQ(loss.damaged, 1u);
+  EXPECT_EQ(loss.repeated, 2u);
+  EXPECT_EQ(loss.silent_cycles, 3u);
+  noise();
+  EXPECT_EQ(made.loss().reason, descriptor::DeviceLoss::Damaged) << "of two as frequent ones the graver one";
+  say(2);
+  made.read(true);
+  EXPECT_EQ(made.loss().damaged, 0u);
+  EXPECT_EQ(made.loss().repeated, 0u);
+  EXPECT_EQ(made.loss().silent_cycles, 0u);
+  EXPECT_EQ(made.loss().reason, descriptor::DeviceLoss::Silent);
+}
+
+TEST_F(MotorSlot, SilenceBeforeTheFirstFrameCountsOnlyOnceItIsMissed) {
+  DeviceSlot made = slot();
+  for (int i = 0; i < 10; ++i) made.read(false);
+  EXPECT_EQ(made.loss().silent_cycles, 0u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(made.just_lost());
+    made.read(true);
+  }
+  EXPECT_TRUE(made.just_lost());
+}
+
+TEST_F(MotorSlot, WhatIsNoActuatorIsCommandedWhoeverMayMove) {
+  device.actuator = false;
+  DeviceSlot made = slot();
+  port.output().current = {0x0304, 0x0506};
+  made.write(1, false, true);
+  const DeviceCommand command = heard();
+  EXPECT_EQ(command.mode, DeviceMode::Active);
+  EXPECT_EQ(numbers_of(command.payload), (std::vector{4, 3, 6, 5}));
+}
+
 TEST(LayoutDifference, NamesTheFieldThatDiffersInTypeOrCountAndTheNumberOfFields) {
   const DevicePort<Sensed, Driven> port;
   const auto difference = [&](Type type, std::uint16_t count) {

@@ -2,123 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/packet_log.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <csignal>
-#include <latch>
 #include <thread>
 
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
+#include "supervisor/platform/test_databases.hpp"
 #include "supervisor/platform/test_folder.hpp"
 
 namespace hirosco::supervisor {
 namespace {
-
-using testing::ElementsAre;
-
-/// Shares one database with the test after the log has closed it.
-class Shared final : public Database {
- public:
-  explicit Shared(std::shared_ptr<Database> real) : real_{std::move(real)} {}
-
- private:
-  Result<> do_append(std::span<const LogRecord> batch) override { return real_->append(batch); }
-  Result<LogPage> do_read(const LogQuery& query) override { return real_->read(query); }
-  [[nodiscard]] std::string_view do_strategy() const noexcept override { return "shared"; }
-  std::shared_ptr<Database> real_;
-};
-
-/// A disk that stands still until it is released.
-struct Stall {
-  Semaphore reached;
-  std::latch release{1};
-};
-class StalledDatabase final : public Database {
- public:
-  StalledDatabase(std::shared_ptr<Stall> stall, std::shared_ptr<Database> real)
-      : stall_{std::move(stall)}, real_{std::move(real)} {}
-
- private:
-  Result<> do_append(std::span<const LogRecord> batch) override {
-    stall_->reached.post();
-    stall_->release.wait();
-    return real_->append(batch);
-  }
-  Result<LogPage> do_read(const LogQuery& query) override { return real_->read(query); }
-  [[nodiscard]] std::string_view do_strategy() const noexcept override { return "stalled"; }
-  std::shared_ptr<Stall> stall_;
-  std::shared_ptr<Database> real_;
-};
-
-/// Stores `good` batches, then half a batch and an error.
-class BreakingDatabase final : public Database {
- public:
-  BreakingDatabase(int good, std::shared_ptr<Database> real) : good_{good}, real_{std::move(real)} {}
-
- private:
-  Result<> do_append(std::span<const LogRecord> batch) override {
-    if (good_-- > 0) return real_->append(batch);
-    return fail(ErrorCode::SystemFailure, "fdatasync", EIO);
-  }
-  Result<LogPage> do_read(const LogQuery& query) override { return real_->read(query); }
-  [[nodiscard]] std::string_view do_strategy() const noexcept override { return "breaking"; }
-  int good_;
-  std::shared_ptr<Database> real_;
-};
-
-/// Somebody else holds the database for the first so many tries; in trouble as long as the test says.
-class HeldDatabase final : public Database {
- public:
-  struct Hold {
-    std::atomic<int> tries{0};
-    std::atomic<std::uint64_t> troubles{0};
-    Semaphore tried;
-  };
-  HeldDatabase(std::shared_ptr<Hold> hold, std::shared_ptr<Database> real)
-      : hold_{std::move(hold)}, real_{std::move(real)} {}
-
- private:
-  Result<> do_append(std::span<const LogRecord> batch) override {
-    hold_->tried.post();
-    if (hold_->tries-- > 0) return fail(ErrorCode::Unavailable, "held");
-    return real_->append(batch);
-  }
-  Result<LogPage> do_read(const LogQuery& query) override { return real_->read(query); }
-  [[nodiscard]] std::string_view do_strategy() const noexcept override { return "held"; }
-  [[nodiscard]] StoreTrouble do_trouble() const override {
-    StoreTrouble trouble;
-    trouble.count = hold_->troubles;
-    trouble.present = trouble.count != 0;
-    trouble.error = {ErrorCode::SystemFailure, "held", ENOSPC};
-    return trouble;
-  }
-  std::shared_ptr<Hold> hold_;
-  std::shared_ptr<Database> real_;
-};
-
-std::vector<LogRecord> all_of(Database& database) { return database.read({.last = 10'000'000})->records; }
-
-/// Records and gaps leave no number out and name none twice.
-void expect_complete(const std::vector<LogRecord>& records, std::uint64_t last_number) {
-  std::uint64_t covered = 0;
-  std::uint64_t before = 0;
-  for (const LogRecord& record : records) {
-    EXPECT_GT(record.number, before);
-    before = record.number;
-    covered += record.kind == LogKind::Gap ? record.lost : 1;
-  }
-  EXPECT_EQ(covered, last_number);
-}
-
-LogEntry telemetry() { return {.kind = LogKind::Telemetry, .source = 11, .packet = {}}; }
-LogEntry telecommand() { return {.kind = LogKind::TelecommandReceived, .peer = 11, .packet = {}}; }
-
-constexpr Duration long_enough = 60s;   // never waited for unless the test fails
 
 TEST(ThreadedPacketLog, MakesWhatItTakesDurableInOrder) {
   const SystemClock clock;
@@ -328,6 +226,7 @@ TEST(ThreadedPacketLog, AFlushThatComesToNoEndSaysSoAtItsLimit) {
   const auto flushed = log.flush(1ms);
   ASSERT_FALSE(flushed);
   EXPECT_EQ(flushed.error().code, ErrorCode::Timeout);
+  EXPECT_STREQ(flushed.error().text, "records are not durable yet");
   stall->release.count_down();
   EXPECT_TRUE(log.flush(long_enough));
 }
@@ -351,6 +250,7 @@ TEST(ThreadedPacketLog, TroublesOfItsDatabasesAreToldAndCountedOverAllOfThem) {
   log.switch_to(std::make_unique<HeldDatabase>(second, memory));
   ASSERT_NE(log.append(telecommand()), 0U);
   while (log.trouble().count < 5) std::this_thread::yield();
+  EXPECT_EQ(log.trouble().count, 5U);
   EXPECT_EQ(log.counters().switches, 1U);
 }
 
@@ -440,6 +340,66 @@ TEST(ThreadedPacketLog, TellsNobodyOfProgressOnceItIsGone) {
   EXPECT_EQ(*told, 0);
 }
 
+/// Counts how often another thread than the test's asks it, which the writer does once in each of its steps.
+struct CountingClock final : Clock {
+  SystemClock real;
+  std::thread::id owner{std::this_thread::get_id()};
+  mutable std::atomic<int> asked{0};
+
+ private:
+  [[nodiscard]] TimePoint do_now() const noexcept override {
+    if (std::this_thread::get_id() != owner) ++asked;
+    return real.now();
+  }
+  [[nodiscard]] OnboardTime do_onboard() const noexcept override { return real.onboard(); }
+};
+
+TEST(ThreadedPacketLog, LetsTelemetryWaitForTheTelecommandThatComesAfterTheWriterSawIt) {
+  const CountingClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  Semaphore progress;
+  ThreadedPacketLog log{
+      clock, std::make_unique<Shared>(memory), {.delay = 3600s, .on_progress = [&] { progress.post(); }}};
+  constexpr std::uint64_t rounds = 5;
+  for (std::uint64_t round = 1; round <= rounds; ++round) {
+    const int before = clock.asked;
+    ASSERT_NE(log.append(telemetry()), 0U);
+    while (clock.asked == before) std::this_thread::yield();
+    ASSERT_NE(log.append(telecommand()), 0U);
+    while (log.durable() < 2 * round) progress.wait();
+  }
+  EXPECT_EQ(log.counters().batches, rounds);
+}
+
+TEST(ThreadedPacketLog, AsksItsClockNoLongerOnceItIsGone) {
+  const CountingClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  auto stall = std::make_shared<Stall>();
+  {
+    ThreadedPacketLog log{clock, std::make_unique<StalledDatabase>(stall, memory), {.flush_limit = 1ms}};
+    for (int i = 0; i < 3; ++i) ASSERT_NE(log.append(telecommand()), 0U);
+    stall->reached.wait();
+  }
+  const int before = clock.asked;
+  stall->release.count_down();
+  while (stall.use_count() > 1) std::this_thread::yield();
+  EXPECT_EQ(clock.asked, before);
+}
+
+TEST(ThreadedPacketLog, ATroubleOfTheDatabaseBeforeIsOverWithTheSwitch) {
+  const SystemClock clock;
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  hold->troubles = 1;
+  ThreadedPacketLog log{clock, std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>()), {}};
+  ASSERT_NE(log.append(telecommand()), 0U);
+  ASSERT_TRUE(log.flush(long_enough) || log.failure());
+  while (!log.failure()) std::this_thread::yield();
+  log.switch_to(std::make_unique<Shared>(std::make_shared<MemoryDatabase>()));
+  while (log.failure()) std::this_thread::yield();
+  EXPECT_FALSE(log.trouble().present);
+  EXPECT_EQ(log.trouble().count, 1U) << "it is counted all the same";
+}
+
 /// Appends for ever and tells `pipe` what is durable. Ends by the signal of its parent only.
 [[noreturn]] void log_until_killed(const std::filesystem::path& path, int pipe) {
   const SystemClock clock;
@@ -487,94 +447,6 @@ TEST(ThreadedPacketLog, EverythingReportedDurableIsInTheFileAfterKill) {
     EXPECT_GE(before, durable);
     EXPECT_GE(covered, durable);
   }
-}
-
-TEST(DirectPacketLog, IsDurableAtOnce) {
-  ManualClock clock;
-  auto memory = std::make_shared<MemoryDatabase>();
-  DirectPacketLog log{clock, std::make_unique<Shared>(memory)};
-  clock.advance(3s);
-  EXPECT_EQ(log.append(telecommand()), 1U);
-  EXPECT_EQ(log.durable(), 1U);
-  const auto records = all_of(*memory);
-  ASSERT_EQ(records.size(), 1U);
-  EXPECT_EQ(records[0].monotonic, clock.now());
-  EXPECT_EQ(records[0].stored, clock.onboard());
-  EXPECT_EQ(records[0].run + 3s, records[0].stored);
-}
-
-TEST(DirectPacketLog, KeepsWhatAFailedDatabaseDidNotTakeForTheNext) {
-  const ManualClock clock;
-  auto first = std::make_shared<MemoryDatabase>();
-  auto second = std::make_shared<MemoryDatabase>();
-  DirectPacketLog log{clock,
-                      std::make_unique<BreakingDatabase>(1, first),
-                      {.telemetry_records = 2, .telemetry_octets = 10, .vital_records = 8, .vital_octets = 10}};
-  for (int i = 0; i < 6; ++i) ASSERT_NE(log.append(telemetry()), 0U);
-  EXPECT_EQ(log.durable(), 1U);
-  EXPECT_TRUE(log.failure());
-  log.switch_to(std::make_unique<Shared>(second));
-  EXPECT_EQ(log.durable(), 6U);
-  auto all = all_of(*first);
-  const auto rest = all_of(*second);
-  all.insert(all.end(), rest.begin(), rest.end());
-  expect_complete(all, 6);
-  EXPECT_EQ(log.counters().lost, 2U);
-}
-
-TEST(DirectPacketLog, ClosesAWorkingDatabaseWithASwitchedRecord) {
-  const ManualClock clock;
-  auto first = std::make_shared<MemoryDatabase>();
-  auto second = std::make_shared<MemoryDatabase>();
-  DirectPacketLog log{clock, std::make_unique<Shared>(first)};
-  ASSERT_EQ(log.append(telecommand()), 1U);
-  log.switch_to(std::make_unique<Shared>(second));
-  ASSERT_EQ(log.append(telecommand()), 3U);
-  EXPECT_EQ(all_of(*first).back().kind, LogKind::Switched);
-  EXPECT_EQ(all_of(*second).size(), 1U);
-}
-
-TEST(DirectPacketLog, CountsWhatItTookLostRefusedStoredAndSwitched) {
-  const ManualClock clock;
-  auto hold = std::make_shared<HeldDatabase::Hold>();
-  auto memory = std::make_shared<MemoryDatabase>();
-  hold->tries = 4;
-  DirectPacketLog log{clock,
-                      std::make_unique<HeldDatabase>(hold, memory),
-                      {.telemetry_records = 2, .telemetry_octets = 10, .vital_records = 8, .vital_octets = 10}};
-  const std::vector<std::byte> long_packet(11);
-  for (int i = 0; i < 3; ++i) ASSERT_NE(log.append(telemetry()), 0U);
-  EXPECT_EQ(log.append({.kind = LogKind::TelecommandReceived, .packet = long_packet}), 0U);
-  EXPECT_EQ(log.durable(), 0U);
-  EXPECT_FALSE(log.failure()) << "held is not failed";
-  EXPECT_EQ(log.counters().batches, 0U);
-  ASSERT_EQ(log.append(telecommand()), 5U);
-  EXPECT_EQ(log.durable(), 5U);
-  expect_complete(all_of(*memory), 5);
-  log.switch_to(std::make_unique<BreakingDatabase>(0, memory));
-  EXPECT_EQ(all_of(*memory).back().note, Note{"the log goes on in: breaking"});
-  ASSERT_EQ(log.append(telecommand()), 7U);
-  EXPECT_TRUE(log.failure());
-  const LogCounters counters = log.counters();
-  EXPECT_EQ(counters.accepted, 6U);
-  EXPECT_EQ(counters.lost, 0U);
-  EXPECT_EQ(counters.refused, 1U);
-  EXPECT_EQ(counters.durable, 6U);
-  EXPECT_EQ(counters.batches, 3U);
-  EXPECT_EQ(counters.failures, 1U);
-  EXPECT_EQ(counters.switches, 1U);
-}
-
-TEST(DirectPacketLog, ADatabaseInTroubleIsAFailureAsLongAsItIs) {
-  const ManualClock clock;
-  auto hold = std::make_shared<HeldDatabase::Hold>();
-  DirectPacketLog log{clock, std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>())};
-  EXPECT_FALSE(log.failure());
-  hold->troubles = 1;
-  ASSERT_TRUE(log.failure());
-  EXPECT_EQ(log.failure()->value, ENOSPC);
-  hold->troubles = 0;
-  EXPECT_FALSE(log.failure());
 }
 
 }  // namespace
