@@ -113,7 +113,7 @@ void reap(pid_t pid) noexcept {
   while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}
 }
 
-[[nodiscard]] ErrorCode code_of(int error) noexcept {
+[[nodiscard]] ErrorCode failure_of(int error) noexcept {
   switch (error) {
     case ENOENT:
     case ESRCH: return ErrorCode::NotFound;
@@ -158,14 +158,14 @@ Result<Process> Process::spawn(const ProcessStart& start) {
   if (pid == 0) run_child(plan);
   const int fork_error = errno;
   (void)::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  if (pid < 0) return fail(code_of(fork_error), "new process", fork_error);
+  if (pid < 0) return fail(failure_of(fork_error), "new process", fork_error);
 
   // In both processes, so that whoever comes first finds the group.
   (void)::setpgid(pid, pid);
   write_end.reset();
   if (const int error = reported_error(read_end.get()); error != 0) {
     reap(pid);
-    return fail(code_of(error), "start executable", error);
+    return fail(failure_of(error), "start executable", error);
   }
   // Safe against reuse of the pid: the child is not reaped before we say so.
   auto process = adopt(pid);
@@ -179,7 +179,7 @@ Result<Process> Process::spawn(const ProcessStart& start) {
 Result<Process> Process::adopt(int pid) noexcept {
   // By number: glibc 2.36 declares these two without C linkage.
   FileDescriptor handle{static_cast<int>(::syscall(SYS_pidfd_open, pid, 0))};
-  if (!handle) return fail(code_of(errno), "handle of a process", errno);
+  if (!handle) return fail(failure_of(errno), "handle of a process", errno);
   return adopt(pid, std::move(handle));
 }
 
@@ -211,7 +211,7 @@ Result<std::optional<ExitStatus>> Process::poll() noexcept {
 Result<> Process::send_signal(int signal) noexcept {
   if (ended_) return fail(ErrorCode::NotFound, "process has ended", pid_);
   if (::syscall(SYS_pidfd_send_signal, handle_.get(), signal, nullptr, 0) != 0)
-    return fail(code_of(errno), "signal to a process", errno);
+    return fail(failure_of(errno), "signal to a process", errno);
   return ok();
 }
 
