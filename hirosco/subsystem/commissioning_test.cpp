@@ -143,6 +143,54 @@ TEST_F(Commissioning, ErrorOperationalOverridesAChangeOnlyOnce) {
   EXPECT_EQ(rig.outcome(error), "1 3 7");
 }
 
+TEST_F(Commissioning, NothingButErrorOperationalOverridesAChangeThatTheCycleHasNotConfirmed) {
+  rig.bring_to(State::Operational);
+  const auto first = rig.set_state(State::SafeOperational);
+  rig.service();
+  const auto again = rig.set_state(State::SafeOperational);
+  rig.service();
+  EXPECT_EQ(rig.outcome(again), busy);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(first), "1 3 7");
+}
+
+TEST_F(Commissioning, AnotherConfigurationIsRefusedWhicheverOfThemStandsFirst) {
+  rig.bring_to(State::PreOperational, 2);
+  EXPECT_EQ(rig.configure_now(1), "1 4:01030000000001");
+  EXPECT_EQ(rig.configure_now(3), "1 4:01030000000003");
+}
+
+TEST_F(Commissioning, AnInitialValueOfAWholeStructureSetsAllOfIt) {
+  Probe author;
+  Rig other{author, changed(R"(<Initial><ParamRef name="KP" value="30"/></Initial>)",
+                            R"(<Initial><ParamRef name="CUR_VALUES" value="7 0.25"/></Initial>)")};
+  other.set_state_now(State::PreOperational);
+  const auto configured = other.configure(2);
+  other.service();
+  EXPECT_EQ(other.outcome(configured), "1 3 7");
+  EXPECT_EQ(author.current.load().state, 7);
+  EXPECT_EQ(author.current.load().position, 0.25);
+}
+
+TEST_F(Commissioning, WhatAnAuthorPublishedIsThereUntilItsSoftwareDeinitIsDone) {
+  rig.set_state_now(State::PreOperational);
+  probe.nodes[State::SoftwareDeinit].again = 5;
+  rig.set_state(State::Offline);
+  rig.service();
+  ASSERT_EQ(rig.state(), State::SoftwareDeinit);
+  const auto reports_of_kp = [&] {
+    std::array<std::byte, 5> data{};
+    OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 2}.wire());
+    rig.send(20, 1, data);
+    rig.service();
+    return rig.reports(20, 2).size();
+  };
+  EXPECT_EQ(reports_of_kp(), 1u);
+  rig.settle();
+  ASSERT_EQ(rig.state(), State::Offline);
+  EXPECT_EQ(reports_of_kp(), 1u) << "what is gone cannot be reported";
+}
+
 TEST_F(Commissioning, EachDeviceOfAConfigurationIsMissedByItsOwnEvent) {
   rig.bring_to(State::PreOperational, 3);
   rig.set_state(State::SafeOperational);
@@ -222,6 +270,7 @@ TEST_F(Commissioning, WhatTheCycleNeverTookIsGivenBackWithItsConfiguration) {
   rig.subsystem.cycle_parked(rig.subsystem.cycle_demand().ticket);
   rig.settle();
   EXPECT_EQ(rig.outcome(down), "1 3 7");
+  EXPECT_TRUE(rig.reports(1, 4).empty()) << "no telecommand of anybody was to be refused";
   EXPECT_EQ(rig.vital.configuration.load(), 0u);
   EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
 }

@@ -226,6 +226,37 @@ TEST_F(Links, WhatAnEarlierLinkCountedIsNotCountedForTheNext) {
   EXPECT_EQ(told.latency_max_ns.load(), 0u);
 }
 
+TEST_F(Links, GiveTheirMemoryBackOnceTheCycleHasLetGoOfThem) {
+  couple();
+  const auto arm =
+      rig.attach(2, Role::Producer, "ARM_STATE", {{"POSITION", Type::Double, 1}, {"SEEN", Type::Double, 1}});
+  const auto held = [&] { return std::pair{hand.memory.block().use_count(), arm.memory.block().use_count()}; };
+  const auto before = held();
+  rig.detach(1);
+  rig.detach(2);
+  rig.service();
+  EXPECT_EQ(held(), before) << "a cycle may be using them";
+  rig.cycle();
+  rig.service();
+  EXPECT_LT(held().first, before.first);
+  EXPECT_LT(held().second, before.second);
+}
+
+TEST_F(Links, KeepTheirMemoryAsLongAsACycleHangsThoughTheirConfigurationHasEnded) {
+  operate();
+  const auto before = hand.memory.block().use_count();
+  rig.set_state_now(State::SafeOperational);
+  rig.set_state(State::PostOperational);
+  rig.service();  // the cycle is told to rest, and hangs
+  rig.advance(11s);
+  for (int i = 0; i < 5; ++i) rig.service();
+  EXPECT_THAT(rig.reports(128, 133), ElementsAre("0102"));
+  EXPECT_EQ(hand.memory.block().use_count(), before);
+  rig.cycle();  // it rests
+  rig.service();
+  EXPECT_LT(hand.memory.block().use_count(), before);
+}
+
 TEST_F(Links, OfAnEarlierConfigurationLeaveNothingBehind) {
   couple();
   sample(0.5);
