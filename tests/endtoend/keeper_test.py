@@ -4,6 +4,7 @@
 """How a flight begins and ends: one at a time, in order when asked, and without orphans when it is not."""
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import tempfile
@@ -55,6 +56,17 @@ class Keeper(unittest.TestCase):
                 early.send_signal(number)
                 out, err = early.communicate(timeout=30)
                 self.assertEqual(early.returncode, 0, f"{number.name}: {out}{err}")
+
+    def test_what_the_system_refuses_at_the_start_is_named(self):
+        for descriptors in range(5, 45, 3):
+            with self.subTest(descriptors), tempfile.TemporaryDirectory(prefix="hirosco-few-") as folder:
+                limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (descriptors, descriptors))
+                few = subprocess.run([str(flight.BINARIES / "hirosco"), "run", str(flight.ROKVISS), "--no-ground", "--for", "1s"],
+                                     cwd=folder, env={**os.environ, "XDG_RUNTIME_DIR": folder}, stdin=subprocess.DEVNULL,
+                                     capture_output=True, text=True, timeout=60, check=False, preexec_fn=limit)
+                self.assertTrue(few.returncode == 0 or few.stdout + few.stderr != "", f"{few.returncode} without a word")
+                self.assertNotIn("terminate called", few.stderr)
+                self.assertNotIn(few.returncode, (-6, 134), few.stderr)
 
     def test_a_killed_keeper_leaves_no_orphans(self):
         self.no_orphans("hirosco")
