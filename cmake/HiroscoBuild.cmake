@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 #
-# The three helpers of the build: hirosco_library, hirosco_executable, hirosco_test.
+# The helpers of the build: hirosco_library, hirosco_executable, hirosco_test.
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
   message(FATAL_ERROR "HIROSCO needs g++ 12 or later (C++23 with std::expected); this is ${CMAKE_CXX_COMPILER_VERSION}")
@@ -17,9 +17,13 @@ option(HIROSCO_TESTS_IN_PIECES "Compile four files of a test at a time; off for 
 set(HIROSCO_SANITIZE "" CACHE STRING "Sanitizers to build with, for example 'address,undefined' or 'thread'")
 
 add_library(hirosco_options INTERFACE)
-target_include_directories(hirosco_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(hirosco_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/hirosco>)
+target_compile_features(hirosco_options INTERFACE cxx_std_23)
 target_compile_options(hirosco_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
+  # Of our own code; authors choose theirs.
+  $<BUILD_INTERFACE:-Wall> $<BUILD_INTERFACE:-Wextra> $<BUILD_INTERFACE:-Wpedantic> $<BUILD_INTERFACE:-Wconversion>
+  $<BUILD_INTERFACE:-Wshadow> $<BUILD_INTERFACE:-Werror>
   # One answer for one seed on every machine (docs/adr/0004): no fused multiply-add behind our back.
   -ffp-contract=off
   # std::ranges::stable_sort of libstdc++ 12 calls what C++17 deprecated.
@@ -69,6 +73,9 @@ function(hirosco_compile_as_test name)
   target_precompile_headers(${name} REUSE_FROM hirosco_test_headers)
 endfunction()
 
+# Every module of this repository, for what loads them.
+add_custom_target(hirosco_modules)
+
 # ./check builds each test once: with the sanitizers those with these two labels, optimised all others, and what flies.
 add_custom_target(unit_tests)
 add_custom_target(concurrency_tests)
@@ -113,12 +120,20 @@ function(hirosco_test name)
   endforeach()
 endfunction()
 
-# hirosco_library(NAME SOURCES *.cpp TESTS *_test.cpp DEPENDS targets... [LABELS of the test...] [EXAMPLE example.cpp])
+# hirosco_library(NAME [IN_MODULES] SOURCES *.cpp TESTS *_test.cpp DEPENDS targets... [LABELS of the test...]
+#   [EXAMPLE example.cpp])
+# IN_MODULES: subsystems and devices use it, so it can be linked into their modules.
 # Makes the library hirosco::NAME, its test NAME_test, and its example NAME_example (run as a test).
 function(hirosco_library name)
-  cmake_parse_arguments(ARG "" "EXAMPLE" "SOURCES;TESTS;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "IN_MODULES" "EXAMPLE" "SOURCES;TESTS;DEPENDS;LABELS" ${ARGN})
   add_library(hirosco_${name} STATIC ${ARG_SOURCES})
   add_library(hirosco::${name} ALIAS hirosco_${name})
+  # The same objects for programs and for modules, so that nothing is compiled twice; hidden, so that calls stay as direct as
+  # in a program (docs/adr/0050 has what it costs).
+  if(ARG_IN_MODULES)
+    set_target_properties(hirosco_${name} PROPERTIES
+      POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  endif()
   target_link_libraries(hirosco_${name} PUBLIC hirosco_options ${ARG_DEPENDS})
   if(ARG_TESTS)
     hirosco_test(${name}_test SOURCES ${ARG_TESTS} DEPENDS hirosco::${name} LABELS ${ARG_LABELS})
@@ -132,11 +147,14 @@ function(hirosco_library name)
   endif()
 endfunction()
 
-# hirosco_executable(NAME SOURCES *.cpp DEPENDS targets...)
+# hirosco_executable(NAME SOURCES *.cpp DEPENDS targets... [INSTALL])
 function(hirosco_executable name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "INSTALL" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE hirosco_options ${ARG_DEPENDS})
+  if(ARG_INSTALL)
+    install(TARGETS ${name} RUNTIME DESTINATION bin)
+  endif()
   get_directory_property(on_demand EXCLUDE_FROM_ALL)  # as bench/
   if(NOT on_demand)
     add_dependencies(optimised ${name})

@@ -284,7 +284,7 @@ Span Api::span_of(const Target& target, double last_s) const {
 HttpResponse Api::get(const Target& target) {
   const std::string& path = target.path;
   if (const std::string wrong = senseless(target); !wrong.empty()) return error(400, wrong);
-  if (path == "/api/mission") return answer(mission_json(session_.catalogue(), options_.transitions));
+  if (path == "/api/mission") return answer(mission_json(session_.catalogue(), options_.transitions, options_.faults));
   if (path == "/api/status") return answer(session_.status());
   if (path == "/api/history") return history(target);
   if (path == "/api/export.csv") return csv(target);

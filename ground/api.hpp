@@ -29,6 +29,14 @@ struct Transition {
   bool failure{false};  ///< taken only when the state it leaves has failed
 };
 
+/// A line that a simulated device takes, for a button of the page.
+struct FaultText {
+  std::string line;
+  std::string text;
+};
+/// By the names of the devices, which tell them themselves.
+using FaultTexts = std::map<std::string, std::vector<FaultText>>;
+
 class Api final : public Application {
  public:
   struct Options {
@@ -37,6 +45,7 @@ class Api final : public Application {
     std::uint16_t port{8080};
     std::filesystem::path page;  ///< folder of the page's files
     std::vector<Transition> transitions;
+    FaultTexts faults{};
   };
   Api(Session& session, Options options) : session_{session}, options_{std::move(options)} {}
 
@@ -83,7 +92,8 @@ class Api final : public Application {
 };
 
 /// GET /api/mission.
-[[nodiscard]] nlohmann::json mission_json(const Catalogue& catalogue, std::span<const Transition> transitions);
+[[nodiscard]] nlohmann::json mission_json(const Catalogue& catalogue, std::span<const Transition> transitions,
+                                          const FaultTexts& faults);
 
 /// Samples of one column in a span, oldest first. Calls `take(t, value)`. False: there were `most` or more.
 [[nodiscard]] bool samples(Session& session, std::size_t column, const Span& span, std::size_t most,

@@ -41,6 +41,10 @@ constexpr const char* schema = R"(
   CREATE TABLE IF NOT EXISTS faults(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, device TEXT NOT NULL,
     line TEXT NOT NULL, answer TEXT NOT NULL);
 )";
+/// Written once, so that nobody's other file is filled and no other version is misread.
+constexpr const char* mark = "PRAGMA application_id = 1213417281; PRAGMA user_version = 1";
+constexpr std::int64_t application_id = 1213417281;  ///< "HSGA"
+constexpr std::int64_t schema_version = 1;
 constexpr int busy_limit_ms = 2000;  ///< while opening
 constexpr std::int64_t most_listed = 10'000;
 
@@ -130,9 +134,19 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, std::int
   }
   auto archive = std::unique_ptr<Archive>{new Archive{database, limit_octets}};
   sqlite3_busy_timeout(database, busy_limit_ms);
+  const auto number = [&](const char* sql) {
+    Statement statement{*archive, sql};
+    return statement.row() ? statement.integer() : 0;
+  };
+  const std::int64_t owner = number("PRAGMA application_id"), version = number("PRAGMA user_version");
+  if (owner != 0 && owner != application_id)
+    return fail(ErrorCode::Mismatch, "this is a database of something else, not an archive", owner);
+  if (version != 0 && version != schema_version)
+    return fail(ErrorCode::Mismatch, "the archive was written by another version of hirosco", version);
   constexpr const char* add_packet =
       "INSERT INTO packets(t, apid, service, subtype, sid, octets) VALUES(?, ?, ?, ?, ?, ?)";
-  if (!archive->execute(schema) ||
+  // Neither: a new one, or one from before they were written.
+  if (!archive->execute(schema) || (owner == 0 && !archive->execute(mark)) ||
       sqlite3_prepare_v2(database, add_packet, -1, &archive->add_packet_, nullptr) != SQLITE_OK)
     return fail(ErrorCode::Malformed, "the archive is not one of ours", sqlite3_extended_errcode(database));
   // From here on nobody else's business with the file holds up the live view: what it costs is counted.

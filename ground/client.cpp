@@ -6,6 +6,7 @@
 
 #include "ground/json.hpp"
 #include "ground/views.hpp"
+#include "hirosco/utilities/version.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -19,7 +20,6 @@ constexpr Duration longest_step = 500ms;
 /// Events in one step of a replay.
 constexpr std::size_t most_events = 1000;
 constexpr std::uint16_t try_again_later = 1013;
-constexpr const char* version = "0.1.0";
 
 }  // namespace
 
@@ -28,7 +28,7 @@ Client::Client(Session& session, Peer& peer, std::string id, bool is_operator)
   const auto extent = session_.archive().extent();
   send({{"type", "hello"},
         {"t", json_time(session_.now())},
-        {"version", version},
+        {"version", std::string{version}},
         {"client", id_},
         {"operator", is_operator},
         {"archive_from", extent ? json(json_time(extent->from)) : json(nullptr)}});

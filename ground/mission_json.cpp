@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "ground/api.hpp"
 #include "ground/json.hpp"
 
@@ -146,43 +144,12 @@ template <class Texts>
   return list;
 }
 
-struct FaultText {
-  const char* line;
-  const char* text;
-};
-/// What every simulated device understands, then what the shipped kinds do besides.
-constexpr std::array common_faults{
-    FaultText{"unplug", "pull the plug: no frames either way"},
-    FaultText{"plug", "put the plug back"},
-    FaultText{"silent", "says nothing any more"},
-    FaultText{"stall 100", "says nothing for 100 ms"},
-    FaultText{"freeze 1000", "the same measurement for 1 s"},
-    FaultText{"corrupt 5", "the next 5 frames are damaged"},
-    FaultText{"delay 20", "every frame 20 ms late"},
-    FaultText{"heal", "all well again"},
-};
-constexpr std::array robot_faults{
-    FaultText{"temperature 1 60", "joint 1 at 60 degC: a warning"},
-    FaultText{"temperature 1 72", "joint 1 at 72 degC: critical"},
-    FaultText{"temperature 1 85", "joint 1 at 85 degC: too hot"},
-    FaultText{"friction off", "joints without friction"},
-    FaultText{"friction on", "joints with friction"},
-};
-constexpr std::array joystick_faults{
-    FaultText{"hand hold 0 0", "the hand holds the middle"},
-    FaultText{"hand wander", "the hand wanders about"},
-};
-
-[[nodiscard]] json devices_json(const descriptor::Mission& mission) {
+[[nodiscard]] json devices_json(const descriptor::Mission& mission, const FaultTexts& known) {
   json list = json::array();
   for (const auto& device : mission.devices) {
     json faults = json::array();
-    const auto add = [&](const auto& texts) {
-      for (const auto& fault : texts) faults.push_back({{"line", fault.line}, {"text", fault.text}});
-    };
-    add(common_faults);
-    if (device.executable == "hirosco-sim-robot") add(robot_faults);
-    if (device.executable == "hirosco-sim-joystick") add(joystick_faults);
+    if (const auto found = known.find(device.name); found != known.end())
+      for (const FaultText& fault : found->second) faults.push_back({{"line", fault.line}, {"text", fault.text}});
     list.push_back({{"name", device.name},
                     {"subsystem", device.subsystem},
                     {"device", device.device},
@@ -193,7 +160,7 @@ constexpr std::array joystick_faults{
 
 }  // namespace
 
-json mission_json(const Catalogue& catalogue, std::span<const Transition> transitions) {
+json mission_json(const Catalogue& catalogue, std::span<const Transition> transitions, const FaultTexts& faults) {
   const auto& mission = catalogue.mission();
   json subsystems = json::array();
   for (const auto* subsystem : catalogue.subsystems()) subsystems.push_back(subsystem_json(catalogue, *subsystem));
@@ -209,7 +176,7 @@ json mission_json(const Catalogue& catalogue, std::span<const Transition> transi
           {"links", links_json(catalogue)},
           {"modes", modes_json(mission)},
           {"start_mode", mission.start_mode},
-          {"devices", devices_json(mission)},
+          {"devices", devices_json(mission, faults)},
           {"transitions", std::move(edges)}};
 }
 

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "hirosco/descriptor/read.hpp"
+#include "hirosco/utilities/os/installation.hpp"
 #include "hirosco/xml/reader.hpp"
 
 namespace hirosco::descriptor {
@@ -26,10 +27,17 @@ Result<> expect_regular(const std::filesystem::path& file) {
   return fail(ErrorCode::SystemFailure, "cannot be reached", error.value());
 }
 
+/// What comes with HIROSCO is where that is installed, whatever the mission's folder.
+std::filesystem::path place_of(const std::filesystem::path& file) {
+  const std::string& name = file.native();
+  return name.starts_with(shipped_prefix) ? find_shipped(name.substr(shipped_prefix.size())) : file;
+}
+
 }  // namespace
 
 FileSource file_system() {
-  return [](const std::filesystem::path& file) -> Result<std::string> {
+  return [](const std::filesystem::path& named) -> Result<std::string> {
+    const std::filesystem::path file = place_of(named);
     HIROSCO_TRY(expect_regular(file));
     std::ifstream stream{file, std::ios::binary};
     if (!stream) return fail(ErrorCode::NotPermitted, "may not be read: its permissions forbid it");

@@ -31,6 +31,16 @@ std::string changed(const std::string& from, const std::string& to, std::string 
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+TEST(MissionDescriptor, NamesWhatComesWithHiroscoWhereverThatIs) {
+  const std::string shipped = "@hirosco/supervisor/supervisor.xml";
+  const auto source =
+      overlay({{"mission.xml", changed(R"(descriptor="supervisor.xml")", "descriptor=\"" + shipped + "\"")}});
+  const auto reading = read_mission(data / "mission.xml", source);
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
+  // As it was written: each program looks for it by itself.
+  EXPECT_EQ(reading.value->supervisor.file, shipped);
+}
+
 TEST(MissionDescriptor, FillsTheWholeModel) {
   const auto reading = read_mission(data / "mission.xml", file_system());
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
@@ -138,7 +148,9 @@ constexpr Mistake mistakes[] = {
     {"E0314", R"(path="log/rokviss.db")", R"(path="@log/../../rokviss.db")"},
     {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@/etc/passwd")"},
     {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@../../../joystick.xml")"},
+    {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@@hirosco/../joystick.xml")"},
     {"E0315", R"(descriptor="joystick.xml")", R"(descriptor="@../joystick.xml.none")"},
+    {"E0315", R"(descriptor="joystick.xml")", R"(descriptor="@@hirosco/subsystems/none.xml")"},
     {"E0105", R"(<Power budget_W="150"/>)", R"(@<Power/>)"},
     {"E0107", R"(<Power budget_W="150"/>)", R"(<Power budget_W="150"/>@<Power budget_W="150"/>)"},
     {"E0111", R"(budget_W="150")", R"(budget_W="@much")"},

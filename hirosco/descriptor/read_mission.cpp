@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/detail/mission_reader.hpp"
+#include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::descriptor {
 namespace detail {
@@ -14,8 +15,12 @@ constexpr std::uint16_t supervisor_id = 1;
 /// A mission stands in missions/NAME/, what it may name in the tree two folders above.
 constexpr int folders_above = 2;
 
+/// A file that comes with HIROSCO, by its name there.
+bool is_shipped(std::string_view text) { return text.starts_with(shipped_prefix); }
+
 /// What is wrong with a path that must stay inside; empty when nothing is.
 std::string_view refuse_path(std::string_view text, int above) {
+  if (is_shipped(text)) return refuse_path(text.substr(shipped_prefix.size()), 0);
   const std::filesystem::path path{text};
   if (text.empty() || text.size() > 1024) return "a path of 1 to 1024 octets is needed";
   if (path.is_absolute() || text.find('\\') != std::string_view::npos) return "the path must be relative";
@@ -207,12 +212,14 @@ std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) 
                     std::string{refuse_path(at->value, folders_above)});
     return std::nullopt;
   }
-  const std::filesystem::path file = (problems_.file().parent_path() / at->value).lexically_normal();
+  const bool shipped = is_shipped(at->value);
+  const std::filesystem::path file =
+      (shipped ? std::filesystem::path{at->value} : problems_.file().parent_path() / at->value).lexically_normal();
   Reading<Subsystem> reading = read_subsystem(file, source_);
   const bool unreadable = std::ranges::any_of(reading.problems, [](const Diagnostic& d) { return d.code == "E0001"; });
   if (unreadable)
     problems_.add(*at, "E0315", fmt::format("descriptor {} {}", in_quotes(at->value), reading.problems.front().message),
-                  "the path is relative to the mission file");
+                  shipped ? "nothing of this name comes with HIROSCO" : "the path is relative to the mission file");
   else if (!reading.problems.empty()) subsystem_problems_.push_back(std::move(reading.problems));
   std::ranges::move(reading.warnings, std::back_inserter(warnings_));
   if (!reading.value) incomplete_ = true;

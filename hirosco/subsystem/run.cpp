@@ -68,6 +68,19 @@ struct Options {
   return mapping ? std::move(*mapping) : Mapping{};
 }
 
+/// Why the pages that the supervisor handed over are not used; empty when they are.
+[[nodiscard]] std::string refuse_pages(const Mapping& vital, const Mapping& permit) {
+  if (vital.octets.size() < sizeof(VitalPage) || permit.octets.size() < sizeof(PermitPage))
+    return "the vital or permit page cannot be mapped";
+  const auto& page = *reinterpret_cast<const PermitPage*>(permit.octets.data());
+  if (page.magic != page_magic) return "what should be the permit page is none";
+  if (page.version != page_version)
+    return fmt::format(
+        "the supervisor's pages are of version {}, this program's of version {}: build both from one hirosco",
+        page.version, page_version);
+  return {};
+}
+
 /// The cycle thread: sleeps to absolute times while a cycle is wanted, rests on a semaphore otherwise.
 class CycleThread {
  public:
@@ -183,10 +196,8 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   SocketChannel channel{FileDescriptor{options.channel}};
   const Mapping vital = map_page(memory, options.vital, Access::ReadWrite);
   const Mapping permit = map_page(memory, options.permit, Access::ReadOnly);
-  if (vital.octets.size() < sizeof(VitalPage) || permit.octets.size() < sizeof(PermitPage) ||
-      reinterpret_cast<const PermitPage*>(permit.octets.data())->magic != page_magic ||
-      reinterpret_cast<const PermitPage*>(permit.octets.data())->version != page_version) {
-    fmt::print(stderr, "{}: the vital or permit page cannot be mapped\n", argv[0]);
+  if (const std::string why = refuse_pages(vital, permit); !why.empty()) {
+    fmt::print(stderr, "{}: {}\n", argv[0], why);
     return exit_environment;
   }
   const bool realtime = realtime_permitted();

@@ -49,7 +49,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "hirosco-fly-plan: {} is not a plan (line {})\n", argv[2], plan ? 0 : plan.error().value);
     return exit_usage;
   }
-  campaign::PlannedFlight flight{*reading.value, std::move(*plan), std::move(plant)};
+  auto modules = simulation::load_modules(*reading.value);
+  for (const auto& [program, why] : modules.missing) fmt::print(stderr, "hirosco-fly-plan: {}\n", why);
+  if (!modules.missing.empty()) return exit_finding;
+  campaign::PlannedFlight flight{*reading.value, std::move(modules), std::move(*plan), std::move(plant)};
   flight.fly();
   write_log(flight.disk().records, folder / "log.txt");
   std::ofstream{folder / "trace.txt"} << flight.trace().text();

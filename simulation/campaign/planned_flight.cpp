@@ -33,16 +33,20 @@ void PlannedFlight::Observer::told(OnboardTime, std::string_view line) {
   text += fmt::format("{:.6f} {}\n", now_s, line);
 }
 
-PlannedFlight::PlannedFlight(const descriptor::Mission& mission, FlightPlan plan, std::unique_ptr<Plant> plant)
-    : mission_{mission}, plan_{std::move(plan)}, plant_{plant ? std::move(plant) : std::make_unique<Plant>()} {
+PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Modules modules, FlightPlan plan,
+                             std::unique_ptr<Plant> plant)
+    : mission_{mission},
+      plan_{std::move(plan)},
+      plant_{plant ? std::move(plant) : std::make_unique<Plant>()},
+      modules_{std::move(modules)} {
   if (!plan_.mode.empty()) mission_.start_mode = plan_.mode;
   if (plant_->edit) plant_->edit(mission_);
-  if (plant_->devices) plant_->devices(devices_);
+  if (plant_->devices) plant_->devices(modules_.devices);
   disk_.keeps = plant_->keeps;
   craft_ = std::make_unique<simulation::Spacecraft>(simulation::Spacecraft::Parts{
       .mission = mission_,
-      .subsystems = simulation::known_subsystems(),
-      .devices = devices_,
+      .subsystems = modules_.subsystems,
+      .devices = modules_.devices,
       .log = *unused_,
       .observer = observer_,
       .seed = plan_.seed,

@@ -14,7 +14,7 @@
 #include "simulation/campaign/plan.hpp"
 #include "simulation/campaign/plants.hpp"
 #include "simulation/campaign/world_trace.hpp"
-#include "simulation/spacecraft/catalogue.hpp"
+#include "simulation/spacecraft/modules.hpp"
 #include "simulation/spacecraft/spacecraft.hpp"
 
 namespace hirosco::campaign {
@@ -23,7 +23,8 @@ namespace hirosco::campaign {
 class PlannedFlight {
  public:
   /// `plant`: a defect to be found, else null.
-  PlannedFlight(const descriptor::Mission& mission, FlightPlan plan, std::unique_ptr<Plant> plant);
+  PlannedFlight(const descriptor::Mission& mission, simulation::Modules modules, FlightPlan plan,
+                std::unique_ptr<Plant> plant);
 
   /// Flies it all. Packet log and trace are whole afterwards.
   void fly();
@@ -72,7 +73,7 @@ class PlannedFlight {
   descriptor::Mission mission_;
   FlightPlan plan_;
   std::unique_ptr<Plant> plant_;
-  simulation::DeviceCatalogue devices_{simulation::known_devices()};
+  simulation::Modules modules_;
   Disk disk_;
   std::unique_ptr<supervisor::Database> unused_{database_on(disk_)};
   Observer observer_;

@@ -54,7 +54,7 @@ struct Options {
 
 /// An exit code when the program is to end here.
 std::optional<int> read_options(int argc, char** argv, const char* name, Options& options) {
-  CLI::App app{"Simulated device of the rokviss mission", name};
+  CLI::App app{"A simulated device of HIROSCO", name};
   app.add_option("--transfer", options.transfer, "Means of transfer")->transform(CLI::CheckedTransformer{transfers});
   app.add_option("--address", options.address, "Address of the data flow")->required();
   app.add_option("--control", options.control, "Path of the control socket");

@@ -18,6 +18,10 @@ class JoystickDevice final : public SimulatedDevice {
  public:
   static constexpr std::size_t sensor_octets = 34;
   static constexpr std::size_t command_octets = 33;
+  static constexpr std::array fault_lines{
+      FaultLine{"hand hold 0 0", "the hand holds the middle"},
+      FaultLine{"hand wander", "the hand wanders about"},
+  };
 
   /// Whose hand: one that the simulation moves, one that goes where it is commanded, or a person's on a real stick.
   enum class Hand : std::uint8_t { Simulated = 0, Commanded = 1, Person = 2 };

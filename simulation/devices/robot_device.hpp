@@ -28,6 +28,13 @@ class RobotDevice final : public SimulatedDevice {
   static constexpr std::size_t sensor_octets = 5 * 16 + 2 * 4 + 1;
   static constexpr std::size_t command_octets = 17;
   static constexpr double brake_torque_n_m = 30;
+  static constexpr std::array fault_lines{
+      FaultLine{"temperature 1 60", "joint 1 at 60 degC: a warning"},
+      FaultLine{"temperature 1 72", "joint 1 at 72 degC: critical"},
+      FaultLine{"temperature 1 85", "joint 1 at 85 degC: too hot"},
+      FaultLine{"friction off", "joints without friction"},
+      FaultLine{"friction on", "joints with friction"},
+  };
 
   RobotDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {}, const ArmParameters& arm = {},
               const RobotSensors& sensors = {});

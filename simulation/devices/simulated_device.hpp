@@ -37,6 +37,12 @@ class Words {
   bool too_many_{false};
 };
 
+/// A line for SimulatedDevice::fault with its numbers, as a page offers it, and what it does.
+struct FaultLine {
+  const char* line;
+  const char* text;
+};
+
 /// A device as its subsystem meets it: answers each command frame with a status frame, keeps a watchdog of its own,
 /// fences old epochs, and can be made to fail. Pure logic, stepped from outside: by the exchange of frames, and by the
 /// clock once a command is overdue by a cycle, so that the world does not freeze when its subsystem dies (decision 29).
@@ -71,6 +77,19 @@ class SimulatedDevice {
     TimePoint at{};
     std::string line;
   };
+
+  /// What every device understands; what its kind does besides is its own `fault_lines`.
+  static constexpr std::array common_fault_lines{
+      FaultLine{"unplug", "pull the plug: no frames either way"},
+      FaultLine{"plug", "put the plug back"},
+      FaultLine{"silent", "says nothing any more"},
+      FaultLine{"stall 100", "says nothing for 100 ms"},
+      FaultLine{"freeze 1000", "the same measurement for 1 s"},
+      FaultLine{"corrupt 5", "the next 5 frames are damaged"},
+      FaultLine{"delay 20", "every frame 20 ms late"},
+      FaultLine{"heal", "all well again"},
+  };
+  static constexpr std::array<FaultLine, 0> fault_lines{};
 
   virtual ~SimulatedDevice() = default;
   SimulatedDevice(const SimulatedDevice&) = delete;

@@ -49,7 +49,7 @@ void hand_rests(descriptor::Mission& mission) {
   for (auto& device : mission.devices) std::erase_if(device.settings, [](const auto& s) { return s.first == "hand"; });
 }
 
-Flight::Flight(Plan plan) : subsystems_{std::move(plan.subsystems)}, devices_{std::move(plan.devices)} {
+Flight::Flight(Plan plan) {
   const auto files = descriptor::file_system();
   const descriptor::FileSource source = [&](const std::filesystem::path& path) -> Result<std::string> {
     const auto found = plan.files.find(path.filename().string());
@@ -61,9 +61,15 @@ Flight::Flight(Plan plan) : subsystems_{std::move(plan.subsystems)}, devices_{st
   if (!reading.value) throw std::runtime_error{problems};
   mission_ = std::move(*reading.value);
   if (plan.edit) plan.edit(*mission_);
+  modules_ = load_modules(*mission_);
+  for (const auto& [program, make] : plan.subsystems) modules_.subsystems[program] = make;
+  for (const auto& [program, make] : plan.devices) modules_.devices[program] = make;
+  for (const auto& [program, why] : modules_.missing)
+    if (!modules_.subsystems.contains(program) && !modules_.devices.contains(program)) problems += why + "\n";
+  if (!problems.empty()) throw std::runtime_error{problems};
   craft_ = std::make_unique<Spacecraft>(Spacecraft::Parts{.mission = *mission_,
-                                                          .subsystems = subsystems_,
-                                                          .devices = devices_,
+                                                          .subsystems = modules_.subsystems,
+                                                          .devices = modules_.devices,
                                                           .log = log_,
                                                           .observer = story_,
                                                           .seed = plan.seed,

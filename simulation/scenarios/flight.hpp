@@ -13,7 +13,7 @@
 
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/pus/packet.hpp"
-#include "simulation/spacecraft/catalogue.hpp"
+#include "simulation/spacecraft/modules.hpp"
 #include "simulation/spacecraft/spacecraft.hpp"
 
 /// A whole spacecraft on virtual time with everything that scenarios and tests want to see of it.
@@ -49,8 +49,8 @@ class Story final : public supervisor::Observer {
 struct Plan {
   std::filesystem::path mission{"rokviss"};  ///< the mission file
   std::function<void(descriptor::Mission&)> edit{};
-  SubsystemCatalogue subsystems = known_subsystems();
-  DeviceCatalogue devices = known_devices();
+  SubsystemCatalogue subsystems{};  ///< in place of modules, or besides them
+  DeviceCatalogue devices{};
   /// Texts that stand in for files, by file name.
   std::map<std::string, std::string> files{};
   std::uint64_t seed{1};
@@ -63,7 +63,7 @@ void hand_rests(descriptor::Mission& mission);
 
 class Flight {
  public:
-  /// Throws std::runtime_error with what is wrong with the mission file: nothing could fly.
+  /// Throws std::runtime_error with what is wrong with the mission file or with a module: nothing could fly.
   explicit Flight(Plan plan);
 
   [[nodiscard]] Spacecraft& craft() noexcept { return *craft_; }
@@ -96,8 +96,7 @@ class Flight {
   std::optional<descriptor::Mission> mission_;
   supervisor::MemoryDatabase log_;
   Story story_;
-  SubsystemCatalogue subsystems_;
-  DeviceCatalogue devices_;
+  Modules modules_;
   std::unique_ptr<Spacecraft> craft_;
 };
 

@@ -10,12 +10,12 @@
 
 #include <array>
 #include <charconv>
-#include <cstdlib>
 #include <new>
 #include <string>
 
 #include "hirosco/data_transfer/flows/socket_channel.hpp"
 #include "hirosco/subsystem/pages.hpp"
+#include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -77,22 +77,6 @@ template <class Page>
 }
 
 }  // namespace
-
-std::filesystem::path find_program(std::string_view name) {
-  std::error_code failed;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
-  if (!failed)
-    if (const auto beside = self.parent_path() / name; std::filesystem::exists(beside, failed)) return beside;
-  const char* path = std::getenv("PATH");
-  std::string_view rest = path != nullptr ? path : "";
-  while (!rest.empty()) {
-    const auto colon = rest.find(':');
-    const auto candidate = std::filesystem::path{rest.substr(0, colon)} / name;
-    if (std::filesystem::exists(candidate, failed)) return candidate;
-    rest = colon == std::string_view::npos ? std::string_view{} : rest.substr(colon + 1);
-  }
-  return {};
-}
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
   const auto program = find_program(subsystem.executable);

@@ -13,9 +13,6 @@
 
 namespace hirosco::supervisor {
 
-/// Where the program of this name is: beside the running one, then in PATH; empty when nowhere.
-[[nodiscard]] std::filesystem::path find_program(std::string_view name);
-
 /// Starts each subsystem as a process of its own that inherits its end of the control channel and its two pages; who is
 /// who is proven by the inherited socket (decision 2).  Thread: the supervisor's.
 class SystemLauncher final : public ProcessLauncher {

@@ -55,10 +55,10 @@ class Check(unittest.TestCase):
         mission = self.mission("hello", old='"hirosco-hello"', new='"hirosco-hallo"')
         self.expect(mission, 0, "warning: no program hirosco-hallo for subsystem HELLO", "mission.xml:10:3", "1 warning")
         self.assertEqual(hirosco("check", "--fly", mission)[0], 1)
-        for command in (("run", mission, "--for", "1s"), ("simulate", mission, "--for", "1s")):
-            code, told = hirosco(*command)
+        for command, what in (("run", "program"), ("simulate", "module")):
+            code, told = hirosco(command, mission, "--for", "1s")
             self.assertEqual(code, 3, told)
-            self.assertIn("no program hirosco-hallo", told)
+            self.assertIn(f"no {what} hirosco-hallo", told)
 
     def test_a_device_is_asked_for_its_settings(self):
         mission = self.mission("rokviss", old='value="wander"', new='value="hold"')

@@ -130,6 +130,30 @@ TEST_F(GroundArchive, ThatSomebodyLocksKeepsNoPageFromHearingOfATelecommand) {
   EXPECT_EQ(station.command("JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.05}})["stage"], "completed");
 }
 
+TEST_F(GroundArchive, OfAnotherVersionOrOfSomethingElseIsLeftAsItIs) {
+  const auto set = [&](const char* sql) {
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(database);
+  };
+  const auto refused = [&] {
+    const auto archive = ground::Archive::open(file);
+    return archive ? std::string{} : std::string{archive.error().text};
+  };
+  EXPECT_EQ(refused(), "");
+  EXPECT_EQ(refused(), "");
+  set("PRAGMA user_version = 2");
+  EXPECT_EQ(refused(), "the archive was written by another version of hirosco");
+  set("PRAGMA user_version = 1; PRAGMA application_id = 1213354819");  // a log of ours
+  EXPECT_EQ(refused(), "this is a database of something else, not an archive");
+  // One from before marks were written is taken, and marked.
+  set("PRAGMA user_version = 0; PRAGMA application_id = 0");
+  EXPECT_EQ(refused(), "");
+  set("PRAGMA user_version = 2");
+  EXPECT_NE(refused(), "");
+}
+
 TEST_F(GroundArchive, ARestartedGatewayStillKnowsAndShowsItsAbsenceAsAGap) {
   Flight flight{rokviss()};
   std::size_t events = 0;

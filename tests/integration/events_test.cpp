@@ -107,13 +107,12 @@ TEST(PlansForTheSupervisorsOwnEvents, TakeAllThatActsToSafeOperationalWhenTheLog
       auto added = to_safe(subsystem, event);
       added.severities = {descriptor::Severity::Medium};
       mission.plans.insert(mission.plans.begin(), std::move(added));
-      const auto subsystems = simulation::known_subsystems();
-      const auto devices = simulation::known_devices();
+      const auto modules = simulation::load_modules(mission);
       supervisor::MemoryDatabase unused;
       Story story;
       simulation::Spacecraft craft{{.mission = mission,
-                                    .subsystems = subsystems,
-                                    .devices = devices,
+                                    .subsystems = modules.subsystems,
+                                    .devices = modules.devices,
                                     .log = unused,
                                     .observer = story,
                                     .make_log = [&](const Clock& clock) -> std::unique_ptr<supervisor::PacketLog> {

@@ -19,7 +19,9 @@
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/installation.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
+#include "simulation/devices/module.hpp"
 #include "tools/hirosco/commands.hpp"
 
 /// `hirosco-ground`: the process behind `hirosco ground` and `hirosco why`, which check the command line. Options in
@@ -49,15 +51,23 @@ using Options = std::map<std::string, std::string>;
   return table;
 }
 
+/// What the simulated devices of a mission understand, as their modules tell: of one whose module is not here, what all do.
+[[nodiscard]] FaultTexts fault_texts(const descriptor::Mission& mission) {
+  FaultTexts texts;
+  const auto add = [&](const std::string& device, std::span<const simulation::FaultLine> lines) {
+    for (const auto& fault : lines) texts[device].push_back({fault.line, fault.text});
+  };
+  for (const auto& device : mission.devices) {
+    add(device.name, simulation::SimulatedDevice::common_fault_lines);
+    if (const auto module = simulation::load_device(device.executable)) add(device.name, (*module)->faults);
+  }
+  return texts;
+}
+
 /// Beside the log that the supervisor writes.
 [[nodiscard]] fs::path archive_of(const descriptor::Mission& mission) {
   const fs::path& log = mission.database.path;
   return tools::archive_beside(log.empty() ? fs::path{"log/" + mission.name + ".db"} : log);
-}
-
-[[nodiscard]] fs::path page_folder() {
-  std::error_code failed;
-  return fs::read_symlink("/proc/self/exe", failed).parent_path().parent_path() / "share" / "ground";
 }
 
 /// Two stations that write into one archive would keep everything twice: the lock lives as long as the process.
@@ -140,8 +150,9 @@ constexpr std::uint16_t tried_ports = 20;
           {.token = token,
            .observer_token = observer,
            .port = shell.port(),
-           .page = option(options, "--page", page_folder().string()),
-           .transitions = state_table()}};
+           .page = option(options, "--page", find_shipped("page").string()),
+           .transitions = state_table(),
+           .faults = fault_texts(mission)}};
   const bool tour = options.contains("--tour");
   const std::string page = fmt::format("http://127.0.0.1:{}/#token=", shell.port());
   const std::string url = page + token + (tour ? "&tour" : "");

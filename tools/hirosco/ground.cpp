@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "supervisor/platform/process_launcher.hpp"
+#include "hirosco/utilities/os/installation.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 /// Becomes hirosco-ground; returns only when that cannot be.
 [[nodiscard]] int become_station(std::vector<std::string> arguments, const std::filesystem::path& mission,
                                  const GroundOptions& options) {
-  const auto program = supervisor::find_program("hirosco-ground");
+  const auto program = find_program("hirosco-ground");
   if (program.empty()) {
     fmt::print(stderr, "hirosco: no program hirosco-ground beside this one or in PATH: {}\n", station_needs);
     return exit_environment;

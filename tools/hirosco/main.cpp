@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/version.hpp"
 #include "tools/hirosco/commands.hpp"
 
 /// `hirosco`: one command for everything. The command line is read here and nowhere else.
@@ -77,7 +78,7 @@ void add_connection(CLI::App& command, Connection& connection) {
 int read_and_do(int argc, char** argv) {
   CLI::App app{"HIROSCO, a high-level robotic spacecraft controller"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", "hirosco 0.1.0");
+  app.set_version_flag("--version", std::string{"hirosco "} + version);
 
   RunOptions run_options;
   std::string run_for;

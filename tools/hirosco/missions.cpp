@@ -8,6 +8,7 @@
 #include <set>
 
 #include "hirosco/descriptor/read.hpp"
+#include "hirosco/utilities/os/installation.hpp"
 #include "tools/hirosco/commands.hpp"
 
 namespace hirosco::tools {
@@ -16,18 +17,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Folders that may hold `missions/`: from the working directory and from this program upwards.
+/// Folders that may hold `missions/`: from the working directory upwards, and where what comes with this program is.
 [[nodiscard]] std::vector<fs::path> mission_roots() {
   std::error_code failed;
-  std::vector<fs::path> starts{fs::current_path(failed)};
-  if (const auto self = fs::read_symlink("/proc/self/exe", failed); !failed) starts.push_back(self.parent_path());
   std::vector<fs::path> roots;
-  for (fs::path folder : starts)
-    for (;;) {
-      roots.push_back(folder);
-      if (!folder.has_relative_path()) break;
-      folder = folder.parent_path();
-    }
+  for (fs::path folder = fs::current_path(failed);; folder = folder.parent_path()) {
+    roots.push_back(folder);
+    if (!folder.has_relative_path()) break;
+  }
+  for (fs::path& folder : shipped_folders()) roots.push_back(std::move(folder));
   return roots;
 }
 
@@ -59,9 +57,10 @@ fs::path find_mission(const std::string& name_or_path) {
 std::optional<descriptor::Mission> load_mission(const std::string& name_or_path) {
   const fs::path file = find_mission(name_or_path);
   if (file.empty()) {
-    fmt::print(stderr,
-               "hirosco: no mission '{}': neither a file nor missions/{}/mission.xml here or above this program\n",
-               name_or_path, name_or_path);
+    fmt::print(
+        stderr,
+        "hirosco: no mission '{}': neither a file nor missions/{}/mission.xml here, above, or with this program\n",
+        name_or_path, name_or_path);
     if (const auto known = known_missions(); !known.empty())
       fmt::print(stderr, "there are: {}\n", fmt::join(known, ", "));
     return std::nullopt;

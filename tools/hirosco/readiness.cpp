@@ -9,8 +9,8 @@
 #include <string>
 
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
-#include "simulation/spacecraft/catalogue.hpp"
-#include "supervisor/platform/process_launcher.hpp"
+#include "hirosco/utilities/os/installation.hpp"
+#include "simulation/spacecraft/modules.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -21,12 +21,14 @@ class Findings {
  public:
   Findings(const descriptor::Mission& mission, Platform platform) : mission_{mission}, platform_{platform} {}
 
-  void program(const std::string& executable, const std::string& user, descriptor::Location at, bool built_in) {
-    const bool here = platform_ == Platform::Simulation ? built_in : !supervisor::find_program(executable).empty();
-    if (here) return;
-    add(at, "E0401", fmt::format("no program {} for {}", executable, user),
-        platform_ == Platform::Simulation ? "it is not built into this program, which simulates all in one"
-                                          : "it is neither beside this program nor in PATH");
+  /// Why the program cannot be had on this platform; `missing`: what its module says.
+  void program(const std::string& executable, const std::string& user, descriptor::Location at,
+               const std::string& missing) {
+    if (platform_ == Platform::Processes && find_program(executable).empty())
+      add(at, "E0401", fmt::format("no program {} for {}", executable, user),
+          "it is neither beside this program nor in PATH");
+    if (platform_ == Platform::Simulation && !missing.empty())
+      add(at, "E0404", fmt::format("no module {} for {}", executable, user), missing);
   }
 
   void settings(const descriptor::SimulatedDevice& device, const simulation::MakeDevice& make) {
@@ -59,19 +61,18 @@ class Findings {
 }  // namespace
 
 std::vector<Diagnostic> unready(const descriptor::Mission& mission, Platform platform) {
-  const auto& subsystems = simulation::known_subsystems();
-  const auto& devices = simulation::known_devices();
+  const auto modules = simulation::load_modules(mission);
+  const auto missing = [&](const std::string& executable) {
+    const auto found = modules.missing.find(executable);
+    return found != modules.missing.end() ? found->second : std::string{};
+  };
   Findings findings{mission, platform};
-  for (const auto& member : mission.subsystems) {
-    const std::string& name = member.subsystem.name;
-    // The ground link of a simulated spacecraft is made by the spacecraft itself.
-    const bool built_in = name == mission.ground.subsystem || subsystems.contains(member.executable);
-    findings.program(member.executable, "subsystem " + name, member.at, built_in);
-  }
+  for (const auto& member : mission.subsystems)
+    findings.program(member.executable, "subsystem " + member.subsystem.name, member.at, missing(member.executable));
   for (const auto& device : mission.devices) {
-    const auto make = devices.find(device.executable);
-    findings.program(device.executable, "simulated device " + device.name, device.at, make != devices.end());
-    if (make != devices.end()) findings.settings(device, make->second);
+    findings.program(device.executable, "simulated device " + device.name, device.at, missing(device.executable));
+    if (const auto make = modules.devices.find(device.executable); make != modules.devices.end())
+      findings.settings(device, make->second);
   }
   return findings.take();
 }

@@ -12,10 +12,10 @@ namespace hirosco::tools {
 /// Where a mission is to fly.
 enum class Platform : std::uint8_t {
   Processes,   ///< programs beside this one or in PATH
-  Simulation,  ///< objects that are built into this program
+  Simulation,  ///< modules beside this program or in PATH, in this process
 };
 
-/// What a mission names and is not here (E0401), and the settings that a simulated device refuses (E0402). The devices
+/// What a mission names and is not here (E0401, E0404), and the settings that a simulated device refuses (E0402). The devices
 /// that this program has are asked themselves, so that no descriptor library knows what a device is.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unready(const descriptor::Mission& mission, Platform platform);
 

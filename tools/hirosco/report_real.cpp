@@ -14,6 +14,7 @@
 #include "hirosco/pus/packet.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/installation.hpp"
 #include "hirosco/utilities/os/process.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "tools/hirosco/ground_connection.hpp"
@@ -182,10 +183,8 @@ Chapter fly_for_real(const std::filesystem::path& mission, Duration span) {
                   fmt::format("{:g} s of the coupled mission with real processes and clocks", seconds(span)),
                   {},
                   {}};
-  std::error_code failed;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
   ProcessStart start;
-  start.executable = self.string();
+  start.executable = this_program().string();
   start.arguments = {"run", mission.string(), "--for", fmt::format("{:.3f}", seconds(span)), "--quiet"};
   auto flight = Process::spawn(start);
   if (!flight) {

@@ -9,10 +9,10 @@
 
 #include "hirosco/data_transfer/flows/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/installation.hpp"
 #include "simulation/devices/described_device.hpp"
 #include "subsystems/communication/tcp_server.hpp"
 #include "supervisor/keeper/keeper.hpp"
-#include "supervisor/platform/process_launcher.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/readiness.hpp"
@@ -128,7 +128,7 @@ struct Locks {
 [[nodiscard]] std::optional<ProcessStart> device_start(const descriptor::Mission& mission,
                                                        const descriptor::SimulatedDevice& device,
                                                        const std::filesystem::path& folder) {
-  const auto program = supervisor::find_program(device.executable);
+  const auto program = find_program(device.executable);
   const auto made = simulation::described_device(mission, device);
   if (!made) {
     fmt::print(stderr, "hirosco run: no simulated device {}: {}\n", device.name, made.error());
@@ -176,7 +176,7 @@ int run(const RunOptions& options) {
     plan.devices.push_back(std::move(*start));
   }
   // Not everybody builds it, and no flight needs it but the tour.
-  const auto station = supervisor::find_program("hirosco-ground");
+  const auto station = find_program("hirosco-ground");
   if (options.tour && station.empty()) {
     fmt::print(stderr, "hirosco tour: no program hirosco-ground beside this one or in PATH: {}\n", station_needs);
     return exit_environment;
@@ -193,7 +193,7 @@ int run(const RunOptions& options) {
     if (options.tour) start.arguments.emplace_back("--tour");
     plan.devices.push_back(std::move(start));
   }
-  const auto program = supervisor::find_program("hirosco-supervisor");
+  const auto program = find_program("hirosco-supervisor");
   if (program.empty()) {
     fmt::print(stderr, "hirosco run: no program hirosco-supervisor beside this one or in PATH\n");
     return exit_environment;

@@ -11,7 +11,7 @@
 #include "hirosco/pus/describe.hpp"
 #include "simulation/devices/joystick_device.hpp"
 #include "simulation/devices/robot_device.hpp"
-#include "simulation/spacecraft/catalogue.hpp"
+#include "simulation/spacecraft/modules.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/readiness.hpp"
 
@@ -116,11 +116,12 @@ int simulate(const SimulateOptions& options) {
                "t_s,hand1_rad,hand2_rad,q1_rad,q2_rad,tip_x_m,tip_y_m,torque1_n_m,torque2_n_m,"
                "penetration_m,contact_n,felt1_n_m,felt2_n_m,motor1_rad,motor2_rad,motor1_n_m,motor2_n_m\n");
   }
+  const auto modules = simulation::load_modules(*mission);
   supervisor::MemoryDatabase log;
   Nobody nobody;
   simulation::Spacecraft craft{{.mission = *mission,
-                                .subsystems = simulation::known_subsystems(),
-                                .devices = simulation::known_devices(),
+                                .subsystems = modules.subsystems,
+                                .devices = modules.devices,
                                 .log = log,
                                 .observer = nobody,
                                 .seed = options.seed}};

@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+#
+# What an installed tree has (docs/adr/0051): bin, lib/hirosco with modules, and for authors include/hirosco and a CMake package
+# with the libraries; share/hirosco with missions, descriptors and page, laid out as in the sources.
+include(CMakePackageConfigHelpers)
+
+# hirosco_headers_of(RESULT headers...): these and what they include, as paths from the top of the sources.
+function(hirosco_headers_of result)
+  set(left ${ARGN})
+  set(found "")
+  while(left)
+    list(POP_FRONT left header)
+    if(header IN_LIST found)
+      continue()
+    endif()
+    list(APPEND found ${header})
+    file(STRINGS ${PROJECT_SOURCE_DIR}/${header} lines REGEX "^#include \"")
+    list(TRANSFORM lines REPLACE "^#include \"(.*)\".*" "\\1")
+    list(APPEND left ${lines})
+  endwhile()
+  list(SORT found)
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+# What an author includes. Whatever else these include is installed with them, and nothing else is.
+hirosco_headers_of(HIROSCO_AUTHOR_HEADERS
+  hirosco/descriptor/read.hpp hirosco/pus/housekeeping_decoder.hpp hirosco/subsystem/module.hpp hirosco/subsystem/run.hpp
+  hirosco/subsystem/subsystem.hpp hirosco/subsystem/testing/rig.hpp
+  simulation/devices/device_shell.hpp simulation/devices/module.hpp simulation/devices/simulated_device.hpp)
+
+# hirosco_install_libraries(targets...): hirosco_NAME becomes hirosco::NAME of the package.
+function(hirosco_install_libraries)
+  foreach(target IN LISTS ARGN)
+    string(REGEX REPLACE "^hirosco_" "" short ${target})
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${short})
+    add_dependencies(optimised ${target})
+  endforeach()
+  install(TARGETS ${ARGN} EXPORT hirosco-targets ARCHIVE DESTINATION lib/hirosco)
+endfunction()
+
+function(hirosco_install)
+  hirosco_install_libraries(hirosco_options hirosco_utilities hirosco_resource hirosco_xml hirosco_parameter
+    hirosco_data_transfer hirosco_descriptor hirosco_pus hirosco_subsystem hirosco_subsystem_main hirosco_subsystem_testing
+    hirosco_simulated_device hirosco_simulation_device_shell hirosco_device_main)
+  foreach(header IN LISTS HIROSCO_AUTHOR_HEADERS)
+    get_filename_component(folder ${header} DIRECTORY)
+    install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/hirosco/${folder})
+  endforeach()
+
+  set(package lib/cmake/hirosco)
+  install(EXPORT hirosco-targets NAMESPACE hirosco:: DESTINATION ${package})
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/hirosco-config.cmake.in
+    ${PROJECT_BINARY_DIR}/hirosco-config.cmake INSTALL_DESTINATION ${package})
+  # Before 1.0 a minor version may change what an author sees.
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/hirosco-config-version.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${PROJECT_BINARY_DIR}/hirosco-config.cmake ${PROJECT_BINARY_DIR}/hirosco-config-version.cmake
+    cmake/HiroscoAuthor.cmake cmake/hirosco_module.map DESTINATION ${package})
+
+  set(share share/hirosco)
+  install(DIRECTORY missions DESTINATION ${share} FILES_MATCHING PATTERN *.xml PATTERN *.csv)
+  install(DIRECTORY subsystems supervisor DESTINATION ${share} FILES_MATCHING PATTERN *.xml)
+  install(DIRECTORY hirosco/descriptor/ DESTINATION ${share}/schemas FILES_MATCHING PATTERN *.xsd PATTERN testdata EXCLUDE)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/${share}/page DESTINATION ${share} OPTIONAL)
+  install(DIRECTORY docs/guide DESTINATION share/doc/hirosco)
+  install(FILES docs/descriptor-errors.md docs/failure-codes.md docs/interfaces.md CHANGELOG.md DESTINATION share/doc/hirosco)
+  install(DIRECTORY LICENSES DESTINATION share/doc/hirosco)
+endfunction()

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/spacecraft/modules.hpp"
+
+#include "hirosco/subsystem/module.hpp"
+#include "simulation/devices/module.hpp"
+
+namespace hirosco::simulation {
+
+Modules load_modules(const descriptor::Mission& mission) {
+  Modules modules;
+  for (const auto& member : mission.subsystems) {
+    if (member.subsystem.name == mission.ground.subsystem) continue;
+    if (const auto loaded = load_subsystem(member.executable); loaded)
+      modules.subsystems[member.executable] = (*loaded)->make;
+    else modules.missing[member.executable] = loaded.error();
+  }
+  for (const auto& device : mission.devices) {
+    if (const auto loaded = load_device(device.executable); loaded)
+      modules.devices[device.executable] = (*loaded)->make;
+    else modules.missing[device.executable] = loaded.error();
+  }
+  return modules;
+}
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "simulation/spacecraft/spacecraft.hpp"
+
+namespace hirosco::simulation {
+
+/// The makers of all that a mission names, by its programs, from the modules of these.
+struct Modules {
+  SubsystemCatalogue subsystems;
+  DeviceCatalogue devices;
+  std::map<std::string, std::string> missing;  ///< programs without a module that can be taken, and why in words
+};
+
+/// The ground link is not among them: its other end is the simulated ground, so the spacecraft makes it.
+[[nodiscard]] Modules load_modules(const descriptor::Mission& mission);
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,124 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""An author outside: the folder `lamp` beside this file, copied to where nothing else is, is built against an installed
+tree, checked, tested and simulated (Built), and flown with real processes, where ground commands it and sees what it does
+(Flown). Python's standard library only. HIROSCO_BUILD names the build folder that is installed, HIROSCO_BIN its programs."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+import urllib.request
+
+import flight
+
+HERE = pathlib.Path(__file__).resolve().parent
+BUILD = pathlib.Path(os.environ.get("HIROSCO_BUILD", flight.BINARIES.parent))
+
+
+class Outside:
+    """The installed tree, moved, and the author's folder built against it."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="hirosco-author-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
+        cls.said("cmake", "--install", BUILD, "--prefix", cls.folder / "first")
+        # Nothing in it may know where it was put.
+        cls.prefix = (cls.folder / "first").rename(cls.folder / "moved")
+        cls.lamp = pathlib.Path(shutil.copytree(HERE / "lamp", cls.folder / "lamp"))
+        cls.built = cls.folder / "built"
+        cls.said("cmake", "-S", cls.lamp, "-B", cls.built, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                 f"-DCMAKE_PREFIX_PATH={cls.prefix}")
+        cls.said("cmake", "--build", cls.built)
+        cls.environment = {"PATH": f"{cls.built}:{os.environ['PATH']}"}
+        cls.mission = cls.lamp / "mission.xml"
+
+    @classmethod
+    def said(cls, *words, environment=None, code=0):
+        done = subprocess.run([*map(str, words)], capture_output=True, text=True, check=False, cwd=cls.folder,
+                              env={**os.environ, "NO_COLOR": "1", **(environment or {})})
+        told = done.stdout + done.stderr
+        if done.returncode != code:
+            raise AssertionError(f"{words} ended with {done.returncode}:\n{told[-4000:]}")
+        return told
+
+    def hirosco(self, *words, code=0):
+        return self.said(self.prefix / "bin/hirosco", *words, environment=self.environment, code=code)
+
+
+class Built(Outside, unittest.TestCase):
+    def test_its_tests_pass(self):
+        told = self.said("ctest", "--test-dir", self.built, "--output-on-failure", environment=self.environment)
+        self.assertIn("100% tests passed, 0 tests failed out of 2", told)
+
+    def test_its_mission_is_checked_with_what_the_installed_tree_brings(self):
+        self.assertIn("4 files, no problem", self.hirosco("check", "--fly", self.mission))
+
+    def test_its_modules_have_one_entry_point(self):
+        for module in (*self.built.glob("*.so"), *(self.prefix / "lib/hirosco").glob("*.so")):
+            with self.subTest(module=module.name):
+                names = self.said("nm", "--dynamic", "--defined-only", "--format=posix", module).split("\n")
+                self.assertEqual([name.split()[0] for name in names if name], ["hirosco_module"])
+
+    def test_the_same_seed_simulates_the_same_octets(self):
+        first, second = (self.hirosco("simulate", self.mission, "--for", "3s", "--seed", "5") for _ in range(2))
+        self.assertEqual(first, second)
+        self.assertIn("commissioned", first)
+        told = self.hirosco("simulate", self.mission, "--for", "3s", "--at", "2 lamp old 0.5", "--summary")
+        self.assertIn("mode operation", told)
+        self.hirosco("simulate", self.mission, "--for", "1s", "--at", "0.5 lamp new", code=1)
+
+    def test_what_comes_with_the_installed_tree_is_simulated_from_anywhere(self):
+        for mission in ("hello", "rokviss"):
+            self.assertIn("s simulated", self.hirosco("simulate", mission, "--for", "2s", "--summary"))
+
+    def test_nothing_in_the_installed_tree_names_the_place_where_it_was_built_or_put(self):
+        for file in self.prefix.rglob("*"):
+            if file.is_file():
+                octets = file.read_bytes()
+                for place in (self.folder / "first", BUILD, flight.REPOSITORY):
+                    self.assertNotIn(str(place).encode(), octets, file)
+
+
+class Flown(Outside, unittest.TestCase):
+    def test_it_flies_and_ground_sees_it(self):
+        with flight.Flight(self.mission, binaries=self.prefix / "bin", environment=self.environment, more=()) as lamp:
+            lamp.wait_told("commissioned: mode operation", 20.0)
+            url = lamp.wait_line(lambda line: "url" in line.content, 10.0).content["url"]
+            base, token = url.split("/#token=")
+
+            def ask(path, body=None):
+                request = urllib.request.Request(base + path, json.dumps(body).encode() if body else None,
+                                                 {"Authorization": f"Bearer {token}"})
+                with urllib.request.urlopen(request, timeout=10) as answer:
+                    return json.loads(answer.read())
+
+            mission = ask("/api/mission")
+            self.assertIn("LAMP", [one["name"] for one in mission["subsystems"]])
+            (device,) = mission["devices"]
+            self.assertIn({"line": "old 0.5", "text": "an old bulb, half as bright"}, device["faults"])
+            self.assertIn("unplug", [fault["line"] for fault in device["faults"]])
+            code, reports = lamp.tc("LAMP", "DIM", 0.9)
+            self.assertEqual((code, reports[-1]), (0, "1,7"))
+            self.assertAlmostEqual(self.brightness(lamp, 0.9), 0.9, 2)
+            lamp.fault("lamp", "old", "0.5")
+            self.assertAlmostEqual(self.brightness(lamp, 0.45), 0.45, 2)
+            values = ask("/api/status")["values"]
+            self.assertIn("LAMP.CUR_VALUES.BRIGHTNESS", values)
+            self.assertEqual(lamp.end(), 0)
+
+    def brightness(self, lamp, wanted):
+        """Of the device's world, once it is about what is wanted."""
+        for _ in range(200):
+            bright = lamp.truth("lamp")["brightness"]
+            if abs(bright - wanted) < 0.005:
+                break
+            lamp.wait_line(lambda line: False, 0.05)
+        return bright
+
+
+if __name__ == "__main__":
+    flight.main()

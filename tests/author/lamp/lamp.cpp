@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "lamp.hpp"
+
+#include <algorithm>
+#include <hirosco/subsystem/module.hpp>
+
+namespace {
+
+using namespace hirosco;
+
+class Lamp final : public Subsystem {
+  struct CurrentValues {  // CUR_VALUES in lamp.xml
+    double brightness;
+    double current_a;
+  };
+  struct Light {  // <Input> of the device
+    double brightness;
+  };
+  struct Drive {  // its <Output>
+    double current_a;
+  };
+
+  Result<Step> software_init() override {
+    publish("CUR_VALUES", current_);
+    use_device("LAMP", lamp_);
+    on_function("DIM", [this](double brightness) -> Result<> {
+      goal_ = brightness;
+      return ok();
+    });
+    return done;
+  }
+
+  Result<> operational(const Cycle& cycle) noexcept override {
+    const double step = fade_per_s * seconds(cycle.period);
+    double& current_a = lamp_.output().current_a;
+    current_a += std::clamp(goal_ - current_a, -step, step);
+    current_.store({lamp_.input().brightness, current_a});
+    return ok();
+  }
+
+  static constexpr double fade_per_s = 1.0;
+  Parameter<CurrentValues> current_;
+  DevicePort<Light, Drive> lamp_;
+  double goal_{0.2};
+};
+
+}  // namespace
+
+std::unique_ptr<Subsystem> make_lamp() { return std::make_unique<Lamp>(); }
+
+const hirosco::Module* hirosco_module() noexcept { return &hirosco::subsystem_module<make_lamp>; }
