@@ -33,7 +33,11 @@ struct SupervisorParts final : OwnSubsystem::Author {
   explicit SupervisorParts(const Supervisor::Parts& outside)
       : craft{outside.mission, outside.world, outside.launcher, outside.guard, outside.log, outside.observer},
         log_watch{craft, own, telecommands, outside.open_database},
-        own_telecommands{craft, telecommands, outside.first_sequence_count} {}
+        own_telecommands{craft, telecommands, outside.first_sequence_count} {
+    // No cycle, no queue and no state of the supervisor's own holds these up.
+    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { stops.safe_all(request); });
+    telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
+  }
 
   void provide(OwnSubsystem&) override {
     housekeeping.provide();
@@ -43,9 +47,6 @@ struct SupervisorParts final : OwnSubsystem::Author {
     power.provide();
     stops.provide();
     shutdown.provide();
-    // No cycle and no queue holds these up.
-    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { stops.safe_all(request); });
-    telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
   }
   void show() noexcept override { housekeeping.show(); }
 

@@ -44,6 +44,16 @@ TEST_F(StopsTest, TheGuardHasStoppedEverythingBeforeAnythingIsSent) {
   EXPECT_TRUE(guard.fenced(arm));
 }
 
+TEST_F(StopsTest, ItWaitsForNoStateOfTheSupervisorItself) {
+  start_all(Operational);
+  ASSERT_EQ(parts.own.state(), Offline);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  const auto safe_all = telecommand(supervisor_apid, 8, 1, call_data("SAFE_ALL"));
+  parts.telecommands.take({.packet = safe_all, .sender = Sender::Ground, .source = 0, .memory = {}});
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_TRUE(was_told("SAFE_ALL: every actuator inhibited"));
+}
+
 TEST_F(StopsTest, WhatBecameOfItIsToldWhenAllHaveStopped) {
   start_all(SafeOperational);
   parts.stops.asked();

@@ -3,6 +3,7 @@
 #include "supervisor/supervision/modes/commissioning.hpp"
 
 #include "supervisor/supervision/testing/parts_rig.hpp"
+#include "supervisor/supervision/testing/played_desk.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -11,27 +12,8 @@ using namespace testing;
 using ::testing::ElementsAre;
 using enum descriptor::State;
 
-/// Keeps what it is asked to send; the test answers.
-struct Desk final : CommandDesk {
-  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
-               CommandDone done) override {
-    sent.push_back(std::to_string(apid) + " " + std::string{function} + " " +
-                   std::to_string(static_cast<int>(argument.value_or(-1))));
-    answers.push_back(std::move(done));
-  }
-  /// The oldest that was not answered.
-  void answer(bool success, const std::string& why = {}) {
-    const CommandDone done = std::move(answers.front());
-    answers.erase(answers.begin());
-    done(success, why);
-  }
-  void send(std::uint16_t, std::uint8_t, std::uint8_t, Octets, const MemoryHandle&, CommandDone) override {}
-  std::vector<std::string> sent;
-  std::vector<CommandDone> answers;
-};
-
 struct CommissioningTest : PartsTest {
-  Desk desk;
+  PlayedDesk desk;
   Commissioning commissioning{craft, desk};
   int failures{0};
   void start() {

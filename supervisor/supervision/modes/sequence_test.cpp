@@ -5,31 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "supervisor/supervision/testing/played_desk.hpp"
+
 namespace hirosco::supervisor {
 namespace {
 
 using ::testing::ElementsAre;
 using OnFailure = Sequence::OnFailure;
 
-/// Keeps what it is asked to send; the test answers, or it answers at once.
-struct Desk final : CommandDesk {
-  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
-               CommandDone done) override {
-    std::string text = std::to_string(apid);
-    text.append(1, ' ').append(function);
-    if (argument) text.append(1, ' ').append(std::to_string(static_cast<int>(*argument)));
-    sent.push_back(text);
-    answers.push_back(std::move(done));
-    if (at_once) answers.back()(*at_once, "at once");
-  }
-  void send(std::uint16_t, std::uint8_t, std::uint8_t, Octets, const MemoryHandle&, CommandDone) override {}
-  std::vector<std::string> sent;
-  std::vector<CommandDone> answers;
-  std::optional<bool> at_once;
-};
-
 struct SequenceTest : ::testing::Test {
-  Desk desk;
+  testing::PlayedDesk desk;
   Sequence sequence{desk};
   std::vector<std::string> ends;
   Sequence::Finished finished() {

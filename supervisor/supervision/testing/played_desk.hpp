@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "supervisor/supervision/command_desk.hpp"
+
+namespace hirosco::supervisor::testing {
+
+/// Keeps what it is asked to send; the test answers, or it answers at once.
+struct PlayedDesk final : CommandDesk {
+  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
+               CommandDone done) override {
+    std::string text = std::to_string(apid);
+    text.append(1, ' ').append(function);
+    if (argument) text.append(1, ' ').append(std::to_string(static_cast<int>(*argument)));
+    sent.push_back(text);
+    answers.push_back(std::move(done));
+    if (at_once) answers.back()(*at_once, "at once");
+  }
+  void send(std::uint16_t, std::uint8_t, std::uint8_t, Octets, const MemoryHandle&, CommandDone) override {}
+  /// The oldest that was not answered.
+  void answer(bool success, const std::string& why = {}) {
+    const CommandDone done = std::move(answers.front());
+    answers.erase(answers.begin());
+    done(success, why);
+  }
+
+  std::vector<std::string> sent;
+  std::vector<CommandDone> answers;
+  std::optional<bool> at_once;
+};
+
+}  // namespace hirosco::supervisor::testing
