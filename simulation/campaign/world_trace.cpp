@@ -2,26 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/campaign/world_trace.hpp"
 
-#include <cmath>
-
-#include "simulation/devices/joystick_device.hpp"
-#include "simulation/devices/robot_device.hpp"
-
 namespace hirosco::campaign {
 namespace {
 
 constexpr Duration count_every = 20ms;
-
-[[nodiscard]] double largest_torque_n_m(const simulation::SimulatedDevice& device) {
-  const auto largest = [](const simulation::Vec2& torque) {
-    return std::max(std::abs(torque[0]), std::abs(torque[1]));
-  };
-  if (const auto* robot = dynamic_cast<const simulation::RobotDevice*>(&device))
-    return largest(robot->motor_torque_n_m());
-  if (const auto* joystick = dynamic_cast<const simulation::JoystickDevice*>(&device))
-    return largest(joystick->motor_torque_n_m());
-  return 0;
-}
 
 }  // namespace
 
@@ -89,7 +73,7 @@ void WorldTrace::look_at(Member& member) {
 
 void WorldTrace::look_at(Device& device) {
   const bool active = device.device->active();
-  const bool turning = largest_torque_n_m(*device.device) > 0;
+  const bool turning = device.device->drives();
   const bool tripped = device.device->watchdog_tripped();
   if (active != device.active) say("active {} {:d}", device.name, active);
   if (turning != device.turning) say("torque {} {:d}", device.name, turning);

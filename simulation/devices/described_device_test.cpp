@@ -7,9 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
-#include "simulation/devices/robot_device.hpp"
-
 namespace hirosco::simulation {
 namespace {
 
@@ -68,27 +65,6 @@ TEST(DescribedDevice, IsRefusedInWordsWhereConfigurationsDisagreeOrNoneUsesIt) {
   EXPECT_FALSE(described_device(mission, mission.devices[0]));
   mission.devices[0].device = "NONE";
   EXPECT_FALSE(described_device(mission, mission.devices[0]));
-}
-
-TEST(DescribedDevice, SpeaksTheByteOrderOfItsEndnode) {
-  SimulatedFlows flows;
-  const FlowAddress at{0, "robot"};
-  SimulatedDevice::Settings settings;
-  settings.byte_order = std::endian::big;
-  RobotDevice robot{flows, at, settings};
-  ASSERT_TRUE(robot.plug());
-  const auto flow = std::move(flows.open(at, FlowSide::Subsystem).value());
-  std::array<std::byte, RobotDevice::command_octets> payload{};
-  OctetWriter writer{payload, std::endian::big};
-  writer.put(7.5).put(-2.5);
-  std::array<std::byte, max_device_frame_octets> buffer;
-  ASSERT_TRUE(flow->send(write_command(buffer, {DeviceMode::Active, 1, 1, 0, payload}).value()));
-  robot.step(TimePoint{});
-  EXPECT_EQ(robot.motor_torque_n_m(), (Vec2{7.5, -2.5}));
-  const auto received = flow->receive(buffer);
-  ASSERT_TRUE(received);
-  OctetReader reader{read_status(Octets{buffer}.first(received->octets))->payload, std::endian::big};
-  EXPECT_NEAR(reader.get<double>(), -0.80, 1e-3);
 }
 
 }  // namespace

@@ -122,6 +122,8 @@ class SimulatedDevice {
   [[nodiscard]] std::uint64_t own_cycles() const noexcept { return own_cycles_; }
   [[nodiscard]] std::uint64_t damaged_commands() const noexcept { return damaged_commands_; }
   [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
+  /// Whether its motors did anything in the last cycle.
+  [[nodiscard]] virtual bool drives() const noexcept { return active(); }
   /// World truth as one line of "name=value" words, for people and pages; "world_s" is the time that has passed there, from
   /// which a late host is left out.
   [[nodiscard]] std::string truth() const;

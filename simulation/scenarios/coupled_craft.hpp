@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
-#include "simulation/devices/joystick_device.hpp"
-#include "simulation/devices/robot_device.hpp"
+#include "simulation/devices/joystick/joystick_device.hpp"
+#include "simulation/devices/robot/robot_device.hpp"
 #include "simulation/scenarios/flight.hpp"
 
 namespace hirosco::simulation {

@@ -8,8 +8,8 @@
 
 #include "hirosco/data_transfer/device_frame.hpp"
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
-#include "simulation/devices/joystick_device.hpp"
-#include "simulation/devices/robot_device.hpp"
+#include "simulation/devices/joystick/joystick_device.hpp"
+#include "simulation/devices/robot/robot_device.hpp"
 #include "subsystems/joystick/control_law.hpp"
 #include "subsystems/manipulator/control_law.hpp"
 

@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "hirosco/pus/event_message.hpp"
-#include "simulation/devices/robot_device.hpp"
+#include "simulation/devices/robot/robot_device.hpp"
 #include "tests/integration/flight.hpp"
 
 namespace hirosco::testing {

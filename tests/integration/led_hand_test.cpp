@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "simulation/devices/joystick_device.hpp"
-#include "simulation/devices/robot_device.hpp"
+#include "simulation/devices/joystick/joystick_device.hpp"
+#include "simulation/devices/robot/robot_device.hpp"
 #include "tests/integration/flight.hpp"
 
 namespace hirosco::testing {

@@ -6,11 +6,11 @@
 #include <charconv>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "hirosco/pus/describe.hpp"
-#include "simulation/devices/joystick_device.hpp"
-#include "simulation/devices/robot_device.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/readiness.hpp"
@@ -53,25 +53,38 @@ void print_record(const supervisor::LogRecord& record, const pus::PacketDescribe
   fmt::print("\n");
 }
 
-/// World truth at the robot's cycle rate.
-void write_trace_line(std::FILE* trace, TimePoint now, simulation::Spacecraft& craft) {
-  const auto* robot = dynamic_cast<simulation::RobotDevice*>(craft.device("robot"));
-  const auto* joystick = dynamic_cast<simulation::JoystickDevice*>(craft.device("joystick"));
-  if (robot == nullptr || joystick == nullptr) return;
-  const auto tip = robot->arm().tip_m();
-  const auto contact = robot->arm().contact();
-  const auto torque = robot->arm().joint_torque_n_m();
-  const auto& link = robot->arm().state().link_rad;
-  const auto& motor = robot->arm().state().motor_rad;
-  const auto& handle = joystick->handle().angle_rad();
-  fmt::print(trace,
-             "{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},"
-             "{:.9g},{:.9g},{:.9g},{:.9g}\n",
-             seconds(now - TimePoint{1s}), handle[0], handle[1], link[0], link[1], tip[0], tip[1], torque[0], torque[1],
-             contact.penetration_m, contact.normal_force_n, joystick->motor_torque_n_m()[0],
-             joystick->motor_torque_n_m()[1], motor[0], motor[1], robot->motor_torque_n_m()[0],
-             robot->motor_torque_n_m()[1]);
-}
+/// World truth of all devices as CSV: "DEVICE.NAME" a column, a line after each cycle of whose device is the first.
+class Trace {
+ public:
+  explicit Trace(const descriptor::Mission& mission) : mission_{mission} {}
+  [[nodiscard]] bool open(const std::string& path) {
+    file_.reset(std::fopen(path.c_str(), "w"));
+    return file_ != nullptr;
+  }
+  void write_line(std::string_view subsystem, TimePoint now, simulation::Spacecraft& craft) {
+    if (mission_.devices.empty() || subsystem != mission_.devices.front().subsystem) return;
+    std::string names = "t_s", values = fmt::format("{:.6f}", seconds(now - TimePoint{1s}));
+    for (const auto& described : mission_.devices) {
+      const auto* device = craft.device(described.name);
+      if (device == nullptr) continue;
+      std::istringstream words{device->truth()};
+      for (std::string word; words >> word;) {
+        const auto equals = word.find('=');
+        names += fmt::format(",{}.{}", described.name, word.substr(0, equals));
+        values += "," + word.substr(equals + 1);
+      }
+    }
+    if (!std::exchange(headed_, true)) fmt::print(file_.get(), "{}\n", names);
+    fmt::print(file_.get(), "{}\n", values);
+  }
+  /// False: not all of it arrived.
+  [[nodiscard]] bool close() { return std::ferror(file_.get()) == 0 && std::fclose(file_.release()) == 0; }
+
+ private:
+  const descriptor::Mission& mission_;
+  File file_{nullptr, &std::fclose};
+  bool headed_{false};
+};
 
 }  // namespace
 
@@ -83,8 +96,7 @@ int simulate(const SimulateOptions& options) {
   for (const std::string& text : options.at) {
     const auto injection = read_injection(text);
     if (!injection) {
-      fmt::print(stderr,
-                 "hirosco simulate: --at '{}' is not \"SECONDS DEVICE LINE\", for example \"5 joystick unplug\"\n",
+      fmt::print(stderr, "hirosco simulate: --at '{}' is not \"SECONDS DEVICE LINE\", for example \"5 arm unplug\"\n",
                  text);
       return exit_usage;
     }
@@ -105,16 +117,10 @@ int simulate(const SimulateOptions& options) {
       return exit_usage;
     }
   }
-  File trace{nullptr, &std::fclose};
-  if (!options.trace.empty()) {
-    trace.reset(std::fopen(options.trace.c_str(), "w"));
-    if (!trace) {
-      fmt::print(stderr, "hirosco simulate: cannot write {}\n", options.trace);
-      return exit_environment;
-    }
-    fmt::print(trace.get(),
-               "t_s,hand1_rad,hand2_rad,q1_rad,q2_rad,tip_x_m,tip_y_m,torque1_n_m,torque2_n_m,"
-               "penetration_m,contact_n,felt1_n_m,felt2_n_m,motor1_rad,motor2_rad,motor1_n_m,motor2_n_m\n");
+  std::optional<Trace> trace;
+  if (!options.trace.empty() && !trace.emplace(*mission).open(options.trace)) {
+    fmt::print(stderr, "hirosco simulate: cannot write {}\n", options.trace);
+    return exit_environment;
   }
   const auto modules = simulation::load_modules(*mission);
   supervisor::MemoryDatabase log;
@@ -126,9 +132,7 @@ int simulate(const SimulateOptions& options) {
                                 .observer = nobody,
                                 .seed = options.seed}};
   if (trace)
-    craft.on_cycle([&](std::string_view subsystem, TimePoint now) {
-      if (subsystem == "MANIPULATOR") write_trace_line(trace.get(), now, craft);
-    });
+    craft.on_cycle([&](std::string_view subsystem, TimePoint now) { trace->write_line(subsystem, now, craft); });
   const TimePoint end = craft.now() + options.run_for;
   bool all_taken = true;
   for (const Injection& injection : injections) {
@@ -153,7 +157,7 @@ int simulate(const SimulateOptions& options) {
     fmt::print("{} s simulated, {} log records, {} packets, mode {}, {} of {} links up\n", seconds(options.run_for),
                page->records.size(), packets, craft.supervisor().mode().name, craft.supervisor().links().up_count(),
                craft.supervisor().links().defined_count());
-  if (trace && (std::ferror(trace.get()) != 0 || std::fclose(trace.release()) != 0)) {
+  if (trace && !trace->close()) {
     fmt::print(stderr, "hirosco simulate: {} cannot be written to its end\n", options.trace);
     return exit_environment;
   }

@@ -44,6 +44,7 @@ class RobotDevice final : public SimulatedDevice {
   [[nodiscard]] TwoJointArm& arm() noexcept { return arm_; }
   /// What the motors did in the last cycle, and what the brakes.
   [[nodiscard]] const Vec2& motor_torque_n_m() const noexcept { return applied_; }
+  [[nodiscard]] bool drives() const noexcept override { return applied_[0] != 0 || applied_[1] != 0; }
   [[nodiscard]] const Vec2& brake_n_m() const noexcept { return brake_; }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/world/joystick_handle.hpp"
+#include "simulation/devices/joystick/joystick_handle.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/devices/evdev_stick.hpp"
+#include "simulation/devices/joystick/evdev_stick.hpp"
 
 #include <fcntl.h>
 #include <linux/input.h>
@@ -12,7 +12,7 @@
 
 #include "hirosco/data_transfer/device_frame.hpp"
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
-#include "simulation/devices/joystick_device.hpp"
+#include "simulation/devices/joystick/joystick_device.hpp"
 
 namespace hirosco::simulation {
 namespace {

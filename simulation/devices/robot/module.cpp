@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/devices/module.hpp"
-#include "simulation/devices/robot_device.hpp"
+#include "simulation/devices/robot/robot_device.hpp"
 
 const hirosco::Module* hirosco_module() noexcept {
   return &hirosco::simulation::device_module<hirosco::simulation::RobotDevice>;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/devices/robot_device.hpp"
+#include "simulation/devices/robot/robot_device.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -168,11 +168,12 @@ std::string RobotDevice::do_truth() const {
   return fmt::format(
       "tip_x={:.6f} tip_y={:.6f} force={:.4f} penetration_mm={:.5f} torque_1={:.5f} torque_2={:.5f} "
       "temperature_1={:.2f} temperature_2={:.2f} motor_1={:.4f} motor_2={:.4f} brake_1={:.4f} brake_2={:.4f} "
-      "motor_angle_1={:.6f} motor_angle_2={:.6f} "
+      "motor_angle_1={:.6f} motor_angle_2={:.6f} angle_1={:.6f} angle_2={:.6f} "
       "output={} flags={}",
       tip[0], tip[1], contact.normal_force_n, 1e3 * contact.penetration_m, torque[0], torque[1],
       arm_.temperature_c()[0], arm_.temperature_c()[1], applied_[0], applied_[1], brake_[0], brake_[1],
-      arm_.state().motor_rad[0], arm_.state().motor_rad[1], static_cast<int>(output()), flags());
+      arm_.state().motor_rad[0], arm_.state().motor_rad[1], arm_.state().link_rad[0], arm_.state().link_rad[1],
+      static_cast<int>(output()), flags());
 }
 
 }  // namespace hirosco::simulation

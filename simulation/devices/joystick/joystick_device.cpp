@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/devices/joystick_device.hpp"
+#include "simulation/devices/joystick/joystick_device.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/devices/device_shell.hpp"
-#include "simulation/devices/evdev_stick.hpp"
-#include "simulation/devices/joystick_device.hpp"
+#include "simulation/devices/joystick/evdev_stick.hpp"
+#include "simulation/devices/joystick/joystick_device.hpp"
 
 int main(int argc, char** argv) {
   using namespace hirosco;

@@ -10,74 +10,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
-#include "simulation/devices/joystick_device.hpp"
-#include "simulation/devices/robot_device.hpp"
+#include "simulation/devices/robot/robot_device.hpp"
+#include "simulation/devices/testing/bench.hpp"
 
 namespace hirosco::simulation {
 namespace {
 
 constexpr Duration cycle = std::chrono::microseconds{500};
 
-struct Status {
-  DeviceStatus head;
-  std::vector<std::byte> payload;
-  [[nodiscard]] double value(std::size_t index) const {
-    OctetReader reader{payload, std::endian::little};
-    (void)reader.get(8 * index);
-    return reader.get<double>();
-  }
-};
-
-/// The subsystem's side of a device, by hand.
-template <class Device>
-class Bench {
- public:
-  Bench() : device{flows, address, {}} {
-    EXPECT_TRUE(device.plug());
-    flow = flows.open(address, FlowSide::Subsystem).value();
-  }
-  void command(DeviceMode mode, std::uint32_t epoch, double torque_1 = 0, double torque_2 = 0,
-               std::uint32_t watchdog_us = 0) {
-    std::array<std::byte, Device::command_octets> payload{};
-    OctetWriter writer{payload, std::endian::little};
-    writer.put(torque_1).put(torque_2);
-    std::ranges::copy(beyond_torque, payload.begin() + 16);
-    std::array<std::byte, max_device_frame_octets> buffer;
-    (void)flow->send(write_command(buffer, {mode, epoch, ++sequence, watchdog_us, payload}).value());
-  }
-  /// What follows the torques in a command's payload.
-  std::array<std::byte, Device::command_octets - 16> beyond_torque{};
-  /// One cycle later.
-  void step() { device.step(now += cycle); }
-  void active(double torque_1 = 0, std::uint32_t epoch = 1) {
-    command(DeviceMode::Active, epoch, torque_1);
-    step();
-  }
-  /// Newest frame as it came; empty when none did.
-  std::vector<std::byte> raw() {
-    std::array<std::byte, max_device_frame_octets> buffer;
-    const auto received = flow->receive(buffer);
-    if (!received || received->flow != Flow::New) return {};
-    return {buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(received->octets)};
-  }
-  std::optional<Status> status() {
-    const auto frame = raw();
-    const auto read = read_status(frame);
-    if (!read) return std::nullopt;
-    return Status{*read, {read->payload.begin(), read->payload.end()}};
-  }
-
-  SimulatedFlows flows;
-  FlowAddress address{0, "device"};
-  Device device;
-  std::unique_ptr<DataFlow> flow;
-  TimePoint now{};
-  std::uint32_t sequence{0};
-};
-
 using RobotBench = Bench<RobotDevice>;
-using JoystickBench = Bench<JoystickDevice>;
 
 TEST(RobotDevice, AnswersEachCommandWithItsSensors) {
   RobotBench bench;
@@ -91,6 +32,27 @@ TEST(RobotDevice, AnswersEachCommandWithItsSensors) {
   EXPECT_NEAR(status->value(5), 1.60, 5e-5);
   OctetReader tail{Octets{status->payload}.last(9), std::endian::little};
   EXPECT_EQ(tail.get<float>(), 20.0F);
+}
+
+TEST(RobotDevice, SpeaksTheByteOrderOfItsEndnode) {
+  SimulatedFlows flows;
+  const FlowAddress at{0, "robot"};
+  SimulatedDevice::Settings settings;
+  settings.byte_order = std::endian::big;
+  RobotDevice robot{flows, at, settings};
+  ASSERT_TRUE(robot.plug());
+  const auto flow = std::move(flows.open(at, FlowSide::Subsystem).value());
+  std::array<std::byte, RobotDevice::command_octets> payload{};
+  OctetWriter writer{payload, std::endian::big};
+  writer.put(7.5).put(-2.5);
+  std::array<std::byte, max_device_frame_octets> buffer;
+  ASSERT_TRUE(flow->send(write_command(buffer, {DeviceMode::Active, 1, 1, 0, payload}).value()));
+  robot.step(TimePoint{});
+  EXPECT_EQ(robot.motor_torque_n_m(), (Vec2{7.5, -2.5}));
+  const auto received = flow->receive(buffer);
+  ASSERT_TRUE(received);
+  OctetReader reader{read_status(Octets{buffer}.first(received->octets))->payload, std::endian::big};
+  EXPECT_NEAR(reader.get<double>(), -0.80, 1e-3);
 }
 
 TEST(RobotDevice, MovesByTheCommandedTorqueOneCyclePerExchange) {
@@ -446,31 +408,6 @@ TEST(Faults, AreRecordedWithTheirTimeAndWrongOnesDoNothing) {
   ASSERT_EQ(bench.device.injections().size(), 1U);
   EXPECT_EQ(bench.device.injections()[0].line, "corrupt 1");
   EXPECT_EQ(bench.device.injections()[0].at, TimePoint{} + 4 * cycle);
-}
-
-TEST(JoystickDevice, ObeysTheHandAndItsMotors) {
-  JoystickBench bench;
-  ASSERT_TRUE(bench.device.hand("hold 0.1 -0.1"));
-  for (int k = 0; k < 6000; ++k) {
-    bench.command(DeviceMode::Active, 1, -0.215, 0);
-    bench.step();
-  }
-  const auto status = bench.status();
-  ASSERT_TRUE(status);
-  EXPECT_EQ(status->payload.size(), JoystickDevice::sensor_octets);
-  EXPECT_NEAR(status->value(0), 0.1 - 0.215 / 4.3, 1e-6);
-  EXPECT_NEAR(status->value(1), -0.1, 1e-6);
-  EXPECT_EQ(bench.device.injections().at(0).line, "hand hold 0.1 -0.1");
-}
-
-TEST(JoystickDevice, UnderstandsEveryHandLineAndRefusesOthers) {
-  JoystickBench bench;
-  for (const char* line : {"hold 0 0", "target 0.1 -0.4", "sine 1 0.15 0.5", "sine 2 0.15 0.5 1.57",
-                           "ramp 0.065 0 0.04", "cartesian 0.0176 0 1", "wander"})
-    EXPECT_TRUE(bench.device.hand(line)) << line;
-  for (const char* line :
-       {"", "target 0.1", "hold 0", "hold 2 0", "sine 3 0.1 1", "sine 1 0.1", "ramp 1 0 0.04", "ramp 0 0 0", "sit"})
-    EXPECT_FALSE(bench.device.hand(line)) << line;
 }
 
 }  // namespace

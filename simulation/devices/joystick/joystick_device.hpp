@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "simulation/devices/led_hand.hpp"
+#include "simulation/devices/joystick/joystick_handle.hpp"
+#include "simulation/devices/joystick/led_hand.hpp"
+#include "simulation/devices/joystick/stick.hpp"
 #include "simulation/devices/simulated_device.hpp"
-#include "simulation/devices/stick.hpp"
-#include "simulation/world/joystick_handle.hpp"
 
 namespace hirosco::simulation {
 
@@ -40,6 +40,7 @@ class JoystickDevice final : public SimulatedDevice {
   [[nodiscard]] JoystickHandle& handle() noexcept { return handle_; }
   /// What the motors did in the last cycle.
   [[nodiscard]] const Vec2& motor_torque_n_m() const noexcept { return applied_; }
+  [[nodiscard]] bool drives() const noexcept override { return applied_[0] != 0 || applied_[1] != 0; }
 
  private:
   void advance(Duration cycle) noexcept override;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "simulation/world/joystick_handle.hpp"
+#include "simulation/devices/joystick/joystick_handle.hpp"
 
 namespace hirosco::simulation {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
-#include "simulation/devices/stick.hpp"
+#include "simulation/devices/joystick/stick.hpp"
 
 namespace hirosco::simulation {
 

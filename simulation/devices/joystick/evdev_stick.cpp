@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/devices/evdev_stick.hpp"
+#include "simulation/devices/joystick/evdev_stick.hpp"
 
 #include <fcntl.h>
 #include <linux/input.h>

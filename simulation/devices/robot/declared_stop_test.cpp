@@ -12,8 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
-#include "simulation/devices/joystick_device.hpp"
-#include "simulation/devices/robot_device.hpp"
+#include "simulation/devices/robot/robot_device.hpp"
 
 namespace hirosco::simulation {
 namespace {
@@ -301,12 +300,6 @@ TEST(DeclaredStop, EndsWhenAHigherEpochTakesTheDeviceUp) {
   EXPECT_EQ(bench.device.output(), DeviceOutput::Active);
   EXPECT_EQ(bench.device.motor_torque_n_m(), (Vec2{1, 2}));
   EXPECT_EQ(bench.device.brake_n_m(), (Vec2{}));
-}
-
-TEST(DeclaredStop, ThatADeviceDoesNotHaveIsRefusedAtTheStart) {
-  SimulatedFlows flows;
-  JoystickDevice joystick{flows, frames_at, actuator(SimulatedDevice::Stop::Controlled)};
-  EXPECT_EQ(joystick.plug().error().code, ErrorCode::InvalidArgument);
 }
 
 }  // namespace
