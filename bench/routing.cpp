@@ -21,7 +21,7 @@
 #include "hirosco/data_transfer/flows/socket_channel.hpp"
 #include "hirosco/data_transfer/flows/system_flow_factory.hpp"
 #include "hirosco/descriptor/read.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "supervisor/supervisor.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "hirosco/parameter/number.hpp"
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 
 namespace hirosco::ground {
 namespace {

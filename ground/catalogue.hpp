@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/mission.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 
 /// What the descriptors of a mission say, arranged as a ground station asks: every number of telemetry is a column
 /// with a name and a place in its reports. Constant after construction.

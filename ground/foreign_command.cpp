@@ -8,7 +8,7 @@
 #include <array>
 
 #include "ground/json.hpp"
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 
 namespace hirosco::ground {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "ground/archive.hpp"
 #include "ground/catalogue.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 
 /// Telecommands that somebody else has sent, in the words of our own history.
 namespace hirosco::ground {

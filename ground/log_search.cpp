@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ground/json.hpp"
-#include "hirosco/pus/describe.hpp"
+#include "hirosco/pus/words/describe.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 
 namespace hirosco::ground {

@@ -8,7 +8,7 @@
 
 #include "ground/json.hpp"
 #include "hirosco/parameter/number.hpp"
-#include "hirosco/pus/st129_supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 
 namespace hirosco::ground {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "ground/archive.hpp"
 #include "ground/catalogue.hpp"
-#include "hirosco/pus/describe.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/words/describe.hpp"
 
 /// The spacecraft as its packets tell it: newest values, mode, states, links. The live view and every replay have one
 /// each; both are fed with the same packets by the same code.

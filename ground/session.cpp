@@ -9,9 +9,9 @@
 #include "ground/foreign_command.hpp"
 #include "ground/json.hpp"
 #include "ground/views.hpp"
-#include "hirosco/pus/failure.hpp"
-#include "hirosco/pus/st08_function.hpp"
-#include "hirosco/pus/st129_supervision.hpp"
+#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 
 namespace hirosco::ground {

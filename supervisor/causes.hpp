@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/pus/st129_supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::supervisor {

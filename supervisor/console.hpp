@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "hirosco/pus/housekeeping_decoder.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
 #include "supervisor/platform/error_lines.hpp"
 #include "supervisor/supervisor.hpp"
 

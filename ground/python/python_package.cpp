@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ground/python/runtime_text.hpp"
-#include "hirosco/pus/failure.hpp"
+#include "hirosco/pus/packet/failure.hpp"
 
 namespace hirosco::ground {
 namespace {

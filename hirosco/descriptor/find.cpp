@@ -22,6 +22,17 @@ const Parameter* Subsystem::find_parameter(std::string_view parameter) const noe
 const Event* Subsystem::find_event(std::string_view event) const noexcept {
   return find_in(events, event, &Event::name);
 }
+const CustomService* Subsystem::find_service(std::uint8_t type) const noexcept {
+  return find_in(services, type, &CustomService::type);
+}
+const CustomService* Subsystem::find_service(std::string_view service) const noexcept {
+  return find_in(services, service, &CustomService::name);
+}
+const Function* Subsystem::find_request(std::uint8_t service, std::uint8_t subtype) const noexcept {
+  const CustomService* own = find_service(service);
+  return own == nullptr ? nullptr : find_in(own->requests, subtype, &Function::subtype);
+}
+
 const Function* Subsystem::find_function(std::string_view function) const noexcept {
   return find_in(functions, function, &Function::name);
 }

@@ -122,9 +122,11 @@ struct Event {
   Location at;
 };
 
-/// A function of ST[08]. Argument ids count from 1 in order.
+/// A request by name: a function of ST[08], whose argument ids count from 1 in order, or of a subsystem's own service.
 struct Function {
   std::string name;                  ///< upper-case ASCII, at most 16 octets
+  std::uint8_t service{8};
+  std::uint8_t subtype{1};
   std::uint16_t states{0};           ///< bit n set: permitted in State n
   bool essential{false};             ///< forwarded before it is logged (decision 24)
   struct Argument {
@@ -136,6 +138,20 @@ struct Function {
   std::string description;
   Location at;
   [[nodiscard]] bool permitted_in(State state) const noexcept { return (states >> static_cast<int>(state) & 1) != 0; }
+};
+
+/// A PUS service of the subsystem's own (paper 4.1: "a list of services").
+struct CustomService {
+  std::string name;
+  std::uint8_t type{};               ///< 192 to 255
+  std::vector<Function> requests;    ///< their arguments stand in order, without ids
+  struct Report {
+    std::string name;
+    std::uint8_t subtype{};
+    std::vector<Field> fields;
+  };
+  std::vector<Report> reports;
+  Location at;
 };
 
 enum class Method : std::uint8_t { SharedMemory = 1, Udp = 2, Tcp = 3, Unix = 4, Dds = 5, Tipc = 6 };
@@ -280,6 +296,7 @@ struct Subsystem {
   std::vector<Parameter> parameters;
   std::vector<Event> events;  ///< the author's, then the framework's (framework_events.hpp)
   std::vector<Function> functions;  ///< the author's; SET_STATE and CONFIGURE are built in
+  std::vector<CustomService> services;  ///< of its own, beside the framework's
   std::vector<FailureName> failures;
   std::vector<HousekeepingStructure> housekeeping;  ///< valid in every configuration
   std::vector<Device> devices;
@@ -289,6 +306,10 @@ struct Subsystem {
   [[nodiscard]] const Parameter* find_parameter(std::string_view parameter) const noexcept;
   [[nodiscard]] const Event* find_event(std::string_view event) const noexcept;
   [[nodiscard]] const Function* find_function(std::string_view function) const noexcept;
+  /// A service of its own, and a request of one. Null: it has none.
+  [[nodiscard]] const CustomService* find_service(std::uint8_t type) const noexcept;
+  [[nodiscard]] const CustomService* find_service(std::string_view service) const noexcept;
+  [[nodiscard]] const Function* find_request(std::uint8_t service, std::uint8_t subtype) const noexcept;
   [[nodiscard]] const Configuration* find_configuration(std::string_view configuration) const noexcept;
   [[nodiscard]] const Configuration* find_configuration(std::uint8_t configuration) const noexcept;
 };

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdio>
 
-#include "hirosco/pus/packet_counters.hpp"
-#include "hirosco/pus/st17_test.hpp"
+#include "hirosco/pus/packet/packet_counters.hpp"
+#include "hirosco/pus/st17_test/test_service.hpp"
 
 using namespace hirosco;
 

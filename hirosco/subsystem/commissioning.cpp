@@ -157,8 +157,7 @@ void GenericSubsystem::release_configuration() {
   }
   writes_.apply(dictionary_);
   cycle_.release();
-  housekeeping_service_.reset();
-  sampler_.reset();
+  for (pus::Service* service : services_) service->release();
   configuration_ = nullptr;
   vital_.configuration.store(0, std::memory_order_relaxed);
   vital_.inhibited.store(0, std::memory_order_relaxed);
@@ -298,12 +297,9 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     plan.devices.emplace_back(device, use, *port->second, std::move(*flow), world_.realtime);
     plan.device_lost_events.push_back(descriptor::framework_event::device_lost(use.device));
   }
-  sampler_ = std::make_unique<pus::HousekeepingSampler>();
-  pus::TelemetrySink& sink = *this;
-  housekeeping_service_ = std::make_unique<pus::HousekeepingService>(descriptor_, *sampler_, verification_, sink);
-  for (const auto& structures : {descriptor_.housekeeping, configuration.housekeeping})
-    if (const auto loaded = housekeeping_service_->load(structures); !loaded) return of("", loaded.error());
-  plan.sampler = sampler_.get();
+  for (pus::Service* service : services_)
+    if (const auto configured = service->configure(configuration); !configured) return of("", configured.error());
+  plan.sampler = housekeeping_service_.sampler();
   if (const auto configured = author_.configure(configuration); !configured) return of("", configured.error());
   cycle_.prepare(std::move(plan));
   vital_.configuration.store(configuration.id, std::memory_order_relaxed);

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/framework_events.hpp"
-#include "hirosco/pus/st05_event.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
 
 namespace hirosco {
 namespace {

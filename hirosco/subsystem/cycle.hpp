@@ -12,7 +12,7 @@
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/parameter/write_queue.hpp"
-#include "hirosco/pus/st03_housekeeping.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 #include "hirosco/subsystem/handover.hpp"
 #include "hirosco/subsystem/pages.hpp"
 #include "hirosco/subsystem/slots.hpp"

@@ -8,7 +8,7 @@
 
 #include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/parameter/number.hpp"
-#include "hirosco/pus/event_message.hpp"
+#include "hirosco/pus/st05_event/event_message.hpp"
 
 namespace hirosco {
 namespace {
@@ -63,7 +63,10 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       event_service_{descriptor_.events, verification_, *this},
       function_service_{descriptor_.functions, pus::common_functions(), *this, verification_},
       parameter_service_{*this, verification_, *this},
-      link_service_{verification_, *this, *this} {
+      housekeeping_service_{descriptor_, verification_, *this},
+      link_service_{verification_, *this, *this},
+      services_{&housekeeping_service_, &event_service_,     &function_service_,
+                &test_service_,         &parameter_service_, &link_service_} {
   author_.framework_ = this;
   cycle_.functions().resize(descriptor_.functions.size());
   vital_.realtime.store(world_.realtime ? 1 : 0, std::memory_order_relaxed);
@@ -126,24 +129,14 @@ void GenericSubsystem::dispatch(const Message& message) {
     return verification_.routing_failed(request, pus::FailureNotice{pus::FailureCode::UnknownApid});
   if (message.mode_epoch != 0 && message.mode_epoch != permit_.mode_epoch.load(std::memory_order_acquire))
     return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
-  pus::Service* service = nullptr;
-  switch (telecommand->service()) {
-    case 3: service = housekeeping_service_.get(); break;
-    case 5: service = &event_service_; break;
-    case 8: service = &function_service_; break;
-    case 17: service = &test_service_; break;
-    case 20: service = &parameter_service_; break;
-    case 128:
-      link_service_.offer_memory(message.memory);
-      service = &link_service_;
-      break;
-    default:
-      return verification_.rejected(request,
-                                    pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
-  }
-  // Housekeeping exists from Pre-Operational on: its structures belong to a configuration.
-  if (service == nullptr) return verification_.rejected(request, wrong_state());
-  service->handle(*telecommand, request);
+  const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
+  if (found == services_.end())
+    return verification_.rejected(request,
+                                  pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
+  pus::Service& service = **found;
+  if (!service.in_force()) return verification_.rejected(request, wrong_state());
+  service.accompany(message.memory);
+  service.handle(*telecommand, request);
 }
 
 pus::FailureNotice GenericSubsystem::wrong_state() const {

@@ -17,13 +17,13 @@
 #include "hirosco/data_transfer/memory.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/parameter/write_queue.hpp"
-#include "hirosco/pus/packet_counters.hpp"
-#include "hirosco/pus/service.hpp"
-#include "hirosco/pus/st03_housekeeping.hpp"
-#include "hirosco/pus/st05_event.hpp"
-#include "hirosco/pus/st08_function.hpp"
-#include "hirosco/pus/st17_test.hpp"
-#include "hirosco/pus/st20_parameter.hpp"
+#include "hirosco/pus/packet/packet_counters.hpp"
+#include "hirosco/pus/st01_verification/verification.hpp"
+#include "hirosco/pus/st03_housekeeping/configured_housekeeping.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st17_test/test_service.hpp"
+#include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/subsystem/backlog.hpp"
 #include "hirosco/subsystem/cycle.hpp"
 #include "hirosco/subsystem/link_service.hpp"
@@ -99,6 +99,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void publish(std::string_view name, ParameterCell& parameter);
   void require_link(std::string_view set, LinkInputPort& port);
   void use_device(std::string_view name, DevicePortBase& port);
+  void provide(pus::Service& service);
   void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
@@ -184,9 +185,9 @@ class GenericSubsystem final : private pus::TelemetrySink,
   pus::EventService event_service_;
   pus::FunctionService function_service_;
   pus::ParameterService parameter_service_;
-  std::unique_ptr<pus::HousekeepingSampler> sampler_;
-  std::unique_ptr<pus::HousekeepingService> housekeeping_service_;
+  pus::ConfiguredHousekeeping housekeeping_service_;
   LinkService link_service_;
+  std::vector<pus::Service*> services_;  ///< the framework's, then the author's
 
   std::map<std::string, LinkInputPort*, std::less<>> link_ports_;
   std::map<std::string, DevicePortBase*, std::less<>> device_ports_;

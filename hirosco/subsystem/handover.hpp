@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "hirosco/descriptor/framework_events.hpp"
-#include "hirosco/pus/service.hpp"
+#include "hirosco/pus/service/service.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
 

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "hirosco/data_transfer/memory.hpp"
-#include "hirosco/pus/service.hpp"
-#include "hirosco/pus/st128_realtime_link.hpp"
+#include "hirosco/pus/st01_verification/verification.hpp"
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 #include "hirosco/subsystem/slots.hpp"
 
 /// ST[128] at one end of a link: answers the handshake for the configuration in force.
@@ -34,10 +34,9 @@ class LinkService final : public pus::Service {
  public:
   LinkService(pus::Verification& verification, pus::TelemetrySink& sink, LinkServiceOwner& owner)
       : verification_{verification}, sink_{sink}, owner_{owner} {}
-  [[nodiscard]] std::uint8_t type() const noexcept override { return pus::st128::service_type; }
+  [[nodiscard]] const pus::ServiceKind& kind() const noexcept override { return pus::st128::service_kind; }
   void handle(const pus::TelecommandView& telecommand, const pus::Request& request) override;
-  /// Memory that came beside the telecommand which is handled next.
-  void offer_memory(MemoryHandle memory) { memory_ = std::move(memory); }
+  void accompany(const MemoryHandle& memory) override { memory_ = memory; }
   /// Tells the supervisor that an end is gone.
   void report_detached(std::uint8_t link, pus::st128::Role role);
 

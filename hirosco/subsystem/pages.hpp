@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "hirosco/pus/packet_counters.hpp"
+#include "hirosco/pus/packet/packet_counters.hpp"
 
 /// The two pages of shared memory between a subsystem and the supervisor (decision 6). Both sides check magic and
 /// version before use; all fields are single words, so nothing can be torn. What decides over actuators survives damage: no

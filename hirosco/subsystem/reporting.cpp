@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "hirosco/descriptor/framework_events.hpp"
-#include "hirosco/pus/event_message.hpp"
+#include "hirosco/pus/st05_event/event_message.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
 /// What a subsystem says: reports of its cycle, telemetry, events.

@@ -16,7 +16,7 @@
 #include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
-#include "hirosco/pus/st128_realtime_link.hpp"
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 #include "hirosco/subsystem/pages.hpp"
 #include "hirosco/subsystem/ports.hpp"
 

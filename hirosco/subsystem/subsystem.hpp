@@ -15,9 +15,9 @@
 
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/parameter.hpp"
-#include "hirosco/pus/failure.hpp"
-#include "hirosco/pus/service.hpp"
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/service/service.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/subsystem/ports.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/result.hpp"

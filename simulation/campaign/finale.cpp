@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "simulation/campaign/planned_flight.hpp"
 
 /// The same end for every flight: the faults stop, SAFE_ALL stops the craft, and two seconds later all that lives can be

@@ -6,7 +6,7 @@
 #include <array>
 #include <sstream>
 
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 namespace hirosco::campaign {

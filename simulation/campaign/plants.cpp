@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/crc16.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "simulation/campaign/plan.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/read.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "simulation/spacecraft/spacecraft.hpp"
 

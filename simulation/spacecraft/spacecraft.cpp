@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "simulation/devices/described_device.hpp"
 
 namespace hirosco::simulation {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "supervisor/platform/ascii_database.hpp"
 #include "supervisor/platform/sqlite_database.hpp"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// How the parts of the supervisor are met by what happens. A new part implements what it needs of these and is named once,

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/time.hpp"
 
 namespace hirosco::supervisor {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/pus/housekeeping_decoder.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
 #include "tests/ground/station.hpp"
 
 /// What the archive tells of the past: history, replay, gaps, timeline, exports.

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/descriptor/framework_events.hpp"
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "tests/ground/station.hpp"
 
 /// What pages are told of a flying spacecraft, and what becomes of their telecommands and of those of others.

@@ -16,7 +16,7 @@
 #include "ground/archive.hpp"
 #include "ground/catalogue.hpp"
 #include "ground/session.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "simulation/scenarios/flight.hpp"
 
 /// The ground station beside the whole spacecraft on virtual time: everything but the sockets.

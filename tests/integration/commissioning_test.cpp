@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "tests/integration/flight.hpp"
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <variant>
 
-#include "hirosco/pus/event_message.hpp"
+#include "hirosco/pus/st05_event/event_message.hpp"
 #include "simulation/devices/robot/robot_device.hpp"
 #include "tests/integration/flight.hpp"
 

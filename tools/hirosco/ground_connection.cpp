@@ -11,7 +11,7 @@
 #include <array>
 #include <cerrno>
 
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 
 namespace hirosco::tools {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "hirosco/pus/describe.hpp"
+#include "hirosco/pus/words/describe.hpp"
 #include "supervisor/platform/log_store.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <utility>
 
-#include "hirosco/pus/describe.hpp"
+#include "hirosco/pus/words/describe.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/readiness.hpp"

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <map>
 
-#include "hirosco/pus/housekeeping_decoder.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"

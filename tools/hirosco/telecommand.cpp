@@ -8,8 +8,8 @@
 #include <charconv>
 #include <chrono>
 
-#include "hirosco/pus/packet.hpp"
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"

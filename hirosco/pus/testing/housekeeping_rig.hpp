@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "hirosco/pus/st03_housekeeping.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

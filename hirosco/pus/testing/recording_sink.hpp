@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/pus/service.hpp"
+#include "hirosco/pus/service/service.hpp"
 #include "hirosco/pus/testing/vectors.hpp"
 
 /// A sink that keeps what it is given, and telecommands for services, for tests here and above.

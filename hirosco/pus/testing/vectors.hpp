@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/pus/cuc.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/cuc.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 /// Octets that other implementations made (README: Test vectors), for tests of this library.

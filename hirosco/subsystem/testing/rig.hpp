@@ -13,7 +13,7 @@
 #include "hirosco/data_transfer/simulated/channel_pair.hpp"
 #include "hirosco/data_transfer/simulated/heap_memory.hpp"
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
-#include "hirosco/pus/event_message.hpp"
+#include "hirosco/pus/st05_event/event_message.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
 /// One subsystem stepped by hand: the test is its supervisor, its clock, its threads and its devices. The parts around it

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/channel.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/time.hpp"
 
 namespace hirosco::supervisor {

@@ -6,8 +6,8 @@
 #include <deque>
 #include <vector>
 
-#include "hirosco/pus/packet.hpp"
-#include "hirosco/pus/service.hpp"
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/service/service.hpp"
 
 /// Telecommands that were handed to a subsystem and whose final report has not passed yet: when their addressee dies,
 /// somebody must say that their outcome is unknown (reliability 5.2; findings LW1).

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "hirosco/pus/st08_function.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 
 namespace hirosco::supervisor {
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 
-#include "hirosco/pus/st129_supervision.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st20_parameter/parameter_service.hpp"
+#include "hirosco/pus/standard_services.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -16,29 +18,6 @@ using pus::FailureCode;
 using pus::FailureNotice;
 
 constexpr std::size_t name_octets = 16;
-
-/// Services of every subsystem, and the subtypes that are requests.
-[[nodiscard]] bool known_subtype(std::uint8_t service, std::uint8_t subtype) {
-  switch (service) {
-    case 3: {
-      constexpr std::array requests{1, 3, 5, 6, 9, 27, 29, 31, 33};
-      return std::ranges::find(requests, int{subtype}) != requests.end();
-    }
-    case 5: return subtype >= 5 && subtype <= 7;
-    case 8:
-    case 17: return subtype == 1;
-    case 20: return subtype == 1 || subtype == 3;
-    case 128: return subtype >= 1 && subtype <= 4;
-    case pus::st129::service_type: return subtype == pus::st129::permission_question;
-    default: return false;
-  }
-}
-
-[[nodiscard]] bool known_service(std::uint8_t service, std::uint16_t apid) {
-  if (service == pus::st129::service_type) return apid == supervisor_apid;
-  constexpr std::array services{3, 5, 8, 17, 20, 128};
-  return std::ranges::find(services, int{service}) != services.end();
-}
 
 [[nodiscard]] const descriptor::Subsystem* addressee(const descriptor::Mission& mission, std::uint16_t apid) {
   if (apid == supervisor_apid) return &mission.supervisor;
@@ -50,25 +29,33 @@ constexpr std::size_t name_octets = 16;
   return std::ranges::any_of(names, [&](const std::string& entry) { return entry == "*" || entry == name; });
 }
 
-[[nodiscard]] bool mode_permits(const descriptor::Mode& mode, const descriptor::Subsystem& subsystem,
-                                std::uint8_t service, std::string_view function) {
-  return std::ranges::any_of(mode.permits, [&](const descriptor::Permit& permit) {
-    if (permit.subsystem != "*" && permit.subsystem != subsystem.name) return false;
-    if (std::ranges::find(permit.services, service) != permit.services.end()) return true;
-    return service == 8 && listed(permit.functions, function);
-  });
-}
+/// A telecommand with what is known of it before any rule is asked.
+struct Asked {
+  const pus::TelecommandView& telecommand;
+  Sender sender;
+  const Situation& situation;
+  const descriptor::Subsystem& subsystem;
+  std::optional<CalledFunction> call;
+  /// The function called or the request of the subsystem's own service; null: none that the descriptor declares.
+  const descriptor::Function* request{nullptr};
 
-/// Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (findings SF1).
-[[nodiscard]] bool changes_supervisor(std::uint16_t apid, const CalledFunction& call) {
-  return apid == supervisor_apid && (call.name == "SET_STATE" || call.name == "CONFIGURE");
+  [[nodiscard]] bool calls(std::string_view name) const { return call && call->name == name; }
+  [[nodiscard]] bool asks_for(State target) const {
+    return calls("SET_STATE") && call->first_argument == static_cast<std::uint8_t>(target);
+  }
+  [[nodiscard]] bool to_supervisor() const { return telecommand.apid() == supervisor_apid; }
+};
+
+using Notice = std::optional<FailureNotice>;
+
+[[nodiscard]] FailureNotice wrong_mode(const Asked& asked) {
+  return FailureNotice{FailureCode::WrongMode}.with(asked.situation.mode.id);
 }
 
 /// Why a parameter write may not pass (findings SF20): each parameter must be writable in this state by its descriptor,
 /// and opened by this mode. Whether the values fit is the addressee's matter.
-[[nodiscard]] std::optional<FailureNotice> write_refused(const pus::TelecommandView& telecommand,
-                                                         const descriptor::Subsystem& subsystem,
-                                                         const Situation& situation) {
+[[nodiscard]] Notice write_refused(const Asked& asked) {
+  const auto& [telecommand, sender, situation, subsystem, call, request] = asked;
   OctetReader reader{telecommand.application_data()};
   const auto count = reader.get<std::uint8_t>();
   for (unsigned i = 0; i < count && reader.good(); ++i) {
@@ -108,12 +95,106 @@ constexpr std::size_t name_octets = 16;
 }
 
 /// Towards safety: never delayed or refused by mode (decision 24).
-[[nodiscard]] bool towards_safety(const CalledFunction& call, std::optional<State> state) {
-  if (call.name != "SET_STATE" || !call.first_argument) return false;
-  const auto target = static_cast<State>(*call.first_argument);
-  return target == State::ErrorOperational || target == State::PostOperational ||
-         (target == State::SafeOperational && state == State::Operational);
+[[nodiscard]] bool towards_safety(const Asked& asked) {
+  return asked.asks_for(State::ErrorOperational) || asked.asks_for(State::PostOperational) ||
+         (asked.asks_for(State::SafeOperational) && asked.situation.state == State::Operational);
 }
+
+[[nodiscard]] bool essential(const Asked& asked) {
+  const auto* kind = pus::standard_service(asked.telecommand.service());
+  if (kind != nullptr && (kind->needs == pus::Needs::Essential || kind->needs == pus::Needs::SupervisorAnswers))
+    return true;
+  // The supervisor commands Offline at the end of a recovery or of the flight: no disk may hold that up (decision 24).
+  const bool goes_down = asked.sender == Sender::Supervisor && asked.asks_for(State::Offline);
+  return goes_down || towards_safety(asked) || (asked.request != nullptr && asked.request->essential);
+}
+
+[[nodiscard]] bool up_to_safe(const Asked& asked) {
+  return asked.asks_for(State::SafeOperational) && asked.situation.state == State::PreOperational;
+}
+[[nodiscard]] bool up_to_operational(const Asked& asked) {
+  return asked.asks_for(State::Operational) && asked.situation.state == State::SafeOperational;
+}
+
+// --- the rules ---------------------------------------------------------------------------------------------------------
+
+/// Is there such a request? Service and subtype are the framework's, or the addressee's own.
+[[nodiscard]] Notice is_known(const Asked& asked) {
+  const std::uint8_t type = asked.telecommand.service();
+  const std::uint8_t subtype = asked.telecommand.subtype();
+  const auto* kind = pus::standard_service(type);
+  const bool here = kind != nullptr ? !kind->requests.empty() &&
+                                          (kind->needs != pus::Needs::SupervisorAnswers || asked.to_supervisor())
+                                    : asked.subsystem.find_service(type) != nullptr;
+  if (!here) return FailureNotice{FailureCode::UnknownService}.with(type);
+  const bool known = kind != nullptr ? kind->request(subtype) != nullptr : asked.request != nullptr;
+  if (!known) return FailureNotice{FailureCode::UnknownSubtype}.with(type).with(subtype);
+  return std::nullopt;
+}
+
+/// May this sender ask for it?
+[[nodiscard]] Notice is_the_senders(const Asked& asked) {
+  if (asked.sender == Sender::Supervisor) return std::nullopt;
+  const auto* kind = pus::standard_service(asked.telecommand.service());
+  if (kind != nullptr && kind->needs == pus::Needs::SupervisorAsks) return wrong_mode(asked);
+  if (!asked.call || !asked.to_supervisor()) return std::nullopt;
+  // Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (findings SF1).
+  if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode(asked);
+  // What the supervisor does for the whole craft is the ground's to ask for; a subsystem may stop it, nothing else.
+  if (asked.sender == Sender::Subsystem && !asked.calls("SAFE_ALL")) return wrong_mode(asked);
+  return std::nullopt;
+}
+
+/// Has the addressee what it needs on its way up: its links, and power?
+[[nodiscard]] Notice is_provided_for(const Asked& asked) {
+  const Situation& situation = asked.situation;
+  if (up_to_safe(asked) || up_to_operational(asked))
+    if (const auto link = absent_link(asked.subsystem, situation))
+      return FailureNotice{FailureCode::LinkAbsent}.with(*link);
+  if (!up_to_safe(asked) || situation.power == nullptr) return std::nullopt;
+  // Whom no shortage sheds none refuses: without the ground link nobody could give the craft more power.
+  if (asked.subsystem.name == situation.mission.ground.subsystem) return std::nullopt;
+  if (const auto shortage = situation.power->shortage(asked.subsystem.id, demand_w(asked.subsystem, situation)))
+    return notice_of(*shortage);
+  return std::nullopt;
+}
+
+/// What is neither essential nor the supervisor's own is bound to mode and state.
+[[nodiscard]] bool is_bound(const Asked& asked) {
+  if (essential(asked) || asked.sender == Sender::Supervisor) return false;
+  // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].
+  const bool unknown_function =
+      asked.call && asked.request == nullptr && !asked.calls("SET_STATE") && !asked.calls("CONFIGURE");
+  return !unknown_function;
+}
+
+/// Does the mode open it?
+[[nodiscard]] Notice is_in_mode(const Asked& asked) {
+  if (!is_bound(asked)) return std::nullopt;
+  const std::uint8_t service = asked.telecommand.service();
+  constexpr std::uint8_t parameters = pus::ParameterService::service_type;
+  if (service == parameters && asked.telecommand.subtype() == pus::ParameterService::set_values)
+    if (const auto refused = write_refused(asked)) return refused;
+  const std::string_view name = asked.call ? asked.call->name : asked.request != nullptr ? asked.request->name : "";
+  const bool opened = std::ranges::any_of(asked.situation.mode.permits, [&](const descriptor::Permit& permit) {
+    if (permit.subsystem != "*" && permit.subsystem != asked.subsystem.name) return false;
+    if (std::ranges::find(permit.services, service) != permit.services.end()) return true;
+    return (asked.request != nullptr || service == pus::FunctionService::service_type) &&
+           listed(permit.functions, name);
+  });
+  if (!opened) return wrong_mode(asked);
+  return std::nullopt;
+}
+
+/// Does the addressee's descriptor permit it in its state?
+[[nodiscard]] Notice is_in_state(const Asked& asked) {
+  if (!is_bound(asked) || asked.request == nullptr || asked.request->permitted_in(*asked.situation.state))
+    return std::nullopt;
+  return FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(*asked.situation.state));
+}
+
+/// In the order in which they are asked: the first that refuses says why.
+constexpr std::array rules{is_known, is_the_senders, is_provided_for, is_in_mode, is_in_state};
 
 }  // namespace
 
@@ -134,59 +215,15 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
                                                const Situation& situation) {
   const descriptor::Subsystem* subsystem = addressee(situation.mission, telecommand.apid());
   if (subsystem == nullptr || !situation.state) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
-  const std::uint8_t service = telecommand.service();
-  const std::uint8_t subtype = telecommand.subtype();
-  if (!known_service(service, telecommand.apid()))
-    return std::unexpected{FailureNotice{FailureCode::UnknownService}.with(service)};
-  if (!known_subtype(service, subtype))
-    return std::unexpected{FailureNotice{FailureCode::UnknownSubtype}.with(service).with(subtype)};
-  // The handshake of links is the supervisor's alone (decision 10).
-  if (service == 128 && sender != Sender::Supervisor)
-    return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
-  if (service == 17 || service == pus::st129::service_type) return Permitted{.essential = true};
-
-  const auto call = called_function(telecommand);
-  if (call && sender != Sender::Supervisor && changes_supervisor(telecommand.apid(), *call))
-    return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
-  // What the supervisor does for the whole craft is the ground's to ask for; a subsystem may stop it, nothing else.
-  if (call && sender == Sender::Subsystem && telecommand.apid() == supervisor_apid && call->name != "SAFE_ALL")
-    return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
-  const descriptor::Function* function = call ? subsystem->find_function(call->name) : nullptr;
-  const bool built_in = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
-  Permitted permitted;
-  if (call) {
-    const auto asks_for = [&](State target) {
-      return call->name == "SET_STATE" && call->first_argument == static_cast<std::uint8_t>(target);
-    };
-    // The supervisor commands Offline at the end of a recovery or of the flight: no disk may hold that up (decision 24).
-    const bool goes_down = sender == Sender::Supervisor && asks_for(State::Offline);
-    permitted.essential =
-        goes_down || towards_safety(*call, situation.state) || (function != nullptr && function->essential);
-    const bool up_to_safe = asks_for(State::SafeOperational) && situation.state == State::PreOperational;
-    const bool up_to_operational = asks_for(State::Operational) && situation.state == State::SafeOperational;
-    if (up_to_safe || up_to_operational)
-      if (const auto link = absent_link(*subsystem, situation))
-        return std::unexpected{FailureNotice{FailureCode::LinkAbsent}.with(*link)};
-    permitted.releases_stop = up_to_operational;
-    if (up_to_safe && situation.power != nullptr) {
-      permitted.reserves_w = demand_w(*subsystem, situation);
-      // Whom no shortage sheds none refuses: without the ground link nobody could give the craft more power.
-      const bool spared = subsystem->name == situation.mission.ground.subsystem;
-      if (const auto shortage = situation.power->shortage(subsystem->id, permitted.reserves_w); shortage && !spared)
-        return std::unexpected{notice_of(*shortage)};
-    }
-    // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].
-    if (function == nullptr && !built_in) return permitted;
-  }
-  if (permitted.essential || sender == Sender::Supervisor) return permitted;
-  constexpr std::uint8_t set_values = 3;
-  if (service == 20 && subtype == set_values)
-    if (const auto refused = write_refused(telecommand, *subsystem, situation)) return std::unexpected{*refused};
-  if (!mode_permits(situation.mode, *subsystem, service, call ? call->name : std::string_view{}))
-    return std::unexpected{FailureNotice{FailureCode::WrongMode}.with(situation.mode.id)};
-  if (function != nullptr && !function->permitted_in(*situation.state))
-    return std::unexpected{FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(*situation.state))};
-  return permitted;
+  Asked asked{telecommand, sender, situation, *subsystem, called_function(telecommand)};
+  asked.request = asked.call ? subsystem->find_function(asked.call->name)
+                             : subsystem->find_request(telecommand.service(), telecommand.subtype());
+  for (const auto rule : rules)
+    if (const auto refused = rule(asked)) return std::unexpected{*refused};
+  const bool reserves = up_to_safe(asked) && situation.power != nullptr;
+  return Permitted{.essential = essential(asked),
+                   .releases_stop = up_to_operational(asked),
+                   .reserves_w = reserves ? demand_w(*subsystem, situation) : 0};
 }
 
 }  // namespace hirosco::supervisor

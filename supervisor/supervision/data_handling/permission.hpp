@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "hirosco/descriptor/mission.hpp"
-#include "hirosco/pus/failure.hpp"
-#include "hirosco/pus/packet.hpp"
+#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "hirosco/pus/packet.hpp"
-#include "hirosco/pus/service.hpp"
-#include "hirosco/pus/st129_supervision.hpp"
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/service/service.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 
 /// TM[129,3] of the supervisor: a telecommand that it has received from a ground, the whole packet, to every ground.
 /// Operators so see each other's telecommands by name and arguments; reports of service 1 carry a request id alone. It

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "hirosco/pus/st129_supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 

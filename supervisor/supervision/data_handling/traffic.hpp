@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "hirosco/pus/failure.hpp"
+#include "hirosco/pus/packet/failure.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 
 namespace hirosco::supervisor {

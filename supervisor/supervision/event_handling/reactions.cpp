@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/supervisor_events.hpp"
-#include "hirosco/pus/event_message.hpp"
+#include "hirosco/pus/st05_event/event_message.hpp"
 #include "supervisor/supervision/event_handling/recovery.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
 

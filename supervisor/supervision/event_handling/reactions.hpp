@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "hirosco/pus/describe.hpp"
+#include "hirosco/pus/words/describe.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/event_handling/restarts.hpp"

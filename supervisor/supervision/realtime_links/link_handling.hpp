@@ -10,8 +10,8 @@
 
 #include "hirosco/data_transfer/memory.hpp"
 #include "hirosco/descriptor/mission.hpp"
-#include "hirosco/pus/packet.hpp"
-#include "hirosco/pus/st128_realtime_link.hpp"
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 
 /// Leads the handshake of service 128 between two subsystems and keeps the graph (paper 4.3, decisions 19 and 20).

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/realtime_links/links.hpp"
 
-#include "hirosco/pus/st128_realtime_link.hpp"
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 
 namespace hirosco::supervisor {
 

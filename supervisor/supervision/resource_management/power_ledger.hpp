@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/subsystem.hpp"
-#include "hirosco/pus/service.hpp"
+#include "hirosco/pus/service/service.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// Electrical power (paper 4.3): a subsystem is refused what the budget does not carry, before it is commissioned.

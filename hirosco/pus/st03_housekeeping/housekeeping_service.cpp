@@ -1,0 +1,363 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+
+#include <algorithm>
+
+namespace hirosco::pus {
+namespace {
+
+using descriptor::HousekeepingStructure;
+
+constexpr std::size_t id_octets = 2;
+constexpr std::size_t id_and_interval_octets = 6;
+
+[[nodiscard]] std::uint16_t id_at(Octets list, std::size_t index, std::size_t octets_each) noexcept {
+  return OctetReader{list.subspan(1 + octets_each * index, id_octets)}.get<std::uint16_t>();
+}
+[[nodiscard]] std::uint32_t interval_at(Octets list, std::size_t index) noexcept {
+  return OctetReader{list.subspan(1 + id_and_interval_octets * index + id_octets, 4)}.get<std::uint32_t>();
+}
+
+[[nodiscard]] FailureNotice failure(FailureCode code, std::size_t index) noexcept {
+  return FailureNotice{code}.with(static_cast<std::uint8_t>(index));
+}
+
+/// Octets of the definition in TM[3,10].
+[[nodiscard]] std::size_t definition_octets(const HousekeepingLayout& layout) noexcept {
+  std::size_t sum = 2 + 1 + 4 + 1 + 4 * layout.once.size() + 1;
+  for (const auto& set : layout.sets) sum += 2 + 1 + 4 * set.values.size();
+  return sum;
+}
+
+[[nodiscard]] bool contains(const HousekeepingLayout& layout, std::uint32_t wire) noexcept {
+  const auto has = [wire](const std::vector<SampledValue>& values) {
+    return std::ranges::find(values, wire, &SampledValue::wire) != values.end();
+  };
+  return has(layout.once) || std::ranges::any_of(layout.sets, [&has](const auto& set) { return has(set.values); });
+}
+
+}  // namespace
+
+/// A definition as TC[3,1] and TC[3,29] carry it.
+struct HousekeepingService::Definition {
+  struct Set {
+    std::uint16_t repetitions{};
+    std::vector<std::uint32_t> parameters;
+  };
+  std::uint16_t id{};
+  std::uint32_t interval{};
+  std::vector<std::uint32_t> once;
+  std::vector<Set> sets;
+};
+
+HousekeepingService::HousekeepingService(const descriptor::Subsystem& subsystem, HousekeepingSampler& sampler,
+                                         Verification& verification, TelemetrySink& sink)
+    : subsystem_{subsystem}, sampler_{sampler}, verification_{verification}, sink_{sink} {
+  const auto add = [this](Type layout, std::uint8_t id, std::size_t parameter, int member, std::size_t octets) {
+    values_.push_back({ParameterId{subsystem_.id, layout, id}.wire(), static_cast<std::uint16_t>(parameter),
+                       static_cast<std::int16_t>(member),
+                       static_cast<std::uint16_t>(std::min<std::size_t>(octets, UINT16_MAX))});
+  };
+  for (std::size_t i = 0; i < subsystem.parameters.size(); ++i) {
+    const auto& parameter = subsystem.parameters[i];
+    add(parameter.field.type, parameter.id, i, -1, parameter.octets());
+    for (std::size_t m = 0; m < parameter.members.size(); ++m)
+      add(parameter.members[m].field.type, parameter.members[m].id, i, static_cast<int>(m),
+          parameter.members[m].field.octets());
+  }
+}
+
+HousekeepingService::Structure* HousekeepingService::find(std::uint16_t id) noexcept {
+  const auto found = std::ranges::find(structures_, id, &Structure::id);
+  return found == structures_.end() ? nullptr : &*found;
+}
+const SampledValue* HousekeepingService::find_value(std::uint32_t wire) const noexcept {
+  const auto found = std::ranges::find(values_, wire, &SampledValue::wire);
+  return found == values_.end() ? nullptr : &*found;
+}
+const HousekeepingLayout& HousekeepingService::layout_of(const Structure& structure) const noexcept {
+  return sampler_.slots_[structure.slot].layout;
+}
+
+SampledValue HousekeepingService::resolve(const descriptor::ParameterRef& reference) const {
+  const int member = reference.member ? static_cast<int>(*reference.member) : -1;
+  const auto found = std::ranges::find_if(values_, [&reference, member](const SampledValue& value) {
+    return value.parameter == reference.parameter && value.member == member;
+  });
+  return found == values_.end() ? SampledValue{} : *found;
+}
+
+Result<> HousekeepingService::load(std::span<const HousekeepingStructure> structures) {
+  for (const auto& declared : structures) HIROSCO_TRY(load_one(declared));
+  return ok();
+}
+
+Result<> HousekeepingService::load_one(const HousekeepingStructure& declared) {
+  HousekeepingLayout layout{declared.id, declared.interval_cycles, {}, {}};
+  for (const auto& reference : declared.sampled_once) layout.once.push_back(resolve(reference));
+  for (const auto& set : declared.sampled_repeatedly) {
+    layout.sets.push_back({set.repetitions, {}});
+    for (const auto& reference : set.parameters) layout.sets.back().values.push_back(resolve(reference));
+  }
+  if (!layout.allows(layout.interval)) return fail(ErrorCode::OutOfRange, "housekeeping interval", declared.id);
+  if (sampler_.free_commands() < 3) return fail(ErrorCode::Unavailable, "housekeeping commands", declared.id);
+  Structure* existing = find(declared.id);
+  if (check_capacity(layout)) return fail(ErrorCode::ResourceExhausted, "housekeeping structures", declared.id);
+  if (existing != nullptr) {
+    sampler_.send(HousekeepingSampler::Command::Kind::Remove, existing->slot);
+    structures_.erase(structures_.begin() + (existing - structures_.data()));
+  }
+  const auto slot = static_cast<std::size_t>(sampler_.find_free_slot());
+  structures_.push_back({declared.id, slot, layout.interval, declared.enabled, true});
+  sampler_.install(slot, std::move(layout));
+  if (declared.enabled) sampler_.send(HousekeepingSampler::Command::Kind::Enable, slot);
+  return ok();
+}
+
+Result<> HousekeepingService::clear() {
+  if (sampler_.free_commands() < structures_.size()) return fail(ErrorCode::Unavailable, "housekeeping commands");
+  for (const auto& structure : structures_) sampler_.send(HousekeepingSampler::Command::Kind::Remove, structure.slot);
+  structures_.clear();
+  return ok();
+}
+
+void HousekeepingService::handle(const TelecommandView& telecommand, const Request& request) {
+  const Octets data = telecommand.application_data();
+  switch (telecommand.subtype()) {
+    case create_structure: return create(data, request);
+    case delete_structures: return remove(data, request);
+    case enable_periodic: return switch_periodic(data, request, true);
+    case disable_periodic: return switch_periodic(data, request, false);
+    case report_structures: return report_layouts(data, request);
+    case one_shot: return request_one_shots(data, request);
+    case append_parameters: return append(data, request);
+    case modify_interval: return modify_intervals(data, request);
+    case report_properties: return report_periodic_properties(data, request);
+    default: return verification_.rejected(request, unknown_subtype(telecommand));
+  }
+}
+
+std::expected<HousekeepingService::Definition, FailureNotice> HousekeepingService::read_definition(
+    Octets data, bool with_interval) const {
+  OctetReader reader{data};
+  std::optional<std::size_t> empty_list;
+  const auto read_ids = [&reader, &empty_list](std::vector<std::uint32_t>& ids, bool may_be_empty) {
+    const std::size_t at = reader.position();
+    const auto count = reader.get<std::uint8_t>();
+    if (count == 0 && !may_be_empty && !empty_list) empty_list = at;
+    for (std::size_t i = 0; i < count && reader.good(); ++i) ids.push_back(reader.get<std::uint32_t>());
+  };
+  Definition definition;
+  definition.id = reader.get<std::uint16_t>();
+  if (with_interval) definition.interval = reader.get<std::uint32_t>();
+  const std::size_t first_count_at = reader.position();
+  read_ids(definition.once, true);
+  const auto sets = reader.get<std::uint8_t>();
+  for (std::size_t i = 0; i < sets && reader.good(); ++i) {
+    definition.sets.emplace_back();
+    definition.sets.back().repetitions = reader.get<std::uint16_t>();
+    read_ids(definition.sets.back().parameters, false);
+  }
+  if (!reader.exhausted()) return std::unexpected{FailureNotice{FailureCode::DataLength}};
+  if (definition.once.empty() && definition.sets.empty()) empty_list = first_count_at;
+  if (empty_list)
+    return std::unexpected{FailureNotice{FailureCode::IllegalField}.with(static_cast<std::uint16_t>(*empty_list))};
+  return definition;
+}
+
+/// Adds what the definition says; a notice names the position of the bad parameter among all of the request.
+HousekeepingService::Notice HousekeepingService::extend(HousekeepingLayout& layout,
+                                                        const Definition& definition) const {
+  std::size_t index = 0;
+  const auto add = [&](std::vector<SampledValue>& to, std::uint32_t wire) -> Notice {
+    const SampledValue* value = find_value(wire);
+    if (value == nullptr) return instruction_failure(FailureCode::UnknownIdentifier, index, wire);
+    if (contains(layout, wire)) return instruction_failure(FailureCode::IdentifierExists, index, wire);
+    to.push_back(*value);
+    ++index;
+    return std::nullopt;
+  };
+  for (const std::uint32_t wire : definition.once)
+    if (const auto notice = add(layout.once, wire)) return notice;
+  for (const auto& set : definition.sets) {
+    layout.sets.push_back({set.repetitions, {}});
+    for (const std::uint32_t wire : set.parameters)
+      if (const auto notice = add(layout.sets.back().values, wire)) return notice;
+  }
+  if (!layout.allows(layout.interval)) return instruction_failure(FailureCode::ValueNotAcceptable, 0, layout.id);
+  return check_capacity(layout);
+}
+
+HousekeepingService::Notice HousekeepingService::check_capacity(const HousekeepingLayout& layout) const {
+  constexpr std::size_t count_limit = 255;
+  const bool fits = layout.report_octets() <= max_housekeeping_octets &&
+                    definition_octets(layout) <= max_housekeeping_octets && layout.once.size() <= count_limit &&
+                    layout.sets.size() <= count_limit;
+  if (!fits || sampler_.find_free_slot() < 0) return failure(FailureCode::CapacityExceeded, 0);
+  if (sampler_.free_commands() < 2) return FailureNotice{FailureCode::Busy};
+  return std::nullopt;
+}
+
+void HousekeepingService::create(Octets data, const Request& request) {
+  const auto definition = read_definition(data, true);
+  if (!definition) return verification_.rejected(request, definition.error());
+  verification_.accepted(request);
+  if (find(definition->id) != nullptr)
+    return verification_.start_failed(request, instruction_failure(FailureCode::IdentifierExists, 0, definition->id));
+  HousekeepingLayout layout{definition->id, definition->interval, {}, {}};
+  if (const auto notice = extend(layout, *definition)) return verification_.start_failed(request, *notice);
+  verification_.started(request);
+  const auto slot = static_cast<std::size_t>(sampler_.find_free_slot());
+  structures_.push_back({definition->id, slot, layout.interval, false, false});
+  sampler_.install(slot, std::move(layout));
+  verification_.completed(request);
+}
+
+void HousekeepingService::append(Octets data, const Request& request) {
+  const auto definition = read_definition(data, false);
+  if (!definition) return verification_.rejected(request, definition.error());
+  verification_.accepted(request);
+  Structure* structure = find(definition->id);
+  const auto refuse = [&](FailureCode code) {
+    verification_.start_failed(request, instruction_failure(code, 0, definition->id));
+  };
+  if (structure == nullptr) return refuse(FailureCode::UnknownIdentifier);
+  if (structure->enabled) return refuse(FailureCode::WrongStatus);
+  HousekeepingLayout layout = layout_of(*structure);
+  layout.interval = structure->interval;
+  if (const auto notice = extend(layout, *definition)) return verification_.start_failed(request, *notice);
+  verification_.started(request);
+  // The cycle may be reading the old layout: the longer one goes into another slot.
+  const auto slot = static_cast<std::size_t>(sampler_.find_free_slot());
+  sampler_.send(HousekeepingSampler::Command::Kind::Remove, structure->slot);
+  sampler_.install(slot, std::move(layout));
+  structure->slot = slot;
+  verification_.completed(request);
+}
+
+HousekeepingService::Notice HousekeepingService::check_known(std::size_t index, std::uint16_t id,
+                                                             std::size_t commands_before) noexcept {
+  if (find(id) == nullptr) return instruction_failure(FailureCode::UnknownIdentifier, index, id);
+  if (sampler_.free_commands() <= commands_before) return FailureNotice{FailureCode::Busy};
+  return std::nullopt;
+}
+
+void HousekeepingService::remove(Octets data, const Request& request) {
+  const auto count = list_count(data, id_octets);
+  if (!count) return verification_.rejected(request, count.error());
+  verification_.accepted(request);
+  const auto check = [&](std::size_t i) -> Notice {
+    const std::uint16_t id = id_at(data, i, id_octets);
+    if (const auto notice = check_known(i, id, i)) return notice;
+    for (std::size_t earlier = 0; earlier < i; ++earlier)
+      if (id_at(data, earlier, id_octets) == id) return instruction_failure(FailureCode::UnknownIdentifier, i, id);
+    if (find(id)->enabled) return instruction_failure(FailureCode::WrongStatus, i, id);
+    if (find(id)->predefined) return failure(FailureCode::NotPermittedNow, i);
+    return std::nullopt;
+  };
+  run_instructions(verification_, request, *count, check, [&](std::size_t i) {
+    const Structure* structure = find(id_at(data, i, id_octets));
+    sampler_.send(HousekeepingSampler::Command::Kind::Remove, structure->slot);
+    structures_.erase(structures_.begin() + (structure - structures_.data()));
+  });
+}
+
+void HousekeepingService::switch_periodic(Octets data, const Request& request, bool enabled) {
+  const auto count = list_count(data, id_octets);
+  if (!count) return verification_.rejected(request, count.error());
+  verification_.accepted(request);
+  run_instructions(
+      verification_, request, *count, [&](std::size_t i) { return check_known(i, id_at(data, i, id_octets), i); },
+      [&](std::size_t i) {
+        Structure* structure = find(id_at(data, i, id_octets));
+        structure->enabled = enabled;
+        using enum HousekeepingSampler::Command::Kind;
+        sampler_.send(enabled ? Enable : Disable, structure->slot);
+      });
+}
+
+void HousekeepingService::request_one_shots(Octets data, const Request& request) {
+  const auto count = list_count(data, id_octets);
+  if (!count) return verification_.rejected(request, count.error());
+  verification_.accepted(request);
+  run_instructions(
+      verification_, request, *count, [&](std::size_t i) { return check_known(i, id_at(data, i, id_octets), i); },
+      [&](std::size_t i) {
+        sampler_.send(HousekeepingSampler::Command::Kind::OneShot, find(id_at(data, i, id_octets))->slot);
+      });
+}
+
+void HousekeepingService::modify_intervals(Octets data, const Request& request) {
+  const auto count = list_count(data, id_and_interval_octets);
+  if (!count) return verification_.rejected(request, count.error());
+  verification_.accepted(request);
+  const auto check = [&](std::size_t i) -> Notice {
+    const std::uint16_t id = id_at(data, i, id_and_interval_octets);
+    if (const auto notice = check_known(i, id, i)) return notice;
+    if (layout_of(*find(id)).allows(interval_at(data, i))) return std::nullopt;
+    return instruction_failure(FailureCode::ValueNotAcceptable, i, id);
+  };
+  run_instructions(verification_, request, *count, check, [&](std::size_t i) {
+    Structure* structure = find(id_at(data, i, id_and_interval_octets));
+    structure->interval = interval_at(data, i);
+    sampler_.send(HousekeepingSampler::Command::Kind::SetInterval, structure->slot, structure->interval);
+  });
+}
+
+void HousekeepingService::report_layouts(Octets data, const Request& request) {
+  const auto count = list_count(data, id_octets);
+  if (!count) return verification_.rejected(request, count.error());
+  verification_.accepted(request);
+  run_instructions(
+      verification_, request, *count,
+      [&](std::size_t i) -> Notice {
+        const std::uint16_t id = id_at(data, i, id_octets);
+        if (find(id) == nullptr) return instruction_failure(FailureCode::UnknownIdentifier, i, id);
+        return std::nullopt;
+      },
+      [&](std::size_t i) { send_layout(*find(id_at(data, i, id_octets)), request); });
+}
+
+void HousekeepingService::send_layout(const Structure& structure, const Request& request) {
+  const HousekeepingLayout& layout = layout_of(structure);
+  std::vector<std::byte> buffer(definition_octets(layout));
+  OctetWriter writer{buffer};
+  const auto put_ids = [&writer](const std::vector<SampledValue>& values) {
+    writer.put(static_cast<std::uint8_t>(values.size()));
+    for (const auto& value : values) writer.put(value.wire);
+  };
+  writer.put(structure.id).put(static_cast<std::uint8_t>(structure.enabled ? 1 : 0)).put(structure.interval);
+  put_ids(layout.once);
+  writer.put(static_cast<std::uint8_t>(layout.sets.size()));
+  for (const auto& set : layout.sets) {
+    writer.put(set.repetitions);
+    put_ids(set.values);
+  }
+  sink_.report(service_type, structure_report, request.source, writer.written());
+}
+
+void HousekeepingService::report_periodic_properties(Octets data, const Request& request) {
+  const auto count = list_count(data, id_octets);
+  if (!count) return verification_.rejected(request, count.error());
+  verification_.accepted(request);
+  std::array<std::byte, 1 + max_instructions * 7> buffer;
+  OctetWriter writer{MutableOctets{buffer}.subspan(1)};
+  std::uint8_t known = 0;
+  const auto check = [&](std::size_t i) -> Notice {
+    const std::uint16_t id = id_at(data, i, id_octets);
+    const Structure* structure = find(id);
+    if (structure == nullptr) return instruction_failure(FailureCode::UnknownIdentifier, i, id);
+    writer.put(id).put(static_cast<std::uint8_t>(structure->enabled ? 1 : 0)).put(structure->interval);
+    ++known;
+    return std::nullopt;
+  };
+  run_instructions(
+      verification_, request, *count, check, [](std::size_t) {},
+      [&] {
+        buffer[0] = static_cast<std::byte>(known);
+        sink_.report(service_type, properties_report, request.source, Octets{buffer}.first(1 + writer.size()));
+      });
+}
+
+}  // namespace hirosco::pus

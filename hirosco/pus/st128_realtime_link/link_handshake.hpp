@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <string>
+#include <vector>
+
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/pus/service/service_kind.hpp"
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// ST[128] real-time links: the handshake between a consumer and a producer (paper 4.1, decisions 19 and 20).
+///
+/// The supervisor relays; it decides nothing about layouts:
+///   TC[128,1]   supervisor -> consumer   request offer: link id, set name
+///   TM[128,129] consumer -> supervisor   offer: link id + Offer (what it requires)
+///   TC[128,2]   supervisor -> producer   negotiate: link id, set name + that Offer
+///   TM[128,130] producer -> supervisor   agreement: link id + Agreement
+///   TM[128,131] either -> supervisor     refusal: link id + Refusal
+///   TC[128,3]   supervisor -> producer, then consumer   attach: link id, role, epoch + Agreement; memory beside the packet
+///   TM[128,132] both -> supervisor       attached: link id, role
+///   TC[128,4]   supervisor -> both       detach: link id
+///   TM[128,133] both -> supervisor       detached: link id, role
+namespace hirosco::pus::st128 {
+
+inline constexpr std::uint8_t service_type = 128;
+extern const ServiceKind service_kind;
+enum Subtype : std::uint8_t {
+  request_offer = 1,
+  negotiate_terms = 2,
+  attach = 3,
+  detach = 4,
+  offer = 129,
+  agreement = 130,
+  refusal = 131,
+  attached = 132,
+  detached = 133,
+};
+enum class Role : std::uint8_t { Producer = 1, Consumer = 2 };
+
+struct OfferedField {
+  std::string name;
+  Type type{};
+  std::uint16_t count{1};
+  friend bool operator==(const OfferedField&, const OfferedField&) = default;
+};
+
+/// What one side brings to the handshake: its fields and what it can do, in order of preference.
+struct Offer {
+  std::string set;
+  Duration period{};  ///< sampling time of the configuration
+  descriptor::LinkTerms terms;
+  std::vector<OfferedField> fields;
+};
+
+/// What was agreed: the producer's whole layout in order, and the terms.
+struct Agreement {
+  descriptor::Method method{};
+  descriptor::ByteOrder byte_order{};
+  descriptor::LinkKind kind{};
+  Duration producer_period{};
+  Duration consumer_period{};
+  std::vector<OfferedField> fields;  ///< the producer's, packed in this order on the link
+  [[nodiscard]] std::uint32_t payload_octets() const noexcept;
+  [[nodiscard]] std::uint64_t layout_hash() const noexcept;  ///< FNV-1a 64 over fields, order, kind
+};
+
+/// Why there is nothing common. `item`: 0 method, 1 byte order, 2 kind, 3 rate, 4 field.
+struct Refusal {
+  std::uint8_t item{};
+  std::string text;  ///< "field POSITION: consumer FLOAT[2], producer DOUBLE[2]"
+};
+
+/// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
+/// consumer has too; an integer ratio of the rates either way; every field the consumer requires present with the same
+/// name, type and count (the producer may have more). Pure.
+[[nodiscard]] std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer);
+
+/// Wire forms. write_* return the octets used; read_* refuse what is not exactly of the form (Malformed) and bound every
+/// count. Strings are u8 length + ASCII.
+[[nodiscard]] Result<std::size_t> write_offer(MutableOctets to, std::uint8_t link, const Offer& offer);
+[[nodiscard]] Result<std::size_t> write_agreement(MutableOctets to, std::uint8_t link, const Agreement& agreement);
+[[nodiscard]] Result<std::size_t> write_refusal(MutableOctets to, std::uint8_t link, const Refusal& refusal);
+struct LinkOffer {
+  std::uint8_t link{};
+  Offer offer;
+};
+struct LinkAgreement {
+  std::uint8_t link{};
+  Agreement agreement;
+};
+struct LinkRefusal {
+  std::uint8_t link{};
+  Refusal refusal;
+};
+[[nodiscard]] Result<LinkOffer> read_offer(Octets data);
+[[nodiscard]] Result<LinkAgreement> read_agreement(Octets data);
+[[nodiscard]] Result<LinkRefusal> read_refusal(Octets data);
+
+/// TC[128,1]: link id u8, set name.  TC[128,2]: link id u8, producer's set name, then the consumer's offer data whole.
+struct OfferRequest {
+  std::uint8_t link{};
+  std::string set;
+};
+struct TermsRequest {
+  std::uint8_t link{};
+  std::string set;
+  Offer consumer;
+};
+struct AttachRequest {
+  std::uint8_t link{};
+  Role role{};
+  std::uint32_t epoch{};
+  std::string set;
+  Agreement agreement;
+};
+[[nodiscard]] Result<std::size_t> write_offer_request(MutableOctets to, const OfferRequest& request);
+[[nodiscard]] Result<std::size_t> write_terms_request(MutableOctets to, const TermsRequest& request);
+[[nodiscard]] Result<std::size_t> write_attach_request(MutableOctets to, const AttachRequest& request);
+[[nodiscard]] Result<OfferRequest> read_offer_request(Octets data);
+[[nodiscard]] Result<TermsRequest> read_terms_request(Octets data);
+[[nodiscard]] Result<AttachRequest> read_attach_request(Octets data);
+
+}  // namespace hirosco::pus::st128

@@ -1,0 +1,327 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/testing/vectors.hpp"
+
+namespace hirosco::pus::st128 {
+namespace {
+using namespace testing;
+using descriptor::ByteOrder;
+using descriptor::LinkKind;
+using descriptor::Method;
+
+constexpr auto shm = Method::SharedMemory;
+constexpr auto little = ByteOrder::Little;
+constexpr auto big = ByteOrder::Big;
+constexpr auto latest = LinkKind::Latest;
+constexpr auto queued = LinkKind::Queued;
+
+struct Side {
+  std::vector<Method> methods{shm};
+  std::vector<ByteOrder> orders{little};
+  std::vector<LinkKind> kinds{latest};
+  int period_us{1000};
+  std::vector<OfferedField> fields{{"POSITION", Type::Double, 2}};
+};
+
+Offer offer_of(const Side& side) {
+  return {"SET", std::chrono::microseconds{side.period_us}, {side.methods, side.orders, side.kinds}, side.fields};
+}
+
+/// "shared_memory little latest 1000/1000", or the refusal as "item: text".
+std::string outcome(const Side& producer, const Side& consumer) {
+  const auto result = negotiate(offer_of(producer), offer_of(consumer));
+  if (!result) return std::to_string(result.error().item) + ": " + result.error().text;
+  EXPECT_EQ(result->fields, producer.fields) << "the layout is the producer's";
+  return std::string{to_text(result->method)} + " " + std::string{to_text(result->byte_order)} + " " +
+         std::string{to_text(result->kind)} + " " + std::to_string(result->producer_period / 1us) + "/" +
+         std::to_string(result->consumer_period / 1us);
+}
+
+struct Case {
+  Side producer;
+  Side consumer;
+  const char* expected;
+};
+
+const std::vector<OfferedField> position{{"POSITION", Type::Double, 2}};
+const std::vector<OfferedField> position_and_torque{{"POSITION", Type::Double, 2}, {"TORQUE", Type::Float, 1}};
+
+TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
+  const Case table[] = {
+      // Methods: the first of the producer's list that the consumer has.
+      {{}, {}, "shared_memory little latest 1000/1000"},
+      {{.methods = {Method::Udp, shm}}, {.methods = {shm, Method::Udp}}, "udp little latest 1000/1000"},
+      {{.methods = {shm, Method::Udp}}, {.methods = {Method::Udp, shm}}, "shared_memory little latest 1000/1000"},
+      {{.methods = {Method::Dds, Method::Tcp}}, {.methods = {shm, Method::Tcp}}, "tcp little latest 1000/1000"},
+      {{.methods = {Method::Tipc}}, {.methods = {Method::Unix, Method::Tipc}}, "tipc little latest 1000/1000"},
+      {{.methods = {Method::Udp}}, {}, "0: method: consumer shared_memory, producer udp"},
+      {{.methods = {Method::Udp, Method::Tcp}},
+       {.methods = {shm, Method::Dds}},
+       "0: method: consumer shared_memory, dds, producer udp, tcp"},
+      {{.methods = {}}, {}, "0: method: consumer shared_memory, producer none"},
+      // Byte orders.
+      {{.orders = {big}}, {.orders = {big}}, "shared_memory big latest 1000/1000"},
+      {{.orders = {big, little}}, {.orders = {little, big}}, "shared_memory big latest 1000/1000"},
+      {{.orders = {big, little}}, {.orders = {little}}, "shared_memory little latest 1000/1000"},
+      {{.orders = {little}}, {.orders = {big}}, "1: byte order: consumer big, producer little"},
+      {{.orders = {big}}, {.orders = {little}}, "1: byte order: consumer little, producer big"},
+      // Kinds.
+      {{.kinds = {queued, latest}}, {.kinds = {latest, queued}}, "shared_memory little queued 1000/1000"},
+      {{.kinds = {queued, latest}}, {.kinds = {latest}}, "shared_memory little latest 1000/1000"},
+      {{.kinds = {latest}}, {.kinds = {queued}}, "2: kind: consumer queued, producer latest"},
+      // Rates: an integer ratio either way.
+      {{.period_us = 1000}, {.period_us = 5000}, "shared_memory little latest 1000/5000"},
+      {{.period_us = 5000}, {.period_us = 1000}, "shared_memory little latest 5000/1000"},
+      {{.period_us = 500}, {.period_us = 2000}, "shared_memory little latest 500/2000"},
+      {{.period_us = 2000}, {.period_us = 3000}, "3: rate: consumer 3000000 ns, producer 2000000 ns"},
+      {{.period_us = 1500}, {.period_us = 1000}, "3: rate: consumer 1000000 ns, producer 1500000 ns"},
+      {{.period_us = 0}, {.period_us = 1000}, "3: rate: consumer 1000000 ns, producer 0 ns"},
+      {{.period_us = 1000}, {.period_us = 0}, "3: rate: consumer 0 ns, producer 1000000 ns"},
+      {{.period_us = -1000}, {.period_us = 1000}, "3: rate: consumer 1000000 ns, producer -1000000 ns"},
+      // Fields: all of the consumer's, by name, with type and count; the producer may have more, in any order.
+      {{.fields = position_and_torque}, {.fields = position}, "shared_memory little latest 1000/1000"},
+      {{.fields = position_and_torque},
+       {.fields = {{"TORQUE", Type::Float, 1}, {"POSITION", Type::Double, 2}}},
+       "shared_memory little latest 1000/1000"},
+      {{.fields = position}, {.fields = {}}, "shared_memory little latest 1000/1000"},
+      {{.fields = position}, {.fields = position_and_torque}, "4: field TORQUE: consumer FLOAT, producer has none"},
+      {{.fields = position},
+       {.fields = {{"POSITION", Type::Float, 2}}},
+       "4: field POSITION: consumer FLOAT[2], producer DOUBLE[2]"},
+      {{.fields = position},
+       {.fields = {{"POSITION", Type::Double, 1}}},
+       "4: field POSITION: consumer DOUBLE, producer DOUBLE[2]"},
+      {{.fields = position},
+       {.fields = {{"position", Type::Double, 2}}},
+       "4: field position: consumer DOUBLE[2], producer has none"},
+      {{.fields = position_and_torque},
+       {.fields = {{"TORQUE", Type::Uint32, 1}, {"FORCE", Type::Double, 1}}},
+       "4: field TORQUE: consumer UINT32, producer FLOAT"},
+      {{.fields = {}}, {.fields = {}}, "4: payload of 0 octets"},
+      {{.fields = {{"BIG", Type::Double, 8193}}}, {.fields = {}}, "4: payload of 65544 octets"},
+      {{.fields = {{"BIG", Type::Double, 8192}}}, {.fields = {}}, "shared_memory little latest 1000/1000"},
+      // Several reasons: the first in the order of the terms is told.
+      {{.methods = {Method::Udp}, .orders = {big}, .period_us = 3000},
+       {.period_us = 2000},
+       "0: method: consumer shared_memory, producer udp"},
+      {{.orders = {big}, .period_us = 3000}, {.period_us = 2000}, "1: byte order: consumer little, producer big"},
+      {{.period_us = 3000, .fields = position},
+       {.period_us = 2000, .fields = position_and_torque},
+       "3: rate: consumer 2000000 ns, producer 3000000 ns"},
+  };
+  static_assert(std::size(table) >= 25);
+  for (const auto& row : table) EXPECT_EQ(outcome(row.producer, row.consumer), row.expected);
+}
+
+Agreement agreement() {
+  return {shm, little, latest, 1ms, 5ms, {{"POSITION", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}}};
+}
+Offer full_offer() {
+  return {"JOINTS", 1ms, {{shm, Method::Udp}, {big, little}, {queued, latest}}, agreement().fields};
+}
+
+TEST(LinkAgreement, HasThePayloadOfItsPackedFields) { EXPECT_EQ(agreement().payload_octets(), 17U); }
+
+TEST(LinkAgreement, HasAHashThatAllOfItsLayoutChanges) {
+  const std::uint64_t hash = agreement().layout_hash();
+  EXPECT_EQ(agreement().layout_hash(), hash);
+  const auto changed = [](auto change) {
+    Agreement other = agreement();
+    change(other);
+    return other.layout_hash();
+  };
+  EXPECT_NE(changed([](Agreement& a) { a.byte_order = big; }), hash);
+  EXPECT_NE(changed([](Agreement& a) { a.kind = queued; }), hash);
+  EXPECT_NE(changed([](Agreement& a) { a.fields[0].name = "POSITIOM"; }), hash);
+  EXPECT_NE(changed([](Agreement& a) { a.fields[1].type = Type::Int8; }), hash);
+  EXPECT_NE(changed([](Agreement& a) { a.fields[0].count = 3; }), hash);
+  EXPECT_NE(changed([](Agreement& a) { std::swap(a.fields[0], a.fields[1]); }), hash);
+  EXPECT_NE(changed([](Agreement& a) { a.fields.pop_back(); }), hash);
+  EXPECT_EQ(changed([](Agreement& a) { a.method = Method::Udp; }), hash) << "the way is no part of the layout";
+}
+
+TEST(LinkMessages, HaveTheOctetsWrittenHere) {
+  Bytes buffer(256);
+  const Offer offer{"AB", 1ms, {{shm, Method::Udp}, {little}, {latest}}, {{"P", Type::Double, 2}}};
+  const auto used = write_terms_request(buffer, {7, "CD", offer});
+  EXPECT_EQ(to_hex(Octets{buffer}.first(used.value())),
+            "07"
+            "024344"
+            "07"
+            "024142"
+            "00000000000f4240"
+            "020102"
+            "0101"
+            "0101"
+            "01"
+            "0150"
+            "0a"
+            "0002");
+  const auto refused = write_refusal(buffer, 7, {4, "field P"});
+  EXPECT_EQ(to_hex(Octets{buffer}.first(refused.value())),
+            "07"
+            "04"
+            "07"
+            "6669656c642050");
+}
+
+/// Every message: written once, read again by `read`, refused at every truncation and with an octet too many, and
+/// survived with every octet damaged.
+template <class Read>
+void sweep(const Bytes& message, Read read) {
+  ASSERT_TRUE(read(Octets{message}).has_value());
+  for (std::size_t length = 0; length < message.size(); ++length) {
+    const Bytes cut(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(length));
+    const auto result = read(Octets{cut});
+    ASSERT_FALSE(result.has_value()) << length;
+    EXPECT_EQ(result.error().code, ErrorCode::Malformed);
+  }
+  Bytes longer = message;
+  longer.emplace_back();
+  EXPECT_FALSE(read(Octets{longer}).has_value());
+  for (std::size_t at = 0; at < message.size(); ++at)
+    for (const unsigned value : {0x00U, 0x01U, 0x7FU, 0x80U, 0xFFU}) {
+      Bytes damaged = message;
+      damaged[at] = static_cast<std::byte>(value);
+      std::ignore = read(Octets{damaged});
+    }
+}
+
+template <class Write>
+Bytes written(Write write) {
+  Bytes buffer(1024);
+  const Result<std::size_t> used = write(MutableOctets{buffer});
+  EXPECT_TRUE(used.has_value());
+  buffer.resize(used.value_or(0));
+  // No room is said, whatever the room.
+  for (std::size_t room = 0; room < buffer.size(); ++room) {
+    Bytes small(room);
+    EXPECT_EQ(write(MutableOctets{small}).error().code, ErrorCode::ResourceExhausted) << room;
+  }
+  return buffer;
+}
+
+void expect_equal(const Offer& a, const Offer& b) {
+  EXPECT_EQ(a.set, b.set);
+  EXPECT_EQ(a.period, b.period);
+  EXPECT_EQ(a.terms.methods, b.terms.methods);
+  EXPECT_EQ(a.terms.byte_orders, b.terms.byte_orders);
+  EXPECT_EQ(a.terms.kinds, b.terms.kinds);
+  EXPECT_EQ(a.fields, b.fields);
+}
+void expect_equal(const Agreement& a, const Agreement& b) {
+  EXPECT_EQ(a.method, b.method);
+  EXPECT_EQ(a.byte_order, b.byte_order);
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.producer_period, b.producer_period);
+  EXPECT_EQ(a.consumer_period, b.consumer_period);
+  EXPECT_EQ(a.fields, b.fields);
+  EXPECT_EQ(a.layout_hash(), b.layout_hash());
+}
+
+TEST(LinkMessages, AreReadAsTheyWereWritten) {
+  const Bytes offer_data = written([](MutableOctets to) { return write_offer(to, 3, full_offer()); });
+  sweep(offer_data, read_offer);
+  EXPECT_EQ(read_offer(offer_data)->link, 3);
+  expect_equal(read_offer(offer_data)->offer, full_offer());
+
+  const Bytes agreement_data = written([](MutableOctets to) { return write_agreement(to, 4, agreement()); });
+  sweep(agreement_data, read_agreement);
+  EXPECT_EQ(read_agreement(agreement_data)->link, 4);
+  expect_equal(read_agreement(agreement_data)->agreement, agreement());
+
+  const Bytes refusal_data = written([](MutableOctets to) { return write_refusal(to, 5, {3, "rate"}); });
+  sweep(refusal_data, read_refusal);
+  EXPECT_EQ(read_refusal(refusal_data)->refusal.item, 3);
+  EXPECT_EQ(read_refusal(refusal_data)->refusal.text, "rate");
+
+  const Bytes request = written([](MutableOctets to) { return write_offer_request(to, {6, "JOINTS"}); });
+  sweep(request, read_offer_request);
+  EXPECT_EQ(read_offer_request(request)->set, "JOINTS");
+
+  const Bytes terms = written([](MutableOctets to) { return write_terms_request(to, {7, "JOINTS", full_offer()}); });
+  sweep(terms, read_terms_request);
+  EXPECT_EQ(read_terms_request(terms)->link, 7);
+  expect_equal(read_terms_request(terms)->consumer, full_offer());
+
+  const AttachRequest attach_request{8, Role::Consumer, 0xDEADBEEF, "JOINTS", agreement()};
+  const Bytes attach_data = written([&](MutableOctets to) { return write_attach_request(to, attach_request); });
+  sweep(attach_data, read_attach_request);
+  EXPECT_EQ(read_attach_request(attach_data)->role, Role::Consumer);
+  EXPECT_EQ(read_attach_request(attach_data)->epoch, 0xDEADBEEF);
+  expect_equal(read_attach_request(attach_data)->agreement, agreement());
+}
+
+TEST(LinkMessages, CarryTheConsumersOfferWhole) {
+  // The supervisor copies TM[128,129] behind link id and set name without looking at it.
+  Bytes buffer(256);
+  const auto used = write_offer(buffer, 9, full_offer());
+  Bytes relayed = from_hex(
+      "09"
+      "0343"
+      "4d44");
+  relayed.insert(relayed.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(used.value()));
+  const auto terms = read_terms_request(relayed);
+  ASSERT_TRUE(terms.has_value());
+  EXPECT_EQ(terms->set, "CMD");
+  expect_equal(terms->consumer, full_offer());
+  relayed[0] = std::byte{8};
+  EXPECT_FALSE(read_terms_request(relayed).has_value()) << "an offer for another link";
+}
+
+TEST(LinkMessages, WithMeaninglessContentAreRefused) {
+  const auto bad = [](auto change) {
+    Offer offer = full_offer();
+    change(offer);
+    Bytes buffer(4096);
+    const auto used = write_offer(buffer, 1, offer);
+    return used.has_value() && !read_offer(Octets{buffer}.first(*used)).has_value();
+  };
+  EXPECT_FALSE(bad([](Offer&) {}));
+  EXPECT_TRUE(bad([](Offer& o) { o.set.clear(); }));
+  EXPECT_TRUE(bad([](Offer& o) { o.set = "caf\xC3\xA9"; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.period = 0ns; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.terms.methods.clear(); }));
+  EXPECT_TRUE(bad([](Offer& o) { o.terms.methods[0] = Method{77}; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.terms.kinds[0] = LinkKind{0}; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.fields.clear(); }));
+  EXPECT_TRUE(bad([](Offer& o) { o.fields[0].type = Type::Struct; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.fields[0].count = 0; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.fields[1].name = o.fields[0].name; }));
+}
+
+TEST(LinkMessages, TooLongForTheirCountsAreNotWritten) {
+  Bytes buffer(8192);
+  Offer offer = full_offer();
+  offer.set.assign(256, 'A');
+  EXPECT_EQ(write_offer(buffer, 1, offer).error().code, ErrorCode::OutOfRange);
+  offer = full_offer();
+  offer.fields.assign(256, {"A", Type::Uint8, 1});
+  EXPECT_EQ(write_offer(buffer, 1, offer).error().code, ErrorCode::OutOfRange);
+  const auto used = write_refusal(buffer, 1, {4, std::string(300, 'x')});
+  EXPECT_EQ(read_refusal(Octets{buffer}.first(used.value()))->refusal.text.size(), 255U) << "a long reason is cut";
+}
+
+TEST(LinkMessages, SurviveRandomOctets) {
+  std::mt19937 random{3};
+  for (int round = 0; round < 20000; ++round) {
+    Bytes noise(random() % 80);
+    for (auto& octet : noise) octet = static_cast<std::byte>(random() % 4 == 0 ? random() : random() % 6);
+    std::ignore = read_offer(noise);
+    std::ignore = read_agreement(noise);
+    std::ignore = read_refusal(noise);
+    std::ignore = read_offer_request(noise);
+    std::ignore = read_terms_request(noise);
+    std::ignore = read_attach_request(noise);
+  }
+}
+
+}  // namespace
+}  // namespace hirosco::pus::st128

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/pus/standard_services.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "hirosco/pus/st01_verification/verification.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st17_test/test_service.hpp"
+#include "hirosco/pus/st20_parameter/parameter_service.hpp"
+
+namespace hirosco::pus {
+
+std::span<const ServiceKind* const> standard_services() noexcept {
+  static constexpr std::array<const ServiceKind*, 8> services{
+      &Verification::service_kind,  &HousekeepingService::service_kind, &EventService::service_kind,
+      &FunctionService::service_kind, &TestService::service_kind,         &ParameterService::service_kind,
+      &st128::service_kind,         &st129::service_kind};
+  return services;
+}
+
+const ServiceKind* standard_service(std::uint8_t type) noexcept {
+  const auto services = standard_services();
+  const auto found = std::ranges::find(services, type, &ServiceKind::type);
+  return found == services.end() ? nullptr : *found;
+}
+
+}  // namespace hirosco::pus

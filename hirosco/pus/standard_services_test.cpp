@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/pus/standard_services.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "hirosco/pus/st01_verification/verification.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+#include "hirosco/pus/st17_test/test_service.hpp"
+#include "hirosco/pus/st20_parameter/parameter_service.hpp"
+#include "hirosco/pus/testing/recording_sink.hpp"
+
+/// What a service says of itself is what it takes.
+namespace hirosco::pus {
+namespace {
+
+using testing::Bytes;
+
+void append(Bytes& data, const Part& part) {
+  switch (part.form) {
+    case Form::Number:
+      for (std::size_t i = 0; i < octets_of(part.type) * part.count; ++i)
+        data.push_back(i % octets_of(part.type) == octets_of(part.type) - 1 ? std::byte{1} : std::byte{});
+      break;
+    case Form::Text:
+      data.push_back(std::byte{'A'});
+      data.resize(data.size() + part.count - 1);
+      break;
+    case Form::Word: data.insert(data.end(), {std::byte{1}, std::byte{'A'}}); break;
+    case Form::List:
+      data.push_back(std::byte{1});
+      for (const Part& one : part.repeated()) append(data, one);
+      break;
+    case Form::Arguments: data.push_back(std::byte{}); break;
+    case Form::Value:
+    case Form::Rest: break;
+  }
+}
+
+/// The shortest data of a shape whose lists have one entry each.
+Bytes example_of(Shape shape) {
+  Bytes data;
+  for (const Part& part : shape) append(data, part);
+  return data;
+}
+
+struct Nobody final : FunctionExecutor, ParameterAccess {
+  std::expected<void, FailureNotice> submit(const FunctionCall&, const Request&) override { return {}; }
+  std::expected<std::size_t, ErrorCode> read(std::uint32_t, MutableOctets) override { return 0; }
+  std::size_t size_of(std::uint32_t) override { return 0; }
+  std::expected<void, FailureCode> check_write(std::uint32_t, Octets) override { return {}; }
+  bool submit_write(std::span<const Write>, const Request&) override { return true; }
+};
+
+class Table : public ::testing::Test {
+ protected:
+  /// The stage and code of the first report: "1.1", "1.2 8".
+  std::string answer(Service& service, std::uint8_t subtype, const Bytes& data) {
+    sink_.reports.clear();
+    testing::send(service, subtype, Octets{data});
+    if (sink_.reports.empty()) return "nothing";
+    const auto& first = sink_.reports.front();
+    std::string text = "1." + std::to_string(first.subtype);
+    if (first.subtype == 2) {
+      OctetReader reader{first.data};
+      static_cast<void>(reader.get<std::uint32_t>());
+      text += " " + std::to_string(reader.get<std::uint16_t>());
+    }
+    return text;
+  }
+  static constexpr const char* wrong_length = "1.2 8";
+
+  testing::RecordingSink sink_;
+  Verification verification_{sink_};
+  descriptor::Subsystem subsystem_;
+  HousekeepingSampler sampler_;
+  Nobody nobody_;
+  HousekeepingService housekeeping_{subsystem_, sampler_, verification_, sink_};
+  EventService events_{subsystem_.events, verification_, sink_};
+  FunctionService functions_{subsystem_.functions, {}, nobody_, verification_};
+  TestService test_{verification_, sink_};
+  ParameterService parameters_{nobody_, verification_, sink_};
+  std::vector<Service*> services_{&housekeeping_, &events_, &functions_, &test_, &parameters_};
+};
+
+TEST_F(Table, TakesDataOfTheShapeThatItDeclaresAndNoneThatIsAnOctetShort) {
+  int seen = 0;
+  for (Service* service : services_)
+    for (const RequestKind& request : service->kind().requests) {
+      SCOPED_TRACE(request.name);
+      Bytes data = example_of(request.data);
+      EXPECT_NE(answer(*service, request.subtype, data), wrong_length);
+      if (data.empty()) data.push_back(std::byte{1});
+      else data.pop_back();
+      EXPECT_EQ(answer(*service, request.subtype, data), wrong_length);
+      ++seen;
+    }
+  EXPECT_EQ(seen, 9 + 3 + 1 + 1 + 2);
+}
+
+TEST_F(Table, HasEverySubtypeThatAServiceTakes) {
+  for (Service* service : services_)
+    for (unsigned subtype = 0; subtype < 256; ++subtype) {
+      const auto id = static_cast<std::uint8_t>(subtype);
+      const bool unknown = answer(*service, id, {}) == "1.2 7";
+      EXPECT_EQ(unknown, service->kind().request(id) == nullptr) << service->kind().name << " " << subtype;
+    }
+}
+
+TEST_F(Table, DescribesTheHandshakeThatIsRead) {
+  const auto data = [](std::uint8_t subtype) { return example_of(st128::service_kind.request(subtype)->data); };
+  const auto reported = [](std::uint8_t subtype) { return example_of(st128::service_kind.report(subtype)->data); };
+  EXPECT_TRUE(st128::read_offer_request(data(st128::request_offer)));
+  EXPECT_TRUE(st128::read_terms_request(data(st128::negotiate_terms)));
+  EXPECT_TRUE(st128::read_attach_request(data(st128::attach)));
+  EXPECT_TRUE(st128::read_offer(reported(st128::offer)));
+  EXPECT_TRUE(st128::read_agreement(reported(st128::agreement)));
+  EXPECT_TRUE(st128::read_refusal(reported(st128::refusal)));
+}
+
+TEST(StandardServices, HaveTypesAndSubtypesOfTheirOwn) {
+  std::set<int> types;
+  for (const ServiceKind* service : standard_services()) {
+    EXPECT_TRUE(types.insert(service->type).second) << service->name;
+    EXPECT_LT(service->type, first_custom_service);
+    std::set<int> subtypes;
+    for (const auto& request : service->requests) EXPECT_TRUE(subtypes.insert(request.subtype).second) << request.name;
+    for (const auto& report : service->reports) EXPECT_TRUE(subtypes.insert(report.subtype).second) << report.name;
+    EXPECT_EQ(standard_service(service->type), service);
+  }
+  EXPECT_EQ(standard_service(99), nullptr);
+}
+
+}  // namespace
+}  // namespace hirosco::pus

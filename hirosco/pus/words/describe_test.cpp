@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/pus/words/describe.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "hirosco/pus/st08_function/function_service.hpp"
+
+namespace hirosco::pus {
+namespace {
+
+[[nodiscard]] descriptor::Mission small_mission() {
+  descriptor::Mission mission;
+  mission.supervisor.name = "SUPERVISOR";
+  mission.supervisor.id = 1;
+  descriptor::MissionSubsystem member;
+  member.subsystem.name = "ARM";
+  member.subsystem.id = 10;
+  member.subsystem.enumerations = {{"SIDES", {{1, "left"}, {2, "right"}}}};
+  descriptor::Event event;
+  event.name = "LIMIT";
+  event.id = 1020;
+  event.severity = descriptor::Severity::Medium;
+  descriptor::Field side;
+  side.name = "SIDE";
+  side.type = Type::Uint8;
+  side.enumeration = "SIDES";
+  descriptor::Field value;
+  value.name = "VALUE";
+  value.unit = "N m";
+  event.arguments = {side, value};
+  member.subsystem.events = {event};
+  mission.subsystems.push_back(member);
+  return mission;
+}
+
+[[nodiscard]] std::string described_telemetry(std::uint8_t service, std::uint8_t subtype, Octets data) {
+  const auto mission = small_mission();
+  std::array<std::byte, 256> buffer;
+  const auto packet = write_telemetry(buffer, {.apid = 10, .service = service, .subtype = subtype}, data);
+  return PacketDescriber{mission}.describe(*packet);
+}
+
+TEST(PacketDescriber, NamesAnEventWithItsArgumentsAndUnits) {
+  std::array<std::byte, 16> data;
+  OctetWriter writer{data};
+  writer.put(std::uint16_t{1020}).put(std::uint8_t{2}).put(12.5);
+  EXPECT_EQ(described_telemetry(5, 3, writer.written()), "TM[5,3] ARM medium LIMIT SIDE=right VALUE=12.5 N m");
+}
+
+TEST(PacketDescriber, NamesTheStageAndTheReasonOfARefusal) {
+  std::array<std::byte, 8> data;
+  OctetWriter writer{data};
+  writer.put(std::uint32_t{0x180A'C005}).put(std::uint16_t{13});
+  EXPECT_EQ(described_telemetry(1, 2, writer.written()), "TM[1,2] ARM not accepted ARM #5: not permitted in this mode");
+}
+
+TEST(PacketDescriber, NamesAFunctionAndItsArguments) {
+  const auto mission = small_mission();
+  const auto common = common_functions();
+  const double state = 4;
+  const auto data = encode_call(common[0], std::span<const double>{&state, 1});
+  ASSERT_TRUE(data);
+  std::array<std::byte, 256> buffer;
+  const auto packet = write_telecommand(buffer, {.apid = 10, .sequence_count = 7, .service = 8, .subtype = 1}, *data);
+  EXPECT_EQ(PacketDescriber{mission}.describe(*packet), "TC[8,1] ARM #7 SET_STATE STATE=SafeOperational");
+}
+
+TEST(PacketDescriber, SaysWhatCanBeSaidOfADamagedPacket) {
+  const auto mission = small_mission();
+  std::array<std::byte, 256> buffer;
+  const auto packet = write_telecommand(buffer, {.apid = 10, .service = 17, .subtype = 1}, {});
+  buffer[packet->size() - 1] ^= std::byte{1};
+  EXPECT_EQ(PacketDescriber{mission}.describe(*packet), "TC damaged: error control mismatch");
+  EXPECT_EQ(PacketDescriber{mission}.describe(Octets{buffer}.first(3)), "fragment");
+}
+
+}  // namespace
+}  // namespace hirosco::pus
