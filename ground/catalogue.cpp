@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "hirosco/parameter/number.hpp"
-#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/requests.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -128,16 +128,11 @@ double Catalogue::read(const Place& place, Octets source_data) const noexcept {
 }
 
 std::vector<descriptor::Function> Catalogue::functions_of(const descriptor::Subsystem& subsystem) const {
-  std::vector<descriptor::Function> functions = pus::common_functions();
-  for (auto& function : functions)
-    function.description = function.name == "SET_STATE" ? "Takes the subsystem to a state, through those between"
-                                                        : "Chooses the configuration, in Pre-Operational";
-  descriptor::Function ping;
-  ping.name = "PING";
-  ping.description = "Are you alive? (service 17)";
-  ping.essential = true;
-  functions.push_back(std::move(ping));
-  functions.insert(functions.end(), subsystem.functions.begin(), subsystem.functions.end());
+  std::vector<descriptor::Function> functions = pus::requests_of(subsystem);
+  for (auto& function : functions) {
+    if (function.name == "SET_STATE") function.description = "Takes the subsystem to a state, through those between";
+    if (function.name == "CONFIGURE") function.description = "Chooses the configuration, in Pre-Operational";
+  }
   return functions;
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "ground/json.hpp"
+#include "hirosco/pus/requests.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 
 namespace hirosco::ground {
@@ -37,18 +38,17 @@ constexpr std::array senders{Senders{0x2000, 0x3FFF, "another ground station"}, 
   return named != texts.end() ? json(named->text) : json_number(value);
 }
 
-[[nodiscard]] json arguments_json(const Catalogue& catalogue, const descriptor::Subsystem& subsystem, Octets data) {
+[[nodiscard]] json arguments_json(const Catalogue& catalogue, const descriptor::Subsystem& subsystem,
+                                  const descriptor::Function& function, Octets data) {
   json arguments = json::object();
-  const auto functions = catalogue.functions_of(subsystem);
-  const auto call = pus::decode_call(functions, data);
-  if (!call) return arguments;
-  const auto& function = functions[call->function];
+  const auto values_of = pus::decode_request(function, data);
+  if (!values_of) return arguments;
   std::size_t next = 0;
   for (const auto& argument : function.arguments) {
     const auto texts = catalogue.texts_of(subsystem, function, argument.field);
     json values = json::array();
     for (std::uint16_t i = 0; i < argument.field.count; ++i)
-      values.push_back(argument_json(call->arguments[next++], texts));
+      values.push_back(argument_json((*values_of)[next++], texts));
     arguments[argument.field.name] = values.size() == 1 ? values.front() : values;
   }
   return arguments;
@@ -70,11 +70,19 @@ StoredCommand command_of(const Catalogue& catalogue, const pus::TelecommandView&
   command.function = fmt::format("TC[{},{}]", telecommand.service(), telecommand.subtype());
   command.arguments = "{}";
   command.stage = "sent";
-  if (telecommand.service() == 17 && telecommand.subtype() == 1) command.function = "PING";
-  if (telecommand.service() != 8 || telecommand.subtype() != 1) return command;
-  command.function = function_name(telecommand.application_data());
-  if (const auto* subsystem = catalogue.find(command.apid))
-    command.arguments = to_string(arguments_json(catalogue, *subsystem, telecommand.application_data()));
+  const bool call = telecommand.service() == pus::FunctionService::service_type &&
+                    telecommand.subtype() == pus::FunctionService::perform_function;
+  if (call) command.function = function_name(telecommand.application_data());
+  const auto* subsystem = catalogue.find(command.apid);
+  if (subsystem == nullptr) return command;
+  const auto requests = catalogue.functions_of(*subsystem);
+  const auto known = std::ranges::find_if(requests, [&](const descriptor::Function& request) {
+    return request.service == telecommand.service() && request.subtype == telecommand.subtype() &&
+           (!call || request.name == command.function);
+  });
+  if (known == requests.end()) return command;
+  command.function = known->name;
+  command.arguments = to_string(arguments_json(catalogue, *subsystem, *known, telecommand.application_data()));
   return command;
 }
 

@@ -41,8 +41,8 @@ template <class Texts>
       if (function.permitted_in(row.value)) states.push_back(row.text);
     list.push_back({{"name", function.name},
                     {"description", function.description},
-                    {"service", function.name == "PING" ? 17 : 8},
-                    {"subtype", 1},
+                    {"service", function.service},
+                    {"subtype", function.subtype},
                     {"essential", function.essential},
                     {"states", std::move(states)},
                     {"arguments", std::move(arguments)}});

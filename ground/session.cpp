@@ -10,7 +10,7 @@
 #include "ground/json.hpp"
 #include "ground/views.hpp"
 #include "hirosco/pus/packet/failure.hpp"
-#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/requests.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 
@@ -343,14 +343,12 @@ Answered<Session::Prepared> Session::prepare(const json& body) const {
   prepared.subsystem = subsystem;
   prepared.function = wanted;
   prepared.arguments = to_string(sent);
-  if (wanted == "PING") {
-    prepared.service = 17;
-    return prepared;
-  }
-  auto data = pus::encode_call(*function, std::span<const std::optional<double>>{values});
+  prepared.service = function->service;
+  prepared.subtype = function->subtype;
+  auto data = pus::encode_request(*function, std::span<const std::optional<double>>{values});
   if (!data) return refuse(400, wanted + ": " + data.error().text);
   prepared.data = std::move(*data);
-  if (function->essential) prepared.way = Way::Alone;
+  if (pus::goes_alone(*function)) prepared.way = Way::Alone;
   return prepared;
 }
 
@@ -380,7 +378,8 @@ Answered<json> Session::command(const json& body) {
   if (!prepared) return std::unexpected{prepared.error()};
   if (!connected_ && prepared->way == Way::InTurn) return refuse(503, "no link to the spacecraft");
   const std::uint16_t count = next_count();
-  const auto packet = packet_of(prepared->subsystem->id, prepared->service, 1, pus::ack_all, prepared->data, count);
+  const auto packet =
+      packet_of(prepared->subsystem->id, prepared->service, prepared->subtype, pus::ack_all, prepared->data, count);
   if (!packet) return std::unexpected{packet.error()};
   StoredCommand command;
   command.t = now();
@@ -411,7 +410,8 @@ Answered<json> Session::command(const json& body) {
 void Session::preview(const json& body, std::function<void(Answered<json>)> done) {
   const auto prepared = prepare(body);
   if (!prepared) return done(std::unexpected{prepared.error()});
-  const auto asked = packet_of(prepared->subsystem->id, prepared->service, 1, pus::ack_all, prepared->data, count_);
+  const auto asked =
+      packet_of(prepared->subsystem->id, prepared->service, prepared->subtype, pus::ack_all, prepared->data, count_);
   if (!asked) return done(std::unexpected{asked.error()});
   const std::string octets = hex_of(*asked);
   // No reports but the answer itself.

@@ -112,7 +112,8 @@ class Session {
   struct Prepared {
     const descriptor::Subsystem* subsystem{};
     std::string function;
-    std::uint8_t service{8};
+    std::uint8_t service{};
+    std::uint8_t subtype{};
     Way way{Way::InTurn};
     std::string arguments;  ///< a JSON object with the values that are sent
     std::vector<std::byte> data;

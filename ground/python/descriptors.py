@@ -85,22 +85,23 @@ class Field:
 
 @dataclasses.dataclass(frozen=True)
 class Function:
+    """A request by name: a function of service 8, or a request of another service."""
     name: str
     service: int = 8
+    subtype: int = 1
     arguments: Tuple[Field, ...] = ()
 
     def encode(self, values: Sequence[Any]) -> bytes:
-        """Application data of TC[8,1]; None stands for the declared value."""
-        if self.service != 8:
-            return b""
-        data = self.name.encode().ljust(FUNCTION_NAME_OCTETS, b"\0") + bytes([len(self.arguments)])
+        """Application data: arguments in order, with name and ids for service 8; None stands for the declared value."""
+        call = self.service == 8
+        data = self.name.encode().ljust(FUNCTION_NAME_OCTETS, b"\0") + bytes([len(self.arguments)]) if call else b""
         for number, (field, value) in enumerate(zip(self.arguments, values), 1):
             if value is None:
                 value = field.default if field.count == 1 or field.default is None else [field.default] * field.count
             if value is None:
                 raise ArgumentError(f"{self.name}: {field.name} is missing")
             try:
-                data += bytes([number]) + field.encode(value)
+                data += (bytes([number]) if call else b"") + field.encode(value)
             except ArgumentError as error:
                 raise ArgumentError(f"{self.name}: {error}") from None
         return data
@@ -123,6 +124,15 @@ class Layout:
 
 
 @dataclasses.dataclass(frozen=True)
+class ReportKind:
+    """A report of a subsystem's own service."""
+    service: int
+    subtype: int
+    name: str
+    fields: Tuple[Field, ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
 class EventKind:
     id: int
     name: str
@@ -139,6 +149,7 @@ class SubsystemAbout:
     parameters: Tuple[Parameter, ...] = ()
     layouts: Tuple[Layout, ...] = ()
     events: Tuple[EventKind, ...] = ()
+    reports: Tuple[ReportKind, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)

@@ -12,6 +12,7 @@
 
 #include "ground/python/runtime_text.hpp"
 #include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -163,6 +164,7 @@ class SubsystemClass {
     add_reports();
     for (const auto& parameter : subsystem_.parameters) add_parameter(parameter);
     for (const auto& event : subsystem_.events) add_event(event);
+    for (const auto& service : subsystem_.services) add_own_reports(service);
   }
 
   [[nodiscard]] std::string text(const std::string& name) const {
@@ -180,7 +182,7 @@ class SubsystemClass {
                           subsystem_.id, pairs(configurations));
     result += "        functions=(\n" + functions_ + "        ),\n        parameters=(\n" + parameters_ +
               "        ),\n        layouts=(\n" + layouts_ + "        ),\n        events=(\n" + events_ +
-              "        ))\n";
+              "        ),\n        reports=(\n" + reports_ + "        ))\n";
     return result + methods_;
   }
 
@@ -215,8 +217,10 @@ class SubsystemClass {
       if (function.permitted_in(row.value)) states += (states.empty() ? "" : ", ") + std::string{row.text};
     if (function.states != 0 && function.states != in_every_state)
       says.insert(says.end(), {"", "Permitted in: " + states});
-    functions_ += fmt::format("            _r.Function({}{}, arguments={}),\n", python_string(function.name),
-                              function.name == "PING" ? ", service=17" : "", fields_tuple(values));
+    const bool call = function.service == pus::FunctionService::service_type;
+    const std::string carried = call ? "" : fmt::format(", service={}, subtype={}", function.service, function.subtype);
+    functions_ += fmt::format("            _r.Function({}{}, arguments={}),\n", python_string(function.name), carried,
+                              fields_tuple(values));
     add_method(fmt::format("{}(self{}, *, wait: _t.Optional[float] = 70.0) -> _r.Request",
                            names_.variable(function.name), parameters),
                says, fmt::format("self._call({}, ({}), wait)", python_string(function.name), given));
@@ -313,10 +317,20 @@ class SubsystemClass {
                            fields_tuple(values));
   }
 
+  /// They stand in the `reports` of the request that they answer.
+  void add_own_reports(const descriptor::CustomService& service) {
+    for (const auto& report : service.reports) {
+      std::vector<Value> values;
+      for (const auto& field : report.fields) values.push_back(value_of(field));
+      reports_ += fmt::format("            _r.ReportKind({}, {}, {}, fields={}),\n", service.type, report.subtype,
+                              python_string(report.name), fields_tuple(values));
+    }
+  }
+
   const Catalogue& catalogue_;
   const descriptor::Subsystem& subsystem_;
   PythonNames names_;
-  std::string functions_, parameters_, layouts_, events_, methods_;
+  std::string functions_, parameters_, layouts_, events_, reports_, methods_;
 };
 
 [[nodiscard]] std::string mission_about(const Catalogue& catalogue) {

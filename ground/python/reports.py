@@ -35,6 +35,22 @@ class Housekeeping:
 
 
 @dataclasses.dataclass(frozen=True)
+class Report:
+    """One report of a subsystem's own service. `report["NUMBER"]` is a number, or a tuple for an array."""
+    subsystem: str
+    name: str
+    time_s: float
+    values: Dict[str, Any]
+
+    def __getitem__(self, name: str) -> Any:
+        return self.values[name]
+
+    @property
+    def utc(self) -> datetime.datetime:
+        return utc_of(self.time_s)
+
+
+@dataclasses.dataclass(frozen=True)
 class Event:
     """One report TM[5,1] to TM[5,4]."""
     subsystem: str

@@ -16,13 +16,13 @@ import threading
 import time
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
-from .descriptors import EventKind, Field, Function, Layout, MissionAbout, Parameter, SubsystemAbout
+from .descriptors import EventKind, Field, Function, Layout, MissionAbout, Parameter, ReportKind, SubsystemAbout
 from .flights import find_flight, flights
 from .packets import ArgumentError, HiroscoError, LinkLost, NoAnswer, Telemetry, crc16, cuc_seconds, cut, telecommand
-from .reports import SEVERITIES, STAGES, Event, Housekeeping, Verification, failure_parameters, utc_of
+from .reports import SEVERITIES, STAGES, Event, Housekeeping, Report, Verification, failure_parameters, utc_of
 
 __all__ = ["ArgumentError", "CommandFailed", "Craft", "Event", "EventKind", "Field", "Function", "HiroscoError", "Housekeeping",
-           "Layout", "LinkLost", "MissionAbout", "NoAnswer", "Parameter", "Request", "Subsystem", "SubsystemAbout", "Telemetry",
+           "Layout", "LinkLost", "MissionAbout", "NoAnswer", "Parameter", "Report", "ReportKind", "Request", "Subsystem", "SubsystemAbout", "Telemetry",
            "Verification", "code_text", "crc16", "cuc_seconds", "cut", "failure_parameters", "find_flight", "flights",
            "telecommand", "utc_of"]
 
@@ -64,6 +64,7 @@ class Request:
     def __init__(self, craft: Craft, subsystem: str, name: str) -> None:
         self.subsystem, self.name = subsystem, name
         self.verifications: List[Verification] = []
+        self.reports: List[Report] = []       # of the subsystem's own service, while it is open
         self.reply: Optional[Telemetry] = None
         self._craft = craft
         self._sent = time.monotonic()
@@ -135,7 +136,7 @@ class Subsystem:
     # The exported methods end here.
     def _call(self, name: str, values: Sequence[Any], wait: Optional[float]) -> Request:
         function = self._functions[name]
-        return self._craft._send(self, name, function.service, 1, function.encode(values), wait)
+        return self._craft._send(self, name, function.service, function.subtype, function.encode(values), wait)
 
     def _get(self, name: str, wait: float) -> Any:
         parameter = self._parameters[name]
@@ -336,7 +337,7 @@ class Craft:
             subsystem = self._by_apid.get(packet.apid)
             if packet.service == 1:
                 self._take_verification(packet)
-            elif subsystem is None or len(packet.data) < 2:
+            elif subsystem is None:
                 pass
             elif (packet.service, packet.subtype) == (3, 25):
                 subsystem._take_housekeeping(packet)
@@ -345,12 +346,31 @@ class Craft:
                 self.events.append(event)
             elif (packet.service, packet.subtype) == (20, 2):
                 self._take_values(packet)
+            elif packet.destination == self.source:
+                self._take_report(subsystem, packet)
             self._arrived.notify_all()
         if event is not None:
             for watcher in self._watchers:
                 watcher(event)
             with self._arrived:
                 self._arrived.notify_all()
+
+    def _take_report(self, subsystem: Subsystem, packet: Telemetry) -> None:
+        """Names no request: it goes to the oldest open one of this service."""
+        kind = next((one for one in subsystem._about.reports
+                     if (one.service, one.subtype) == (packet.service, packet.subtype)), None)
+        if kind is None or len(packet.data) != sum(field.octets for field in kind.fields):
+            return
+        values, offset = {}, 0
+        for field in kind.fields:
+            values[field.name] = field.decode(packet.data, offset)
+            offset += field.octets
+        for request in self._requests.values():
+            function = subsystem._functions.get(request.name)
+            if (request.subsystem == subsystem._about.name and function is not None and
+                    function.service == packet.service):
+                request.reports.append(Report(request.subsystem, kind.name, packet.time_s, values))
+                return
 
     def _take_values(self, packet: Telemetry) -> None:
         """TM[20,2] names no request: it goes to the oldest that asked for this parameter."""

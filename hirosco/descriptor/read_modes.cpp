@@ -226,8 +226,11 @@ void MissionReader::check_functions(const xml::Attribute& at, const Permit& perm
   std::vector<std::string_view> known{"*"};
   known.insert(known.end(), common_functions.begin(), common_functions.end());
   const auto add = [&](const Subsystem& subsystem) {
-    if (permit.subsystem == "*" || permit.subsystem == subsystem.name)
+    if (permit.subsystem == "*" || permit.subsystem == subsystem.name) {
       for (const Function& function : subsystem.functions) known.push_back(function.name);
+      for (const CustomService& service : subsystem.services)
+        for (const Function& request : service.requests) known.push_back(request.name);
+    }
   };
   add(mission_.supervisor);
   for (const MissionSubsystem& member : mission_.subsystems) add(member.subsystem);

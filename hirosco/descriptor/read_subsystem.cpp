@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t max_description = 4096;
 /// Each has its own copy of what the subsystem declares for all of them.
 constexpr std::size_t max_configurations = 64;
+constexpr std::size_t max_custom_services = 64;
 constexpr std::int64_t max_octets = std::int64_t{1} << 40;
 
 /// "64MiB", "512KiB", "4096"; empty when it is none or more than a tebibyte.
@@ -36,7 +37,7 @@ std::optional<std::size_t> to_octets(std::string_view text) noexcept {
 
 Subsystem SubsystemReader::read(const xml::Element& root) {
   read_head(root);
-  std::vector<const xml::Element*> configurations, services_elements;
+  std::vector<const xml::Element*> configurations, services_elements, custom_services;
   const auto later = [](std::vector<const xml::Element*>& list) {
     return [&list](const xml::Element& e) { list.push_back(&e); };
   };
@@ -64,6 +65,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                               {"Device", [this](const auto& element) { read_device(element); }, 255},
                               {"Hang", [this](const auto& element) { read_hang(element); }, 1},
                               {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
+                              {"CustomService", later(custom_services), max_custom_services},
                               {"Configuration", later(configurations), max_configurations}};
   Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_};
   const std::vector<Child> service_rows = service_children(services);
@@ -73,6 +75,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   configurations_ = configurations.size();
   for (const xml::Element* element : services_elements)
     std::ranges::find(service_rows, element->name, &Child::name)->read(*element);
+  for (const xml::Element* element : custom_services) read_custom_service(*element);
   for (const xml::Element* element : configurations) read_configuration(*element);
   imply_framework_events();
   check_enumerations();

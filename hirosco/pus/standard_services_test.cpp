@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <set>
 
@@ -123,6 +125,37 @@ TEST_F(Table, DescribesTheHandshakeThatIsRead) {
   EXPECT_TRUE(st128::read_offer(reported(st128::offer)));
   EXPECT_TRUE(st128::read_agreement(reported(st128::agreement)));
   EXPECT_TRUE(st128::read_refusal(reported(st128::refusal)));
+}
+
+/// As docs/services.md shows them.
+std::string table_of_services() {
+  std::string table = "| service | requests | reports | who may ask |\n|---|---|---|---|\n";
+  const auto names = [](const auto& kinds) {
+    std::string text;
+    for (const auto& kind : kinds)
+      text += (text.empty() ? "" : ", ") + std::to_string(kind.subtype) + " " + std::string{kind.name};
+    return text.empty() ? std::string{"none"} : text;
+  };
+  const auto asks = [](const ServiceKind& service) {
+    if (service.requests.empty()) return "nobody";
+    switch (service.needs) {
+      case Needs::Nothing: return "as mode and state permit";
+      case Needs::Essential: return "everybody, always";
+      case Needs::SupervisorAsks: return "the supervisor";
+      case Needs::SupervisorAnswers: return "everybody, always; the supervisor answers";
+    }
+    return "";
+  };
+  for (const ServiceKind* service : standard_services())
+    table += "| ST[" + std::to_string(service->type) + "] " + std::string{service->name} + " | " +
+             names(service->requests) + " | " + names(service->reports) + " | " + asks(*service) + " |\n";
+  return table;
+}
+
+TEST(StandardServices, AreTheTableInTheDocuments) {
+  std::ifstream file{std::string{HIROSCO_SOURCE_DIR} + "/docs/services.md"};
+  const std::string text{std::istreambuf_iterator<char>{file}, {}};
+  EXPECT_NE(text.find(table_of_services()), std::string::npos) << "docs/services.md wants:\n" << table_of_services();
 }
 
 TEST(StandardServices, HaveTypesAndSubtypesOfTheirOwn) {

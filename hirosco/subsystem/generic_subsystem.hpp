@@ -25,6 +25,7 @@
 #include "hirosco/pus/st17_test/test_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/subsystem/backlog.hpp"
+#include "hirosco/subsystem/custom_service.hpp"
 #include "hirosco/subsystem/cycle.hpp"
 #include "hirosco/subsystem/link_service.hpp"
 #include "hirosco/subsystem/pages.hpp"
@@ -54,7 +55,8 @@ struct Failure {
 class GenericSubsystem final : private pus::TelemetrySink,
                                private pus::FunctionExecutor,
                                private pus::ParameterAccess,
-                               private LinkServiceOwner {
+                               private LinkServiceOwner,
+                               private ServiceHome {
  public:
   /// `vital` and `permit` are the mapped pages, at least as large as VitalPage and PermitPage and initialised.
   GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const World& world, Channel& channel,
@@ -92,19 +94,19 @@ class GenericSubsystem final : private pus::TelemetrySink,
 
   /// Offline again after the supervisor went away or said so: the process may end.
   [[nodiscard]] bool finished() const noexcept { return finished_; }
-  [[nodiscard]] State state() const noexcept { return state_; }
-  [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept { return descriptor_; }
+  [[nodiscard]] State state() const noexcept override { return state_; }
+  [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept override { return descriptor_; }
 
   // --- for Subsystem ----------------------------------------------------------------------------------------------
   void publish(std::string_view name, ParameterCell& parameter);
   void require_link(std::string_view set, LinkInputPort& port);
   void use_device(std::string_view name, DevicePortBase& port);
-  void provide(pus::Service& service);
+  void provide(CustomService& service);
   void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
-  [[nodiscard]] pus::Verification& verification() noexcept { return verification_; }
-  [[nodiscard]] pus::TelemetrySink& telemetry() noexcept { return *this; }
+  [[nodiscard]] pus::Verification& verification() noexcept override { return verification_; }
+  [[nodiscard]] pus::TelemetrySink& telemetry() noexcept override { return *this; }
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
   void raise_in_service(std::uint16_t event, std::span<const double> arguments);
   /// An event of the descriptor by its name; nothing when it declares none.
@@ -127,6 +129,11 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Duration period() override;
   Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) override;
   bool detach(std::uint8_t link) override;
+
+  // ServiceHome
+  [[nodiscard]] pus::FailureNotice refusal(pus::FailureCode code, const Error& why) const override {
+    return notice_of(static_cast<std::uint16_t>(code), {why.code, why.text, why.value});
+  }
 
   void receive_messages();
   void dispatch(const Message& message);
@@ -188,6 +195,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   pus::ConfiguredHousekeeping housekeeping_service_;
   LinkService link_service_;
   std::vector<pus::Service*> services_;  ///< the framework's, then the author's
+  std::vector<CustomService*> own_services_;
 
   std::map<std::string, LinkInputPort*, std::less<>> link_ports_;
   std::map<std::string, DevicePortBase*, std::less<>> device_ports_;

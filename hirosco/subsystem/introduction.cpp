@@ -59,6 +59,13 @@ void GenericSubsystem::mistake(std::string problem) {
   if (std::ranges::find(problems_, problem) == problems_.end()) problems_.push_back(std::move(problem));
 }
 
+void GenericSubsystem::provide(CustomService& service) {
+  if (std::ranges::find(own_services_, &service) != own_services_.end()) return;
+  service.join(*this);
+  own_services_.push_back(&service);
+  services_.push_back(&service);
+}
+
 void GenericSubsystem::bind_function(std::string_view name, std::span<const ArgumentRange> arguments,
                                      FunctionHandler handler) {
   const auto& functions = descriptor_.functions;
@@ -105,10 +112,16 @@ void GenericSubsystem::check_introduction() {
   for (std::size_t i = 0; i < descriptor_.functions.size(); ++i)
     if (!cycle_.functions()[i].handler)
       mistake("function declared but without a handler: " + descriptor_.functions[i].name);
+  for (const CustomService* service : own_services_)
+    for (std::string& problem : service->problems()) mistake(std::move(problem));
+  for (const auto& declared : descriptor_.services)
+    if (std::ranges::count(own_services_, declared.name, &CustomService::name) != 1)
+      mistake("service declared but not provided once: " + declared.name);
 }
 
 void GenericSubsystem::forget_introduction() {
   dictionary_.unpublish_all();
+  for (CustomService* service : own_services_) service->release();
   link_ports_.clear();
   device_ports_.clear();
   cycle_.functions().assign(descriptor_.functions.size(), {});

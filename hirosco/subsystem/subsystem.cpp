@@ -28,6 +28,7 @@ Outcome::Outcome(const Result<>& result) noexcept
       code{result ? pus::FailureCode{} : failure_code(result.error().code)},
       reason{result ? Error{} : result.error()} {}
 
+void Subsystem::provide(CustomService& service) { framework_->provide(service); }
 void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
 void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
 void Subsystem::use_device(std::string_view name, DevicePortBase& port) { framework_->use_device(name, port); }

@@ -26,6 +26,7 @@
 /// What a subsystem's author inherits and fills in (paper 4.2): one method per node of figure 4.
 namespace hirosco {
 
+class CustomService;
 class GenericSubsystem;
 
 /// Outcome of one phase of a transient state.
@@ -147,6 +148,10 @@ class Subsystem {
   virtual void service(TimePoint) {}
   /// Telemetry that the supervisor routes to this subsystem (the communication subsystem's ground link).
   virtual void telemetry(Octets) {}
+
+  // --- in offline() ----------------------------------------------------------------------------------------------------
+  /// A service of its own, which its descriptor declares; `service` lives as long as this subsystem.
+  void provide(CustomService& service);
 
   // --- in software_init() -----------------------------------------------------------------------------------------
   /// Makes a parameter known under its descriptor name. A layout that differs from the descriptor's fails Software-Init.

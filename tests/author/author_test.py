@@ -18,6 +18,14 @@ HERE = pathlib.Path(__file__).resolve().parent
 BUILD = pathlib.Path(os.environ.get("HIROSCO_BUILD", flight.BINARIES.parent))
 
 
+METER = """
+from hirosco_lamp import Spacecraft
+with Spacecraft() as craft:
+    (report,) = craft.lamp.read_meter().reports
+    print(report.name, report["DIMMED"], report["CURRENT"])
+"""
+
+
 class Outside:
     """The installed tree, moved, and the author's folder built against it."""
 
@@ -104,11 +112,25 @@ class Flown(Outside, unittest.TestCase):
             code, reports = lamp.tc("LAMP", "DIM", 0.9)
             self.assertEqual((code, reports[-1]), (0, "1,7"))
             self.assertAlmostEqual(self.brightness(lamp, 0.9), 0.9, 2)
+            self.own_service(lamp, ask)
             lamp.fault("lamp", "old", "0.5")
             self.assertAlmostEqual(self.brightness(lamp, 0.45), 0.45, 2)
             values = ask("/api/status")["values"]
             self.assertIn("LAMP.CUR_VALUES.BRIGHTNESS", values)
             self.assertEqual(lamp.end(), 0)
+
+    def own_service(self, lamp, ask):
+        """What its descriptor says of its own PUS service is enough for terminal, page, Python and log."""
+        lamp_about = next(one for one in ask("/api/mission")["subsystems"] if one["name"] == "LAMP")
+        request = next(one for one in lamp_about["functions"] if one["name"] == "READ_METER")
+        self.assertEqual((request["service"], request["subtype"]), (200, 1))
+        self.assertEqual(lamp.tc("LAMP", "READ_METER")[1][-1], "1,7")
+        asked = ask("/api/commands", {"subsystem": "LAMP", "function": "READ_METER", "arguments": {}})
+        self.assertIn("id", asked)
+        self.hirosco("export", "python", self.mission, "--to", self.folder)
+        told = self.said("python3", "-B", "-c", METER, environment={"PYTHONPATH": str(self.folder)})
+        self.assertEqual(told.split(), ["METER", "1", "0.9"])
+        self.assertIn("LAMP METER DIMMED=1 CURRENT=0.9 A", self.hirosco("log", "--service", "200"))
 
     def brightness(self, lamp, wanted):
         """Of the device's world, once it is about what is wanted."""

@@ -9,7 +9,7 @@
 #include <chrono>
 
 #include "hirosco/pus/packet/packet.hpp"
-#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/requests.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
@@ -64,11 +64,14 @@ void print_usage(const descriptor::Function& function) {
   fmt::print(stderr, "\n");
 }
 
-[[nodiscard]] std::optional<std::vector<std::byte>> encode(const TelecommandOptions& options,
-                                                           const descriptor::Mission& mission,
-                                                           const descriptor::Subsystem& subsystem) {
-  std::vector<descriptor::Function> functions = pus::common_functions();
-  functions.insert(functions.end(), subsystem.functions.begin(), subsystem.functions.end());
+struct Encoded {
+  descriptor::Function request;
+  std::vector<std::byte> data;
+};
+
+[[nodiscard]] std::optional<Encoded> encode(const TelecommandOptions& options, const descriptor::Mission& mission,
+                                            const descriptor::Subsystem& subsystem) {
+  const std::vector<descriptor::Function> functions = pus::requests_of(subsystem);
   const auto function = std::ranges::find_if(
       functions, [&](const auto& f) { return lower_case(f.name) == lower_case(options.function); });
   if (function == functions.end()) {
@@ -98,17 +101,11 @@ void print_usage(const descriptor::Function& function) {
     }
     values[index] = value;
   }
-  auto data = pus::encode_call(*function, std::span<const std::optional<double>>{values});
-  if (data) return std::move(*data);
+  auto data = pus::encode_request(*function, std::span<const std::optional<double>>{values});
+  if (data) return Encoded{*function, std::move(*data)};
   fmt::print(stderr, "hirosco tc: {}; usage:\n", data.error().text);
   print_usage(*function);
   return std::nullopt;
-}
-
-[[nodiscard]] bool is_essential(const descriptor::Subsystem& subsystem, const std::string& name) {
-  return std::ranges::any_of(subsystem.functions, [&](const descriptor::Function& function) {
-    return function.essential && lower_case(function.name) == lower_case(name);
-  });
 }
 
 /// Prints one verification report; true when it was the last of the request.
@@ -142,13 +139,9 @@ int telecommand(const TelecommandOptions& options) {
   const descriptor::Mission& mission = place->mission;
   const auto* subsystem = find_subsystem(mission, options.subsystem);
   if (subsystem == nullptr) return exit_usage;
-  const bool ping = lower_case(options.function) == "ping";
-  std::vector<std::byte> data;
-  if (!ping) {
-    auto encoded = encode(options, mission, *subsystem);
-    if (!encoded) return exit_usage;
-    data = std::move(*encoded);
-  }
+  const auto encoded = encode(options, mission, *subsystem);
+  if (!encoded) return exit_usage;
+  const descriptor::Function& request = encoded->request;
   auto connection = GroundConnection::open(place->host, place->port);
   if (!connection) {
     fmt::print(stderr, "hirosco tc: {}:{}: {}\n", place->host, place->port, connection.error().text);
@@ -162,15 +155,14 @@ int telecommand(const TelecommandOptions& options) {
                                              {.apid = subsystem->id,
                                               .sequence_count = count,
                                               .ack = pus::ack_all,
-                                              .service = static_cast<std::uint8_t>(ping ? 17 : 8),
-                                              .subtype = 1,
+                                              .service = request.service,
+                                              .subtype = request.subtype,
                                               .source = source},
-                                             data);
+                                             encoded->data);
   // What is essential gets in by the telecommand port whoever fills the other one (docs/adr/0028); without that port the
   // connection for the reports has to do.
-  auto own = is_essential(*subsystem, options.function)
-                 ? GroundConnection::open(place->host, telecommand_port(mission, place->port))
-                 : Result<GroundConnection>{fail(ErrorCode::NotFound, "not essential")};
+  auto own = pus::goes_alone(request) ? GroundConnection::open(place->host, telecommand_port(mission, place->port))
+                                      : Result<GroundConnection>{fail(ErrorCode::NotFound, "not essential")};
   GroundConnection& way = own ? *own : *connection;
   if (!packet || !way.send(*packet)) {
     fmt::print(stderr, "hirosco tc: the telecommand could not be sent\n");

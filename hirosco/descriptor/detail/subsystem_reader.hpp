@@ -85,6 +85,11 @@ class SubsystemReader {
   [[nodiscard]] std::string suggest_reference(std::string_view text) const;
   [[nodiscard]] std::size_t octets_of_reference(const ParameterRef& reference) const;
 
+  // read_custom_service.cpp
+  void read_custom_service(const xml::Element& element);
+  void read_request(const xml::Element& element, CustomService& service, Unique& subtypes);
+  void read_report(const xml::Element& element, CustomService& service, Unique& subtypes, Unique& names);
+
   // read_services.cpp
   /// Rows for each_child(): the services, read into `services`.
   [[nodiscard]] std::vector<Child> service_children(Services& services);
@@ -123,6 +128,8 @@ class SubsystemReader {
   Unique failure_names_{"name of a failure", "E0201"};
   Unique failure_codes_{"failure code", "E0202"};
   Unique function_names_{"function name", "E0201"};
+  Unique service_names_{"service name", "E0201"};
+  Unique service_types_{"service type", "E0202"};
   Unique configuration_names_{"configuration name", "E0201"};
   Unique configuration_ids_{"configuration id", "E0202"};
   Unique structure_ids_{"housekeeping structure id", "E0211"};

@@ -15,13 +15,13 @@ namespace hirosco::pus {
 
 /// How one part of a packet's data is laid out.
 enum class Form : std::uint8_t {
-  Number,     ///< `count` numbers of `type`
-  Text,       ///< `count` octets of ASCII, ended early by zeros
-  Word,       ///< length u8, then as many octets of ASCII
-  List,       ///< count u8, then so many times `each`
-  Value,      ///< of the parameter whose id stands before it
+  Number,  ///< `count` numbers of `type`
+  Text,  ///< `count` octets of ASCII, ended early by zeros
+  Word,  ///< length u8, then as many octets of ASCII
+  List,  ///< count u8, then so many times `each`
+  Value,  ///< of the parameter whose id stands before it
   Arguments,  ///< of the function whose name stands before it: count u8, then argument id u8 and value each
-  Rest,       ///< all that is left, which another shape describes
+  Rest,  ///< all that is left, which another shape describes
 };
 
 struct Part {
@@ -58,9 +58,9 @@ struct ReportKind {
 
 /// Who may ask for a service, and how it is passed on.
 enum class Needs : std::uint8_t {
-  Nothing,            ///< as mode and state permit
-  Essential,          ///< forwarded first, in every mode (decision 24)
-  SupervisorAsks,     ///< nobody else may ask for it (decision 10)
+  Nothing,  ///< as mode and state permit
+  Essential,  ///< forwarded first, in every mode (decision 24)
+  SupervisorAsks,  ///< nobody else may ask for it (decision 10)
   SupervisorAnswers,  ///< essential, and no other subsystem has it
 };
 

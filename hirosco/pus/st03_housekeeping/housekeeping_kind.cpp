@@ -23,10 +23,10 @@ constexpr Part values[]{number("STRUCTURE", Type::Uint16), {.name = "VALUES", .f
 
 using enum HousekeepingService::Subtype;
 constexpr RequestKind requests[]{
-    {create_structure, "CREATE_STRUCTURE", definition},     {delete_structures, "DELETE_STRUCTURES", structures},
-    {enable_periodic, "ENABLE_PERIODIC", structures},       {disable_periodic, "DISABLE_PERIODIC", structures},
-    {report_structures, "REPORT_STRUCTURES", structures},   {one_shot, "ONE_SHOT", structures},
-    {append_parameters, "APPEND_PARAMETERS", addition},     {modify_interval, "MODIFY_INTERVAL", new_intervals},
+    {create_structure, "CREATE_STRUCTURE", definition},   {delete_structures, "DELETE_STRUCTURES", structures},
+    {enable_periodic, "ENABLE_PERIODIC", structures},     {disable_periodic, "DISABLE_PERIODIC", structures},
+    {report_structures, "REPORT_STRUCTURES", structures}, {one_shot, "ONE_SHOT", structures},
+    {append_parameters, "APPEND_PARAMETERS", addition},   {modify_interval, "MODIFY_INTERVAL", new_intervals},
     {report_properties, "REPORT_PROPERTIES", structures},
 };
 constexpr ReportKind reports[]{{structure_report, "STRUCTURE", defined},

@@ -148,6 +148,27 @@ class ArgumentReader {
 
 void append(std::vector<std::byte>& data, Octets octets) { data.insert(data.end(), octets.begin(), octets.end()); }
 
+enum class WithIds : std::uint8_t { No, Yes };
+
+[[nodiscard]] Result<> append_arguments(std::vector<std::byte>& data, const Function& function,
+                                        std::span<const std::optional<double>> values, WithIds with_ids) {
+  std::size_t next = 0;
+  for (std::size_t id = 1; id <= function.arguments.size(); ++id) {
+    const auto& argument = function.arguments[id - 1];
+    if (with_ids == WithIds::Yes) data.push_back(static_cast<std::byte>(id));
+    for (std::size_t i = 0; i < argument.field.count; ++i, ++next) {
+      const std::optional<double> value = next < values.size() && values[next] ? values[next] : argument.fallback;
+      if (!value) return fail(ErrorCode::InvalidArgument, "argument missing", static_cast<std::int64_t>(id));
+      HIROSCO_TRY(check_value(argument.field, *value));
+      std::array<std::byte, 8> buffer;
+      OctetWriter writer{buffer};
+      put_number(writer, argument.field.type, *value);
+      append(data, writer.written());
+    }
+  }
+  return ok();
+}
+
 [[nodiscard]] Function built_in_with(const char* name, const char* argument, double maximum, const char* description) {
   Function function;
   function.name = name;
@@ -196,20 +217,15 @@ Result<std::vector<std::byte>> encode_call(const Function& function, std::span<c
   std::vector<std::byte> data(function_name_octets + 1);
   OctetWriter{data}.put(std::as_bytes(std::span{function.name}));
   data.back() = static_cast<std::byte>(function.arguments.size());
-  std::size_t next = 0;
-  for (std::size_t id = 1; id <= function.arguments.size(); ++id) {
-    const auto& argument = function.arguments[id - 1];
-    data.push_back(static_cast<std::byte>(id));
-    for (std::size_t i = 0; i < argument.field.count; ++i, ++next) {
-      const std::optional<double> value = next < values.size() && values[next] ? values[next] : argument.fallback;
-      if (!value) return fail(ErrorCode::InvalidArgument, "argument missing", static_cast<std::int64_t>(id));
-      HIROSCO_TRY(check_value(argument.field, *value));
-      std::array<std::byte, 8> buffer;
-      OctetWriter writer{buffer};
-      put_number(writer, argument.field.type, *value);
-      append(data, writer.written());
-    }
-  }
+  HIROSCO_TRY(append_arguments(data, function, values, WithIds::Yes));
+  return data;
+}
+
+Result<std::vector<std::byte>> encode_arguments_in_order(const Function& request,
+                                                         std::span<const std::optional<double>> values) {
+  if (values.size() > value_count(request)) return fail(ErrorCode::InvalidArgument, "too many arguments");
+  std::vector<std::byte> data;
+  HIROSCO_TRY(append_arguments(data, request, values, WithIds::No));
   return data;
 }
 

@@ -60,6 +60,10 @@ enum BuiltInFunction : std::uint16_t { set_state_function = 0xFF00, configure_fu
 [[nodiscard]] Result<std::vector<std::byte>> encode_call(
     const descriptor::Function& function, std::span<const std::pair<std::string_view, double>> named_values);
 
+/// The same values as a subsystem's own service takes them: in declared order, without name and ids.
+[[nodiscard]] Result<std::vector<std::byte>> encode_arguments_in_order(const descriptor::Function& request,
+                                                                       std::span<const std::optional<double>> values);
+
 /// Takes calls to where they are executed. Whoever implements it reports start, progress and completion of what it took.
 struct FunctionExecutor {
   virtual ~FunctionExecutor() = default;

@@ -12,14 +12,21 @@ constexpr Part link_end[]{number("LINK", Type::Uint8), number("ROLE", Type::Uint
 constexpr Part choice[]{number("CHOICE", Type::Uint8)};
 constexpr Part field[]{word("FIELD"), number("TYPE", Type::Uint8), number("COUNT", Type::Uint16)};
 constexpr Part asked[]{number("LINK", Type::Uint8), word("SET")};
-constexpr Part offered[]{number("LINK", Type::Uint8),      word("SET"),
-                         number("PERIOD_NS", Type::Int64), list("METHODS", choice),
-                         list("BYTE_ORDERS", choice),      list("KINDS", choice),
+constexpr Part offered[]{number("LINK", Type::Uint8),
+                         word("SET"),
+                         number("PERIOD_NS", Type::Int64),
+                         list("METHODS", choice),
+                         list("BYTE_ORDERS", choice),
+                         list("KINDS", choice),
                          list("FIELDS", field)};
-constexpr Part terms[]{number("LINK", Type::Uint8),      word("SET"),
-                       number("LINK", Type::Uint8),      word("SET"),
-                       number("PERIOD_NS", Type::Int64), list("METHODS", choice),
-                       list("BYTE_ORDERS", choice),      list("KINDS", choice),
+constexpr Part terms[]{number("LINK", Type::Uint8),
+                       word("SET"),
+                       number("LINK", Type::Uint8),
+                       word("SET"),
+                       number("PERIOD_NS", Type::Int64),
+                       list("METHODS", choice),
+                       list("BYTE_ORDERS", choice),
+                       list("KINDS", choice),
                        list("FIELDS", field)};
 constexpr Part agreed[]{number("LINK", Type::Uint8),
                         number("METHOD", Type::Uint8),

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
+#include <vector>
 
 #include "hirosco/parameter/number.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/standard_services.hpp"
 
 namespace hirosco::pus {
 namespace {
@@ -50,6 +53,146 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
   std::array<char, 24> text{};
   std::snprintf(text.data(), text.size(), "%s[%u,%u] ", direction, service, subtype);
   return text.data();
+}
+
+/// " SET_STATE STATE=Operational" of the data of TC[8,1].
+[[nodiscard]] std::string call_text(const descriptor::Subsystem& subsystem, Octets data) {
+  const auto common = common_functions();
+  const auto call = decode_call(subsystem.functions, data, common);
+  std::string text;
+  if (!call) return text.append(" (").append(to_text(call.error().notice.code())).append(")");
+  const bool built_in = call->function >= first_built_in_function;
+  const auto& function =
+      built_in ? common[call->function - first_built_in_function] : subsystem.functions[call->function];
+  text.append(" ").append(function.name);
+  std::size_t next = 0;
+  for (const auto& argument : function.arguments) {
+    text.append(" ").append(argument.field.name).append("=");
+    if (function.name == "SET_STATE") text.append(to_text(static_cast<descriptor::State>(call->arguments[next])));
+    else text.append(number_text(call->arguments[next]));
+    next += argument.field.count;
+  }
+  return text;
+}
+
+/// A parameter by its id on the wire, a member by its structure's name and its own.
+struct Known {
+  std::string name;
+  std::vector<descriptor::Field> fields;
+};
+[[nodiscard]] std::optional<Known> parameter_of(const descriptor::Subsystem& subsystem, std::uint32_t wire) {
+  for (const auto& parameter : subsystem.parameters) {
+    const auto is = [&](Type type, std::uint8_t id) { return ParameterId{subsystem.id, type, id}.wire() == wire; };
+    if (is(parameter.field.type, parameter.id)) {
+      if (parameter.members.empty()) return Known{parameter.field.name, {parameter.field}};
+      Known whole{parameter.field.name, {}};
+      for (const auto& member : parameter.members) whole.fields.push_back(member.field);
+      return whole;
+    }
+    for (const auto& member : parameter.members)
+      if (is(member.field.type, member.id))
+        return Known{parameter.field.name + "." + member.field.name, {member.field}};
+  }
+  return std::nullopt;
+}
+
+/// The data of a standard service by their shape (service/service_kind.hpp).
+class ShapeWords {
+ public:
+  ShapeWords(const descriptor::Subsystem& subsystem, OctetReader& reader) : subsystem_{subsystem}, reader_{reader} {}
+  /// " STRUCTURES=4711,4712"
+  [[nodiscard]] std::string parts(Shape shape) {
+    std::string text;
+    for (const Part& part : shape) {
+      if (!reader_.good()) break;
+      const std::string words = value(part);
+      if (!words.empty()) text.append(" ").append(part.name).append("=").append(words);
+    }
+    return text;
+  }
+
+ private:
+  [[nodiscard]] std::string value(const Part& part) {
+    switch (part.form) {
+      case Form::Number: return number_of(part);
+      case Form::Text: return "'" + text_of(reader_.get(part.count)) + "'";
+      case Form::Word: return "'" + text_of(reader_.get(reader_.get<std::uint8_t>())) + "'";
+      case Form::List: return list_of(part);
+      case Form::Value: return value_of_last();
+      case Form::Arguments:
+      case Form::Rest: return {};
+    }
+    return {};
+  }
+  [[nodiscard]] std::string number_of(const Part& part) {
+    std::string text;
+    for (std::uint16_t i = 0; i < part.count; ++i) {
+      const double number = get_number(reader_, part.type);
+      if (i != 0) text.append(",");
+      if (part.name == "PARAMETER") {
+        last_ = parameter_of(subsystem_, static_cast<std::uint32_t>(number));
+        text.append(last_ ? last_->name : number_text(number));
+      } else if (part.name == "EVENT") {
+        const auto event =
+            std::ranges::find(subsystem_.events, static_cast<std::uint16_t>(number), &descriptor::Event::id);
+        text.append(event != subsystem_.events.end() ? event->name : number_text(number));
+      } else {
+        text.append(number_text(number));
+      }
+    }
+    return text;
+  }
+  [[nodiscard]] std::string list_of(const Part& part) {
+    const auto count = reader_.get<std::uint8_t>();
+    std::string text;
+    for (std::uint8_t i = 0; i < count && reader_.good(); ++i) {
+      text.append(i == 0 ? "" : ",");
+      const bool single = part.repeated().size() == 1;
+      if (single) text.append(value(part.repeated().front()));
+      else {
+        const std::string inner = parts(part.repeated());
+        text.append("(").append(inner.empty() ? inner : inner.substr(1)).append(")");
+      }
+    }
+    return text.empty() ? "none" : text;
+  }
+  [[nodiscard]] std::string value_of_last() {
+    // The width of an unknown parameter is unknown: nothing behind it can be read.
+    if (!last_) {
+      static_cast<void>(reader_.get(reader_.remaining() + 1));
+      return "?";
+    }
+    std::string text;
+    for (const auto& field : last_->fields)
+      for (std::uint16_t i = 0; i < field.count; ++i)
+        text.append(text.empty() ? "" : ",").append(number_text(get_number(reader_, field.type)));
+    return text;
+  }
+
+  const descriptor::Subsystem& subsystem_;
+  OctetReader& reader_;
+  std::optional<Known> last_;
+};
+
+[[nodiscard]] std::string shape_text(Shape shape, const descriptor::Subsystem& subsystem, OctetReader& reader) {
+  return ShapeWords{subsystem, reader}.parts(shape);
+}
+
+/// " PAGE NUMBER=3 VALUE=1.5,2" of a report that no rule above knows.
+[[nodiscard]] std::string report_text(const descriptor::Subsystem& subsystem, std::uint8_t service,
+                                      std::uint8_t subtype, OctetReader& reader) {
+  std::string text;
+  if (const auto* own = subsystem.find_service(service)) {
+    const auto report = std::ranges::find(own->reports, subtype, &descriptor::CustomService::Report::subtype);
+    if (report == own->reports.end()) return text;
+    text.append(" ").append(report->name);
+    for (const auto& field : report->fields) append_field(text, subsystem, field, reader);
+    return text;
+  }
+  const ServiceKind* kind = standard_service(service);
+  const ReportKind* report = kind != nullptr ? kind->report(subtype) : nullptr;
+  if (report == nullptr) return text;
+  return text.append(" ").append(report->name).append(shape_text(report->data, subsystem, reader));
 }
 
 /// Stages of ST[01] by subtype.
@@ -101,22 +244,20 @@ std::string PacketDescriber::describe_telecommand(const TelecommandView& telecom
   text.append(name_of(telecommand.apid()));
   text.append(" #").append(std::to_string(telecommand.sequence_count()));
   const auto* subsystem = find(telecommand.apid());
-  if (subsystem == nullptr || telecommand.service() != 8 || telecommand.subtype() != 1) return text;
-  const auto common = common_functions();
-  const auto call = decode_call(subsystem->functions, telecommand.application_data(), common);
-  if (!call) return text.append(" (").append(to_text(call.error().notice.code())).append(")");
-  const bool built_in = call->function >= first_built_in_function;
-  const auto& function =
-      built_in ? common[call->function - first_built_in_function] : subsystem->functions[call->function];
-  text.append(" ").append(function.name);
-  std::size_t next = 0;
-  for (const auto& argument : function.arguments) {
-    text.append(" ").append(argument.field.name).append("=");
-    if (function.name == "SET_STATE") text.append(to_text(static_cast<descriptor::State>(call->arguments[next])));
-    else text.append(number_text(call->arguments[next]));
-    next += argument.field.count;
+  if (subsystem == nullptr) return text;
+  if (telecommand.service() == FunctionService::service_type &&
+      telecommand.subtype() == FunctionService::perform_function)
+    return text.append(call_text(*subsystem, telecommand.application_data()));
+  OctetReader reader{telecommand.application_data()};
+  if (const auto* request = subsystem->find_request(telecommand.service(), telecommand.subtype())) {
+    text.append(" ").append(request->name);
+    for (const auto& argument : request->arguments) append_field(text, *subsystem, argument.field, reader);
+    return text;
   }
-  return text;
+  const ServiceKind* kind = standard_service(telecommand.service());
+  const RequestKind* request = kind != nullptr ? kind->request(telecommand.subtype()) : nullptr;
+  if (request == nullptr) return text;
+  return text.append(" ").append(request->name).append(shape_text(request->data, *subsystem, reader));
 }
 
 std::string PacketDescriber::describe_telemetry(const TelemetryView& telemetry) const {
@@ -142,6 +283,8 @@ std::string PacketDescriber::describe_telemetry(const TelemetryView& telemetry) 
   } else if (telemetry.service() == st129::service_type && telemetry.subtype() == st129::telecommand_copy) {
     const auto telecommand = TelecommandView::parse(telemetry.source_data());
     text.append(" copy of ").append(telecommand ? describe_telecommand(*telecommand) : "a damaged telecommand");
+  } else if (const auto* subsystem = find(telemetry.apid())) {
+    text.append(report_text(*subsystem, telemetry.service(), telemetry.subtype(), reader));
   }
   return text;
 }

@@ -325,6 +325,35 @@ TEST(Permission, ASetStateWithoutItsStateIsNotTowardsSafety) {
   EXPECT_FALSE(decision->essential);
 }
 
+TEST(Permission, ARequestOfASubsystemsOwnServiceIsPermittedByServiceOrNameInItsStates) {
+  auto mission = testing::small_mission();
+  descriptor::CustomService book;
+  book.name = "BOOK";
+  book.type = 200;
+  book.requests = {testing::function("READ_PAGE", testing::in_states({State::SafeOperational})),
+                   testing::function("CLOSE_BOOK", 0x3FF, true)};
+  book.requests[0].service = book.requests[1].service = 200;
+  book.requests[1].subtype = 3;
+  mission.subsystems[0].subsystem.services = {book};
+  const LinkGraph links{mission};
+  const auto decided = [&](std::uint16_t apid, std::uint8_t subtype, State state) {
+    const auto packet = testing::telecommand(apid, 200, subtype, {});
+    return text_of(decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+                          {mission, mission.modes[narrow_mode], links, state, 0}));
+  };
+  EXPECT_EQ(decided(arm, 1, State::SafeOperational), "13 2") << "the mode opens neither service nor name";
+  mission.modes[narrow_mode].permits = {
+      {.subsystem = "ARM", .functions = {"READ_PAGE"}, .services = {}, .parameters = {}, .at = {}}};
+  EXPECT_EQ(decided(arm, 1, State::SafeOperational), "ok");
+  EXPECT_EQ(decided(arm, 1, State::Operational), "10 5");
+  mission.modes[narrow_mode].permits = {
+      {.subsystem = "ARM", .functions = {}, .services = {200}, .parameters = {}, .at = {}}};
+  EXPECT_EQ(decided(arm, 1, State::SafeOperational), "ok");
+  EXPECT_EQ(decided(arm, 3, State::Operational), "essential");
+  EXPECT_EQ(decided(arm, 2, State::Operational), "7 200 2");
+  EXPECT_EQ(decided(hand, 1, State::SafeOperational), "6 200") << "it is the arm's own";
+}
+
 TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
   const auto packet = testing::telecommand(arm, 8, 1, testing::call_data("SET_STATE", 5));
   const auto view = pus::TelecommandView::parse(packet).value();

@@ -3,6 +3,8 @@
 #include "lamp.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <hirosco/subsystem/custom_service.hpp>
 #include <hirosco/subsystem/module.hpp>
 
 namespace {
@@ -21,11 +23,26 @@ class Lamp final : public Subsystem {
     double current_a;
   };
 
+  struct Reading {  // METER of the service
+    std::uint32_t dimmed;
+    double current_a;
+  };
+
+  Result<> offline() override {
+    meter_.on_request("READ_METER", [this](const Call& call) -> Result<> {
+      CurrentValues now{};
+      if (!current_.snapshot(now)) return fail(ErrorCode::Unavailable, "the lamp is being dimmed");
+      return meter_.report("METER", call, Reading{dimmed_.load(), now.current_a});
+    });
+    provide(meter_);
+    return ok();
+  }
   Result<Step> software_init() override {
     publish("CUR_VALUES", current_);
     use_device("LAMP", lamp_);
     on_function("DIM", [this](double brightness) -> Result<> {
       goal_ = brightness;
+      ++dimmed_;
       return ok();
     });
     return done;
@@ -42,6 +59,8 @@ class Lamp final : public Subsystem {
   static constexpr double fade_per_s = 1.0;
   Parameter<CurrentValues> current_;
   DevicePort<Light, Drive> lamp_;
+  CustomService meter_{"METERING"};
+  std::atomic<std::uint32_t> dimmed_{0};  // counted in the cycle, read in the service loop
   double goal_{0.2};
 };
 

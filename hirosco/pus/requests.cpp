@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/pus/requests.hpp"
+
+#include "hirosco/parameter/number.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st17_test/test_service.hpp"
+
+namespace hirosco::pus {
+
+using descriptor::Function;
+
+std::vector<Function> requests_of(const descriptor::Subsystem& subsystem) {
+  std::vector<Function> requests = common_functions();
+  Function ping;
+  ping.name = "PING";
+  ping.service = TestService::service_type;
+  ping.subtype = TestService::are_you_alive;
+  ping.description = "Are you alive? (service 17)";
+  ping.essential = true;
+  requests.push_back(std::move(ping));
+  requests.insert(requests.end(), subsystem.functions.begin(), subsystem.functions.end());
+  for (const auto& service : subsystem.services)
+    requests.insert(requests.end(), service.requests.begin(), service.requests.end());
+  return requests;
+}
+
+bool goes_alone(const Function& request) noexcept {
+  return request.essential && request.service != TestService::service_type;
+}
+
+Result<std::vector<std::byte>> encode_request(const Function& request, std::span<const std::optional<double>> values) {
+  if (request.service == FunctionService::service_type) return encode_call(request, values);
+  return encode_arguments_in_order(request, values);
+}
+
+std::optional<std::vector<double>> decode_request(const Function& request, Octets data) {
+  std::vector<double> values;
+  if (request.service == FunctionService::service_type) {
+    const auto call = decode_call({&request, 1}, data);
+    if (!call) return std::nullopt;
+    for (const auto& argument : request.arguments)
+      for (std::uint16_t i = 0; i < argument.field.count; ++i) values.push_back(call->arguments[values.size()]);
+    return values;
+  }
+  OctetReader reader{data};
+  for (const auto& argument : request.arguments)
+    for (std::uint16_t i = 0; i < argument.field.count; ++i) values.push_back(get_number(reader, argument.field.type));
+  return reader.exhausted() ? std::optional{std::move(values)} : std::nullopt;
+}
+
+}  // namespace hirosco::pus

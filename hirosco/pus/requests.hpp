@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+
+/// The requests of a subsystem by name, whatever service carries them: for clients, forms and words.
+namespace hirosco::pus {
+
+/// SET_STATE, CONFIGURE, PING, the functions of the descriptor, the requests of its own services.
+[[nodiscard]] std::vector<descriptor::Function> requests_of(const descriptor::Subsystem& subsystem);
+
+/// Whether it takes the way of what is essential, past what waits; a ping asks about the ordinary one.
+[[nodiscard]] bool goes_alone(const descriptor::Function& request) noexcept;
+
+/// Application data of such a request: values in declared order; where they end or are empty, the declared value is sent.
+/// InvalidArgument: an argument without value, too many values, a fraction for an integer, not a number;
+/// OutOfRange: against the declared range or type.
+[[nodiscard]] Result<std::vector<std::byte>> encode_request(const descriptor::Function& request,
+                                                            std::span<const std::optional<double>> values);
+
+/// The arguments in the application data of such a request, element by element; empty when they are not of its form.
+[[nodiscard]] std::optional<std::vector<double>> decode_request(const descriptor::Function& request, Octets data);
+
+}  // namespace hirosco::pus

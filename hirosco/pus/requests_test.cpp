@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/pus/requests.hpp"
+
+#include <gtest/gtest.h>
+
+#include "hirosco/pus/words/describe.hpp"
+
+/// Requests by name, whatever service carries them.
+namespace hirosco::pus {
+namespace {
+
+descriptor::Mission one_with_a_service() {
+  descriptor::Mission mission;
+  descriptor::MissionSubsystem member;
+  member.subsystem.name = "LAMP";
+  member.subsystem.id = 10;
+  descriptor::Function dim;
+  dim.name = "DIM";
+  descriptor::Function blink;
+  blink.name = "BLINK";
+  blink.service = 200;
+  blink.subtype = 3;
+  descriptor::Function::Argument times;
+  times.field.name = "TIMES";
+  times.field.type = Type::Uint16;
+  times.field.maximum = 500;
+  descriptor::Function::Argument level;
+  level.field.name = "LEVEL";
+  level.field.count = 2;
+  level.fallback = 0.5;
+  blink.arguments = {times, level};
+  descriptor::CustomService service;
+  service.name = "SIGNAL";
+  service.type = 200;
+  service.requests = {blink};
+  descriptor::Field count;
+  count.name = "COUNT";
+  count.type = Type::Uint16;
+  service.reports = {{"BLINKED", 4, {count}}};
+  descriptor::Parameter gain;
+  gain.field.name = "GAIN";
+  gain.id = 3;
+  member.subsystem.parameters = {gain};
+  member.subsystem.functions = {dim};
+  member.subsystem.services = {service};
+  mission.subsystems.push_back(member);
+  return mission;
+}
+
+const descriptor::Function* named(const std::vector<descriptor::Function>& requests, std::string_view name) {
+  const auto found = std::ranges::find(requests, name, &descriptor::Function::name);
+  return found == requests.end() ? nullptr : &*found;
+}
+
+TEST(Requests, AreThoseOfEverySubsystemOfItsFunctionsAndOfItsOwnServices) {
+  const auto mission = one_with_a_service();
+  std::string names;
+  for (const auto& request : requests_of(mission.subsystems[0].subsystem))
+    names += request.name + " " + std::to_string(request.service) + "," + std::to_string(request.subtype) + ";";
+  EXPECT_EQ(names, "SET_STATE 8,1;CONFIGURE 8,1;PING 17,1;DIM 8,1;BLINK 200,3;");
+}
+
+TEST(Requests, OfAnOwnServiceCarryTheirArgumentsInOrderAndNothingElse) {
+  const auto mission = one_with_a_service();
+  const auto requests = requests_of(mission.subsystems[0].subsystem);
+  const descriptor::Function& blink = *named(requests, "BLINK");
+  const std::vector<std::optional<double>> given{300.0, 0.25};
+  const auto data = encode_request(blink, given);
+  ASSERT_TRUE(data);
+  EXPECT_EQ(data->size(), 2 + 8 + 8);
+  EXPECT_EQ(decode_request(blink, *data), (std::vector<double>{300.0, 0.25, 0.5})) << "the last by its default";
+  EXPECT_FALSE(decode_request(blink, Octets{*data}.first(17)));
+  const std::vector<std::optional<double>> too_large{501.0}, none{};
+  EXPECT_EQ(encode_request(blink, too_large).error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(encode_request(blink, none).error().code, ErrorCode::InvalidArgument);
+  EXPECT_EQ(encode_request(*named(requests, "PING"), none)->size(), 0);
+}
+
+TEST(Requests, AreReadBackAsCallsOfFunctionsToo) {
+  const auto mission = one_with_a_service();
+  const auto requests = requests_of(mission.subsystems[0].subsystem);
+  const std::vector<std::optional<double>> operational{5.0};
+  const auto data = encode_request(*named(requests, "SET_STATE"), operational);
+  ASSERT_TRUE(data);
+  EXPECT_EQ(decode_request(*named(requests, "SET_STATE"), *data), std::vector<double>{5.0});
+}
+
+TEST(Requests, WhatIsEssentialGoesAloneAndAPingDoesNot) {
+  const auto mission = one_with_a_service();
+  auto requests = requests_of(mission.subsystems[0].subsystem);
+  EXPECT_FALSE(goes_alone(*named(requests, "PING")));
+  EXPECT_FALSE(goes_alone(*named(requests, "DIM")));
+  descriptor::Function stop = *named(requests, "DIM");
+  stop.essential = true;
+  EXPECT_TRUE(goes_alone(stop));
+}
+
+std::string described(const descriptor::Mission& mission, std::uint8_t service, std::uint8_t subtype, Octets data) {
+  std::array<std::byte, 256> buffer;
+  const auto packet = write_telecommand(buffer, {.apid = 10, .service = service, .subtype = subtype}, data);
+  return PacketDescriber{mission}.describe(*packet);
+}
+
+TEST(Requests, HaveWordsOfTheirShape) {
+  const auto mission = one_with_a_service();
+  std::array<std::byte, 64> data;
+  OctetWriter structures{data};
+  structures.put(std::uint8_t{2}).put(std::uint16_t{4711}).put(std::uint16_t{4712});
+  EXPECT_EQ(described(mission, 3, 5, structures.written()), "TC[3,5] LAMP #0 ENABLE_PERIODIC STRUCTURES=4711,4712");
+  OctetWriter intervals{data};
+  intervals.put(std::uint8_t{1}).put(std::uint16_t{4711}).put(std::uint32_t{50});
+  EXPECT_EQ(described(mission, 3, 31, intervals.written()),
+            "TC[3,31] LAMP #0 MODIFY_INTERVAL STRUCTURES=(STRUCTURE=4711 INTERVAL=50)");
+  OctetWriter values{data};
+  values.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 3}.wire()).put(1.5);
+  EXPECT_EQ(described(mission, 20, 3, values.written()), "TC[20,3] LAMP #0 SET_VALUES PARAMETERS=(PARAMETER=GAIN VALUE=1.5)");
+  EXPECT_EQ(described(mission, 17, 1, {}), "TC[17,1] LAMP #0 PING");
+}
+
+TEST(Requests, HaveWordsForWhateverOctetsCome) {
+  const auto mission = one_with_a_service();
+  std::array<std::byte, 40> data;
+  unsigned state = 1;
+  for (int round = 0; round < 2000; ++round) {
+    for (auto& octet : data) octet = static_cast<std::byte>((state = state * 1664525U + 1013904223U) >> 24);
+    const auto service = static_cast<std::uint8_t>(std::array{3, 5, 8, 17, 20, 128, 129, 200}[round % 8]);
+    EXPECT_FALSE(described(mission, service, static_cast<std::uint8_t>(1 + round / 8 % 40), Octets{data}.first(round % 41)).empty());
+  }
+}
+
+TEST(Requests, AndReportsOfAnOwnServiceHaveWords) {
+  const auto mission = one_with_a_service();
+  std::array<std::byte, 64> data, buffer;
+  OctetWriter blink{data};
+  blink.put(std::uint16_t{7}).put(0.25).put(0.5);
+  EXPECT_EQ(described(mission, 200, 3, blink.written()), "TC[200,3] LAMP #0 BLINK TIMES=7 LEVEL=0.25,0.5");
+  const auto packet = write_telemetry(buffer, {.apid = 10, .service = 200, .subtype = 4}, Octets{data}.first(2));
+  EXPECT_EQ(PacketDescriber{mission}.describe(*packet), "TM[200,4] LAMP BLINKED COUNT=7");
+}
+
+}  // namespace
+}  // namespace hirosco::pus
