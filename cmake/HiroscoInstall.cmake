@@ -40,7 +40,7 @@ function(hirosco_install_libraries)
 endfunction()
 
 function(hirosco_install)
-  hirosco_install_libraries(hirosco_options hirosco_utilities hirosco_resource hirosco_xml hirosco_parameter
+  hirosco_install_libraries(hirosco_options hirosco_utilities hirosco_xml hirosco_parameter
     hirosco_data_transfer hirosco_descriptor hirosco_pus hirosco_subsystem hirosco_subsystem_main hirosco_subsystem_testing
     hirosco_simulated_device hirosco_simulation_device_shell hirosco_device_main)
   foreach(header IN LISTS HIROSCO_AUTHOR_HEADERS)

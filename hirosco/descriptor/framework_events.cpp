@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
+#include "hirosco/descriptor/framework_parameters.hpp"
 #include "hirosco/utilities/result.hpp"
 
 namespace hirosco::descriptor {
 namespace {
 
 // A dot: no author can declare an enumeration of this name.
-constexpr const char* states_enumeration = "FRAMEWORK.STATES";
 constexpr const char* losses_enumeration = "FRAMEWORK.DEVICE_LOSS";
 constexpr const char* errors_enumeration = "FRAMEWORK.ERRORS";
 
@@ -57,7 +57,7 @@ std::vector<std::string> required_sets(const Subsystem& subsystem) {
 }
 
 void add_framework_events(Subsystem& subsystem) {
-  add_enumeration<State>(subsystem, states_enumeration);
+  add_framework_parameters(subsystem);
   add_enumeration<DeviceLoss>(subsystem, losses_enumeration);
   add_enumeration<ErrorCode>(subsystem, errors_enumeration);
   const auto add = [&](std::string name, std::uint16_t id, Severity severity, std::vector<Field> arguments) {

@@ -46,7 +46,8 @@ enum class DeviceLoss : std::uint8_t {
 
 /// Names of the sets that any configuration requires, each once, in the order of the descriptor.
 [[nodiscard]] std::vector<std::string> required_sets(const Subsystem& subsystem);
-/// Appends the framework's events and the enumerations that their arguments need; those that are there stay as they are.
+/// Appends the framework's events and the enumerations that their arguments need, and its parameters
+/// (framework_parameters.hpp); those that are there stay as they are.
 void add_framework_events(Subsystem& subsystem);
 
 }  // namespace hirosco::descriptor

@@ -45,9 +45,9 @@ void SubsystemReader::read_request(const xml::Element& element, CustomService& s
   request.service = service.type;
   request.subtype = attributes.required_integer<std::uint8_t>("subtype", 1, 255);
   request.essential = attributes.yes("essential", false);
-  request.states = read_states(
-      attributes, "states",
-      {State::PreOperational, State::SafeOperational, State::Operational, State::ErrorOperational});
+  request.states =
+      read_states(attributes, "states",
+                  {State::PreOperational, State::SafeOperational, State::Operational, State::ErrorOperational});
   Unique names{"argument name", "E0201"};
   each_child(element, problems_,
              {{"Argument", [&](const xml::Element& child) { read_argument(child, request, names); }, max_fields},
@@ -80,9 +80,9 @@ void SubsystemReader::read_report(const xml::Element& element, CustomService& se
   report.name = attributes.name();
   report.subtype = attributes.required_integer<std::uint8_t>("subtype", 1, 255);
   Unique fields{"field name", "E0201"};
-  each_child(
-      element, problems_,
-      {{"Field", [&](const xml::Element& child) { read_plain_field(child, report.fields, fields); }, max_fields}});
+  each_child(element, problems_,
+             {{"Field", [&](const xml::Element& child) { read_plain_field(child, report.fields, fields, Says::Words); },
+               max_fields}});
   std::size_t octets = 0;
   for (const Field& field : report.fields) octets += field.octets();
   if (octets > max_report_octets)

@@ -304,8 +304,7 @@ const Subsystem* MissionReader::find(const xml::Attribute& at, std::string_view 
 
 Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source) {
   detail::Problems problems{file};
-  std::string octets;
-  const auto root = detail::read_root(file, source, "Mission", octets, problems);
+  const auto root = detail::read_root(file, source, "Mission", problems);
   Reading<Mission> reading;
   if (!root) return {std::nullopt, problems.take(), {}};
   detail::MissionReader reader{problems, source};

@@ -83,7 +83,51 @@ std::vector<double> read_values(Problems& problems, Attributes& attributes, std:
   return values;
 }
 
+bool SubsystemReader::read_built_in(const xml::Element& element) {
+  const auto* name = element.find("name");
+  if (name == nullptr) return false;
+  const auto found =
+      std::ranges::find_if(built_in_, [&](const Parameter& parameter) { return parameter.field.name == name->value; });
+  const bool states = element.name == "Enumeration" && name->value == states_enumeration;
+  if (element.name == "Enumeration" ? !states : found == built_in_.end()) return false;
+  if (element.name != "StructRef" || !element.children.empty()) {
+    problems_.add(
+        element, "E0213", fmt::format("{} is built in: every subsystem has it", in_quotes(name->value)),
+        states ? "leave it out, and refer to it all the same"
+               : "leave it out, and refer to it all the same; a <StructRef> without members gives it another id");
+    return true;
+  }
+  Attributes attributes{element, problems_};
+  static_cast<void>(attributes.name());
+  found->id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  no_children(element, problems_);
+  return true;
+}
+
+/// No identity of the author's is one of theirs.
+void SubsystemReader::imply_parameters() {
+  const std::size_t own = subsystem_.parameters.size();
+  const auto check = [this](const Parameter& built_in, const Field& field, std::uint8_t id) {
+    const bool member = std::ranges::any_of(
+        built_in.members, [&](const auto& theirs) { return theirs.field.type == field.type && theirs.id == id; });
+    if (!member && (field.type != Type::Struct || built_in.id != id)) return;
+    problems_.add(field.at, "E0203",
+                  fmt::format("type and id of '{}', {} {}, are those of '{}', which every subsystem has", field.name,
+                              to_text(field.type), id, built_in.field.name),
+                  "type and id together must be unique, members included");
+  };
+  for (const Parameter& built_in : built_in_) {
+    for (const Parameter& parameter : subsystem_.parameters) {
+      check(built_in, parameter.field, parameter.id);
+      for (const Parameter::Member& member : parameter.members) check(built_in, member.field, member.id);
+    }
+  }
+  std::ranges::copy(built_in_, std::back_inserter(subsystem_.parameters));
+  index_references(own);
+}
+
 void SubsystemReader::read_enumeration(const xml::Element& element) {
+  if (read_built_in(element)) return;
   Attributes attributes{element, problems_};
   Enumeration enumeration{attributes.name(), {}};
   if (!enumeration.name.empty())
@@ -105,6 +149,7 @@ void SubsystemReader::read_enumeration(const xml::Element& element) {
 }
 
 void SubsystemReader::read_structure(const xml::Element& element) {
+  if (read_built_in(element)) return;
   Attributes attributes{element, problems_};
   Parameter parameter;
   parameter.field.name = attributes.name();
@@ -133,7 +178,7 @@ void SubsystemReader::read_structure(const xml::Element& element) {
 void SubsystemReader::read_member(const xml::Element& element, Parameter& structure, Unique& names) {
   Attributes attributes{element, problems_};
   Parameter::Member member;
-  member.field = read_field(attributes, true);
+  member.field = read_field(attributes, Says::WordsAndRange);
   member.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
   claim_parameter_id(attributes, member.field.type, member.id);
   no_children(element, problems_);
@@ -142,9 +187,10 @@ void SubsystemReader::read_member(const xml::Element& element, Parameter& struct
 }
 
 void SubsystemReader::read_parameter(const xml::Element& element) {
+  if (read_built_in(element)) return;
   Attributes attributes{element, problems_};
   Parameter parameter;
-  parameter.field = read_field(attributes, true);
+  parameter.field = read_field(attributes, Says::WordsAndRange);
   parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
   parameter.init = read_values(problems_, attributes, "init", parameter.field);
   read_access(attributes, parameter);
@@ -175,17 +221,16 @@ void SubsystemReader::expect_range(const xml::Element& element, std::string_view
 }
 
 void SubsystemReader::read_access(Attributes& attributes, Parameter& parameter) {
-  parameter.read_only = attributes.yes("read_only", false);
-  parameter.persistent = attributes.yes("persistent", false);
-  if (parameter.persistent) problems_.not_built_in(*attributes.optional("persistent"), "yes", "values begin with init");
+  if (const auto* at = attributes.optional("read_only"); at != nullptr)
+    problems_.not_built_in(*at, "leave it out: a parameter is read-only in every state that 'writable' does not name");
+  if (const auto* at = attributes.optional("persistent"); at != nullptr)
+    problems_.not_built_in(*at, "leave it out: values begin with init");
   parameter.protection = attributes.yes("protection", false);
   parameter.writable_states = read_states(attributes, "writable", {});
   const auto* writable = attributes.optional("writable");
-  if (writable == nullptr || (!parameter.protection && !parameter.read_only)) return;
-  problems_.add(
-      *writable, "E0219",
-      fmt::format("'{}' is {} and writable", parameter.field.name, parameter.protection ? "a protection" : "read-only"),
-      parameter.protection ? "a protection is raised by its own function only" : "leave one of them out");
+  if (writable != nullptr && parameter.protection)
+    problems_.add(*writable, "E0219", fmt::format("'{}' is a protection and writable", parameter.field.name),
+                  "a protection is raised by its own function only");
 }
 
 void SubsystemReader::claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id) {
@@ -198,7 +243,7 @@ void SubsystemReader::claim_parameter_id(Attributes& attributes, Type type, std:
                      written->value.size(), "type and id together must be unique, members included");
 }
 
-Field SubsystemReader::read_field(Attributes& attributes, bool ranged) {
+Field SubsystemReader::read_field(Attributes& attributes, Says says) {
   Field field;
   field.at = place(attributes.element().at);
   field.name = attributes.name();
@@ -213,11 +258,16 @@ Field SubsystemReader::read_field(Attributes& attributes, bool ranged) {
   field.unit = attributes.text("unit");
   if (field.unit.size() > 32)
     problems_.add(*attributes.element().find("unit"), "E0114", "a unit has at most 32 octets");
-  field.enumeration = attributes.text("enumeration");
-  if (const auto* use = attributes.optional("enumeration"); use != nullptr)
-    enumeration_uses_.push_back({use, use->value, field.type});
-  if (ranged) check_field_range(attributes, field);
+  if (says == Says::Words || says == Says::WordsAndRange) read_words(attributes, field);
+  if (says == Says::Range || says == Says::WordsAndRange) check_field_range(attributes, field);
   return field;
+}
+
+void SubsystemReader::read_words(Attributes& attributes, Field& field) {
+  const auto* use = attributes.optional("enumeration");
+  if (use == nullptr) return;
+  field.enumeration = use->value;
+  enumeration_uses_.push_back({use, use->value, field.type});
 }
 
 void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
@@ -237,9 +287,10 @@ void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
   field.minimum = field.maximum = std::nullopt;
 }
 
-void SubsystemReader::read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names) {
+void SubsystemReader::read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
+                                       Says says) {
   Attributes attributes{element, problems_};
-  Field field = read_field(attributes, false);
+  Field field = read_field(attributes, says);
   no_children(element, problems_);
   if (!field.name.empty()) names.add(field.name, place(element.at), problems_, element.name.size() + 1);
   fields.push_back(std::move(field));
@@ -265,7 +316,7 @@ std::optional<ParameterRef> SubsystemReader::read_reference(Attributes& attribut
 }
 
 /// A parameter's own name goes before members of that name: it is listed first, and is not ambiguous.
-void SubsystemReader::index_references() {
+void SubsystemReader::index_references(std::size_t own) {
   const auto add = [this](const std::string& text, std::size_t parameter, std::optional<std::uint16_t> member) {
     references_[text].push_back({text, static_cast<std::uint16_t>(parameter), member, {}});
   };
@@ -274,7 +325,7 @@ void SubsystemReader::index_references() {
   for (std::size_t i = 0; i < parameters.size(); ++i)
     for (std::size_t m = 0; m < parameters[i].members.size(); ++m) {
       const std::string& member = parameters[i].members[m].field.name;
-      add(member, i, static_cast<std::uint16_t>(m));
+      if (i < own) add(member, i, static_cast<std::uint16_t>(m));
       add(parameters[i].field.name + "." + member, i, static_cast<std::uint16_t>(m));
     }
 }

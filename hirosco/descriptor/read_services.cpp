@@ -76,9 +76,10 @@ void SubsystemReader::read_event(const xml::Element& element, const Services& se
   event.id = attributes.integer_or<std::uint16_t>("id", 1, framework_event::first - 1, 0);
   if (attributes.required("severity") != nullptr) event.severity = attributes.one_of("severity", Severity::Info);
   Unique names{"argument name", "E0201"};
-  each_child(element, problems_,
-             {{"Argument", [&](const xml::Element& child) { read_plain_field(child, event.arguments, names); },
-               max_arguments}});
+  each_child(
+      element, problems_,
+      {{"Argument", [&](const xml::Element& child) { read_plain_field(child, event.arguments, names, Says::Words); },
+        max_arguments}});
   std::size_t octets = 0;
   for (const Field& argument : event.arguments) octets += argument.octets();
   if (octets > max_event_octets)
@@ -124,8 +125,8 @@ void SubsystemReader::read_function(const xml::Element& element, const Services&
   function.name = attributes.name("name", NameKind::Function);
   function.essential = attributes.yes("essential", false);
   function.states = read_states(attributes, "states", {State::Operational});
-  // A function's identity on the wire is its name; a number is allowed as documentation.
-  static_cast<void>(attributes.integer("id", 0, 65'535));
+  if (const auto* at = attributes.optional("id"); at != nullptr)
+    problems_.not_built_in(*at, "leave it out: a function is called by its name");
   Unique names{"argument name", "E0201"};
   each_child(element, problems_,
              {{"Argument", [&](const xml::Element& child) { read_argument(child, function, names); }, max_arguments},
@@ -174,9 +175,9 @@ std::uint16_t SubsystemReader::read_states(Attributes& attributes, std::string_v
 void SubsystemReader::read_argument(const xml::Element& element, Function& function, Unique& names) {
   Attributes attributes{element, problems_};
   Function::Argument argument;
-  if (element.find("of") != nullptr) read_range_of(attributes, argument);
+  if (element.find("of") != nullptr) read_range_of(attributes, argument, function.name);
   else {
-    argument.field = read_field(attributes, true);
+    argument.field = read_field(attributes, Says::WordsAndRange);
     expect_range(element, "argument");
   }
   if (const auto fallback = attributes.number("default"))
@@ -188,7 +189,7 @@ void SubsystemReader::read_argument(const xml::Element& element, Function& funct
 }
 
 /// One range for a number wherever it is set: the argument is one value of the parameter.
-void SubsystemReader::read_range_of(Attributes& attributes, Function::Argument& argument) {
+void SubsystemReader::read_range_of(Attributes& attributes, Function::Argument& argument, const std::string& function) {
   const std::string name = attributes.name();
   const xml::Attribute& at = *attributes.optional("of");
   for (const std::string_view own : {"type", "count", "unit", "minimum", "maximum", "enumeration"})
@@ -203,6 +204,11 @@ void SubsystemReader::read_range_of(Attributes& attributes, Function::Argument& 
     else if (!fields.front().minimum || !fields.front().maximum)
       problems_.add(at, "E0221", in_quotes(at.value) + " has no range", "give it minimum and maximum");
     if (!fields.empty()) argument.field = fields.front();
+    const Parameter& of = subsystem_.parameters[parameter->parameter];
+    const std::string& setter = raised_by_.try_emplace(parameter->parameter, function).first->second;
+    if (of.protection && setter != function)
+      problems_.add(at, "E0219", fmt::format("'{}' is a protection and '{}' sets it already", of.field.name, setter),
+                    "a protection is raised by one function only");
   }
   argument.field.name = name;
   argument.field.count = 1;

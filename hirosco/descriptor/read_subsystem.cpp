@@ -16,22 +16,6 @@ constexpr std::size_t max_description = 4096;
 /// Each has its own copy of what the subsystem declares for all of them.
 constexpr std::size_t max_configurations = 64;
 constexpr std::size_t max_custom_services = 64;
-constexpr std::int64_t max_octets = std::int64_t{1} << 40;
-
-/// "64MiB", "512KiB", "4096"; empty when it is none or more than a tebibyte.
-std::optional<std::size_t> to_octets(std::string_view text) noexcept {
-  std::int64_t unit = 1;
-  for (const auto& [suffix, factor] :
-       {std::pair<std::string_view, std::int64_t>{"KiB", 1 << 10}, {"MiB", 1 << 20}, {"GiB", 1 << 30}})
-    if (text.ends_with(suffix)) {
-      unit = factor;
-      text.remove_suffix(suffix.size());
-      break;
-    }
-  const auto number = to_integer(text);
-  if (!number || *number < 1 || *number > max_octets / unit) return std::nullopt;
-  return static_cast<std::size_t>(*number * unit);
-}
 
 }  // namespace
 
@@ -50,7 +34,11 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                                  subsystem_.description = element.text;
                                },
                                1},
-                              {"Resources", [this](const auto& element) { read_resources(element); }, 1},
+                              {"Resources",
+                               [this](const xml::Element& element) {
+                                 problems_.not_built_in(element, "leave it out: nothing limits what a subsystem takes");
+                               },
+                               1},
                               {"Parameters",
                                [this](const xml::Element& element) {
                                  const Attributes none{element, problems_};
@@ -71,7 +59,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   const std::vector<Child> service_rows = service_children(services);
   for (const Child& row : service_rows) children.push_back({row.name, later(services_elements), row.most});
   each_child(root, problems_, children);
-  index_references();
+  imply_parameters();
   configurations_ = configurations.size();
   for (const xml::Element* element : services_elements)
     std::ranges::find(service_rows, element->name, &Child::name)->read(*element);
@@ -87,39 +75,6 @@ void SubsystemReader::read_head(const xml::Element& root) {
   Attributes attributes{root, problems_};
   subsystem_.name = attributes.name();
   subsystem_.id = attributes.required_integer<std::uint16_t>("id", 1, 2039);
-}
-
-void SubsystemReader::read_resources(const xml::Element& element) {
-  const Attributes none{element, problems_};
-  problems_.warn(place(element.at), "E0224", "<Resources> is not built in: it is read and limits nothing", {},
-                 element.name.size() + 1);
-  Unique sizes{"pool of blocks of octets", "E0202"};
-  each_child(element, problems_,
-             {{"Pool",
-               [&](const xml::Element& child) {
-                 Attributes attributes{child, problems_};
-                 no_children(child, problems_);
-                 Pool pool;
-                 pool.block_octets = attributes.required_integer<std::size_t>("block", 1, 1 << 24);
-                 pool.count = attributes.required_integer<std::size_t>("count", 1, 1 << 24);
-                 if (pool.block_octets != 0)
-                   sizes.add(std::to_string(pool.block_octets), place(child.at), problems_, 5);
-                 subsystem_.resources.pools.push_back(pool);
-               }},
-              {"Memory", [this](const auto& child) { read_memory(child); }, 1}});
-}
-
-void SubsystemReader::read_memory(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  if (const auto* maximum = attributes.required("maximum"); maximum != nullptr) {
-    const auto octets = to_octets(maximum->value);
-    if (octets) subsystem_.resources.memory_octets = *octets;
-    else
-      problems_.add(*maximum, "E0111", in_quotes(maximum->value) + " is not an amount of memory",
-                    "a number of octets, or with KiB, MiB or GiB");
-  }
-  subsystem_.resources.warning_percent = attributes.integer_or<unsigned>("warning", 1, 100, 75);
 }
 
 void SubsystemReader::read_failure(const xml::Element& element) {
@@ -225,7 +180,7 @@ void SubsystemReader::check_octets(const xml::Element& element, const Device& de
 void SubsystemReader::read_output(const xml::Element& element, Device& device, Unique& names) {
   Attributes attributes{element, problems_};
   Device::Output output;
-  output.field = read_field(attributes, true);
+  output.field = read_field(attributes, Says::Range);
   output.safe = read_values(problems_, attributes, "safe", output.field);
   no_children(element, problems_);
   if (device.actuator && element.find("safe") == nullptr)
@@ -239,13 +194,11 @@ void SubsystemReader::read_output(const xml::Element& element, Device& device, U
 
 Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source) {
   detail::Problems problems{file};
-  std::string octets;
-  const auto root = detail::read_root(file, source, "Subsystem", octets, problems);
+  const auto root = detail::read_root(file, source, "Subsystem", problems);
   Reading<Subsystem> reading;
   if (root) {
     Subsystem subsystem = detail::SubsystemReader{problems}.read(*root);
     subsystem.file = file;
-    subsystem.hash = detail::fnv1a(octets);
     if (problems.count() == 0) reading.value = std::move(subsystem);
   }
   reading.problems = problems.take();

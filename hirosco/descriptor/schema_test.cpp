@@ -41,8 +41,17 @@ TEST(Schema, AcceptsWhatTheRepositoryShips) {
 TEST(Schema, RefusesWhatTheReaderRefuses) {
   ASSERT_TRUE(run("xmllint --version")) << "libxml2-utils is not installed";
   const auto file = std::filesystem::path{HIROSCO_BINARY_DIR} / "schema_test.xml";
-  for (const char* body : {"<ParamRef name=\"X\" id=\"1\" type=\"DUBLE\"/>", "<Paramters/>", "<TestService x=\"1\"/>",
-                           "<ParamRef name=\"X\" id=\"256\" type=\"DOUBLE\"/>", "<StructRef name=\"A\" id=\"1\"/>"}) {
+  for (const char* body :
+       {"<ParamRef name=\"X\" id=\"1\" type=\"DUBLE\"/>", "<Paramters/>", "<TestService x=\"1\"/>",
+        "<ParamRef name=\"X\" id=\"256\" type=\"DOUBLE\"/>", "<Resources/>",
+        "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" persistent=\"yes\"/>",
+        "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" read_only=\"yes\"/>",
+        "<FunctionService><Function name=\"X\" id=\"1\"/></FunctionService>",
+        "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\"/><RealTimeLinkService><Provides name=\"P\" "
+        "methods=\"udp\"><ParamRef name=\"X\"/></Provides></RealTimeLinkService>",
+        "<Device name=\"D\" actuator=\"yes\"><Output><Field name=\"F\" type=\"INT8\" safe=\"0\"/></Output>"
+        "<Enable transfer=\"serial\" address=\"x\"/></Device>",
+        "<Device name=\"D\"><Input><Field name=\"F\" type=\"INT8\" enumeration=\"E\"/></Input></Device>"}) {
     const std::string text = std::string{"<Subsystem name=\"S\" id=\"10\">"} + body + "</Subsystem>";
     std::ofstream{file} << text;
     EXPECT_FALSE(validates("subsystem.xsd", file)) << body;

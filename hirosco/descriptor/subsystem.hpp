@@ -70,10 +70,8 @@ struct Parameter {
   Field field;                       ///< for a structure: name and Type::Struct
   std::uint8_t id{};
   std::vector<double> init;          ///< `count` values or empty (zeros)
-  bool read_only{false};             ///< ST[20] may not set it
   std::uint16_t writable_states{0};  ///< bit n set: ST[20] may set it in State n; 0 = never
   bool protection{false};            ///< a limit that protects: only its own function raises it
-  bool persistent{false};
   struct Member {
     Field field;
     std::uint8_t id{};
@@ -237,7 +235,7 @@ struct DeviceUse {
   CycleLimit silence{3, 40};         ///< cycles without a valid frame until the device counts as lost
   std::uint32_t watchdog_us{10'000}; ///< device watchdog with real-time scheduling
   std::uint32_t watchdog_reduced_us{50'000};
-  std::vector<std::pair<std::string, std::string>> settings;
+  std::vector<std::pair<std::string, std::string>> settings;  ///< for its author: DevicePortBase::setting()
   Endnode endnode;
   Location at;
 };
@@ -269,16 +267,6 @@ struct Configuration {
   Location at;
 };
 
-struct Pool {
-  std::size_t block_octets{};
-  std::size_t count{};
-};
-struct Resources {
-  std::vector<Pool> pools;
-  std::size_t memory_octets{0};  ///< 0 = not limited
-  unsigned warning_percent{75};
-};
-
 /// A failure code of the author's own, 0x8000 to 0xFFFF.
 struct FailureName {
   std::uint16_t code{};
@@ -290,8 +278,6 @@ struct Subsystem {
   std::uint16_t id{};  ///< APID
   std::string description;
   std::filesystem::path file;  ///< where it was read from
-  std::uint64_t hash{};  ///< FNV-1a 64 of the file's octets
-  Resources resources;
   std::vector<Enumeration> enumerations;
   std::vector<Parameter> parameters;
   std::vector<Event> events;  ///< the author's, then the framework's (framework_events.hpp)

@@ -114,7 +114,8 @@ TEST(Requests, HaveWordsOfTheirShape) {
             "TC[3,31] LAMP #0 MODIFY_INTERVAL STRUCTURES=(STRUCTURE=4711 INTERVAL=50)");
   OctetWriter values{data};
   values.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 3}.wire()).put(1.5);
-  EXPECT_EQ(described(mission, 20, 3, values.written()), "TC[20,3] LAMP #0 SET_VALUES PARAMETERS=(PARAMETER=GAIN VALUE=1.5)");
+  EXPECT_EQ(described(mission, 20, 3, values.written()),
+            "TC[20,3] LAMP #0 SET_VALUES PARAMETERS=(PARAMETER=GAIN VALUE=1.5)");
   EXPECT_EQ(described(mission, 17, 1, {}), "TC[17,1] LAMP #0 PING");
 }
 
@@ -125,7 +126,9 @@ TEST(Requests, HaveWordsForWhateverOctetsCome) {
   for (int round = 0; round < 2000; ++round) {
     for (auto& octet : data) octet = static_cast<std::byte>((state = state * 1664525U + 1013904223U) >> 24);
     const auto service = static_cast<std::uint8_t>(std::array{3, 5, 8, 17, 20, 128, 129, 200}[round % 8]);
-    EXPECT_FALSE(described(mission, service, static_cast<std::uint8_t>(1 + round / 8 % 40), Octets{data}.first(round % 41)).empty());
+    EXPECT_FALSE(
+        described(mission, service, static_cast<std::uint8_t>(1 + round / 8 % 40), Octets{data}.first(round % 41))
+            .empty());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/framework_parameters.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
 /// The state machine of the generic subsystem: commands, phases of transient states, configurations.
@@ -105,9 +106,9 @@ Result<Step> GenericSubsystem::initialise_software() {
   const auto step = author_.software_init();
   if (step && *step == Step::Again) return again;
   if (!step) mistake(step.error().text);
-  if (dictionary_.index_of("CYCLE_STATS")) publish("CYCLE_STATS", cycle_.statistics());
-  if (dictionary_.index_of("CYCLE_TIMES")) publish("CYCLE_TIMES", cycle_.times());
-  if (dictionary_.index_of("LINK_STATS")) publish("LINK_STATS", cycle_.link_statistics());
+  publish(descriptor::framework_parameter::cycle_stats, cycle_.statistics());
+  publish(descriptor::framework_parameter::cycle_times, cycle_.times());
+  publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
   if (step) check_introduction();
   if (!problems_.empty()) {
     problems_text_ = problems_.front();

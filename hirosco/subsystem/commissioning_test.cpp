@@ -294,24 +294,34 @@ TEST_F(Commissioning, AConfigurationIsGivenBackOnTheWayDownWhenItsCycleRestsAtLa
   EXPECT_THAT(rig.outcome(down), StartsWith("1 3 8:"));
 }
 
-TEST_F(Commissioning, TimesAndCountsOfTheCycleAreParametersWhereTheDescriptorDeclaresThem) {
+TEST_F(Commissioning, EachCycleCountsInParametersThatNoDescriptorDeclares) {
   Probe author;
-  Rig other{author, changed("</Parameters>", R"(
-    <StructRef name="CYCLE_STATS" id="39" type="STRUCT" read_only="yes">
-      <ParamRef name="OVERRUNS" id="100" type="UINT32"/>
-      <ParamRef name="MAX_US" id="101" type="FLOAT"/>
-      <ParamRef name="AVG_US" id="102" type="FLOAT"/>
-    </StructRef>
-    <StructRef name="CYCLE_TIMES" id="40" type="STRUCT" read_only="yes">
-      <ParamRef name="EXECUTION" id="240" type="UINT32" count="16"/>
-      <ParamRef name="LATENCY" id="241" type="UINT32" count="16"/>
-    </StructRef>
-    <StructRef name="LINK_STATS" id="41" type="STRUCT" read_only="yes">
-      <ParamRef name="RECEIVED" id="242" type="UINT32"/>
-      <ParamRef name="LOST" id="243" type="UINT32"/>
-    </StructRef>
-  </Parameters>)")};
-  EXPECT_EQ(other.set_state_now(State::PreOperational), "1 3 7");
+  Rig other{author,
+            changed("  <Configuration name=\"COUPLED\"", R"(  <Configuration name="COUNTING" id="9" sampling_us="500">
+    <HKService id="257" interval="10"><SampledOnce><ParamRef name="CYCLE_TIMES"/></SampledOnce></HKService>
+    <HKService id="258" interval="10">
+      <SampledOnce><ParamRef name="CYCLE_STATS"/><ParamRef name="LINK_STATS"/></SampledOnce>
+    </HKService>
+  </Configuration>
+  <Configuration name="COUPLED")")};
+  other.bring_to(State::SafeOperational, 9);
+  for (int i = 0; i < 4; ++i) {
+    other.cycle(10);
+    other.service();
+  }
+  std::vector<std::uint32_t> cycles;
+  for (const std::string& report : other.reports(3, 25)) {
+    if (!report.starts_with("0101")) {
+      EXPECT_EQ(report.size(), 2 * (2U + 3 * 4 + 2 * 4)) << "id, CYCLE_STATS, LINK_STATS";
+      continue;
+    }
+    std::uint32_t sum = 0;
+    for (std::size_t bin = 0; bin < 16; ++bin)
+      sum += static_cast<std::uint32_t>(std::stoul(report.substr(4 + 8 * bin, 8), nullptr, 16));
+    cycles.push_back(sum);
+  }
+  ASSERT_GE(cycles.size(), 3U);
+  for (std::size_t i = 1; i < cycles.size(); ++i) EXPECT_EQ(cycles[i], cycles[i - 1] + 10);
 }
 
 /// Names what its descriptor does not declare, twice.

@@ -80,7 +80,8 @@ void CustomService::join(ServiceHome& home) {
   home_ = &home;
   open_.clear();
   declared_ = home.descriptor().find_service(name_);
-  kind_ = {.type = declared_ != nullptr ? declared_->type : std::uint8_t{0}, .name = name_, .requests = {}, .reports = {}};
+  kind_ = {
+      .type = declared_ != nullptr ? declared_->type : std::uint8_t{0}, .name = name_, .requests = {}, .reports = {}};
 }
 
 std::vector<std::string> CustomService::problems() const {
@@ -115,9 +116,9 @@ void CustomService::handle(const pus::TelecommandView& telecommand, const pus::R
         request, FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(home_->state())));
   verification.accepted(request);
   if (const auto bad = bad_argument(fields, data))
-    return verification.start_failed(request, FailureNotice{FailureCode::ValueNotAcceptable}
-                                                  .with(std::uint8_t{0})
-                                                  .with(static_cast<std::uint32_t>(*bad)));
+    return verification.start_failed(
+        request,
+        FailureNotice{FailureCode::ValueNotAcceptable}.with(std::uint8_t{0}).with(static_cast<std::uint32_t>(*bad)));
   // Open before it runs: whoever finishes at once is heard, too.
   open_.push_back(request);
   const Outcome outcome = bound->handler(data, {request});

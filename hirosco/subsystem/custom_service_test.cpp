@@ -11,11 +11,11 @@
 namespace hirosco {
 namespace {
 
-using testing::Rig;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using testing::Rig;
 
 constexpr const char* librarian_descriptor = R"(<Subsystem name="LIBRARIAN" id="10">
   <Failure code="0x8001" name="BOOK_LENT"/>

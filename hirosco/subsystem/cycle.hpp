@@ -23,22 +23,21 @@
 /// samples housekeeping, writes links and devices.
 namespace hirosco {
 
-/// Cycle statistics as a parameter: published by the framework where a descriptor declares CYCLE_STATS.
+/// Cycle statistics as a parameter of every subsystem: CYCLE_STATS (descriptor/framework_parameters.hpp).
 struct CycleStatistics {
   std::uint32_t overruns{0};
   float max_us{0.0F};  ///< longest execution since the configuration was applied
   float avg_us{0.0F};  ///< mean over about the last 1,000 cycles
 };
 
-/// Where the cycles of a configuration fell, as a parameter: published by the framework where a descriptor declares
-/// CYCLE_TIMES. Bin 0: below 1 us; bin i: from 2^(i-1) us to below 2^i us; the last one: all above.
+/// Where the cycles of a configuration fell, as a parameter of every subsystem: CYCLE_TIMES. Bin 0: below 1 us; bin i:
+/// from 2^(i-1) us to below 2^i us; the last one: all above.
 struct CycleTimes {
   std::array<std::uint32_t, 16> execution{};  ///< of the cycle's own work
   std::array<std::uint32_t, 16> latency{};  ///< from the planned instant to the start
 };
 
-/// What the real-time links brought since they were made, as a parameter: published where a descriptor declares
-/// LINK_STATS.
+/// What the real-time links brought since they were made, as a parameter of every subsystem: LINK_STATS.
 struct LinkStatistics {
   std::uint32_t received{0};
   std::uint32_t lost{0};  ///< samples that came and went between two cycles: gaps of the count

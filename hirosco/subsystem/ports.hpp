@@ -4,7 +4,10 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "hirosco/data_transfer/realtime_link.hpp"
 #include "hirosco/parameter/layout.hpp"
@@ -70,6 +73,13 @@ class DevicePortBase {
   /// Flags of the newest status frame.
   [[nodiscard]] std::uint16_t flags() const noexcept { return flags_; }
   [[nodiscard]] std::uint32_t damaged_frames() const noexcept { return damaged_frames_; }
+  /// What the configuration says of this device with <Setting name="..." value="..."/>; empty when it says nothing.
+  /// From configure() on.
+  [[nodiscard]] std::string_view setting(std::string_view name) const noexcept {
+    for (const auto& [known, value] : settings_)
+      if (known == name) return value;
+    return {};
+  }
   [[nodiscard]] std::span<const NativeField> input_layout() const noexcept { return input_layout_; }
   [[nodiscard]] std::span<const NativeField> output_layout() const noexcept { return output_layout_; }
 
@@ -87,6 +97,7 @@ class DevicePortBase {
   MutableOctets input_;
   std::span<const NativeField> output_layout_;
   Octets output_;
+  std::span<const std::pair<std::string, std::string>> settings_;
   bool alive_{false};
   bool fresh_{false};
   std::uint16_t flags_{0};
@@ -103,7 +114,8 @@ class DevicePort final : public DevicePortBase {
   /// What the device last said; zeros before the first frame.
   [[nodiscard]] const Input& input() const noexcept { return input_; }
   /// What the device is to do. Reaches an actuator in Operational only: in every other state, and while inhibited, the
-  /// framework sends the descriptor's safe values instead (decision 22).
+  /// framework sends the descriptor's safe values instead (decision 22). What is outside a declared range goes out as
+  /// the end of it, and what is no number as the safe value.
   [[nodiscard]] Output& output() noexcept { return output_; }
 
  private:

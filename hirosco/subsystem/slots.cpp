@@ -4,6 +4,7 @@
 #include "hirosco/subsystem/slots.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hirosco/data_transfer/device_frame.hpp"
 #include "hirosco/parameter/number.hpp"
@@ -208,6 +209,7 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
   port_->alive_ = false;
   port_->fresh_ = false;
   port_->damaged_frames_ = 0;
+  port_->settings_ = use.settings;
 }
 
 std::string DeviceSlot::difference(const descriptor::Device& device, const DevicePortBase& port) {
@@ -279,6 +281,27 @@ DeviceSlot::Loss DeviceSlot::loss() const noexcept {
   return loss;
 }
 
+void DeviceSlot::keep_in_range(MutableOctets payload) noexcept {
+  std::size_t at = 0;
+  for (const auto& output : device_->output) {
+    const descriptor::Field& field = output.field;
+    const std::size_t octets = octets_of(field.type);
+    for (std::size_t i = 0; i < field.count; ++i, at += octets) {
+      if (!field.minimum && !field.maximum) continue;
+      const MutableOctets place = payload.subspan(at, octets);
+      OctetReader reader{place, order_};
+      const double wanted = get_number(reader, field.type);
+      double held = wanted;
+      if (std::isnan(wanted)) held = i < output.safe.size() ? output.safe[i] : 0.0;
+      if (field.minimum) held = std::max(held, *field.minimum);
+      if (field.maximum) held = std::min(held, *field.maximum);
+      if (held == wanted) continue;
+      OctetWriter writer{place, order_};
+      put_number(writer, field.type, held);
+    }
+  }
+}
+
 void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {
   const bool pass = active || !device_->actuator;
   active_cycles_ = active ? std::min(active_cycles_ + 1, longest_silence) : 0;
@@ -287,6 +310,7 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
   if (pass) {
     const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());
     encode(output_layout_, port_->output_, room, order_);
+    keep_in_range(room);
     payload = room;
   }
   const DeviceMode mode = pass ? DeviceMode::Active : stopping ? DeviceMode::Stop : DeviceMode::Off;

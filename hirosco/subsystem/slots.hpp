@@ -119,6 +119,8 @@ class DeviceSlot {
 
  private:
   void take_frame(Octets frame) noexcept;
+  /// No output leaves its declared range.
+  void keep_in_range(MutableOctets payload) noexcept;
   static void count(std::uint32_t& cycles) noexcept;
 
   const descriptor::Device* device_;

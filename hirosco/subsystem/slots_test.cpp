@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "hirosco/data_transfer/device_frame.hpp"
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
 
@@ -85,6 +88,48 @@ TEST_F(MotorSlot, SafeValuesAndOutputHaveTheByteOrderOfTheEndnodeAndWhatIsNotDec
     made.read(true);
     EXPECT_EQ(port.input().angle, big ? 0x0708 : 0x0807);
   }
+}
+
+TEST_F(MotorSlot, NoOutputLeavesItsDeclaredRange) {
+  device.output.front().field.minimum = 10;
+  device.output.front().field.maximum = 1'000;
+  DeviceSlot made = slot();
+  port.output().current[0] = 9;
+  port.output().current[1] = 1'001;
+  made.write(5, true, false);
+  EXPECT_EQ(numbers_of(heard().payload), (std::vector{10, 0, 0xE8, 0x03}));
+  port.output().current[0] = 10;
+  port.output().current[1] = 1'000;
+  made.write(5, true, false);
+  EXPECT_EQ(numbers_of(heard().payload), (std::vector{10, 0, 0xE8, 0x03}));
+}
+
+struct Pushed {
+  std::array<double, 2> force{};
+  float bias{};
+};
+
+TEST_F(MotorSlot, AnOutputWithARangeThatIsNoNumberGoesOutAsItsSafeValue) {
+  device.output = {{.field = field("FORCE", Type::Double, 2), .safe = {0.5, 0.25}},
+                   {.field = field("BIAS", Type::Float), .safe = {}}};
+  for (auto& output : device.output) output.field.maximum = 2;
+  DevicePort<Sensed, Pushed> pushing;
+  DeviceSlot made{device, use, pushing, open(FlowSide::Subsystem), true};
+  pushing.output() = Pushed{.force = {std::nan(""), 7}, .bias = std::numeric_limits<float>::quiet_NaN()};
+  made.write(5, true, false);
+  const DeviceCommand command = heard();
+  OctetReader reader{command.payload, std::endian::little};
+  EXPECT_EQ(reader.get<double>(), 0.5);
+  EXPECT_EQ(reader.get<double>(), 2);
+  EXPECT_EQ(reader.get<float>(), 0);
+}
+
+TEST_F(MotorSlot, WhatAConfigurationSetsForADeviceIsItsAuthorsToRead) {
+  use.settings = {{"STIFFNESS", "4000"}, {"NAME", "left"}};
+  const DeviceSlot made = slot();
+  EXPECT_EQ(port.setting("STIFFNESS"), "4000");
+  EXPECT_EQ(port.setting("NAME"), "left");
+  EXPECT_EQ(port.setting("DAMPING"), "");
 }
 
 TEST_F(MotorSlot, EachCommandSaysModeEpochAndWatchdogAndHasASequenceOfItsOwn) {

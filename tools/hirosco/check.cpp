@@ -24,6 +24,14 @@ namespace {
   return false;
 }
 
+void show_field(const char* direction, const descriptor::Field& field) {
+  fmt::print("    {} {} {}{}{}", direction, field.name, to_text(field.type),
+             field.count == 1 ? "" : fmt::format("[{}]", field.count), field.unit.empty() ? "" : " " + field.unit);
+  if (field.minimum) fmt::print(", at least {}", *field.minimum);
+  if (field.maximum) fmt::print(", at most {}", *field.maximum);
+  fmt::print("\n");
+}
+
 void show_subsystem(const descriptor::Subsystem& subsystem) {
   fmt::print("subsystem {} (APID {}): {} parameters, {} functions, {} events\n", subsystem.name, subsystem.id,
              subsystem.parameters.size(), subsystem.functions.size(), subsystem.events.size());
@@ -32,6 +40,11 @@ void show_subsystem(const descriptor::Subsystem& subsystem) {
                configuration.name, configuration.id, configuration.sampling / 1us, configuration.priority,
                configuration.provides.size(), configuration.requires_.size(), configuration.devices.size(),
                configuration.housekeeping.size() + subsystem.housekeeping.size());
+  for (const auto& device : subsystem.devices) {
+    fmt::print("  device {}{}\n", device.name, device.actuator ? ", an actuator" : "");
+    for (const auto& field : device.input) show_field("says", field);
+    for (const auto& output : device.output) show_field("takes", output.field);
+  }
 }
 
 void show_mission(const descriptor::Mission& mission) {

@@ -158,6 +158,15 @@ void Problems::not_built_in(const xml::Attribute& attribute, std::string_view wo
   add(attribute, "E0224", fmt::format("{} {} is not built in", attribute.name, in_quotes(word)), std::move(hint));
 }
 
+void Problems::not_built_in(const xml::Attribute& attribute, std::string hint) {
+  add(place(attribute.at), "E0224", fmt::format("attribute '{}' is not built in", attribute.name), std::move(hint),
+      attribute.name.size());
+}
+
+void Problems::not_built_in(const xml::Element& element, std::string hint) {
+  add(element, "E0224", fmt::format("<{}> is not built in", element.name), std::move(hint));
+}
+
 namespace {
 std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> all) {
   std::ranges::stable_sort(all, {}, [](const Diagnostic& d) { return std::tuple{d.at.line, d.at.column}; });
@@ -325,21 +334,14 @@ bool Unique::add(const std::string& key, Location at, Problems& problems, std::s
   return false;
 }
 
-std::uint64_t fnv1a(std::string_view octets) noexcept {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char octet : octets) hash = (hash ^ static_cast<unsigned char>(octet)) * 0x100000001b3U;
-  return hash;
-}
-
 std::optional<xml::Element> read_root(const std::filesystem::path& file, const FileSource& source,
-                                      std::string_view root, std::string& octets, Problems& problems) {
+                                      std::string_view root, Problems& problems) {
   auto content = source(file);
   if (!content) {
     problems.add(Location{}, "E0001", content.error().text, "a regular, readable file of at most 4 MiB is needed");
     return std::nullopt;
   }
-  octets = std::move(*content);
-  auto tree = xml::read_tree(octets);
+  auto tree = xml::read_tree(*content);
   if (!tree) {
     const xml::Problem& problem = tree.error();
     const std::string_view code = problem.refusal == xml::Refusal::NotWellFormed ? "E0002"

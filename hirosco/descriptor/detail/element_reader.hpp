@@ -56,8 +56,10 @@ class Problems {
 
   /// What does not keep the file from being taken.
   void warn(Location at, std::string_view code, std::string message, std::string hint = {}, std::size_t length = 1);
-  /// A word that is known, but that no code honours yet.
+  /// What is known, but no code honours: one word of an attribute, an attribute as such, an element.
   void not_built_in(const xml::Attribute& attribute, std::string_view word, std::string hint);
+  void not_built_in(const xml::Attribute& attribute, std::string hint);
+  void not_built_in(const xml::Element& element, std::string hint);
 
   [[nodiscard]] std::size_t count() const noexcept { return problems_.size(); }
   [[nodiscard]] bool full() const noexcept { return problems_.size() >= max_problems; }
@@ -187,12 +189,9 @@ class Unique {
   std::map<std::string, std::pair<std::string, Location>> seen_;  ///< in lower case: as written first, and where
 };
 
-/// FNV-1a, 64 bit.
-[[nodiscard]] std::uint64_t fnv1a(std::string_view octets) noexcept;
-
 /// Reads the file and its tree; reports what is wrong with them and checks the root's name.
 [[nodiscard]] std::optional<xml::Element> read_root(const std::filesystem::path& file, const FileSource& source,
-                                                    std::string_view root, std::string& octets, Problems& problems);
+                                                    std::string_view root, Problems& problems);
 
 /// Host and port of an "host:port" that stays on this computer.
 enum class Address { Loopback, Foreign, Malformed };

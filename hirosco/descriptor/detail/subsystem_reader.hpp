@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/detail/element_reader.hpp"
+#include "hirosco/descriptor/framework_parameters.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
 
 namespace hirosco::descriptor::detail {
@@ -41,8 +42,6 @@ class SubsystemReader {
 
   // read_subsystem.cpp
   void read_head(const xml::Element& root);
-  void read_resources(const xml::Element& element);
-  void read_memory(const xml::Element& element);
   void read_hang(const xml::Element& element);
   void read_failure(const xml::Element& element);
   void read_device(const xml::Element& element);
@@ -64,23 +63,30 @@ class SubsystemReader {
   void read_initial(const xml::Element& element, Configuration& configuration);
 
   // read_parameters.cpp
+  /// True when the element names what every subsystem has: it may give a parameter its id, and is else reported.
+  bool read_built_in(const xml::Element& element);
+  void imply_parameters();
   void read_enumeration(const xml::Element& element);
   void read_structure(const xml::Element& element);
   void read_parameter(const xml::Element& element);
   void read_member(const xml::Element& element, Parameter& structure, Unique& names);
   /// A number that comes from outside has a range.
   void expect_range(const xml::Element& element, std::string_view what);
-  /// Who may set it: read_only, writable, protection, persistent.
+  /// Who may set it: writable, protection.
   void read_access(Attributes& attributes, Parameter& parameter);
   void claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id);
   void check_enumerations();
-  /// Name, type, count, unit and, with `ranged`, minimum and maximum.
-  [[nodiscard]] Field read_field(Attributes& attributes, bool ranged);
-  void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names);
+  /// What a field says besides name, type, count and unit.
+  enum class Says { Nothing, Words, Range, WordsAndRange };
+  [[nodiscard]] Field read_field(Attributes& attributes, Says says);
+  void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
+                        Says says = Says::Nothing);
+  void read_words(Attributes& attributes, Field& field);
   void check_field_range(Attributes& attributes, Field& field);
   /// The `name` attribute resolved against the parameters.
   [[nodiscard]] std::optional<ParameterRef> read_reference(Attributes& attributes, std::string_view user);
-  void index_references();
+  /// `own`: how many parameters are the author's; members of the others are known by their full name only.
+  void index_references(std::size_t own);
   [[nodiscard]] std::optional<ParameterRef> resolve(const xml::Attribute& name, std::string_view user);
   [[nodiscard]] std::string suggest_reference(std::string_view text) const;
   [[nodiscard]] std::size_t octets_of_reference(const ParameterRef& reference) const;
@@ -100,7 +106,7 @@ class SubsystemReader {
   void read_function(const xml::Element& element, const Services& services);
   [[nodiscard]] static std::uint16_t read_states(Attributes& attributes, std::string_view name,
                                                  std::vector<State> fallback);
-  void read_range_of(Attributes& attributes, Function::Argument& argument);
+  void read_range_of(Attributes& attributes, Function::Argument& argument, const std::string& function);
   void check_arguments(const xml::Element& element, const Function& function);
   void read_argument(const xml::Element& element, Function& function, Unique& names);
   void read_housekeeping(const xml::Element& element, Services& services);
@@ -138,7 +144,9 @@ class SubsystemReader {
   std::vector<Provides> provides_;   ///< under <Subsystem>: valid in every configuration
   std::vector<Requires> requires_;
   std::size_t configurations_{0};    ///< that the descriptor has
+  std::vector<Parameter> built_in_{framework_parameters()};
   std::vector<EnumerationUse> enumeration_uses_;
+  std::map<std::uint16_t, std::string> raised_by_;  ///< the function whose argument is first `of` a parameter
   std::vector<std::pair<const xml::Element*, Event>> framework_severities_;  ///< as the descriptor wants them
   std::map<std::string, std::vector<ParameterRef>, std::less<>> references_;  ///< by every spelling
 };

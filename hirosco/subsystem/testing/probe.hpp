@@ -29,7 +29,7 @@ inline const std::string probe_descriptor = R"(<Subsystem name="PROBE" id="10">
 <ParamRef name="DES_POSITION" id="1" type="DOUBLE" />
     <ParamRef name="KP" id="2" type="DOUBLE" init="3" minimum="0" maximum="100" writable="PreOperational SafeOperational Operational"/>
     <ParamRef name="KD" id="3" type="DOUBLE" init="4" minimum="0" maximum="100" writable="PreOperational SafeOperational Operational"/>
-    <ParamRef name="SEEN" id="4" type="DOUBLE" read_only="yes"/>
+    <ParamRef name="SEEN" id="4" type="DOUBLE"/>
   </Parameters>
   <EventService>
     <Event name="LAMP_LOST" severity="low"/>

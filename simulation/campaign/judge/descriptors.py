@@ -53,7 +53,6 @@ class Parameter:
     name: str
     wire_id: int
     fields: list
-    read_only: bool
     writable: set | None
     protection: bool
 
@@ -127,15 +126,29 @@ def states(text):
     return {STATES.index(name) for name in (text or "").split()}
 
 
+# What every subsystem has (docs/adr/0056): its id, and type and count of each of its numbers.
+BUILT_IN = {"CYCLE_STATS": (39, [("UINT32", 1), ("FLOAT", 1), ("FLOAT", 1)]),
+            "CYCLE_TIMES": (40, [("UINT32", 16), ("UINT32", 16)]),
+            "LINK_STATS": (41, [("UINT32", 1), ("UINT32", 1)])}
+
+
 def read_parameters(root, apid):
-    parameters = []
+    def wire_id(kind, number):
+        return apid << 16 | TYPES[kind][0] << 8 | int(number)
+
+    parameters, ids = [], {name: number for name, (number, _) in BUILT_IN.items()}
     for element in root.find("Parameters") if root.find("Parameters") is not None else []:
-        kind = element.get("type")
+        kind, name = element.get("type"), element.get("name")
+        if name in BUILT_IN:
+            ids[name] = element.get("id")
+            continue
         fields = [argument(child) for child in element] if kind == "STRUCT" else [argument(element)]
-        wire_id = apid << 16 | TYPES[kind][0] << 8 | int(element.get("id"))
         writable = element.get("writable")
-        parameters.append(Parameter(element.get("name"), wire_id, fields, element.get("read_only") == "yes",
+        parameters.append(Parameter(name, wire_id(kind, element.get("id")), fields,
                                     states(writable) if writable is not None else None, element.get("protection") == "yes"))
+    for name, (_, numbers) in BUILT_IN.items():
+        fields = [Argument(name, kind, None, None, count) for kind, count in numbers]
+        parameters.append(Parameter(name, wire_id("STRUCT", ids[name]), fields, None, False))
     return parameters
 
 

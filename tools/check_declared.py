@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Nothing is declared that is not in force: hirosco/descriptor/consumers.csv has one row for each element, attribute and word of
+the schemas, and what a row names is there; so are the folders and tests of docs/paper_map.md. Prints what breaks that, and breaks
+it itself, to be caught.
+
+`declared`: PARENT/ELEMENT, with @ATTRIBUTE, with =WORD; the words of a named type as TYPE=WORD; a group is a parent, too.
+`honoured_by`: STRUCT::MEMBER or ENUMERATION::WORD of the model, and `in` the file outside hirosco/descriptor that reads it; an error
+that hirosco/descriptor makes of it, where a refusal is all that it is for; or a name of the code that does it in any case."""
+import csv, pathlib, re, sys
+import xml.etree.ElementTree as xml
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FOLDER = ROOT / "hirosco/descriptor"
+MODEL = [FOLDER / "subsystem.hpp", FOLDER / "mission.hpp", ROOT / "hirosco/parameter/type.hpp"]
+COLUMNS = ["schema", "declared", "honoured_by", "in"]
+XS = "{http://www.w3.org/2001/XMLSchema}"
+PLAIN = {"YesNo"}  # its words are those of every language
+
+
+def tag(node):
+    return node.tag.removeprefix(XS) if isinstance(node.tag, str) else ""
+
+
+def declared(schema):
+    """What a schema lets somebody write, each once, in its order."""
+    root = xml.fromstring(schema)
+    named = {(tag(node), node.get("name")): node for node in root}
+    found = {}
+
+    def words(place, node):
+        found.update({f"{place}={word.get('value')}": None for word in node.iter(XS + "enumeration")})
+
+    def inside(node):
+        """The parts of a type, those that it has from another one first."""
+        for part in node:
+            if tag(part) == "extension" and ("complexType", part.get("base")) in named:
+                yield from inside(named["complexType", part.get("base")])
+            if tag(part) in ("complexType", "complexContent", "simpleContent", "extension", "sequence", "choice", "all"):
+                yield from inside(part)
+            elif tag(part) == "attributeGroup":
+                yield from inside(named["attributeGroup", part.get("ref")])
+            else:
+                yield part
+
+    def elements(parent, node):
+        for part in inside(node):
+            if tag(part) == "group":
+                elements(part.get("ref"), named["group", part.get("ref")])
+            elif tag(part) == "element":
+                element(f"{parent}/{part.get('name')}", part)
+
+    def element(place, node):
+        if place in found:
+            return
+        found[place] = None
+        kind = named.get(("complexType", node.get("type")), node)
+        for part in inside(kind):
+            if tag(part) == "attribute":
+                found[f"{place}@{part.get('name')}"] = None
+                words(f"{place}@{part.get('name')}", part)
+        elements(node.get("name"), kind)
+
+    for (what, name), node in named.items():
+        if what == "simpleType" and name not in PLAIN:
+            words(name, node)
+    for (what, name), node in named.items():
+        if what == "element":
+            element(name, node)
+    return list(found)
+
+
+def bare(code):
+    """Without comments and texts."""
+    return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', " ", code, flags=re.S)
+
+
+def members(headers):
+    """STRUCT::MEMBER and ENUMERATION::WORD, with what stands inside of others, and of which kind they are."""
+    found = {}
+    for text in headers:
+        for begin in re.finditer(r"\b(struct|enum class) (\w+)[^;{]*\{", text):
+            depth, at = 1, begin.end()
+            while depth and at < len(text):
+                depth += {"{": 1, "}": -1}.get(text[at], 0)
+                at += 1
+            names = re.findall(r"\b(\w+)\s*(?=[;{=,(}])", text[begin.end():at])
+            found.update({f"{begin.group(2)}::{name}": begin.group(1) for name in names})
+    return found
+
+
+def wrong(row, model, source, tests):
+    """What is not true of a row; `source` gives the text of a file, nothing when there is none."""
+    if missing := [column for column in COLUMNS if not (row.get(column) or "").strip()]:
+        return "says nothing in " + ", ".join(missing)
+    by, file = row["honoured_by"], row["in"]
+    text = source(file)
+    if text is None or "_test." in file or "/testing/" in file or file.startswith("tests/"):
+        return f"{file} is no file of the product"
+    if re.fullmatch(r"E\d{4}", by):
+        if not file.startswith("hirosco/descriptor/") or f'"{by}"' not in text:
+            return f"{file} makes no {by}"
+        return None if f'"{by}"' in tests else f"no test of hirosco/descriptor sees {by}"
+    code = bare(text)
+    last = by.split("::")[-1]
+    kind = model.get("::".join(by.split("::")[-2:]))
+    if "::" in by and kind is not None:
+        if file.startswith("hirosco/descriptor/"):
+            return f"{by} is to be read outside hirosco/descriptor"
+        before = r"(?:\.|->|::)" if kind == "struct" else r"(?<![\w.])"
+        return None if re.search(before + last + r"\b", code) else f"{file} does not read {by}"
+    if by[0].isupper() and "::" in by and by.split("::")[0] in {name.split("::")[0] for name in model}:
+        return f"the model has no {by}"
+    return None if re.search(r"(?<!\w)" + re.escape(by) + r"\b", code) else f"{file} has no {by}"
+
+
+def problems(schemas, rows, model, source, tests):
+    for name, schema in schemas.items():
+        wanted = declared(schema)
+        listed = [row["declared"] for row in rows if row["schema"] == name]
+        yield from (f"{name}.xsd: {place} has no row" for place in wanted if place not in listed)
+        yield from (f"{name}: {place} is in no schema" for place in listed if place not in wanted)
+        yield from (f"{name}: {place} has several rows" for place in set(listed) if listed.count(place) > 1)
+    for row in rows:
+        if why := wrong(row, model, source, tests):
+            yield f"{row['schema']}: {row['declared']}: {why}"
+
+
+def lost(promises):
+    """Folders and tests of the map that are not there."""
+    return [f"docs/paper_map.md: no {path}" for path in re.findall(r"`([\w./]+/[\w./]*)`", promises) if not (ROOT / path).exists()]
+
+
+def main():
+    def source(file):
+        return (ROOT / file).read_text() if (ROOT / file).is_file() else None
+
+    schemas = {name: (FOLDER / f"{name}.xsd").read_text() for name in ("subsystem", "mission")}
+    with (FOLDER / "consumers.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    model = members([bare(path.read_text()) for path in MODEL])
+    tests = "".join(path.read_text() for path in sorted(FOLDER.glob("*_test.cpp")))
+    promises = (ROOT / "docs/paper_map.md").read_text()
+    found = [*problems(schemas, rows, model, source, tests), *lost(promises)]
+
+    def changed(place, **values):
+        return [dict(row, **(values if row["declared"] == place else {})) for row in rows]
+
+    attribute = '<xs:attribute name="id" type="EventId"/>'
+    planted = [
+        ("Event@colour has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
+            attribute, attribute + '<xs:attribute name="colour" type="xs:string"/>'))), rows),
+        ("Transfer=tcp has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
+            '<xs:enumeration value="udp"/>', '<xs:enumeration value="udp"/><xs:enumeration value="tcp"/>'))), rows),
+        ("colour is in no schema", {}, [*rows, dict(rows[0], declared="Event@colour")]),
+        ("has several rows", {}, [*rows, rows[0]]),
+        ("says nothing", {}, changed("Subsystem/Hang", honoured_by=" ")),
+        ("is no file", {}, changed("Subsystem/Hang", **{"in": "supervisor/guard/nobody.cpp"})),
+        ("is no file", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/mission_test.cpp"})),
+        ("outside hirosco/descriptor", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/read_subsystem.cpp"})),
+        ("does not read", {}, changed("Subsystem/Hang", **{"in": "hirosco/xml/reader.cpp"})),
+        ("the model has no", {}, changed("Subsystem/Hang", honoured_by="Subsystem::colour")),
+        ("makes no E0999", {}, changed("Subsystem/Hang", honoured_by="E0999", **{"in": "hirosco/descriptor/read_modes.cpp"})),
+    ]
+    for wanted, other, table in planted:
+        seen = problems(**dict(dict(schemas=schemas, model=model, source=source, tests=tests), **other), rows=table)
+        if not any(wanted in problem for problem in seen if problem not in found):
+            found.append(f"planted and not seen: {wanted}")
+    if not lost(promises + "`tests/nobody_test.cpp`"):
+        found.append("planted and not seen: tests/nobody_test.cpp")
+    return "\n".join(found) or ("no rows" if not rows else None)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
