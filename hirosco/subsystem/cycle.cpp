@@ -296,12 +296,21 @@ void CycleLoop::raise(std::uint16_t event, std::span<const double> arguments) no
   const auto& events = parts_.descriptor.events;
   const auto found = std::ranges::find(events, event, &descriptor::Event::id);
   if (found == events.end()) return;
-  const Octets auxiliary = pus::fill_arguments(*found, arguments, event_buffer_);
-  CycleReport head{.kind = ReportKind::Event, .index = event};
+  raise_found(*found, pus::fill_arguments(*found, arguments, event_buffer_));
+}
+
+void CycleLoop::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {
+  const auto& events = parts_.descriptor.events;
+  const auto found = std::ranges::find(events, event, &descriptor::Event::id);
+  if (found != events.end() && pus::octets_of(*found) == auxiliary.size()) raise_found(*found, auxiliary);
+}
+
+void CycleLoop::raise_found(const descriptor::Event& event, Octets auxiliary) noexcept {
+  CycleReport head{.kind = ReportKind::Event, .index = event.id};
   // A lost device or a stale link is told whatever the author raises besides.
-  if (event >= descriptor::framework_event::first) return answer(head, auxiliary);
+  if (event.id >= descriptor::framework_event::first) return answer(head, auxiliary);
   RecordRing& ring = parts_.handover.events;
-  if (found->severity < descriptor::Severity::Medium && ring.used() > ring.capacity() / 2) {
+  if (event.severity < descriptor::Severity::Medium && ring.used() > ring.capacity() / 2) {
     parts_.handover.lost_remarks.fetch_add(1, std::memory_order_relaxed);
     return;
   }

@@ -118,12 +118,15 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
 
   // --- the author, from inside the cycle --------------------------------------------------------------------------
   void raise(std::uint16_t event, std::span<const double> arguments) noexcept;
+  /// The same with its auxiliary data; nothing when these have not the length of the descriptor's.
+  void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
   void inhibit(Inhibition reason) noexcept { inhibited_ |= reason; }
   void report(ReportKind kind, std::uint16_t index, const pus::Request& request, AttachedLink* link = nullptr) noexcept;
 
   void fail_call(ReportKind kind, pus::FailureCode code, const pus::Request& request, const Error& why) noexcept;
 
  private:
+  void raise_found(const descriptor::Event& event, Octets auxiliary) noexcept;
   void answer(CycleReport head, Octets payload = {}) noexcept;
   void take_commands() noexcept;
   void run_function(const CycleCommand& command) noexcept;

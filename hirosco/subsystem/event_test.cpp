@@ -88,9 +88,17 @@ TEST_F(Events, OfAFailedStateCarryTheAuthorsWordsAndNumber) {
 
 TEST_F(Events, WithArrayArgumentsArriveWhole) {
   struct Arrays : Subsystem {
+    Event<std::array<std::uint16_t, 3>, std::uint8_t> forces{"FORCES"};
+    Result<Step> software_init() override {
+      use_event(forces);
+      return done;
+    }
     Result<> pre_operational(const Cycle& cycle) noexcept override {
-      if (cycle.first) raise(7, {1, 2, 3, 4});
+      if (cycle.first) raise(forces, {1, 2, 3}, 4);
       return ok();
+    }
+    void service(TimePoint) override {
+      if (state() == State::SafeOperational) raise_in_service(forces, {5, 6, 7}, 8);
     }
   } author;
   Rig arrays{author, R"(<Subsystem name="ARRAYS" id="10">
@@ -101,6 +109,35 @@ TEST_F(Events, WithArrayArgumentsArriveWhole) {
   arrays.settle();
   EXPECT_THAT(arrays.reports(5, 2), ::testing::ElementsAre("000700010002000304"));
   EXPECT_EQ(arrays.heard(7), 1);
+  arrays.set_state_now(State::SafeOperational);
+  EXPECT_EQ(arrays.reports(5, 2).at(1), "000700050006000708") << "from the service loop, too";
+}
+
+TEST(TypedEvents, ThatAreNotTheDescriptorsFailSoftwareInitAllAtOnce) {
+  struct Wrong : Subsystem {
+    Event<> none{"NONE"};
+    Event<std::uint16_t> axis{"AXIS_STUCK"};
+    Event<std::uint8_t, double> force{"FORCE"};
+    Result<Step> software_init() override {
+      use_event(none);
+      use_event(axis);
+      use_event(force);
+      return done;
+    }
+  } author;
+  Rig rig{author, R"(<Subsystem name="WRONG" id="10"><EventService>
+      <Event name="AXIS_STUCK" id="7" severity="low"><Argument name="AXIS" type="UINT8"/></Event>
+      <Event name="FORCE" id="8" severity="low"><Argument name="AXIS" type="UINT8"/></Event></EventService>
+    <Configuration name="ONE" id="1" sampling_us="1000"/></Subsystem>)"};
+  rig.set_state_now(State::PreOperational);
+  EXPECT_EQ(rig.state(), State::Offline);
+  std::string all;
+  for (const auto& text : rig.explanations) all += text;
+  EXPECT_THAT(all,
+              ::testing::AllOf(::testing::HasSubstr("declares no event 'NONE'"),
+                               ::testing::HasSubstr("AXIS_STUCK: its arguments are (std::uint16_t), the descriptor "
+                                                    "declares (UINT8)"),
+                               ::testing::HasSubstr("FORCE: its arguments are (std::uint8_t, double)")));
 }
 
 /// Raises as many events as one cycle can, and reports progress without end.

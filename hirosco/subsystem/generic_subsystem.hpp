@@ -102,6 +102,9 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void require_link(std::string_view set, LinkInputPort& port);
   void use_device(std::string_view name, DevicePortBase& port);
   void provide(CustomService& service);
+  void use_event(EventPort& event);
+  /// An event with its auxiliary data, from the service loop.
+  void raise_event(std::uint16_t event, Octets auxiliary);
   void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
@@ -168,7 +171,6 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void mistake(std::string problem);
   void check_introduction();
   void forget_introduction();
-  void raise_event(std::uint16_t event, Octets auxiliary);
   /// STATE_FAILED and CONFIGURATION_FAILED of `what`.
   void raise_failure(std::uint16_t event, std::uint8_t what, const Failure& why);
   void tell_losses(TimePoint now);

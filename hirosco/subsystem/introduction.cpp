@@ -90,6 +90,23 @@ void GenericSubsystem::publish(std::string_view name, ParameterCell& parameter) 
   if (const auto published = dictionary_.publish(name, parameter); !published) mistake(published.error());
 }
 
+void GenericSubsystem::use_event(EventPort& event) {
+  const descriptor::Event* declared = descriptor_.find_event(event.name());
+  if (declared == nullptr)
+    return mistake("use_event: the descriptor declares no event '" + std::string{event.name()} + "'");
+  const bool same = std::ranges::equal(event.arguments(), declared->arguments, [](const NativeField& n, const auto& d) {
+    return n.type == d.type && n.count == d.count;
+  });
+  if (same) return event.bind(declared->id);
+  std::string native, wanted;
+  for (const auto& field : event.arguments())
+    native.append(native.empty() ? "" : ", ").append(cpp_text(field.type, field.count));
+  for (const auto& field : declared->arguments)
+    wanted.append(wanted.empty() ? "" : ", ").append(descriptor_text(field.type, field.count));
+  mistake("use_event " + std::string{event.name()} + ": its arguments are (" + native + "), the descriptor declares (" +
+          wanted + ")");
+}
+
 void GenericSubsystem::require_link(std::string_view set, LinkInputPort& port) {
   const auto sets = descriptor::required_sets(descriptor_);
   if (std::ranges::find(sets, set) == sets.end())

@@ -31,6 +31,7 @@ Outcome::Outcome(const Result<>& result) noexcept
 void Subsystem::provide(CustomService& service) { framework_->provide(service); }
 void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
 void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
+void Subsystem::use_event(EventPort& event) { framework_->use_event(event); }
 void Subsystem::use_device(std::string_view name, DevicePortBase& port) { framework_->use_device(name, port); }
 
 void Subsystem::bind_function(std::string_view name, std::span<const ArgumentRange> arguments,
@@ -40,6 +41,12 @@ void Subsystem::bind_function(std::string_view name, std::span<const ArgumentRan
 
 void Subsystem::raise(std::uint16_t event, std::initializer_list<double> arguments) noexcept {
   framework_->cycle().raise(event, std::span{arguments.begin(), arguments.size()});
+}
+void Subsystem::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {
+  framework_->cycle().raise_encoded(event, auxiliary);
+}
+void Subsystem::raise_encoded_in_service(std::uint16_t event, Octets auxiliary) {
+  framework_->raise_event(event, auxiliary);
 }
 void Subsystem::inhibit_actuators() noexcept { framework_->cycle().inhibit(inhibited_by_author); }
 

@@ -18,6 +18,7 @@
 #include "hirosco/pus/packet/failure.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/subsystem/event_port.hpp"
 #include "hirosco/subsystem/ports.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/result.hpp"
@@ -160,6 +161,8 @@ class Subsystem {
   void require_link(std::string_view set, LinkInputPort& port);
   /// Names the author's view of a device.
   void use_device(std::string_view name, DevicePortBase& port);
+  /// Names an event that the author raises. Arguments that differ from the descriptor's fail Software-Init.
+  void use_event(EventPort& event);
   /// Gives a function of the descriptor its handler: any callable of up to eight numbers and, last, a Call if it wants
   /// to report later. Returns Result<> or Outcome. Runs at a cycle boundary; must not throw. An argument's C++ type holds
   /// every value that the descriptor permits, or Software-Init fails.
@@ -177,6 +180,10 @@ class Subsystem {
   // --- in the cycle and in function handlers ----------------------------------------------------------------------
   /// Reports an event of the descriptor; arguments in their order and unit.  Realtime: wait-free.
   void raise(std::uint16_t event, std::initializer_list<double> arguments = {}) noexcept;
+  template <class... Arguments>
+  void raise(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) noexcept {
+    raise_encoded(event.id(), event.encode(arguments...));
+  }
   /// Latches "actuators inhibited" in this cycle; released by the next entry into Operational.  Realtime: wait-free.
   void inhibit_actuators() noexcept;
   /// Later reports of a running function.  Realtime: wait-free.
@@ -195,6 +202,10 @@ class Subsystem {
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
   /// Reports an event from the service loop.
   void raise_in_service(std::uint16_t event, std::initializer_list<double> arguments = {});
+  template <class... Arguments>
+  void raise_in_service(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) {
+    raise_encoded_in_service(event.id(), event.encode(arguments...));
+  }
   [[nodiscard]] State state() const noexcept;
   [[nodiscard]] const descriptor::Subsystem& own_descriptor() const noexcept;
 
@@ -202,6 +213,8 @@ class Subsystem {
   friend class GenericSubsystem;
   friend class CycleLoop;
   void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
+  void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
+  void raise_encoded_in_service(std::uint16_t event, Octets auxiliary);
   void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
   GenericSubsystem* framework_{nullptr};
 };

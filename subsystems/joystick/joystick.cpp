@@ -47,8 +47,6 @@ class Joystick final : public Subsystem {
   /// An author's failure code of joystick.xml: what is asked for could have no effect.
   static constexpr auto actuators_inhibited = static_cast<pus::FailureCode>(0x8001);
 
-  enum Event : std::uint16_t { force_clipped = 1103, passivity_active = 1104 };
-
   Result<Step> software_init() override {
     publish("CUR_VALUES", current_);
     publish("DES_TORQUE", desired_torque_);
@@ -62,6 +60,8 @@ class Joystick final : public Subsystem {
     require_link("ROBOT_STATE", robot_);
     require_link("REMOTE_ROBOT", remote_robot_);
     use_device("JOYSTICK", handle_);
+    use_event(force_clipped_);
+    use_event(passivity_active_);
     on_function("DISPLAY_TORQUE", [this](double t1, double t2) { return show({t1, t2}); });
     on_function("CENTRE", [this]() { return show({0.0, 0.0}); });
     on_function("SET_HAND", [this](std::uint8_t hand) -> Outcome { return lay_on(hand); });
@@ -143,8 +143,8 @@ class Joystick final : public Subsystem {
                                     force_scale_.load());
     observed_energy_.store(law_->observed_energy_j());
     dissipated_.store(law_->dissipated_j());
-    if (law_->clipped() && !clipped_) raise(force_clipped, {1.0, joystick::DisplayLaw::torque_max_n_m});
-    if (law_->controller_acted() && !passive_) raise(passivity_active, {law_->dissipated_j()});
+    if (law_->clipped() && !clipped_) raise(force_clipped_, 1, joystick::DisplayLaw::torque_max_n_m);
+    if (law_->controller_acted() && !passive_) raise(passivity_active_, law_->dissipated_j());
     clipped_ = law_->clipped();
     passive_ = passive_ || law_->controller_acted();
     return shown;
@@ -179,6 +179,8 @@ class Joystick final : public Subsystem {
     return ok();
   }
 
+  Event<std::uint8_t, double> force_clipped_{"FORCE_CLIPPED"};  // axis, N m
+  Event<double> passivity_active_{"PASSIVITY_ACTIVE"};  // J
   Parameter<CurrentValues> current_;
   Parameter<Axes> desired_torque_;
   Parameter<double> force_scale_;
