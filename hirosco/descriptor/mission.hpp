@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hirosco/descriptor/subsystem.hpp"
@@ -25,12 +26,27 @@ struct Override {
 /// The reverse, into `subsystem`. NotFound: no such parameter. OutOfRange: not as many numbers as it has values.
 [[nodiscard]] Result<> apply_override(Subsystem& subsystem, std::string_view text);
 
+/// A device of this instance has another address than its subsystem's descriptor says, in every configuration.
+struct Readdressed {
+  std::string device;
+  std::string address;               ///< empty = the descriptor's
+  std::string enable;                ///< of the second inhibit; empty = the descriptor's
+};
+
 struct MissionSubsystem {
   std::string executable;            ///< name of the program, looked up beside the running one and then in PATH
-  Subsystem subsystem;               ///< with the overrides of the mission applied
+  Subsystem subsystem;               ///< with what the mission changes applied: name, id, parameters, addresses
   std::vector<Override> overrides;
+  std::vector<Readdressed> addresses;
   Location at;
 };
+
+/// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs
+/// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address" "DEVICE=address", "--enable" "DEVICE=address".
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsystem& member);
+/// One of them, into `subsystem`. NotFound: no such parameter or device, or it has no second inhibit; OutOfRange: the
+/// values do not fit; InvalidArgument: not of this form.
+[[nodiscard]] Result<> apply_change(Subsystem& subsystem, std::string_view word, std::string_view text);
 
 /// A simulated device process standing in for hardware.
 struct SimulatedDevice {

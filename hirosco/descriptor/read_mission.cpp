@@ -93,6 +93,7 @@ void MissionReader::read_supervisor(const xml::Element& element) {
     if (subsystem->id != supervisor_id)
       problems_.add(at, "E0303", fmt::format("the supervisor has id 1, '{}' has {}", subsystem->name, subsystem->id));
     subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
+    check_endnodes(*subsystem);
     mission_.supervisor = std::move(*subsystem);
   }
   mission_.database.path = "log/" + (mission_.name.empty() ? std::string{"mission"} : mission_.name) + ".db";
@@ -160,16 +161,56 @@ void MissionReader::read_member(const xml::Element& element) {
   member.executable = executable(attributes);
   auto subsystem = read_descriptor(attributes);
   if (!subsystem) return;  // what is set in it cannot be judged
-  const xml::Attribute& at = *element.find("descriptor");
-  subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
-  if (subsystem->id == supervisor_id)
-    problems_.add(at, "E0303", fmt::format("id 1 of '{}' is the supervisor's", subsystem->name));
-  else subsystem_ids_.add(std::to_string(subsystem->id), place(at.value_at), problems_, at.value.size());
   member.subsystem = std::move(*subsystem);
-  Unique names{"parameter", "E0201"};
+  read_identity(attributes, member);
+  Unique names{"parameter", "E0201"}, devices{"device", "E0201"};
   each_child(element, problems_,
-             {{"Set", [&](const xml::Element& child) { read_override(child, member, names); }, 255}});
+             {{"Set", [&](const xml::Element& child) { read_override(child, member, names); }, 255},
+              {"Device", [&](const xml::Element& child) { read_readdressed(child, member, devices); }, 255}});
+  check_endnodes(member.subsystem);
   mission_.subsystems.push_back(std::move(member));
+}
+
+void MissionReader::read_identity(Attributes& attributes, MissionSubsystem& member) {
+  Subsystem& subsystem = member.subsystem;
+  const xml::Attribute& descriptor = *attributes.element().find("descriptor");
+  const auto* named = attributes.optional("name");
+  const auto* numbered = attributes.optional("id");
+  if (named != nullptr) subsystem.name = attributes.name();
+  if (numbered != nullptr) subsystem.id = attributes.required_integer<std::uint16_t>("id", 1, 2039);
+  const xml::Attribute& name_at = named != nullptr ? *named : descriptor;
+  const xml::Attribute& id_at = numbered != nullptr ? *numbered : descriptor;
+  subsystem_names_.add(subsystem.name, place(name_at.value_at), problems_, name_at.value.size());
+  if (subsystem.id == supervisor_id)
+    problems_.add(id_at, "E0303", fmt::format("id 1 of '{}' is the supervisor's", subsystem.name));
+  else subsystem_ids_.add(std::to_string(subsystem.id), place(id_at.value_at), problems_, id_at.value.size());
+}
+
+/// Another address for a device of this instance: what it is and how it is carried stays the descriptor's.
+void MissionReader::read_readdressed(const xml::Element& element, MissionSubsystem& member, Unique& names) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const auto* name = attributes.required("name");
+  const auto* address = attributes.optional("address");
+  const auto* enable = attributes.optional("enable");
+  if (name == nullptr) return;
+  if (address == nullptr && enable == nullptr)
+    return problems_.add(element, "E0105", "<Device> of a mission's <Subsystem> needs 'address' or 'enable'");
+  std::vector<std::string_view> known;
+  for (const Device& device : member.subsystem.devices) known.push_back(device.name);
+  names.add(name->value, place(name->value_at), problems_, name->value.size());
+  Readdressed changed{name->value, address != nullptr ? address->value : "", enable != nullptr ? enable->value : ""};
+  for (const auto& [at, word] : {std::pair{address, "--address"}, std::pair{enable, "--enable"}}) {
+    if (at == nullptr) continue;
+    const auto applied = apply_change(member.subsystem, word, name->value + "=" + at->value);
+    if (applied) continue;
+    if (applied.error().code == ErrorCode::NotFound && std::ranges::find(known, name->value) == known.end())
+      return problems_.add(*name, "E0312",
+                           fmt::format("'{}' has no device {}", member.subsystem.name, in_quotes(name->value)),
+                           did_you_mean(name->value, known));
+    problems_.add(*at, "E0217", fmt::format("{}: {}", in_quotes(at->value), applied.error().text));
+  }
+  member.addresses.push_back(std::move(changed));
 }
 
 void MissionReader::read_override(const xml::Element& element, MissionSubsystem& member, Unique& names) {
@@ -223,7 +264,6 @@ std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) 
   else if (!reading.problems.empty()) subsystem_problems_.push_back(std::move(reading.problems));
   std::ranges::move(reading.warnings, std::back_inserter(warnings_));
   if (!reading.value) incomplete_ = true;
-  else check_endnodes(*reading.value);
   return std::move(reading.value);
 }
 

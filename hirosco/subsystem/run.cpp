@@ -15,6 +15,7 @@
 #include "hirosco/data_transfer/flows/sealed_memory.hpp"
 #include "hirosco/data_transfer/flows/socket_channel.hpp"
 #include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/descriptor/mission.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
@@ -37,7 +38,7 @@ constexpr int exit_environment = 3;
 
 struct Options {
   std::string descriptor;
-  std::vector<std::string> overrides;  ///< as the mission has them
+  std::vector<std::pair<std::string, std::string>> changes;  ///< as the mission has them
   int channel{-1};
   int vital{-1};
   int permit{-1};
@@ -55,10 +56,10 @@ struct Options {
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string_view name{argv[i]};
     if (name == "--descriptor") options.descriptor = argv[i + 1];
-    else if (name == "--set") options.overrides.emplace_back(argv[i + 1]);
     else if (name == "--channel") options.channel = number_of(argv[i + 1]);
     else if (name == "--vital") options.vital = number_of(argv[i + 1]);
     else if (name == "--permit") options.permit = number_of(argv[i + 1]);
+    else options.changes.emplace_back(name, argv[i + 1]);
   }
   return options;
 }
@@ -176,7 +177,8 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   if (!options.complete()) {
     fmt::print(stderr,
                "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
-               "  --descriptor FILE --channel FD --vital FD --permit FD [--set PARAMETER=VALUES]\n",
+               "  --descriptor FILE --channel FD --vital FD --permit FD [--as NAME:ID] [--set PARAMETER=VALUES]\n"
+               "  [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS]\n",
                argv[0]);
     return exit_usage;
   }
@@ -184,9 +186,9 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   auto reading = descriptor::read_subsystem(options.descriptor, source);
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
   if (!reading.value) return exit_environment;
-  for (const std::string& text : options.overrides)
-    if (const auto applied = descriptor::apply_override(*reading.value, text); !applied) {
-      fmt::print(stderr, "{}: --set {}: {}\n", argv[0], text, applied.error().text);
+  for (const auto& [word, text] : options.changes)
+    if (const auto applied = descriptor::apply_change(*reading.value, word, text); !applied) {
+      fmt::print(stderr, "{}: {} {}: {}\n", argv[0], word, text, applied.error().text);
       return exit_environment;
     }
 

@@ -96,8 +96,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   start.executable = program.string();
   start.arguments = {"--descriptor", subsystem.subsystem.file.string(), "--channel", std::to_string(channel_number),
                      "--vital",      std::to_string(vital_number),      "--permit",  std::to_string(permit_number)};
-  for (const descriptor::Override& changed : subsystem.overrides)
-    start.arguments.insert(start.arguments.end(), {"--set", to_string(changed)});
+  for (const auto& [word, text] : descriptor::changes_of(subsystem))
+    start.arguments.insert(start.arguments.end(), {word, text});
   start.inherited = {{ends.second.get(), channel_number},
                      {SealedMemory::descriptor(vital.first), vital_number},
                      {SealedMemory::descriptor(permit.first), permit_number}};

@@ -79,6 +79,12 @@ class Built(Outside, unittest.TestCase):
         self.assertIn("mode operation", told)
         self.hirosco("simulate", self.mission, "--for", "1s", "--at", "0.5 lamp new", code=1)
 
+    def test_two_instances_of_one_subsystem_are_simulated_side_by_side(self):
+        two = self.lamp / "two_lamps.xml"
+        self.assertIn("no problem", self.hirosco("check", "--fly", two))
+        told = self.hirosco("simulate", two, "--for", "3s", "--at", "2 desk-lamp old 0.5", "--summary")
+        self.assertIn("mode operation", told)
+
     def test_what_comes_with_the_installed_tree_is_simulated_from_anywhere(self):
         for mission in ("hello", "rokviss"):
             self.assertIn("s simulated", self.hirosco("simulate", mission, "--for", "2s", "--summary"))
@@ -119,6 +125,19 @@ class Flown(Outside, unittest.TestCase):
             self.assertIn("LAMP.CUR_VALUES.BRIGHTNESS", values)
             self.assertEqual(lamp.end(), 0)
 
+    def test_two_instances_of_one_subsystem_fly_side_by_side(self):
+        two = self.lamp / "two_lamps.xml"
+        with flight.Flight(two, binaries=self.prefix / "bin", environment=self.environment, more=()) as lamps:
+            lamps.wait_told("commissioned: mode operation", 20.0)
+            self.assertEqual(lamps.tc("LAMP", "DIM", 0.9)[1][-1], "1,7")
+            self.assertEqual(lamps.tc("DESK_LAMP", "DIM", 0.4)[1][-1], "1,7")
+            self.assertAlmostEqual(self.brightness(lamps, 0.9), 0.9, 2)
+            self.assertAlmostEqual(self.brightness(lamps, 0.4, "desk-lamp"), 0.4, 2)
+            lamps.fault("desk-lamp", "unplug")
+            lamps.wait_told("plan default: network {DESK_LAMP}", 5.0)
+            self.assertAlmostEqual(self.brightness(lamps, 0.9), 0.9, 2)
+            self.assertEqual(lamps.end(), 0)
+
     def own_service(self, lamp, ask):
         """What its descriptor says of its own PUS service is enough for terminal, page, Python and log."""
         lamp_about = next(one for one in ask("/api/mission")["subsystems"] if one["name"] == "LAMP")
@@ -132,10 +151,10 @@ class Flown(Outside, unittest.TestCase):
         self.assertEqual(told.split(), ["METER", "1", "0.9"])
         self.assertIn("LAMP METER DIMMED=1 CURRENT=0.9 A", self.hirosco("log", "--service", "200"))
 
-    def brightness(self, lamp, wanted):
+    def brightness(self, lamp, wanted, device="lamp"):
         """Of the device's world, once it is about what is wanted."""
         for _ in range(200):
-            bright = lamp.truth("lamp")["brightness"]
+            bright = lamp.truth(device)["brightness"]
             if abs(bright - wanted) < 0.005:
                 break
             lamp.wait_line(lambda line: False, 0.05)

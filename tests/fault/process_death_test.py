@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """kill -9 of a subsystem that others depend on (fault case 5)."""
+import pathlib
 import time
 import unittest
 
@@ -40,6 +41,20 @@ class ProcessDeath(unittest.TestCase):
             self.the_log_tells_the_story(rokviss)
             self.assertEqual(rokviss.end(), 5, "nobody of this flight had caused it")
             self.assertIn("1 reaction of high severity", " ".join(rokviss.errors))
+
+    def test_a_killed_device_leaves_neither_socket_nor_shared_memory_behind_its_flight(self):
+        memory = pathlib.Path("/dev/shm")
+        before = set(memory.iterdir())
+        with flight.Flight(instance="bereaved") as rokviss:
+            folder = pathlib.Path(rokviss.place()["folder"])
+            rokviss.wait_commissioned()
+            sockets = [file for file in folder.iterdir() if file.is_socket()]
+            self.assertGreaterEqual(len(sockets), 2, "one for each device")
+            rokviss.kill("hirosco-sim-robot")
+            rokviss.wait_told("MANIPULATOR is Offline")
+            rokviss.end()
+            self.assertEqual([file for file in folder.iterdir() if file.is_socket()], [])
+        self.assertEqual(set(memory.iterdir()) - before, set())
 
     def actuators_were_inhibited_in_time(self, rokviss):
         status = rokviss.wait_status(lambda s: True, 3.0)

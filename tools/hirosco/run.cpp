@@ -65,6 +65,13 @@ void clear_injections(const descriptor::Mission& mission, const std::filesystem:
     std::filesystem::remove((folder / device.name).string() + ".injected", failed);
 }
 
+/// Who was killed leaves its socket behind. Nobody of this flight lives any more, and its folder is still locked.
+void clear_sockets(const descriptor::Mission& mission, const std::filesystem::path& folder) {
+  std::error_code failed;
+  for (const auto& device : mission.devices)
+    if (std::filesystem::is_socket(folder / device.name, failed)) std::filesystem::remove(folder / device.name, failed);
+}
+
 /// One flight of an instance at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal, in
 /// milliseconds how long the answer to a stop may take, and which mission this is.
 [[nodiscard]] FileDescriptor take_folder(const std::filesystem::path& folder, const descriptor::Mission& mission) {
@@ -206,7 +213,9 @@ int run(const RunOptions& options) {
   if (locks->log) plan.supervisor.inherited.push_back({locks->log.get(), first_lock + 2});
   if (options.json) plan.supervisor.arguments.emplace_back("--json");
   if (options.quiet) plan.supervisor.arguments.emplace_back("--quiet");
-  return supervisor::keep(std::move(plan));
+  const int code = supervisor::keep(std::move(plan));
+  clear_sockets(*mission, folder);
+  return code;
 }
 
 }  // namespace hirosco::tools

@@ -33,7 +33,10 @@ class MissionReader {
   void read_address(Attributes& attributes, std::string_view name, std::string& into);
   void read_power(const xml::Element& element);
   void read_member(const xml::Element& element);
+  /// Name and id of an instance, where they are not the descriptor's.
+  void read_identity(Attributes& attributes, MissionSubsystem& member);
   void read_override(const xml::Element& element, MissionSubsystem& member, Unique& names);
+  void read_readdressed(const xml::Element& element, MissionSubsystem& member, Unique& names);
   void read_simulated_device(const xml::Element& element);
   /// The descriptor that the attribute names; reported when it cannot be taken.
   [[nodiscard]] std::optional<Subsystem> read_descriptor(Attributes& attributes);

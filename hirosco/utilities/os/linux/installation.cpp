@@ -39,7 +39,7 @@ namespace {
   ElfW(Ehdr) header{};
   std::ifstream stream{file, std::ios::binary};
   stream.read(reinterpret_cast<char*>(&header), sizeof header);
-  if (!stream || !std::equal(ELFMAG, ELFMAG + SELFMAG, header.e_ident)) return false;
+  if (!stream || !std::equal(header.e_ident, header.e_ident + SELFMAG, std::begin(ELFMAG))) return false;
   std::error_code failed;
   const auto octets = fs::file_size(file, failed);
   return !failed && header.e_shoff > 0 && octets >= header.e_shoff + std::uint64_t{header.e_shnum} * header.e_shentsize;
