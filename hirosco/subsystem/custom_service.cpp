@@ -76,12 +76,15 @@ void CustomService::bind(std::string_view request, std::span<const NativeField> 
   bound_.push_back({std::string{request}, arguments, std::move(handler)});
 }
 
-void CustomService::join(ServiceHome& home) {
+void CustomService::join(pus::ServiceHome& home) {
   home_ = &home;
   open_.clear();
   declared_ = home.descriptor().find_service(name_);
-  kind_ = {
-      .type = declared_ != nullptr ? declared_->type : std::uint8_t{0}, .name = name_, .requests = {}, .reports = {}};
+  kind_ = {.type = declared_ != nullptr ? declared_->type : std::uint8_t{0},
+           .name = name_,
+           .requests = {},
+           .reports = {},
+           .make = nullptr};
 }
 
 std::vector<std::string> CustomService::problems() const {

@@ -19,18 +19,6 @@
 /// A PUS service of a subsystem's own (paper 4.1 "a list of services", 4.2 "custom services"), adr 0060.
 namespace hirosco {
 
-/// What a service of an author is given by the subsystem that it belongs to.
-class ServiceHome {
- public:
-  virtual ~ServiceHome() = default;
-  [[nodiscard]] virtual const descriptor::Subsystem& descriptor() const noexcept = 0;
-  [[nodiscard]] virtual State state() const noexcept = 0;
-  [[nodiscard]] virtual pus::Verification& verification() noexcept = 0;
-  [[nodiscard]] virtual pus::TelemetrySink& telemetry() noexcept = 0;
-  /// The notice of an author's refusal.
-  [[nodiscard]] virtual pus::FailureNotice refusal(pus::FailureCode code, const Error& why) const = 0;
-};
-
 /// The service that `<CustomService name="BOOK" type="200">` of the descriptor declares. An author keeps it as a member,
 /// gives each of its requests a handler and provides it in offline():
 ///
@@ -86,7 +74,7 @@ class CustomService final : public pus::Service {
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
 
   // --- for the subsystem -----------------------------------------------------------------------------------------------
-  void join(ServiceHome& home);
+  void join(pus::ServiceHome& home);
   /// What the author has not done, or not as the descriptor says.
   [[nodiscard]] std::vector<std::string> problems() const;
   [[nodiscard]] const pus::ServiceKind& kind() const noexcept override { return kind_; }
@@ -132,7 +120,7 @@ class CustomService final : public pus::Service {
   bool close(const Call& call);
 
   std::string name_;
-  ServiceHome* home_{nullptr};
+  pus::ServiceHome* home_{nullptr};
   const descriptor::CustomService* declared_{nullptr};
   pus::ServiceKind kind_{};
   std::vector<Bound> bound_;

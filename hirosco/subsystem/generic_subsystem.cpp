@@ -9,6 +9,7 @@
 #include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/parameter/number.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
+#include "hirosco/pus/standard_services.hpp"
 
 namespace hirosco {
 namespace {
@@ -59,14 +60,17 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       cycle_{{author, descriptor_, world.clock, dictionary_, writes_, handover_, vital, permit, world.realtime}},
       counters_{vital.counters},
       verification_{*this},
-      test_service_{verification_, *this},
       event_service_{descriptor_.events, verification_, *this},
       function_service_{descriptor_.functions, pus::common_functions(), *this, verification_},
       parameter_service_{*this, verification_, *this},
       housekeeping_service_{descriptor_, verification_, *this},
       link_service_{verification_, *this, *this},
-      services_{&housekeeping_service_, &event_service_,     &function_service_,
-                &test_service_,         &parameter_service_, &link_service_} {
+      services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_} {
+  for (const pus::ServiceKind* kind : pus::standard_services()) {
+    if (kind->make == nullptr) continue;
+    made_services_.push_back(kind->make(*this));
+    services_.push_back(made_services_.back().get());
+  }
   author_.framework_ = this;
   cycle_.functions().resize(descriptor_.functions.size());
   vital_.realtime.store(world_.realtime ? 1 : 0, std::memory_order_relaxed);

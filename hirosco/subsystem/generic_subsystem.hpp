@@ -22,7 +22,6 @@
 #include "hirosco/pus/st03_housekeeping/configured_housekeeping.hpp"
 #include "hirosco/pus/st05_event/event_service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
-#include "hirosco/pus/st17_test/test_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/subsystem/backlog.hpp"
 #include "hirosco/subsystem/custom_service.hpp"
@@ -56,7 +55,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
                                private pus::FunctionExecutor,
                                private pus::ParameterAccess,
                                private LinkServiceOwner,
-                               private ServiceHome {
+                               private pus::ServiceHome {
  public:
   /// `vital` and `permit` are the mapped pages, at least as large as VitalPage and PermitPage and initialised.
   GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const World& world, Channel& channel,
@@ -190,12 +189,12 @@ class GenericSubsystem final : private pus::TelemetrySink,
   CycleLoop cycle_;
   pus::PacketCounters counters_;
   pus::Verification verification_;
-  pus::TestService test_service_;
   pus::EventService event_service_;
   pus::FunctionService function_service_;
   pus::ParameterService parameter_service_;
   pus::ConfiguredHousekeeping housekeeping_service_;
   LinkService link_service_;
+  std::vector<std::unique_ptr<pus::Service>> made_services_;  ///< by their kinds
   std::vector<pus::Service*> services_;  ///< the framework's, then the author's
   std::vector<CustomService*> own_services_;
 

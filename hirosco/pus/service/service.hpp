@@ -6,6 +6,7 @@
 
 #include "hirosco/data_transfer/memory.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/pus/packet/failure.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/service/service_kind.hpp"
 #include "hirosco/utilities/octets.hpp"
@@ -26,6 +27,20 @@ struct Request {
   std::uint32_t id{};                ///< first four octets of the telecommand
   std::uint16_t source{};            ///< becomes the destination of every report
   std::uint8_t ack{};                ///< which success reports were asked for
+};
+
+class Verification;
+
+/// The application process that a service belongs to.
+class ServiceHome {
+ public:
+  virtual ~ServiceHome() = default;
+  [[nodiscard]] virtual const descriptor::Subsystem& descriptor() const noexcept = 0;
+  [[nodiscard]] virtual descriptor::State state() const noexcept = 0;
+  [[nodiscard]] virtual Verification& verification() noexcept = 0;
+  [[nodiscard]] virtual TelemetrySink& telemetry() noexcept = 0;
+  /// The notice of an author's refusal.
+  [[nodiscard]] virtual FailureNotice refusal(FailureCode code, const Error& why) const = 0;
 };
 
 /// A PUS service of one application process. handle() is called with telecommands of its type only; it does the

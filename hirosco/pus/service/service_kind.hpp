@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -64,12 +65,18 @@ enum class Needs : std::uint8_t {
   SupervisorAnswers,  ///< essential, and no other subsystem has it
 };
 
+class Service;
+class ServiceHome;
+
 struct ServiceKind {
   std::uint8_t type{};
   std::string_view name;
   Needs needs{Needs::Nothing};
   std::span<const RequestKind> requests;
   std::span<const ReportKind> reports;
+  /// Makes the service of a subsystem, of every one. Null: it is more than its surroundings that the service needs, and
+  /// whoever has that makes it.
+  std::unique_ptr<Service> (*make)(ServiceHome& home){nullptr};
 
   [[nodiscard]] constexpr const RequestKind* request(std::uint8_t subtype) const noexcept {
     const auto found = std::ranges::find(requests, subtype, &RequestKind::subtype);

@@ -11,8 +11,15 @@ constexpr RequestKind requests[]{{are_you_alive, "PING", {}}};
 constexpr ReportKind reports[]{{alive_report, "ALIVE", {}}};
 }  // namespace
 
-const ServiceKind TestService::service_kind{
-    .type = service_type, .name = "test", .needs = Needs::Essential, .requests = requests, .reports = reports};
+const ServiceKind TestService::service_kind{.type = service_type,
+                                            .name = "test",
+                                            .needs = Needs::Essential,
+                                            .requests = requests,
+                                            .reports = reports,
+                                            .make = [](ServiceHome& home) -> std::unique_ptr<Service> {
+                                              return std::make_unique<TestService>(home.verification(),
+                                                                                   home.telemetry());
+                                            }};
 
 void TestService::handle(const TelecommandView& telecommand, const Request& request) {
   if (telecommand.subtype() != are_you_alive) return verification_.rejected(request, unknown_subtype(telecommand));
