@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Nothing is declared that is not in force: hirosco/descriptor/consumers.csv has one row for each element, attribute and word of
-the schemas, and what a row names is there; so are the folders and tests of docs/paper_map.md. Prints what breaks that, and breaks
-it itself, to be caught.
+the schemas, and what a row names is there; so are the folders and tests of docs/paper_map.md, and the readers
+take nothing else. Prints what breaks that, and breaks it itself, to be caught.
 
 `declared`: PARENT/ELEMENT, with @ATTRIBUTE, with =WORD; the words of a named type as TYPE=WORD; a group is a parent, too.
 `honoured_by`: STRUCT::MEMBER or ENUMERATION::WORD of the model, and `in` the file outside hirosco/descriptor that reads it; an error
@@ -17,6 +17,9 @@ MODEL = [FOLDER / "subsystem.hpp", FOLDER / "mission.hpp", ROOT / "hirosco/param
 COLUMNS = ["schema", "declared", "honoured_by", "in"]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 PLAIN = {"YesNo"}  # its words are those of every language
+NOT_BUILT_IN = {"Resources", "persistent", "read_only"}  # known to be refused in words
+ASKED = re.compile(r'\b(?:optional|required|name|yes|numbers?|watts|text|integer|(?:integer_or|required_integer|one_of|list_of)'
+                   r'(?:<[\w:]+>)?|read_\w+|watchdog|limit)\((?:\w+, )*"(\w+)"|\{"([A-Z]\w*[a-z]\w*)",')
 
 
 def tag(node):
@@ -127,6 +130,13 @@ def problems(schemas, rows, model, source, tests):
             yield f"{row['schema']}: {row['declared']}: {why}"
 
 
+def unknown(readers, schemas):
+    """What the readers take and no schema has."""
+    known = {name for schema in schemas.values() for place in declared(schema) for name in re.split("[/@=]", place)}
+    asked = {name for names in ASKED.findall(readers) for name in names if name}
+    return [f"hirosco/descriptor reads {name}, which no schema has" for name in sorted(asked - known - NOT_BUILT_IN)]
+
+
 def lost(promises):
     """Folders and tests of the map that are not there."""
     return [f"docs/paper_map.md: no {path}" for path in re.findall(r"`([\w./]+/[\w./]*)`", promises) if not (ROOT / path).exists()]
@@ -142,7 +152,8 @@ def main():
     model = members([bare(path.read_text()) for path in MODEL])
     tests = "".join(path.read_text() for path in sorted(FOLDER.glob("*_test.cpp")))
     promises = (ROOT / "docs/paper_map.md").read_text()
-    found = [*problems(schemas, rows, model, source, tests), *lost(promises)]
+    readers = "".join(path.read_text() for path in sorted(FOLDER.rglob("*.cpp")) if not path.name.endswith("_test.cpp"))
+    found = [*problems(schemas, rows, model, source, tests), *unknown(readers, schemas), *lost(promises)]
 
     def changed(place, **values):
         return [dict(row, **(values if row["declared"] == place else {})) for row in rows]
@@ -167,6 +178,9 @@ def main():
         seen = problems(**dict(dict(schemas=schemas, model=model, source=source, tests=tests), **other), rows=table)
         if not any(wanted in problem for problem in seen if problem not in found):
             found.append(f"planted and not seen: {wanted}")
+    for asked in ('attributes.integer_or<int>("colour", 1, 2, 0)', '{"Colour", read}', 'read_states(attributes, "colour", {})'):
+        if not unknown(asked, schemas):
+            found.append(f"planted and not seen: {asked}")
     if not lost(promises + "`tests/nobody_test.cpp`"):
         found.append("planted and not seen: tests/nobody_test.cpp")
     return "\n".join(found) or ("no rows" if not rows else None)
