@@ -8,8 +8,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <ranges>
 
 #include "ground/json.hpp"
@@ -30,7 +28,6 @@ constexpr std::size_t fewest_points = 10, usual_points = 2000, most_points = 20'
 constexpr std::size_t most_samples = 1'000'000;
 constexpr std::size_t most_csv_octets = std::size_t{64} << 20;
 constexpr std::size_t most_csv_cells = 4'000'000;
-constexpr std::size_t most_file_octets = std::size_t{16} << 20;
 
 /// No script but ours, nothing from anywhere else, in nobody's frame.
 constexpr const char* policy =
@@ -68,52 +65,6 @@ constexpr const char* policy =
 [[nodiscard]] std::string header(const HttpRequest& request, const char* name) {
   const auto found = request.headers.find(name);
   return found != request.headers.end() ? found->second : std::string{};
-}
-
-[[nodiscard]] const char* type_of(const std::filesystem::path& file) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 14> types{{{".html", "text/html; charset=utf-8"},
-                                                                            {".js", "text/javascript; charset=utf-8"},
-                                                                            {".mjs", "text/javascript; charset=utf-8"},
-                                                                            {".css", "text/css; charset=utf-8"},
-                                                                            {".json", "application/json"},
-                                                                            {".svg", "image/svg+xml"},
-                                                                            {".png", "image/png"},
-                                                                            {".ico", "image/x-icon"},
-                                                                            {".woff2", "font/woff2"},
-                                                                            {".urdf", "application/xml"},
-                                                                            {".stl", "model/stl"},
-                                                                            {".glb", "model/gltf-binary"},
-                                                                            {".txt", "text/plain; charset=utf-8"},
-                                                                            {".map", "application/json"}}};
-  const std::string extension = file.extension().string();
-  const auto found = std::ranges::find(types, extension, &std::pair<std::string_view, const char*>::first);
-  return found != types.end() ? found->second : "application/octet-stream";
-}
-
-constexpr const char* plain_page = R"(<!doctype html><html lang="en"><meta charset="utf-8"><title>HIROSCO</title>
-<h1>HIROSCO ground station</h1>
-<p>The gateway runs, but its page is not built: install npm and node (18 or later), configure the build again and build
-the target hirosco_ground_page. The API works without it; see ground/api/README.md.</p></html>
-)";
-
-[[nodiscard]] std::optional<std::string> content_of(const std::filesystem::path& file) {
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(file, failed) || std::filesystem::file_size(file, failed) > most_file_octets)
-    return std::nullopt;
-  std::ifstream stream{file, std::ios::binary};
-  std::string content{std::istreambuf_iterator<char>{stream}, {}};
-  return stream ? std::optional{std::move(content)} : std::nullopt;
-}
-
-/// A path of plain names: nothing that leads out of the folder or to a hidden file.
-[[nodiscard]] bool plain_path(const std::string& path) {
-  if (!path.starts_with('/')) return false;
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
-           c == '.' || c == '/';
-  };
-  return std::ranges::all_of(path, plain) && path.find("/.") == std::string::npos &&
-         path.find("//") == std::string::npos;
 }
 
 [[nodiscard]] json gaps_json(const std::vector<StoredGap>& gaps) {
@@ -452,19 +403,9 @@ json Api::log(const Target& target) {
 }
 
 HttpResponse Api::page_file(const HttpRequest& request, const std::string& path) const {
-  if (!plain_path(path)) return error(404, "nothing is there");
-  const std::string wanted = path == "/" ? "/index.html" : path;
-  const std::filesystem::path file = options_.page / wanted.substr(1);
-  HttpResponse response;
-  response.type = type_of(file);
   const bool zipped = header(request, "accept-encoding").find("gzip") != std::string::npos;
-  auto content = zipped ? content_of(file.string() + ".gz") : std::nullopt;
-  if (content) response.headers.emplace_back("Content-Encoding", "gzip");
-  if (!content) content = content_of(file);
-  if (!content && wanted == "/index.html") content = plain_page;
-  if (!content) return error(404, "nothing is there");
-  response.body = std::move(*content);
-  return with_headers(std::move(response));
+  auto file = page_.file(path, zipped);
+  return file ? with_headers(std::move(*file)) : error(404, "nothing is there");
 }
 
 }  // namespace hirosco::ground

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "ground/page_files.hpp"
 #include "ground/session.hpp"
 #include "ground/shell/http_server.hpp"
 #include "ground/target.hpp"
@@ -44,10 +45,12 @@ class Api final : public Application {
     std::string observer_token;  ///< empty = no observers
     std::uint16_t port{8080};
     std::filesystem::path page;  ///< folder of the page's files
+    std::filesystem::path mission_page{};  ///< of those that the mission shows of itself
     std::vector<Transition> transitions;
     FaultTexts faults{};
   };
-  Api(Session& session, Options options) : session_{session}, options_{std::move(options)} {}
+  Api(Session& session, Options options)
+      : session_{session}, options_{std::move(options)}, page_{options_.page, options_.mission_page} {}
 
   void handle(const HttpRequest& request, std::function<void(HttpResponse)> respond) override;
   [[nodiscard]] std::optional<HttpResponse> refuse_socket(const HttpRequest& request) override;
@@ -85,6 +88,7 @@ class Api final : public Application {
 
   Session& session_;
   Options options_;
+  PageFiles page_;
   std::uint64_t tick_{0};
   std::uint64_t calm_at_{0};  ///< wrong tokens before it count
   unsigned wrong_tokens_{0};

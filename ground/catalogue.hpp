@@ -21,7 +21,7 @@ namespace hirosco::ground {
 
 /// One number of telemetry: a parameter, a member or an element of an array.
 struct Column {
-  std::string name;  ///< "MANIPULATOR.CUR_VALUES.POSITION[0]"
+  std::string name;  ///< "ARM.CUR_VALUES.POSITION[0]"
   std::uint16_t apid{};
   Type type{};
   std::string unit;

@@ -320,7 +320,7 @@ class Teller {
     return causes;
   }
 
-  /// "MANIPULATOR and JOYSTICK went Offline": who of those who flew ended where.
+  /// "ARM and HAND went Offline": who of those who flew ended where.
   [[nodiscard]] std::string who_went() const {
     std::map<State, std::vector<std::string>> by_state;
     for (const auto& [name, state] : finally_) by_state[state].push_back(name);

@@ -5,10 +5,10 @@
 import pathlib, re, sys
 libraries = ["utilities", "xml", "parameter", "data_transfer", "descriptor", "pus", "subsystem"]  # lowest first
 may = {"hirosco": ["hirosco"], "subsystems": ["hirosco"], "supervisor": ["hirosco", "supervisor"],
-       "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything
+       "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything; nobody but missions and tests a mission
 shells = ("hirosco/utilities/os/", "hirosco/data_transfer/flows/", "supervisor/guard/guard_shell", "supervisor/keeper/", "supervisor/platform/", "tools/",
-          "tests/", "bench/", "simulation/devices/", "subsystems/communication/tcp_server.")
-# These, and tests, their rigs, main.cpp and run.cpp anywhere, may ask the operating system.
+          "tests/", "bench/", "simulation/devices/")
+# These, and tests, their rigs, main.cpp, run.cpp and a TCP server anywhere, may ask the operating system.
 system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|sched|spawn|signal|semaphore|mqueue|"
                     r"termios|dirent|netdb|dlfcn|ifaddrs)\.h$|csignal$")
 include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
@@ -17,9 +17,10 @@ def rank(path):
 def wrong(path, to):
     top, target = path.split("/")[0], to.split("/")[0]
     if system.match(to):
-        asks = path.startswith(shells) or path.endswith(("_test.cpp", "main.cpp", "run.cpp")) or "/testing/" in path
+        asks = path.startswith(shells) or path.endswith(("_test.cpp", "main.cpp", "run.cpp")) or "/testing/" in path or "/tcp_server." in path
         return not asks and "the operating system"
     if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
+    if target == "missions" and top not in ("missions", "tests"): return "a mission"
     if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return False  # assemble and fly all parts
     same = path.split("/")[:2] == to.split("/")[:2]
     if top in may and target not in may[top] and not same: return "another part"
@@ -30,10 +31,11 @@ def wrong(path, to):
 planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "subsystems/a/a.cpp subsystems/b/b.hpp", "ground/a.cpp supervisor/b.hpp",
            "ground/a.cpp hirosco/subsystem/b.hpp", "hirosco/pus/a.cpp sys/mman.h", "supervisor/a.cpp unistd.h",
            "hirosco/pus/a.cpp hirosco/parameter/detail/b.hpp", "simulation/world/a.cpp simulation/spacecraft/b.hpp",
-           "subsystems/a/a.cpp supervisor/b.hpp", "hirosco/pus/a.cpp supervisor/b.hpp"]
+           "subsystems/a/a.cpp supervisor/b.hpp", "hirosco/pus/a.cpp supervisor/b.hpp",
+           "simulation/scenarios/a.cpp missions/b/b.hpp", "tools/hirosco/a.cpp missions/b/b.hpp"]
 missed = [plant for plant in planted if not wrong(*plant.split())]
 root = pathlib.Path(__file__).resolve().parent.parent
-files = [file for top in [*may, "tools", "tests", "bench"] for file in sorted((root / top).rglob("*.[hc]pp"))]
+files = [file for top in [*may, "missions", "tools", "tests", "bench"] for file in sorted((root / top).rglob("*.[hc]pp"))]
 found = [f"{path}: includes {to}, {reason}" for path, text in ((f.relative_to(root).as_posix(), f.read_text()) for f in files)
          for to in include.findall(text) if (reason := wrong(path, to))]
 sys.exit("\n".join(found + [f"planted and not seen: {plant}" for plant in missed]) or ("no files" if not files else None))

@@ -14,7 +14,7 @@
 namespace hirosco::ground {
 
 struct PythonPackage {
-  std::string name;  ///< "hirosco_rokviss": never the name of a module of Python's own
+  std::string name;  ///< "hirosco_MISSION": never the name of a module of Python's own
   std::map<std::string, std::string> files;  ///< text by file name
 };
 /// The same catalogue gives the same octets.

@@ -194,7 +194,7 @@ class Registry(unittest.TestCase):
     def test_the_only_flight_of_the_mission_is_meant_else_a_name_is_asked_for(self):
         find = lambda **which: runtime.find_flight("SMALL", folder=str(self.folder), **which)
         self.assertIsNone(find())
-        self.fly("hello", mission="HELLO")
+        self.fly("hello", mission="OTHER")
         self.assertIsNone(find())
         self.fly("one")
         self.assertEqual(find()["instance"], "one")

@@ -33,9 +33,6 @@ const drawing = readdirSync(out).find((name) => /^scene-.*\.js$/.test(name));
 writeFileSync(join(out, 'index.html'), readFileSync(join(sources, 'page/index.html'), 'utf8')
     .replace('</head>', `  <link rel="modulepreload" href="${drawing}">\n</head>`));
 cpSync(join(sources, 'page/icon.svg'), join(out, 'icon.svg'));
-cpSync(join(sources, 'page/models'), join(out, 'models'), {recursive: true});
-// Which missions have a model: a page that tried would leave an error in the console for each that has none.
-writeFileSync(join(out, 'models/index.json'), JSON.stringify(readdirSync(join(sources, 'page/models'))));
 
 /// Notices of what is bundled: each licence asks to be carried along.
 const notices = [];

@@ -5,7 +5,7 @@
 #include "hirosco/xml/reader.hpp"
 
 int main() {
-  const auto tree = hirosco::xml::read_tree("<Subsystem name=\"HELLO\">\n  <ParamRef type=\"DOUBLE\"/>\n</Subsystem>");
+  const auto tree = hirosco::xml::read_tree("<Subsystem name=\"LAMP\">\n  <ParamRef type=\"DOUBLE\"/>\n</Subsystem>");
   if (!tree) return 1;
   const auto* type = tree->children.front().find("type");
   std::printf("%s: line %d, column %d\n", type->value.c_str(), type->value_at.line, type->value_at.column);

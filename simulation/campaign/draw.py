@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Draws the plan of a flight from a seed: who is told what, and what breaks, at random instants."""
-import pathlib, random, struct, sys
+import functools, importlib.util, pathlib, random, struct, sys, types
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "judge"))
 from descriptors import ERROR, OFFLINE, OPERATIONAL, POST, PRE, SAFE, STATES, TYPES  # noqa: E402
@@ -12,7 +12,6 @@ FULL_POWER = b"SET_POWER_BUDGET" + bytes([1, 1]) + struct.pack(">f", 120)
 COMMON = ["3.1", "3.3", "3.5", "3.6", "3.9", "3.27", "3.29", "3.31", "3.33", "5.5", "5.6", "5.7", "17.1", "20.1", "20.3",
           "128.1", "128.2", "128.3", "128.4", "129.1", "3.77", "99.1", "SET_STATE", "CONFIGURE", "unknown"]
 DEVICE_FAULTS = ["unplug", "silent", "stall", "freeze", "corrupt", "delay"]
-OWN_FAULTS = {"MANIPULATOR": ["temperature", "hook", "release", "friction", "noise", "thermal_accel"], "JOYSTICK": ["hand"]}
 MEMBER_FAULTS = ["kill", "stop", "spin", "stick", "strain"]
 LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
 # How long the craft is left alone with a fault that was aimed: what ends or stops a process takes longest.
@@ -48,15 +47,33 @@ def commands_of(mission):
             yield f"Operational|{kind}|{origin}"
 
 
+@functools.cache
+def of_folder(folder):
+    file = folder / "campaign.py"
+    if not file.exists():
+        return types.SimpleNamespace(FAULTS={}, lines=lambda random: {})
+    spec = importlib.util.spec_from_file_location("campaign_of_mission", file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def of_its_devices(mission):
+    """What a mission's own devices take besides what all do: campaign.py of its folder has FAULTS by member, and lines(random), the line
+    of each with numbers drawn."""
+    return of_folder(mission.folder)
+
+
 def faults_of(mission):
     """Cells: fault | state of the member | member."""
     members = [m.name for m in mission.members]
     acting = [m for m in members if m != mission.ground]
+    own = of_its_devices(mission).FAULTS
     for state in WAY_TO:
         for member in acting:
             for fault in MEMBER_FAULTS + [f"log {f}" for f in LOG_FAULTS] + ["flood valid", "flood damaged"]:
                 yield f"{fault}|{STATES[state]}|{member}"
-            for fault in DEVICE_FAULTS + OWN_FAULTS.get(member, []):
+            for fault in DEVICE_FAULTS + own.get(member, []):
                 yield f"fault {fault}|{STATES[state]}|{member}"
     for fault in MEMBER_FAULTS:
         yield f"{fault}|Operational|{mission.ground}"
@@ -238,11 +255,7 @@ class Draw:
             what = fault.split()[1]
             words = {"stall": f"stall {r.choice([1, 3, 50, 500])}", "freeze": f"freeze {r.choice([1, 3, 50, 5000])}",
                      "corrupt": f"corrupt {r.choice([1, 3, 50, 1000000])}", "delay": f"delay {r.choice([1, 5, 100])}",
-                     "temperature": f"temperature {r.choice([1, 2])} {r.choice([56, 72, 81, 20])}", "hook": f"hook {r.choice([1, 2, 2, 2])}",
-                     "friction": f"friction {r.choice(['on', 'off'])}", "noise": f"noise {r.choice([0, 0.1, 2])}",
-                     "thermal_accel": f"thermal_accel {r.choice([0, 10])}",
-                     "hand": r.choice(["hand wander", "hand cartesian 0.0226 0 0.2", "hand sine 1 0.3 2", "hand hold 0.1 0.1",
-                                       "hand ramp 0.05 0 1"])}.get(what, what)
+                     **of_its_devices(self.mission).lines(r)}.get(what, what)
             self.add(time, f"fault {device} {words}")
             if what in DEVICE_FAULTS and r.random() < 0.8:
                 self.add(time + lasts, f"fault {device} {'plug' if what == 'unplug' else 'heal'}")

@@ -40,6 +40,7 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
       plant_{plant ? std::move(plant) : std::make_unique<Plant>()},
       modules_{std::move(modules)} {
   if (!plan_.mode.empty()) mission_.start_mode = plan_.mode;
+  plant_->mission = &mission_;
   if (plant_->edit) plant_->edit(mission_);
   if (plant_->devices) plant_->devices(modules_.devices);
   disk_.keeps = plant_->keeps;

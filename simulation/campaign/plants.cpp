@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/campaign/plants.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "hirosco/pus/packet/packet.hpp"
@@ -17,12 +18,22 @@ using descriptor::State;
 using Hooks = TamperedChannel::Hooks;
 using MakePlant = std::function<void(Plant&)>;
 
-/// Hooks for the channel of one member; "*": of each but the ground link's.
-void on_channel(Plant& plant, std::string member, Hooks hooks) {
-  plant.wrap_channel = [member = std::move(member), hooks = std::move(hooks)](
+/// Members of the mission by what they are in it.
+enum class Whose : std::uint8_t { GroundLink, Others, FirstOther };
+
+[[nodiscard]] std::vector<std::string_view> members(const Plant& plant, Whose whose) {
+  std::vector<std::string_view> found;
+  for (const auto& member : plant.mission->subsystems)
+    if ((member.subsystem.name == plant.mission->ground.subsystem) == (whose == Whose::GroundLink))
+      found.push_back(member.subsystem.name);
+  if (whose == Whose::FirstOther && !found.empty()) found.resize(1);
+  return found;
+}
+
+void on_channel(Plant& plant, Whose whose, Hooks hooks) {
+  plant.wrap_channel = [&plant, whose, hooks = std::move(hooks)](
                            std::string_view name, std::unique_ptr<Channel> channel) -> std::unique_ptr<Channel> {
-    const bool concerned = member == "*" ? name != "COMMUNICATION" : name == member;
-    if (!concerned) return channel;
+    if (std::ranges::count(members(plant, whose), name) == 0) return channel;
     return std::make_unique<TamperedChannel>(std::move(channel), hooks);
   };
 }
@@ -55,13 +66,16 @@ void each_requirement(descriptor::Mission& mission, const std::function<void(des
 /// A death takes a bystander along.
 void i1(Plant& plant) {
   plant.after_action = [&plant](const std::vector<std::string>& words) {
-    if (words[0] == "kill") plant.craft->kill(words[1] == "MANIPULATOR" ? "JOYSTICK" : "MANIPULATOR");
+    if (words[0] != "kill") return;
+    const auto others = members(plant, Whose::Others);
+    const auto bystander = std::ranges::find_if(others, [&](std::string_view name) { return name != words[1]; });
+    if (bystander != others.end()) plant.craft->kill(*bystander);
   };
 }
 
 /// Every fifth final report is lost.
 void i2(Plant& plant) {
-  on_channel(plant, "*", {.receives = [seen = 0](Message& message, MessageBuffer&) mutable {
+  on_channel(plant, Whose::Others, {.receives = [seen = 0](Message& message, MessageBuffer&) mutable {
                const auto report = pus::TelemetryView::parse(message.packet);
                return !report || !is_final_report(*report) || ++seen % 5 != 0;
              }});
@@ -102,7 +116,8 @@ void i5(Plant& plant) {
 
 /// The supervisor does not listen to the ground link in half of all seconds.
 void i6(Plant& plant) {
-  on_channel(plant, "COMMUNICATION", {.holds_back = [&plant] { return static_cast<int>(2 * plant.now_s()) % 2 == 1; }});
+  on_channel(plant, Whose::GroundLink,
+             {.holds_back = [&plant] { return static_cast<int>(2 * plant.now_s()) % 2 == 1; }});
 }
 
 /// Every mode permits everything.
@@ -121,7 +136,7 @@ void i8(Plant& plant) {
 /// One state is told for another: from Offline straight to Operational.
 void i9(Plant& plant) {
   plant.each_instant = [&plant, done = false]() mutable {
-    auto* page = const_cast<VitalPage*>(plant.craft->vital("JOYSTICK"));
+    auto* page = const_cast<VitalPage*>(plant.craft->vital(members(plant, Whose::Others).back()));
     if (done || plant.now_s() < 3 || page == nullptr ||
         page->state.load() != static_cast<std::uint32_t>(State::Operational))
       return;
@@ -136,12 +151,12 @@ void i10(Plant& plant) {
   plant.after_action = [struck](const std::vector<std::string>& words) {
     *struck += words[0] == "fault" || words[0] == "stop" || words[0] == "strain" ? 1 : 0;
   };
-  on_channel(plant, "MANIPULATOR", {.sends = [struck](const Message&) { return *struck < 2; }});
+  on_channel(plant, Whose::FirstOther, {.sends = [struck](const Message&) { return *struck < 2; }});
 }
 
 /// Every hundredth report bears a count that was used before.
 void i11(Plant& plant) {
-  on_channel(plant, "*", {.receives = [seen = 0](Message& message, MessageBuffer& buffer) mutable {
+  on_channel(plant, Whose::Others, {.receives = [seen = 0](Message& message, MessageBuffer& buffer) mutable {
                const std::size_t size = message.packet.size();
                if (++seen % 100 != 0 || !pus::TelemetryView::parse(message.packet)) return true;
                MutableOctets octets = MutableOctets{buffer.octets}.first(size);

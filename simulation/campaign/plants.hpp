@@ -22,6 +22,7 @@ struct Plant {
   std::function<void(const std::vector<std::string>&)> after_action{};
   std::function<void()> each_instant{};
   std::uint32_t clock_percent{100};  ///< what the devices' clocks should be, in percent of what they are
+  const descriptor::Mission* mission{nullptr};  ///< set before the craft is made
   simulation::Spacecraft* craft{nullptr};  ///< set before the first instant
 
   [[nodiscard]] double now_s() const;

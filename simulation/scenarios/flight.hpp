@@ -47,7 +47,7 @@ class Story final : public supervisor::Observer {
 };
 
 struct Plan {
-  std::filesystem::path mission{"rokviss"};  ///< the mission file
+  std::filesystem::path mission{};  ///< the mission file
   std::function<void(descriptor::Mission&)> edit{};
   SubsystemCatalogue subsystems{};  ///< in place of modules, or besides them
   DeviceCatalogue devices{};
@@ -58,7 +58,7 @@ struct Plan {
   std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
 };
 
-/// Edit of rokviss: the hand rests until the test moves it.
+/// Edit of a mission with a simulated hand: it rests until the test moves it.
 void hand_rests(descriptor::Mission& mission);
 
 class Flight {

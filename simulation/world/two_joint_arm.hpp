@@ -9,7 +9,7 @@
 #include "hirosco/utilities/time.hpp"
 #include "simulation/world/numerics.hpp"
 
-/// The robot of the rokviss mission as nature has it: a planar arm of two flexible joints in zero gravity, a contour to
+/// A robot as nature has it: a planar arm of two flexible joints in zero gravity, a contour to
 /// touch and two springs to hook. Shares no code and no number file with the controller: a wrong model there must show.
 namespace hirosco::simulation {
 

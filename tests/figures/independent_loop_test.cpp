@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 // The coupled loop written a second time: first held against closed forms, then missions/rokviss/expected.csv against it.
-#include "simulation/independent/coupled_loop.hpp"
+#include "missions/rokviss/independent/coupled_loop.hpp"
 
 #include <algorithm>
 #include <array>

@@ -86,7 +86,8 @@ class Report(unittest.TestCase):
 
     def test_an_unreadable_table_is_named_with_its_line(self):
         with tempfile.TemporaryDirectory() as folder:
-            pathlib.Path(folder, "mission.xml").write_text("<Mission/>", encoding="utf-8")
+            mission = pathlib.Path(MISSION, "mission.xml").read_text(encoding="utf-8")
+            pathlib.Path(folder, "mission.xml").write_text(mission.replace("../../", "@hirosco/"), encoding="utf-8")
             pathlib.Path(folder, "expected.csv").write_text(
                 "name,quantity,bound,value,tolerance,unit,source\nRO2-x,force,near,one,0,N,me\n", encoding="utf-8")
             done = subprocess.run([HIROSCO, "report", folder], capture_output=True, text=True, check=False)

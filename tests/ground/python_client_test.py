@@ -15,7 +15,7 @@ import unittest
 
 import flight
 
-EXAMPLE = flight.REPOSITORY / "ground/python/examples/move_and_plot.py"
+EXAMPLE = flight.REPOSITORY / "missions/rokviss/move_and_plot.py"
 
 
 def export(mission, folder):

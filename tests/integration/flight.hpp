@@ -17,13 +17,14 @@ using simulation::hand_rests;
 using simulation::Plan;
 using simulation::Story;
 
-/// Plan::mission is the name of a mission of the repository.
+/// Plan::mission is the name of a mission of the repository; empty: rokviss.
 class Flight final : public simulation::Flight {
  public:
   explicit Flight(Plan plan) : simulation::Flight{with_file(std::move(plan))} {}
 
  private:
   static Plan with_file(Plan plan) {
+    if (plan.mission.empty()) plan.mission = "rokviss";
     plan.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions" / plan.mission / "mission.xml";
     return plan;
   }

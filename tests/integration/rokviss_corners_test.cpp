@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simulation/scenarios/rokviss_corners.hpp"
+#include "missions/rokviss/scenarios/rokviss_corners.hpp"
 
 namespace hirosco::simulation {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "simulation/scenarios/rokviss.hpp"
+#include "missions/rokviss/scenarios/rokviss.hpp"
 
 namespace hirosco::simulation {
 namespace {

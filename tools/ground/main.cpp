@@ -151,6 +151,7 @@ constexpr std::uint16_t tried_ports = 20;
            .observer_token = observer,
            .port = shell.port(),
            .page = option(options, "--page", find_shipped("page").string()),
+           .mission_page = mission.file.parent_path() / "page",
            .transitions = state_table(),
            .faults = fault_texts(mission)}};
   const bool tour = options.contains("--tour");

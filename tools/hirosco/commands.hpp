@@ -51,21 +51,11 @@ struct SimulateOptions {
 };
 int simulate(const SimulateOptions& options);
 
-struct ReportOptions {
-  std::string mission;
-  std::string out;                   ///< folder of the page and its plots; empty = none
-  std::uint64_t seed{1};
-  std::vector<std::string> only;     ///< ids of runs; empty = those that a report has by default
-  std::vector<std::string> plant;    ///< "NAME=FACTOR": errors put into the model on purpose
-  int repetitions{20};               ///< of each fault
-  bool convergence{false};           ///< each run a second time with sub-steps half as long
-  bool corners{false};               ///< instead of the runs every corner of the ranges that the mission declares
-  bool real{false};                  ///< on real processes, for `real_for`
-  Duration real_for{std::chrono::minutes{5}};
-};
-int report(const ReportOptions& options);
+/// What a mission does by a program of its own, hirosco-mission-NAME (adr 0054): `hirosco COMMAND MISSION ...` becomes this program with
+/// COMMAND, the mission's file and the rest of the line. Returns only where there is none.
+int mission_program(const std::string& command, const std::string& mission, const std::vector<std::string>& rest);
 
-/// How clients reach the spacecraft. What is empty is that of the one that flies, else as rokviss says.
+/// How clients reach the spacecraft. What is empty is that of the one that flies, else as the usual mission says.
 struct Connection {
   std::string mission;
   std::string instance;
@@ -76,17 +66,17 @@ struct Connection {
 struct TelecommandOptions {
   Connection connection;
   std::string subsystem;
-  std::string function;              ///< or "ping"
-  std::vector<std::string> arguments;///< values in order, or NAME=VALUE
+  std::string function;  ///< or "ping"
+  std::vector<std::string> arguments;  ///< values in order, or NAME=VALUE
   Duration limit{std::chrono::seconds{70}};
 };
 int telecommand(const TelecommandOptions& options);
 int status(const Connection& connection);
 
 struct LogOptions {
-  std::string mission;               ///< as for a connection
+  std::string mission;  ///< as for a connection
   std::string instance;
-  std::string path;                  ///< of the store; empty = of the one that flies, else the mission's
+  std::string path;  ///< of the store; empty = of the one that flies, else the mission's
   std::optional<std::uint16_t> apid;
   std::optional<std::uint8_t> service;
   std::string text;
@@ -96,7 +86,7 @@ struct LogOptions {
 int log(const LogOptions& options);
 
 struct FaultOptions {
-  std::string mission;               ///< as for a connection
+  std::string mission;  ///< as for a connection
   std::string instance;
   std::string device;
   std::vector<std::string> words;
@@ -104,7 +94,7 @@ struct FaultOptions {
 int fault(const FaultOptions& options);
 
 struct SafeOptions {
-  std::string mission;               ///< empty = all that fly
+  std::string mission;  ///< empty = all that fly
   std::string instance;
 };
 /// Stops every actuator through the local socket of a flight's guard. 0: all have stopped, 1: somebody did not confirm,
@@ -137,9 +127,11 @@ struct ExportOptions {
 int export_python(const ExportOptions& options);
 
 // --- shared ------------------------------------------------------------------------------------------------------------
-/// "rokviss" or a path: the mission file; a name is looked for in missions/NAME/mission.xml from the working directory and
+/// A name or a path: the mission file; a name is looked for in missions/NAME/mission.xml from the working directory and
 /// from this program upwards. Empty: nowhere.
 [[nodiscard]] std::filesystem::path find_mission(const std::string& name_or_path);
+/// The mission that is meant where none is named and none flies: the word in the file missions/usual, looked for likewise. Empty: none.
+[[nodiscard]] std::string usual_mission();
 /// Reads the mission and prints what is wrong with it to standard error.
 [[nodiscard]] std::optional<descriptor::Mission> load_mission(const std::string& name_or_path);
 [[nodiscard]] std::uint16_t port_of(const std::string& address);

@@ -34,8 +34,7 @@ int export_python(const ExportOptions& options) {
       "    >>> from {} import Spacecraft\n"
       "    >>> craft = Spacecraft()\n"
       "    >>> help(craft)\n\n"
-      "docs/guide/python_client.md says the rest; ground/python/examples/move_and_plot.py moves the robot of "
-      "rokviss.\n",
+      "docs/guide/python_client.md says the rest.\n",
       catalogue.subsystems().size() == 1 ? "The subsystem" : "The subsystems", catalogue.mission().name, names,
       options.to, package.name);
   return exit_ok;

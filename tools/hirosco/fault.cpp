@@ -6,10 +6,12 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "simulation/devices/module.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 
@@ -19,11 +21,18 @@ namespace {
 constexpr int answer_limit_ms = 2000;
 /// A device's control socket closes on whoever sends more.
 constexpr std::size_t longest_line = 255;
-constexpr const char* lines_of_devices =
-    "every device takes: unplug, plug, silent, stall MS, freeze MS, delay MS, corrupt FRAMES, heal, truth\n"
-    "the robot besides: temperature JOINT CELSIUS, hook SPRING, release, friction on|off, noise N_M, ...\n"
-    "the joystick besides: hand hold Q1 Q2, hand sine AXIS AMPLITUDE HZ, hand ramp DX DY M_PER_S,\n"
-    "                      hand cartesian DX DY SECONDS, hand wander, stick PATH\n";
+constexpr const char* lines_of_every_device =
+    "every device takes: unplug, plug, silent, stall MS, freeze MS, delay MS, corrupt FRAMES, heal, truth\n";
+
+/// What it takes besides, as its module tells; nothing where that is not here.
+void print_lines_of(const descriptor::Mission& mission, const std::string& name) {
+  fmt::print(stderr, "{}", lines_of_every_device);
+  const auto device = std::ranges::find(mission.devices, name, &descriptor::SimulatedDevice::name);
+  if (device == mission.devices.end()) return;
+  const auto module = simulation::load_device(device->executable);
+  if (!module) return;
+  for (const auto& fault : (*module)->faults) fmt::print(stderr, "{} besides: {} ({})\n", name, fault.line, fault.text);
+}
 
 /// Asks a device's control socket one line; empty when nobody answers.
 [[nodiscard]] std::optional<std::string> ask(const std::filesystem::path& socket_path, const std::string& line) {
@@ -76,7 +85,7 @@ int fault(const FaultOptions& options) {
     return exit_finding;
   }
   fmt::print("{}\n", *answer);
-  if (answer->find("unknown fault") != std::string::npos) fmt::print(stderr, "{}", lines_of_devices);
+  if (answer->find("unknown fault") != std::string::npos) print_lines_of(mission, options.device);
   return answer->starts_with("ok") ? exit_ok : exit_finding;
 }
 

@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t longest_name = 64;
-/// Where no mission is named and none flies.
-constexpr const char* usual_mission = "rokviss";
 
 struct Address {
   std::string host;
@@ -146,13 +144,13 @@ std::expected<FoundFlight, int> find_flight(const char* command, const std::stri
     fmt::print(stderr, "hirosco {}: {}\n", command, chosen.error());
     return std::unexpected{exit_usage};
   }
-  if (!loaded) loaded = load_mission(*chosen ? (*chosen)->file.string() : usual_mission);
+  if (!loaded) loaded = load_mission(*chosen ? (*chosen)->file.string() : usual_mission());
   if (!loaded) return std::unexpected{exit_finding};
   return FoundFlight{std::move(*loaded), std::move(*chosen)};
 }
 
 std::expected<FoundFlight, int> only_mission(const std::string& mission) {
-  auto loaded = load_mission(mission.empty() ? usual_mission : mission);
+  auto loaded = load_mission(mission.empty() ? usual_mission() : mission);
   if (!loaded) return std::unexpected{exit_finding};
   return FoundFlight{std::move(*loaded), std::nullopt};
 }

@@ -27,8 +27,8 @@ class Flights : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
   [[nodiscard]] static FlightEntry entry(const std::string& instance, double load = 0) {
     return {.instance = instance,
-            .mission = "ROKVISS",
-            .file = "/m/rokviss/mission.xml",
+            .mission = "RANGER",
+            .file = "/m/ranger/mission.xml",
             .folder = "/run/" + instance,
             .log = "/l/" + instance + ".db",
             .telemetry = std::string{test_host} + ":31015",
@@ -58,17 +58,17 @@ std::string reason(const std::expected<Admission, std::string>& refused) {
 TEST_F(Flights, AreFoundAsLongAsOneOfTheirProcessesLives) {
   const FlightRegistry registry{folder_ / "registry"};
   EXPECT_TRUE(registry.flights().empty());
-  auto first = registry.enter(entry("ROKVISS"));
+  auto first = registry.enter(entry("RANGER"));
   ASSERT_TRUE(first) << first.error();
   auto heir = first->lock.duplicate();
   ASSERT_TRUE(heir);
   first->lock.reset();
   ASSERT_EQ(registry.flights().size(), 1U) << "a process that inherited it holds it";
   const FlightEntry found = registry.flights().front();
-  EXPECT_EQ(found.instance, "ROKVISS");
-  EXPECT_EQ(found.mission, "ROKVISS");
-  EXPECT_EQ(found.folder, "/run/ROKVISS");
-  EXPECT_EQ(found.log, "/l/ROKVISS.db");
+  EXPECT_EQ(found.instance, "RANGER");
+  EXPECT_EQ(found.mission, "RANGER");
+  EXPECT_EQ(found.folder, "/run/RANGER");
+  EXPECT_EQ(found.log, "/l/RANGER.db");
   EXPECT_EQ(found.telemetry, "127.0.0.9:31015") << "a flight of its mission's name listens where the mission says";
   EXPECT_EQ(found.telecommand, "127.0.0.9:31025");
   EXPECT_EQ(found.keeper, 7);
@@ -101,8 +101,7 @@ TEST_F(Flights, WithANameOfTheirOwnGetTheFirstPortsThatNobodyHas) {
 TEST_F(Flights, WhosePortsAreTakenAreRefused) {
   const FlightRegistry registry{folder_};
   const FileDescriptor foreign = listener(31025);
-  EXPECT_NE(reason(registry.enter(entry("ROKVISS"))).find("127.0.0.9:31025: somebody listens there"),
-            std::string::npos);
+  EXPECT_NE(reason(registry.enter(entry("RANGER"))).find("127.0.0.9:31025: somebody listens there"), std::string::npos);
   EXPECT_TRUE(registry.enter(entry("one"))) << "another name has other ports";
 }
 
@@ -161,23 +160,23 @@ TEST(Choice, IsTheOnlyFlightThatIsMeantElseAskedForByNames) {
     return FlightEntry{.instance = instance, .mission = mission, .file = {}, .folder = "/f", .log = {}};
   };
   EXPECT_FALSE(*choose_flight({}, {}));
-  EXPECT_EQ((*choose_flight({flight("ROKVISS", "ROKVISS")}, {}))->instance, "ROKVISS");
-  const std::vector<FlightEntry> several{flight("ROKVISS", "ROKVISS"), flight("hello-1", "HELLO"),
-                                         flight("two", "ROKVISS")};
+  EXPECT_EQ((*choose_flight({flight("RANGER", "RANGER")}, {}))->instance, "RANGER");
+  const std::vector<FlightEntry> several{flight("RANGER", "RANGER"), flight("harbour-1", "HARBOUR"),
+                                         flight("two", "RANGER")};
   EXPECT_EQ((*choose_flight(several, {.mission = {}, .instance = "two"}))->instance, "two");
-  EXPECT_EQ((*choose_flight(several, {.mission = "HELLO", .instance = {}}))->instance, "hello-1");
+  EXPECT_EQ((*choose_flight(several, {.mission = "HARBOUR", .instance = {}}))->instance, "harbour-1");
   EXPECT_FALSE(*choose_flight(several, {.mission = "OTHER", .instance = {}}))
       << "another mission's flight is not meant";
-  const auto which = choose_flight(several, {.mission = "ROKVISS", .instance = {}});
+  const auto which = choose_flight(several, {.mission = "RANGER", .instance = {}});
   ASSERT_FALSE(which);
   EXPECT_NE(which.error().find("2 flights are in the air; which one?"), std::string::npos) << which.error();
   EXPECT_NE(which.error().find("--instance two"), std::string::npos) << which.error();
-  EXPECT_EQ(which.error().find("hello-1"), std::string::npos) << which.error();
+  EXPECT_EQ(which.error().find("harbour-1"), std::string::npos) << which.error();
 }
 
 TEST(Choice, OfANameThatDoesNotFlySaysWhichOnesDo) {
   const std::vector<FlightEntry> flights{
-      {.instance = "one", .mission = "ROKVISS", .file = {}, .folder = "/f", .log = {}}};
+      {.instance = "one", .mission = "RANGER", .file = {}, .folder = "/f", .log = {}}};
   const auto wrong = choose_flight(flights, {.mission = {}, .instance = "won"});
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().find("no instance 'won' flies; there are:"), std::string::npos) << wrong.error();
@@ -185,36 +184,36 @@ TEST(Choice, OfANameThatDoesNotFlySaysWhichOnesDo) {
   const auto none = choose_flight({}, {.mission = {}, .instance = "won"});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error(), "no instance 'won' flies; nothing flies here");
-  const auto other = choose_flight(flights, {.mission = "HELLO", .instance = "one"});
+  const auto other = choose_flight(flights, {.mission = "HARBOUR", .instance = "one"});
   ASSERT_FALSE(other);
-  EXPECT_EQ(other.error(), "instance 'one' flies mission ROKVISS, not HELLO");
+  EXPECT_EQ(other.error(), "instance 'one' flies mission RANGER, not HARBOUR");
 }
 
 descriptor::Mission some_mission() {
   descriptor::Mission mission;
-  mission.name = "ROKVISS";
-  mission.database.path = "log/rokviss.db";
-  mission.ground.subsystem = "COMMUNICATION";
+  mission.name = "RANGER";
+  mission.database.path = "log/ranger.db";
+  mission.ground.subsystem = "RADIO";
   mission.ground.telemetry = "localhost:31015";
   mission.ground.telecommand = "127.0.0.1:31025";
   return mission;
 }
 
 TEST(Instance, OfTheMissionsOwnNameHasWhatTheMissionSays) {
-  const FlightEntry own = plan_flight(some_mission(), "ROKVISS");
+  const FlightEntry own = plan_flight(some_mission(), "RANGER");
   EXPECT_FALSE(own.named());
   EXPECT_EQ(own.telemetry, "127.0.0.1:31015") << "in numbers";
   EXPECT_EQ(own.telecommand, "127.0.0.1:31025");
-  EXPECT_EQ(own.log, fs::absolute("log/rokviss.db"));
-  EXPECT_EQ(own.folder, runtime_folder("ROKVISS"));
+  EXPECT_EQ(own.log, fs::absolute("log/ranger.db"));
+  EXPECT_EQ(own.folder, runtime_folder("RANGER"));
 }
 
 TEST(Instance, OfAnotherNameHasALogAnArchiveAndAFolderOfItsOwn) {
   const descriptor::Mission mission = some_mission();
   const FlightEntry other = plan_flight(mission, "ground");
   EXPECT_TRUE(other.named());
-  EXPECT_EQ(other.log, fs::absolute("log/ground/rokviss.db"));
-  EXPECT_EQ(archive_beside(other.log), fs::absolute("log/ground/rokviss-ground.db"));
+  EXPECT_EQ(other.log, fs::absolute("log/ground/ranger.db"));
+  EXPECT_EQ(archive_beside(other.log), fs::absolute("log/ground/ranger-ground.db"));
   EXPECT_EQ(other.folder, runtime_folder("ground"));
   EXPECT_EQ(instance_of_folder(other.folder), "ground");
 }
@@ -245,7 +244,7 @@ TEST(Instance, NamesThatWouldLeaveTheirFolderAreNone) {
   for (const std::string& name : {std::string{}, std::string{"."}, std::string{".."}, std::string{".lock"},
                                   std::string{"a/b"}, std::string{"a b"}, std::string{"ä"}, std::string(65, 'a')})
     EXPECT_FALSE(good_instance(name)) << name;
-  EXPECT_TRUE(good_instance("rokviss-2"));
+  EXPECT_TRUE(good_instance("ranger-2"));
   EXPECT_TRUE(good_instance(std::string(64, 'a'))) << "as long as a mission's name";
 }
 

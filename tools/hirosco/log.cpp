@@ -18,7 +18,7 @@ int log(const LogOptions& options) {
     path = std::move(found->path);
     mission = std::move(found->mission);
     strategy = mission->database.strategy;
-  } else if (const std::string name = options.mission.empty() ? "rokviss" : options.mission;
+  } else if (const std::string name = options.mission.empty() ? usual_mission() : options.mission;
              !find_mission(name).empty()) {
     mission = load_mission(name);
   }

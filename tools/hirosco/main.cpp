@@ -3,15 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <charconv>
-#include <cstdio>
-#include <cstring>
-#include <new>
-#include <system_error>
 
-#include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/version.hpp"
+#include "tools/hirosco/command_line.hpp"
 #include "tools/hirosco/commands.hpp"
 
 /// `hirosco`: one command for everything. The command line is read here and nowhere else.
@@ -20,47 +14,17 @@ namespace {
 using namespace hirosco;
 using namespace hirosco::tools;
 
-/// "90s", "1500ms", "10min", "2" (seconds).
-[[nodiscard]] Duration duration_of(const std::string& text) {
-  std::size_t used = 0;
-  double number = 0.0;
-  try {
-    number = std::stod(text, &used);
-  } catch (const std::exception&) {
-    throw CLI::ValidationError("not a duration: '" + text + "' (for example 60s, 500ms, 10min)");
-  }
-  const std::string unit = text.substr(used);
-  const double scale = unit == "ms"                   ? 1e-3
-                       : unit == "min" || unit == "m" ? 60.0
-                       : unit == "h"                  ? 3600.0
-                       : unit.empty() || unit == "s"  ? 1.0
-                                                      : -1.0;
-  constexpr double longest_s = 1e7;
-  if (scale < 0 || !(number >= 0) || number * scale > longest_s)
-    throw CLI::ValidationError("not a duration: '" + text + "' (for example 60s, 500ms, 10min)");
-  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(number * scale));
-}
-
 void add_instance(CLI::App& command, std::string& instance) {
   command.add_option("--instance", instance, "Which flight, where several are in the air");
 }
 
 void add_connection(CLI::App& command, Connection& connection) {
   command.add_option("--mission", connection.mission,
-                     "Mission whose descriptors decode the packets; by default the one that flies, else rokviss");
+                     "Mission whose descriptors decode the packets; by default the one that flies, else the usual one");
   add_instance(command, connection.instance);
   command.add_option("--host", connection.host, "Address of the ground link; by default the flight's");
   command.add_option("--port", connection.port, "Port of the ground link; by default the flight's");
   command.add_flag("--json", connection.json, "One JSON object instead of text");
-}
-
-/// Digits only, and no more than fit: a seed that is not the one asked for replays another run.
-[[nodiscard]] std::uint64_t seed_of(const std::string& text) {
-  std::uint64_t seed = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (problem != std::errc{} || end != text.data() + text.size() || text.empty())
-    throw CLI::ValidationError("not a seed: '" + text + "' (0 to 18446744073709551615)");
-  return seed;
 }
 
 /// A first word that is no command: says which there are.
@@ -83,7 +47,7 @@ int read_and_do(int argc, char** argv) {
   RunOptions run_options;
   std::string run_for;
   auto* run_command = app.add_subcommand("run", "Fly a mission with real processes until Ctrl-C");
-  run_command->add_option("mission", run_options.mission, "Name (rokviss, hello) or path of a mission")->required();
+  run_command->add_option("mission", run_options.mission, "Name or path of a mission")->required();
   run_command->add_option("--instance", run_options.instance,
                           "A name of its own for this flight: log, ports, sockets and devices of its own, too");
   run_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
@@ -92,9 +56,9 @@ int read_and_do(int argc, char** argv) {
   run_command->add_flag("--no-ground", no_ground, "Without the ground station and its page");
   run_command->add_flag("--json", run_options.json, "One JSON object a line");
 
-  std::string tour_mission{"rokviss"};
+  std::string tour_mission;
   auto* tour_command = app.add_subcommand("tour", "Fly a mission and be shown around by its page, in eight steps");
-  tour_command->add_option("mission", tour_mission, "Name or path of a mission")->capture_default_str();
+  tour_command->add_option("mission", tour_mission, "Name or path of a mission; by default the usual one");
   tour_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
 
   CheckOptions check_options;
@@ -117,28 +81,11 @@ int read_and_do(int argc, char** argv) {
                                "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
   simulate_command->add_flag("--summary", simulate_options.summary, "Print counts instead of the log");
 
-  ReportOptions report_options;
-  std::string report_seed = "1";
-  int faults = 0;
-  auto* report_command =
-      app.add_subcommand("report", "Fly the runs that a mission is judged by and compare their figures");
-  report_command->add_option("mission", report_options.mission, "Name or path of a mission (rokviss)")->required();
-  report_command->add_option("--out", report_options.out, "Folder for index.html and its plots");
-  report_command->add_option("--seed", report_seed, "Seed of everything random")->capture_default_str();
-  report_command->add_option("--only", report_options.only, "Only these runs (RO1,RO8)")->delimiter(',');
-  report_command->add_option("--faults", faults, "Only the fault cases, each so many times")
-      ->check(CLI::Range(1, 100000));
-  report_command->add_option(
-      "--plant", report_options.plant,
-      "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=, hand_clock=, delay_ms=2");
-
-  std::string report_for = "5min";
-  report_command->add_flag("--convergence", report_options.convergence,
-                           "Each run a second time with sub-steps half as long: how far its figures move");
-  report_command->add_flag("--corners", report_options.corners,
-                           "Instead every corner of the declared ranges: largest force, torque, speed and the promise");
-  report_command->add_flag("--real", report_options.real, "On real processes: cycle times and links of a flight");
-  report_command->add_option("--for", report_for, "Length of the real flight")->capture_default_str();
+  std::string judged_mission;
+  auto* report_command = app.add_subcommand(
+      "report",
+      "Fly the runs that a mission is judged by and compare their figures (its options: report MISSION --help)");
+  report_command->add_option("mission", judged_mission, "Name or path of a mission, before all options")->required();
 
   TelecommandOptions tc_options;
   std::string tc_limit = "70s";
@@ -156,7 +103,7 @@ int read_and_do(int argc, char** argv) {
   LogOptions log_options;
   auto* log_command = app.add_subcommand("log", "Read the supervisor's log");
   log_command->add_option("--mission", log_options.mission,
-                          "Mission whose log is read; by default the one that flies, else rokviss");
+                          "Mission whose log is read; by default the one that flies, else the usual one");
   log_command->add_option("--instance", log_options.instance, "Whose log, of those that fly or have flown from here");
   log_command->add_option("--path", log_options.path, "Another log store");
   log_command->add_option("--apid", log_options.apid, "Only this subsystem");
@@ -168,7 +115,7 @@ int read_and_do(int argc, char** argv) {
   FaultOptions fault_options;
   auto* fault_command =
       app.add_subcommand("fault", "Inject a fault into a simulated device, or move the operator's hand");
-  fault_command->add_option("device", fault_options.device, "Name of the device (robot, joystick)")->required();
+  fault_command->add_option("device", fault_options.device, "Name of the device")->required();
   fault_command->add_option("line", fault_options.words, "unplug, plug, freeze MS, corrupt N, hand wander, ...")
       ->required()
       ->allow_extra_args();
@@ -183,7 +130,7 @@ int read_and_do(int argc, char** argv) {
   GroundOptions ground_options;
   auto* ground_command = app.add_subcommand("ground", "Serve the ground station's page and API for a flying mission");
   ground_command->add_option("mission", ground_options.mission,
-                             "Name or path of the mission; by default the one that flies, else rokviss");
+                             "Name or path of the mission; by default the one that flies, else the usual one");
   add_instance(*ground_command, ground_options.instance);
   ground_command->add_option("--port", ground_options.port,
                              "Port on the loopback address; by default the first free one from 8080 on");
@@ -197,7 +144,7 @@ int read_and_do(int argc, char** argv) {
   ground_command->add_flag("--json", ground_options.json, "The URL as JSON");
   auto* why_command = app.add_subcommand("why", "The chain of causes of the last stop");
   why_command->add_option("mission", ground_options.mission,
-                          "Name or path of the mission; by default the one that flies, else rokviss");
+                          "Name or path of the mission; by default the one that flies, else the usual one");
   why_command->add_option("--instance", ground_options.instance,
                           "Which one, of those that fly or have flown from here");
   why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");
@@ -213,13 +160,14 @@ int read_and_do(int argc, char** argv) {
   tc_command->prefix_command(false);
 
   if (unknown_command(app, argc, argv)) return exit_usage;
+  // What it takes is the mission's business.
+  if (argc > 2 && argv[1] == std::string_view{"report"} && argv[2][0] != '-')
+    return mission_program(argv[1], argv[2], {argv + 3, argv + argc});
   try {
     app.parse(argc, argv);
     simulate_options.seed = seed_of(simulate_seed);
-    report_options.seed = seed_of(report_seed);
     if (!run_for.empty()) run_options.run_for = duration_of(run_for);
     simulate_options.run_for = duration_of(simulate_for);
-    report_options.real_for = duration_of(report_for);
     tc_options.limit = duration_of(tc_limit);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
@@ -228,7 +176,7 @@ int read_and_do(int argc, char** argv) {
   run_options.ground = !no_ground;
   if (*run_command) return run(run_options);
   if (*tour_command) {
-    run_options.mission = tour_mission;
+    run_options.mission = tour_mission.empty() ? usual_mission() : tour_mission;
     run_options.tour = true;
     return run(run_options);
   }
@@ -237,11 +185,7 @@ int read_and_do(int argc, char** argv) {
   if (*export_command) return export_python(export_options);
   if (*check_command) return check(check_options);
   if (*simulate_command) return simulate(simulate_options);
-  if (*report_command) {
-    if (faults > 0) report_options.only = {"FC"};
-    if (faults > 0) report_options.repetitions = faults;
-    return report(report_options);
-  }
+  if (*report_command) return mission_program("report", judged_mission, {});
   if (*tc_command) return telecommand(tc_options);
   if (*status_command) return status(status_options);
   if (*log_command) return log(log_options);
@@ -251,22 +195,6 @@ int read_and_do(int argc, char** argv) {
 
 }  // namespace
 
-/// What was printed must have arrived: a full device or a closed file is an error like any other.
 int main(int argc, char** argv) {
-  hirosco::say_last_words("hirosco");  // of its threads: what main itself meets is caught
-  int code = exit_internal;
-  try {
-    code = read_and_do(argc, argv);
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    std::fprintf(stderr, "hirosco: what it prints cannot be written: %s\n", std::strerror(errno));
-  } catch (const std::bad_alloc&) {
-    std::fputs("hirosco: no memory left for this\n", stderr);
-  } catch (const std::system_error& problem) {
-    // Output that fails, a thread that cannot be started.
-    std::fprintf(stderr, "hirosco: %s\n", problem.what());
-  } catch (const std::exception& problem) {
-    std::fprintf(stderr, "hirosco: %s\n", problem.what());
-    return exit_internal;
-  }
-  return exit_environment;
+  return run_main("hirosco", [&] { return read_and_do(argc, argv); });
 }

@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <fstream>
 #include <set>
 
 #include "hirosco/descriptor/read.hpp"
@@ -50,6 +51,15 @@ fs::path find_mission(const std::string& name_or_path) {
   for (const fs::path& root : mission_roots()) {
     const fs::path candidate = root / "missions" / name_or_path / "mission.xml";
     if (fs::is_regular_file(candidate, failed)) return candidate;
+  }
+  return {};
+}
+
+std::string usual_mission() {
+  for (const fs::path& root : mission_roots()) {
+    std::ifstream file{root / "missions" / "usual"};
+    for (std::string line; std::getline(file, line);)
+      if (!line.empty() && line[0] != '#') return line;
   }
   return {};
 }

@@ -5,21 +5,23 @@
 // from a recorded flight that it plays in a loop (development/record.mjs makes one) or from a made-up one; takes telecommands and completes
 // them. For work on the page's looks and tests of the page alone, with the token "development"; nothing here is part of what flies.
 // Port 0 takes a free one; the URL is the first line of what it prints.
-import {createReadStream, existsSync, readFileSync, statSync} from 'node:fs';
+import {createReadStream, existsSync, readdirSync, readFileSync, statSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {dirname, extname, join, normalize} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {WebSocketServer} from 'ws';
-import {synthetic_flight} from './synthetic.mjs';
 
 const [recording, page = join(dirname(fileURLToPath(import.meta.url)), '../dist'), port = '8090'] = process.argv.slice(2);
 if (!recording) {
   console.error('usage: node development/server.mjs RECORDING|synthetic|hostile [PAGE [PORT]]');
   process.exit(2);
 }
+const sources = process.env.HIROSCO_SOURCES ?? join(dirname(fileURLToPath(import.meta.url)), '../../..');
 const token = 'development';
 const made_up = ['synthetic', 'hostile'].includes(recording);
-const flight = made_up ? synthetic_flight({hostile: recording === 'hostile'}) : JSON.parse(readFileSync(recording, 'utf8'));
+const flight = made_up ? (await import(join(sources, 'tests/browser/synthetic.mjs'))).synthetic_flight({hostile: recording === 'hostile'}) : JSON.parse(readFileSync(recording, 'utf8'));
+// What the mission shows of itself, of those that are here.
+const mission_page = join(sources, 'missions', String(flight.mission.name).toLowerCase().replaceAll(/[^a-z0-9_-]/g, ''), 'page');
 const list = flight.messages;
 const first_t = list[0].t, length_s = list[list.length - 1].t - first_t + 2;
 const burst_events = 10000;
@@ -125,8 +127,11 @@ function command(body) {
 const server = createServer(async (request, response) => {
   const url = new URL(request.url, `http://${request.headers.host}`);
   if (!url.pathname.startsWith('/api/')) {
-    const file = join(page, normalize(url.pathname === '/' ? '/index.html' : url.pathname));
-    if (!file.startsWith(page) || !existsSync(file) || !statSync(file).isFile()) return answer(response, 404, {error: 'no such file'});
+    const of_mission = url.pathname.startsWith('/mission/');
+    if (url.pathname === '/mission/index.json') return answer(response, 200, existsSync(mission_page) ? readdirSync(mission_page) : []);
+    const folder = of_mission ? mission_page : page;
+    const file = join(folder, normalize(url.pathname === '/' ? '/index.html' : of_mission ? url.pathname.slice('/mission'.length) : url.pathname));
+    if (!file.startsWith(folder) || !existsSync(file) || !statSync(file).isFile()) return answer(response, 404, {error: 'no such file'});
     response.writeHead(200, {'Content-Type': types[extname(file)] ?? 'application/octet-stream', 'Content-Security-Policy': policy, 'Cache-Control': 'no-store'});
     return createReadStream(file).pipe(response);
   }

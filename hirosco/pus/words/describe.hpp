@@ -17,7 +17,7 @@ class PacketDescriber {
  public:
   /// `mission` outlives the describer.
   explicit PacketDescriber(const descriptor::Mission& mission) : mission_{&mission} {}
-  /// "TC[8,1] MANIPULATOR SET_STATE STATE=4", "TM[5,3] MANIPULATOR medium TORQUE_LIMIT_EXCEEDED JOINT=2 VALUE=12.1 N m …".
+  /// "TC[8,1] ARM SET_STATE STATE=4", "TM[5,3] ARM medium TORQUE_LIMIT_EXCEEDED JOINT=2 VALUE=12.1 N m …".
   /// Says what can be said of a damaged packet too.  Realtime: allocates.
   [[nodiscard]] std::string describe(Octets packet) const;
   /// "TORQUE_LIMIT_EXCEEDED JOINT=2 VALUE=12.1 N m LIMIT=12 N m" of the source data of TM[5,x].

@@ -98,6 +98,7 @@ class Mission:
     links: dict        # id: (from, to, required set)
     devices: dict      # simulated device: (member, device)
     high_plan: str     # what its recovery does about events of high severity
+    folder: pathlib.Path = None
 
     def by_apid(self, apid):
         if apid == self.supervisor.apid:
@@ -200,4 +201,5 @@ def read_mission(path):
     ground = root.find("Supervisor/Ground").get("subsystem")
     high = next((plan.find("Do").get("action") for plan in root.findall("Recovery/Plan")
                  if "high" in (plan.find("When").get("severity") or "").split()), "log")
-    return Mission(supervisor, members, ground, modes, mode_ids, root.find("Modes").get("initial"), links, devices, high)
+    return Mission(supervisor, members, ground, modes, mode_ids, root.find("Modes").get("initial"), links, devices, high,
+                   path.resolve().parent)

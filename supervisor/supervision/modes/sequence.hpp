@@ -33,7 +33,7 @@ class Sequence {
   void start(std::vector<Stage> stages, OnFailure on_failure, Finished finished);
   void cancel();
   [[nodiscard]] bool running() const noexcept { return running_; }
-  /// "MANIPULATOR: link 1, JOYSTICK: Operational"; empty when nothing is awaited.
+  /// "ARM: link 1, HAND: Operational"; empty when nothing is awaited.
   [[nodiscard]] std::string waiting_for() const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// A mouse or gamepad leads the hand at the simulated joystick: it says where it is wanted as often as it moves, and the hand goes after
+// A mouse or gamepad leads the hand at the simulated handle: it says where it is wanted as often as it moves, and the hand goes after
 // it in a path of its own, as fast as is good and giving way to what it feels (docs/adr/0030). No leap of a mouse becomes one of the robot.
 
 /// The fault line that leads the hand to these angles of the handle.

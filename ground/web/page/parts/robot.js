@@ -2,36 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {asset} from '../api.js';
 import {fault} from '../commanding.js';
 import {age_text, number_text} from '../format.js';
 import {html} from '../html.js';
+import {mission_folder, mission_has, mission_json} from '../mission_page.js';
 import {target_line} from './hand.js';
 import {fallen_text, inhibited_text} from '../stop.js';
 import {columns, fast, freshness, mission, operator, replay, slow, status_of, values} from '../store.js';
 
-/// models/NAME/scene.json of the mission; null when there is none, undefined while it is not known.
+/// scene.json of the mission; null when there is none, undefined while it is not known.
 export const scene_of_mission = signal(undefined);
-const with_model = asset('models/index.json').then((answer) => answer.json());
 const drawing_code = () => import('./scene.js');
-// A page that opens with the robot in it asks for the code before it knows the mission.
+// A page that opens with the robot in it asks for the code before it knows what to draw.
 const opens_with_robot = !/^#\/(?!overview)/.test(location.hash);
-with_model.then((names) => opens_with_robot && names.length && drawing_code()).catch(() => {});
-let looked_for = '';
-mission.subscribe((known) => {
-  if (!known || looked_for === known.name) return;
-  looked_for = known.name;
-  const name = known.name.toLowerCase();
-  const folder = `models/${encodeURIComponent(name)}`;
-  with_model.then((names) => {
-    if (!names.includes(name)) return null;
-    // The code comes while its description does.
-    drawing_code().catch(() => {});
-    return asset(`${folder}/scene.json`).then((answer) => answer.json());
-  })
-      .then((description) => { scene_of_mission.value = description && {folder, ...description}; })
-      .catch(() => { scene_of_mission.value = null; });
-});
+mission_has('scene.json').then((there) => {
+  if (!there) return null;
+  if (opens_with_robot) drawing_code().catch(() => {});
+  return mission_json('scene.json');
+})
+    .then((description) => { scene_of_mission.value = description; })
+    .catch(() => { scene_of_mission.value = null; });
 
 const gamepad_period_ms = 60;
 const dead_zone = 0.08;
@@ -96,7 +86,7 @@ export function Robot() {
     let over = false;
     drawing_code().then(async ({RobotView}) => {
       if (over) return;
-      view.current = new RobotView(node.current, description.folder, description);
+      view.current = new RobotView(node.current, mission_folder, description);
       await view.current.load();
       if (!over) node.current.dataset.loaded = 'yes';
     }).catch((error) => over || set_problem(`No 3D here: ${error.message}`));
@@ -129,11 +119,11 @@ export function Robot() {
         <button class=${`chip ${gamepad ? 'on' : ''}`} title="the left stick of a gamepad is the hand"
           onClick=${() => set_gamepad(!gamepad)}>gamepad</button>` : null}
       <button class="chip" onClick=${() => view.current?.view_from(from)}>orbit</button>
-      <button class="chip" onClick=${() => view.current?.view_from([0.2, 0.049, 1.05])}>top</button>
+      <button class="chip" onClick=${() => view.current?.view_from(description.camera.above_m)}>top</button>
     </div>` : null}
     <div class=${`stage ${description && freshness(Object.values(description.robots[0]?.joints ?? {})[0]).stale ? 'old' : ''}`} ref=${node} data-test="robot">
       ${description === null ? html`<p class="empty">This mission has no 3D model.<br />
-        <small>models/${mission.value?.name.toLowerCase()}/scene.json would be shown here.</small></p>` : null}
+        <small>page/scene.json of its folder would be shown here.</small></p>` : null}
       ${problem ? html`<p class="empty">${problem}</p>` : null}
     </div>
     ${description ? html`<${Verdict} description=${description} />` : null}

@@ -12,7 +12,7 @@ const keys = [
 ];
 
 export const Help = () => html`<main class="help">
-  <${Panel} title="Tour" hint="a quarter of an hour"><ol class="tour_list">${tour_steps.map((step, i) => html`<li><b>${step.title}</b><p>${step.text}</p>
+  <${Panel} title="Tour" hint="a quarter of an hour at most"><ol class="tour_list">${tour_steps.value.map((step, i) => html`<li><b>${step.title}</b><p>${step.text}</p>
     <button class="chip" onClick=${() => tour_to(i)}>${i === 0 ? 'start here' : 'from here'}</button></li>`)}</ol></${Panel}>
   <${Panel} title="Keys"><dl class="keys">${keys.map(([key, what]) => html`<dt>${key.split(' ').map((one) => html`<kbd>${one}</kbd>`)}</dt><dd>${what}</dd>`)}</dl></${Panel}>
   <${Panel} title="What the signs mean"><dl class="signs">

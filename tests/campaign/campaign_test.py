@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""A slice of the campaign has no violation, the same seed gives the same octets, a failing plan shrinks to what it needs,
+and each planted defect is found. campaign_test.py [flights|plants|tools] [PLANT...]"""
+import os, pathlib, subprocess, sys, tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / "simulation" / "campaign")]
+from campaign import Campaign, Pilot, parse  # noqa: E402
+from plants_in_code import misfits  # noqa: E402
+from shrink import shrink, split  # noqa: E402
+
+MISSION = str(HERE.parents[1] / "missions" / "rokviss")
+# The planted defects bear the name of the invariant that they break.
+PLANTS = ["I1", "I2", "I3", "I4", "I5", "I6", "I8", "I9", "I10", "I11", "I12", "I13"]
+MOST_FLIGHTS = 40          # until a planted defect is found
+SLICE = 20
+problems = []
+
+
+def check(condition, text):
+    print(("passed: " if condition else "FAILED: ") + text, flush=True)
+    if not condition:
+        problems.append(text)
+
+
+def flights():
+    campaign = Campaign(parse([MISSION, "--flights", str(SLICE), "--shrink", "1"]))
+    check(campaign.run() == 0, f"{SLICE} flights hold every invariant")
+
+
+def find(plant):
+    """How many flights it took, 0 when it was not found."""
+    campaign = Campaign(parse([MISSION, "--plant", plant]))
+    for index in range(MOST_FLIGHTS):
+        result = campaign.pilot.fly(campaign.plan(index))
+        if any(violation[0] == plant for violation in result["violations"]):
+            return index + 1
+    return 0
+
+
+def plants(wanted):
+    names = subprocess.run([fly_plan()], capture_output=True, text=True).stdout.split()
+    check(set(names) == set(PLANTS), "every invariant has a planted defect")
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for plant, found in zip(wanted, pool.map(find, wanted)):
+            check(found, f"what is planted against {plant} is found" + (f" in flight {found}" if found else ""))
+
+
+def fly_plan():
+    return parse([MISSION]).fly_plan
+
+
+def tools():
+    check(not misfits(), "every finding that is put back into a copy of the code still has its place there")
+    plan = Campaign(parse([MISSION, "--seed", "7"])).plan(3)
+    check(plan == Campaign(parse([MISSION, "--seed", "7"])).plan(3), "the same seed draws the same plan")
+    octets = []
+    for _ in range(2):
+        with tempfile.TemporaryDirectory() as folder:
+            Pilot(MISSION, fly_plan()).fly(plan, folder)
+            octets.append([(pathlib.Path(folder) / name).read_bytes() for name in ("log.txt", "trace.txt")])
+    check(octets[0] == octets[1], "the same plan flies to the same octets of log and trace")
+    small = shrink("seed 1\n" + "".join(f"{n}.0 a{n}\n" for n in range(40)), lambda text: " a7\n" in text and " a31\n" in text, 2)
+    check(split(small)[1] == ["7.0 a7", "31.0 a31"], "a plan shrinks to the two actions that it takes")
+
+
+if __name__ == "__main__":
+    what = sys.argv[1] if len(sys.argv) > 1 else "all"
+    if what in ("flights", "all"):
+        flights()
+    if what in ("plants", "all"):
+        plants(sys.argv[2:] or PLANTS)
+    if what in ("tools", "all"):
+        tools()
+    sys.exit(1 if problems else 0)

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""The framework knows no mission, no subsystem and no simulated device by name (adr 0054). Prints where it does, and says it of
+itself once for each kind of place, to be caught.
+
+Names are those of the folders in missions/, subsystems/ and simulation/devices/. One is found wherever it is a word of a path, an
+identifier, a text or a comment, however written: for a folder `lamp` these are lamp, LAMP_LOST, LampData and hirosco-lamp.
+A name that docs/glossary.md has under "Names that are words, too" may be said in prose and be part of an identifier. It is found
+where only the name can be meant: in capitals, as a program (hirosco-NAME, hirosco-sim-NAME), as a path (subsystems/NAME).
+Documentation (.md) may show the demonstrator, and so may what stands in tests/, bench/ or a folder of its own; tests beside the
+framework's code use names of nobody (ARM, LAMP, PROBE)."""
+import pathlib, re, sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+HOMES = ("missions", "subsystems", "simulation/devices")
+FRAMEWORK = ("hirosco", "supervisor", "simulation", "ground", "tools", "cmake")
+TEXTS = (".cpp", ".hpp", ".py", ".js", ".mjs", ".json", ".html", ".css", ".svg", ".urdf", ".xml", ".xsd", ".cmake", ".txt", ".in", "")
+OUTSIDE = {"node_modules", "__pycache__", "build", "dist"}
+# What may name somebody all the same, and why.
+ALLOWED = {
+    ("simulation/spacecraft/simulated_ground.hpp", "communication"): "the other end of the ground link (adr 0050)",
+    ("tools/hirosco/run.cpp", "communication"): "the variables that tell the ground link its addresses (adr 0054)",
+}
+PART = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+
+
+def names():
+    """Of folders that are built or flown."""
+    return sorted({path.name for home in HOMES for path in (ROOT / home).iterdir()
+                   if (path / "CMakeLists.txt").exists() or (path / "mission.xml").exists()})
+
+
+def words_too():
+    section = (ROOT / "docs/glossary.md").read_text().partition("## Names that are words, too\n")[2].partition("\n## ")[0]
+    return {word.replace(" ", "_") for row in re.findall(r"^\| ([^|]+) \|", section, re.M) for word in row.split(", ")}
+
+
+def parts_of(text):
+    """The words of which identifiers and prose are made: LampData is two, and so is lamp_data."""
+    return [part.lower() for part in PART.findall(text)]
+
+
+def says(line, name, is_word):
+    wanted = name.split("_")
+    if is_word:
+        one = "[-_]".join(map(re.escape, wanted))
+        return bool(re.search(rf"(?<![A-Z]){one.upper()}(?![A-Z])", line)
+                    or re.search(rf"\bhirosco-(sim-|mission-)?{one}\b|\b({'|'.join(HOMES)})/{one}\b", line))
+    parts = parts_of(line)
+    return any(parts[i:i + len(wanted)] == wanted for i in range(len(parts)))
+
+
+def found(texts, every, words):
+    for path, text in texts.items():
+        for number, line in enumerate([path, *text.splitlines()]):
+            told = [name for name in every if says(line, name, name in words) and (path, name) not in ALLOWED]
+            if told:
+                yield f"{path}:{number}: {', '.join(told)}: {line.strip()[:110]}"
+
+
+def framework(every):
+    homes = [ROOT / home / name for home in HOMES for name in every]
+    for part in FRAMEWORK:
+        for path in sorted((ROOT / part).rglob("*")):
+            if path.suffix in TEXTS and path.is_file() and not OUTSIDE & set(path.parts) and not any(home in path.parents for home in homes):
+                yield path.relative_to(ROOT).as_posix(), path.read_text()
+
+
+def needless(texts, every, words):
+    return [f"{path}: may name {name}, but does not" for path, name in ALLOWED
+            if name in every and not any(says(line, name, name in words) for line in texts.get(path, "").splitlines())]
+
+
+# `lamp` is a name, `beam` a word, too. The first must be found in each of these, the second in none.
+CAUGHT = ["the lamp", "LAMP_LOST", "class LampData", '"LAMP.LEVEL"', "hirosco-lamp", "lamp_test", 'name="Lamp"', "hirosco-beam", "hirosco-sim-beam",
+          "subsystems/beam/beam.hpp", '"BEAM"', "BEAM_LOST", "<Mission name='BEAM'>"]
+SPARED = ["a beam of light", "class BeamView", "beam_width", "lamps", "BEAMS", "clamp", "CLAMP"]
+if __name__ == "__main__":
+    planted = {f"hirosco/{i}.cpp": text for i, text in enumerate(CAUGHT + SPARED)}
+    seen = {line.partition(":")[0] for line in found(planted, ["lamp", "beam"], {"beam"})}
+    wrong = [f"planted and not seen: {text}" for path, text in planted.items() if text in CAUGHT and path not in seen]
+    wrong += [f"seen and no name: {text}" for path, text in planted.items() if text in SPARED and path in seen]
+    ours, every, words = dict(framework(names())), names(), words_too()
+    wrong += [f"the glossary has a word that is no name: {word}" for word in words - set(every) - {"word", "---"}]
+    sys.exit("\n".join([*found(ours, every, words), *needless(ours, every, words), *wrong]) or ("no files" if not ours or not every else None))
