@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+import urllib.error
 import urllib.request
 
 import flight
@@ -119,6 +120,11 @@ class Flown(Outside, unittest.TestCase):
             self.assertEqual((code, reports[-1]), (0, "1,7"))
             self.assertAlmostEqual(self.brightness(lamp, 0.9), 0.9, 2)
             self.own_service(lamp, ask)
+            self.assertEqual(ask("/mission/index.json"), ["tour.js"])
+            with urllib.request.urlopen(base + "/mission/tour.js", timeout=10) as answer:
+                self.assertEqual(answer.read(), (self.lamp / "page/tour.js").read_bytes())
+            with self.assertRaises(urllib.error.HTTPError):
+                ask("/mission/../mission.xml")
             lamp.fault("lamp", "old", "0.5")
             self.assertAlmostEqual(self.brightness(lamp, 0.45), 0.45, 2)
             values = ask("/api/status")["values"]
