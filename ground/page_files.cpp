@@ -46,7 +46,8 @@ the target hirosco_ground_page. The API works without it; see ground/api/README.
 
 [[nodiscard]] std::optional<std::string> content_of(const std::filesystem::path& file) {
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(file, failed) || std::filesystem::file_size(file, failed) > PageFiles::most_octets)
+  if (!std::filesystem::is_regular_file(file, failed) ||
+      std::filesystem::file_size(file, failed) > PageFiles::most_octets)
     return std::nullopt;
   std::ifstream stream{file, std::ios::binary};
   std::string content{std::istreambuf_iterator<char>{stream}, {}};

@@ -21,8 +21,8 @@ int mission_program(const std::string& command, const std::string& name, const s
     program += letter == '_' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   const std::string file = find_program(program).string();
   if (file.empty()) {
-    fmt::print(stderr, "hirosco {}: mission {} has nothing of this kind: no program {} beside this one or in PATH\n", command,
-               mission->name, program);
+    fmt::print(stderr, "hirosco {}: mission {} has nothing of this kind: no program {} beside this one or in PATH\n",
+               command, mission->name, program);
     return exit_finding;
   }
   std::vector<std::string> words{file, command, mission->file.string()};

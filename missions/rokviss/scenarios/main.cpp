@@ -24,8 +24,9 @@ int read_and_do(int argc, char** argv) {
   report->add_option("--seed", seed, "Seed of everything random")->capture_default_str();
   report->add_option("--only", options.only, "Only these runs (RO1,RO8)")->delimiter(',');
   report->add_option("--faults", faults, "Only the fault cases, each so many times")->check(CLI::Range(1, 100000));
-  report->add_option("--plant", options.plant,
-                     "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=, hand_clock=, delay_ms=2");
+  report->add_option(
+      "--plant", options.plant,
+      "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=, hand_clock=, delay_ms=2");
   report->add_flag("--convergence", options.convergence,
                    "Each run a second time with sub-steps half as long: how far its figures move");
   report->add_flag("--corners", options.corners,

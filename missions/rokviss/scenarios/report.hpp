@@ -26,5 +26,4 @@ struct ReportOptions {
 };
 int report(const ReportOptions& options);
 
-
 }  // namespace hirosco::rokviss
