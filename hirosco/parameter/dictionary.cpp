@@ -37,7 +37,11 @@ namespace {
 }
 
 [[nodiscard]] std::string declared_text(const SpecField& field) { return descriptor_text(field.type, field.count); }
-[[nodiscard]] std::string cpp_text_of(const NativeField& field) { return cpp_text(field.type, field.count); }
+/// What is wrong when a Sized is given more than it can hold.
+[[nodiscard]] std::string at_most(const NativeField& native, const SpecField& field) {
+  if (native.most == 0 || native.type != field.type) return {};
+  return ", which are more than " + std::to_string(native.most);
+}
 
 /// Writes `number` as T in big-endian order; false when T cannot hold it.
 template <WireNumber T>
@@ -82,16 +86,16 @@ std::optional<LayoutMismatch> compare(const ParameterSpec& spec, const Parameter
   const auto native = cell.fields();
   if (spec.is_struct != cell.is_struct())
     return LayoutMismatch{
-        -1, spec.name + ": the C++ type is " + (cell.is_struct() ? "a structure" : cpp_text_of(native.front())) +
+        -1, spec.name + ": the C++ type is " + (cell.is_struct() ? "a structure" : cpp_text(native.front())) +
                 ", the descriptor declares " + (spec.is_struct ? "STRUCT" : declared_text(spec.fields.front()))};
   for (std::size_t i = 0; i < std::min(native.size(), spec.fields.size()); ++i) {
     const auto& field = spec.fields[i];
-    if (native[i].type == field.type && native[i].count == field.count) continue;
+    if (native[i].takes(field.type, field.count)) continue;
     const std::string where =
         spec.is_struct ? spec.name + "." + field.name + " (member " + std::to_string(i + 1) + ")" : spec.name;
-    return LayoutMismatch{
-        spec.is_struct ? static_cast<int>(i) : -1,
-        where + ": the C++ type is " + cpp_text_of(native[i]) + ", the descriptor declares " + declared_text(field)};
+    return LayoutMismatch{spec.is_struct ? static_cast<int>(i) : -1,
+                          where + ": the C++ type is " + cpp_text(native[i]) + ", the descriptor declares " +
+                              declared_text(field) + at_most(native[i], field)};
   }
   if (native.size() == spec.fields.size()) return std::nullopt;
   const std::size_t first = std::min(native.size(), spec.fields.size());
@@ -99,7 +103,7 @@ std::optional<LayoutMismatch> compare(const ParameterSpec& spec, const Parameter
                      " members, the descriptor declares " + std::to_string(spec.fields.size()) + "; ";
   text += first < spec.fields.size()
               ? "C++ lacks " + spec.fields[first].name + " " + declared_text(spec.fields[first])
-              : "not declared is the C++ member " + std::to_string(first + 1) + " (" + cpp_text_of(native[first]) + ")";
+              : "not declared is the C++ member " + std::to_string(first + 1) + " (" + cpp_text(native[first]) + ")";
   return LayoutMismatch{static_cast<int>(first), std::move(text)};
 }
 
@@ -125,6 +129,7 @@ std::expected<void, std::string> Dictionary::publish(std::string_view name, Para
   Entry& entry = entries_[*index];
   if (entry.cell != nullptr) return std::unexpected{entry.spec.name + ": published twice"};
   if (auto mismatch = compare(entry.spec, cell)) return std::unexpected{std::move(mismatch->explanation)};
+  for (std::size_t i = 0; i < entry.spec.fields.size(); ++i) cell.set_length(i, entry.spec.fields[i].count);
   entry.cell = &cell;
   return {};
 }

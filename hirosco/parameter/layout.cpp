@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/parameter/layout.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <string_view>
 
 namespace hirosco {
@@ -26,9 +28,26 @@ namespace {
 
 }  // namespace
 
-std::string cpp_text(Type type, std::uint16_t count) {
-  std::string text{cpp_name(type)};
-  return count == 1 ? text : "std::array<" + text + ", " + std::to_string(count) + ">";
+bool ObjectFields::set_length(std::size_t field, std::uint16_t count, MutableOctets object) noexcept {
+  if (field >= own_.size() || own_[field].most == 0) return false;
+  own_[field].count = std::min(count, own_[field].most);
+  fit(object);
+  return true;
+}
+
+void ObjectFields::fit(MutableOctets object) const noexcept {
+  for (const NativeField& field : own_) {
+    if (field.most == 0) continue;
+    const std::size_t beyond = octets_of(field.type) * (field.most - field.count);
+    std::memset(object.data() + field.offset + field.octets(), 0, beyond);
+    std::memcpy(object.data() + field.length_offset, &field.count, sizeof field.count);
+  }
+}
+
+std::string cpp_text(const NativeField& field) {
+  const std::string text{cpp_name(field.type)};
+  if (field.most != 0) return "Sized<" + text + ", " + std::to_string(field.most) + ">";
+  return field.count == 1 ? text : "std::array<" + text + ", " + std::to_string(field.count) + ">";
 }
 
 std::string descriptor_text(Type type, std::uint16_t count) {

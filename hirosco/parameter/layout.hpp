@@ -6,15 +6,18 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
+#include "hirosco/parameter/sized.hpp"
 #include "hirosco/parameter/type.hpp"
+#include "hirosco/utilities/octets.hpp"
 
 /// Derives the layout of a parameter from its C++ type: no macro, no registration. A parameter may be a number, an
-/// enumeration, a std::array of those, or an aggregate of up to 16 such members. Members carry no `alignas`.
+/// enumeration, a std::array or Sized of those, or an aggregate of up to 16 such members. Members carry no `alignas`.
 namespace hirosco {
 
 /// One value or array as it lies in memory.
@@ -22,7 +25,13 @@ struct NativeField {
   Type type{};
   std::uint16_t count{1};
   std::size_t offset{0};
+  std::uint16_t most{0};            ///< of a Sized: its N, and `count` is the descriptor's, 0 until that is known
+  std::size_t length_offset{0};     ///< of a Sized: where its length lies
   [[nodiscard]] constexpr std::size_t octets() const noexcept { return octets_of(type) * count; }
+  /// Whether `declared` elements of a type are what this field holds, or can hold.
+  [[nodiscard]] constexpr bool takes(Type wanted, std::uint16_t declared) const noexcept {
+    return type == wanted && (most == 0 ? declared == count : declared >= 1 && declared <= most);
+  }
   friend constexpr bool operator==(const NativeField&, const NativeField&) = default;
 };
 
@@ -37,6 +46,12 @@ template <class T, std::size_t N>
 struct ArrayOf<std::array<T, N>> : std::true_type {
   using Element = T;
   static constexpr std::size_t count = N;
+};
+template <class T, std::size_t N>
+struct ArrayOf<Sized<T, N>> : std::true_type {
+  using Element = T;
+  static constexpr std::size_t count = 0;
+  static constexpr std::uint16_t most = N;
 };
 
 template <class T>
@@ -167,8 +182,12 @@ auto members_of(T& t) {
 template <FieldType F>
 [[nodiscard]] constexpr NativeField field_at(std::size_t offset) {
   using Traits = ArrayOf<std::remove_cv_t<F>>;
-  static_assert(Traits::count >= 1 && Traits::count <= 0xFFFF, "an array has 1 to 65535 elements");
-  return {type_of<typename Traits::Element>(), static_cast<std::uint16_t>(Traits::count), offset};
+  if constexpr (requires { Traits::most; }) {
+    return {type_of<typename Traits::Element>(), 0, offset, Traits::most, offset + F::length_offset()};
+  } else {
+    static_assert(Traits::count >= 1 && Traits::count <= 0xFFFF, "an array has 1 to 65535 elements");
+    return {type_of<typename Traits::Element>(), static_cast<std::uint16_t>(Traits::count), offset};
+  }
 }
 
 [[nodiscard]] constexpr std::size_t round_up(std::size_t offset, std::size_t alignment) noexcept {
@@ -178,7 +197,7 @@ template <FieldType F>
 template <class T, class... Members>
 [[nodiscard]] consteval auto structure_layout(Types<Members...>) {
   static_assert((FieldType<Members> && ...),
-                "a member is a number, an enumeration or a std::array of those; bool and characters have no "
+                "a member is a number, an enumeration, a std::array or Sized of those; bool and characters have no "
                 "definite size, use std::uint8_t");
   std::array<NativeField, sizeof...(Members)> fields{};
   std::size_t end = 0;
@@ -211,9 +230,10 @@ template <class T>
     static_assert(layout.second == sizeof(T), "members of a parameter structure carry no alignas or bit width");
     return layout.first;
   } else {
-    static_assert(layout_detail::FieldType<T>,
-                  "a parameter is a number, an enumeration, a std::array of those or an aggregate of those; bool and "
-                  "characters have no definite size, use std::uint8_t");
+    static_assert(
+        layout_detail::FieldType<T>,
+        "a parameter is a number, an enumeration, a std::array or Sized of those or an aggregate of those; bool "
+        "and characters have no definite size, use std::uint8_t");
     return std::array{layout_detail::field_at<T>(0)};
   }
 }
@@ -222,8 +242,50 @@ template <class T>
 template <class T>
 concept ParameterValue = layout_detail::FieldType<T>;
 
-/// The C++ spelling of a field, for messages: `std::array<double, 2>`.
-[[nodiscard]] std::string cpp_text(Type type, std::uint16_t count);
+/// The fields of one object: its type's, or its own where it has Sized members, whose lengths come with the descriptor.
+class ObjectFields {
+ public:
+  ObjectFields(std::span<const NativeField> fields, std::span<NativeField> own) noexcept
+      : fields_{own.empty() ? fields : own}, own_{own} {}
+  [[nodiscard]] std::span<const NativeField> all() const noexcept { return fields_; }
+  /// Gives a Sized field the length that its descriptor declares and fits the object to it; false for any other field.
+  bool set_length(std::size_t field, std::uint16_t count, MutableOctets object) noexcept;
+  /// Gives the Sized members of an object that was stored into their lengths back.  Realtime: bounded.
+  void fit(MutableOctets object) const noexcept;
+
+ private:
+  std::span<const NativeField> fields_;
+  std::span<NativeField> own_;
+};
+
+/// Base of what holds an object of type T, before the base that is given `fields()`; `which` of several.
+template <class T, int which = 0>
+class HasFields {
+  static constexpr auto of_type = layout_of<T>();
+
+ protected:
+  static constexpr bool sized = [] {
+    for (const NativeField& field : of_type)
+      if (field.most != 0) return true;
+    return false;
+  }();
+  [[nodiscard]] ObjectFields fields() noexcept {
+    if constexpr (sized) return {of_type, own_};
+    else return {of_type, {}};
+  }
+
+ private:
+  struct Nothing {};
+  using Own = std::conditional_t<sized, std::remove_const_t<decltype(of_type)>, Nothing>;
+  [[nodiscard]] static constexpr Own own_fields() noexcept {
+    if constexpr (sized) return of_type;
+    else return {};
+  }
+  [[no_unique_address]] Own own_{own_fields()};
+};
+
+/// The C++ spelling of a field, for messages: `std::array<double, 2>`, `Sized<double, 7>`.
+[[nodiscard]] std::string cpp_text(const NativeField& field);
 /// The descriptor's spelling: `DOUBLE[2]`.
 [[nodiscard]] std::string descriptor_text(Type type, std::uint16_t count);
 

@@ -140,8 +140,8 @@ TEST(Layout, CountsEveryNumberOfMembers) {
 }
 
 TEST(Layout, HasATextForMessages) {
-  EXPECT_EQ(cpp_text(Type::Double, 1), "double");
-  EXPECT_EQ(cpp_text(Type::Int32, 4), "std::array<std::int32_t, 4>");
+  EXPECT_EQ(cpp_text({Type::Double, 1, 0}), "double");
+  EXPECT_EQ(cpp_text({Type::Int32, 4, 0}), "std::array<std::int32_t, 4>");
   EXPECT_EQ(descriptor_text(Type::Double, 2), "DOUBLE[2]");
   EXPECT_EQ(descriptor_text(Type::Uint8, 1), "UINT8");
 }

@@ -25,7 +25,11 @@ class ParameterCell {
   ParameterCell(const ParameterCell&) = delete;
   ParameterCell& operator=(const ParameterCell&) = delete;
 
-  [[nodiscard]] std::span<const NativeField> fields() const noexcept { return fields_; }
+  [[nodiscard]] std::span<const NativeField> fields() const noexcept { return fields_.all(); }
+  /// Gives a Sized field its length.  Thread: the service loop's, before a cycle runs.
+  void set_length(std::size_t field, std::uint16_t count) noexcept {
+    if (fields_.set_length(field, count, live_)) commit();
+  }
   [[nodiscard]] bool is_struct() const noexcept { return is_struct_; }
   /// Octets in memory, with padding.
   [[nodiscard]] std::size_t octets() const noexcept { return live_.size(); }
@@ -38,6 +42,7 @@ class ParameterCell {
   bool write_native(Octets native) noexcept {
     if (native.size() != live_.size()) return false;
     stage(0, native);
+    fit();
     commit();
     return true;
   }
@@ -74,13 +79,14 @@ class ParameterCell {
 
  protected:
   using Word = parameter_detail::Word;
-  ParameterCell(std::span<const NativeField> fields, bool is_struct, MutableOctets live, std::atomic<Word>* sequence,
+  ParameterCell(ObjectFields fields, bool is_struct, MutableOctets live, std::atomic<Word>* sequence,
                 std::atomic<Word>* words) noexcept
       : fields_{fields}, live_{live}, sequence_{sequence}, words_{words}, is_struct_{is_struct} {}
   ~ParameterCell() = default;
+  void fit() noexcept { fields_.fit(live_); }
 
  private:
-  std::span<const NativeField> fields_;
+  ObjectFields fields_;
   MutableOctets live_;
   std::atomic<Word>* sequence_;
   std::atomic<Word>* words_;
@@ -96,8 +102,7 @@ class ParameterCell {
 
 /// A typed parameter, a member variable of the subsystem that owns it.
 template <class T>
-class Parameter final : public ParameterCell {
-  static constexpr auto layout = layout_of<T>();
+class Parameter final : private HasFields<T>, public ParameterCell {
   static constexpr std::size_t word_count = parameter_detail::words_for(sizeof(T));
 
  public:
@@ -105,7 +110,8 @@ class Parameter final : public ParameterCell {
 
   Parameter() noexcept : Parameter(T{}) {}
   explicit Parameter(const T& initial) noexcept
-      : ParameterCell{layout, ParameterStructure<T>, std::as_writable_bytes(std::span{&value_, 1}), &sequence_, words_},
+      : ParameterCell{HasFields<T>::fields(), ParameterStructure<T>, std::as_writable_bytes(std::span{&value_, 1}),
+                      &sequence_, words_},
         value_{initial} {
     show();
   }
@@ -115,12 +121,14 @@ class Parameter final : public ParameterCell {
   /// Realtime: wait-free. Thread: the writer's.
   void store(const T& value) noexcept {
     value_ = value;
+    if constexpr (HasFields<T>::sized) ParameterCell::fit();
     show();
   }
   /// The typed snapshot for other threads; false as ParameterCell::snapshot.  Realtime: bounded. Thread: any.
   [[nodiscard]] bool snapshot(T& value) const noexcept {
     return ParameterCell::snapshot(std::as_writable_bytes(std::span{&value, 1}));
   }
+  using ParameterCell::fields;
   using ParameterCell::snapshot;
 
  private:

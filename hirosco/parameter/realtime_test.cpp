@@ -14,7 +14,8 @@ namespace {
 TEST(ParameterRealtime, TheCyclesSideUsesNoHeap) {
   const std::vector<ParameterSpec> specs{{"P", {1, Type::Double, 0}, {{"P", Type::Double, 9}}, false, {}}};
   auto dictionary = std::move(*Dictionary::make(specs));
-  Parameter<std::array<double, 9>> parameter;
+  // The length is the descriptor's: as an array that has it from the beginning, it is set without the heap.
+  Parameter<Sized<double, 16>> parameter;
   ASSERT_TRUE(dictionary.publish("P", parameter));
   WriteQueue queue{4, 256};
   const std::array<std::byte, 72> value{};

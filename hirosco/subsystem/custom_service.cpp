@@ -42,7 +42,7 @@ using pus::FailureNotice;
 }
 [[nodiscard]] std::string text_of(std::span<const NativeField> fields) {
   std::string text;
-  for (const auto& field : fields) text.append(text.empty() ? "" : ", ").append(cpp_text(field.type, field.count));
+  for (const auto& field : fields) text.append(text.empty() ? "" : ", ").append(cpp_text(field));
   return text.empty() ? "nothing" : text;
 }
 

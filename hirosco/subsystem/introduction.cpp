@@ -99,8 +99,7 @@ void GenericSubsystem::use_event(EventPort& event) {
   });
   if (same) return event.bind(declared->id);
   std::string native, wanted;
-  for (const auto& field : event.arguments())
-    native.append(native.empty() ? "" : ", ").append(cpp_text(field.type, field.count));
+  for (const auto& field : event.arguments()) native.append(native.empty() ? "" : ", ").append(cpp_text(field));
   for (const auto& field : declared->arguments)
     wanted.append(wanted.empty() ? "" : ", ").append(descriptor_text(field.type, field.count));
   mistake("use_event " + std::string{event.name()} + ": its arguments are (" + native + "), the descriptor declares (" +

@@ -29,18 +29,17 @@ class LinkInputPort {
   /// Samples that came over the present link, and those that came and went between two cycles.
   [[nodiscard]] std::uint64_t received() const noexcept { return received_; }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
-  [[nodiscard]] std::span<const NativeField> layout() const noexcept { return layout_; }
+  [[nodiscard]] std::span<const NativeField> layout() const noexcept { return layout_.all(); }
 
  protected:
-  LinkInputPort(std::span<const NativeField> layout, MutableOctets native) noexcept
-      : layout_{layout}, native_{native} {}
+  LinkInputPort(ObjectFields layout, MutableOctets native) noexcept : layout_{layout}, native_{native} {}
   LinkInputPort(const LinkInputPort&) = delete;
   LinkInputPort& operator=(const LinkInputPort&) = delete;
   ~LinkInputPort() = default;
 
  private:
   friend class LinkInputSlot;
-  std::span<const NativeField> layout_;
+  ObjectFields layout_;
   MutableOctets native_;
   bool valid_{false};
   std::uint32_t age_cycles_{0};
@@ -50,16 +49,16 @@ class LinkInputPort {
   std::uint64_t lost_{0};
 };
 
-/// T: an aggregate with one member per <Field> of the <Requires> element, in their order.
+/// T: an aggregate with one member per <Field> of the <Requires> element, in their order. A Sized member has its length
+/// from the configuration that requires the set.
 template <class T>
-class LinkInput final : public LinkInputPort {
+class LinkInput final : private HasFields<T>, public LinkInputPort {
  public:
-  LinkInput() noexcept : LinkInputPort{fields, std::as_writable_bytes(std::span{&value_, 1})} {}
+  LinkInput() noexcept : LinkInputPort{HasFields<T>::fields(), std::as_writable_bytes(std::span{&value_, 1})} {}
   /// Last whole sample; zeros before the first.
   [[nodiscard]] const T& value() const noexcept { return value_; }
 
  private:
-  static constexpr auto fields = layout_of<T>();
   T value_{};
 };
 
@@ -80,12 +79,12 @@ class DevicePortBase {
       if (known == name) return value;
     return {};
   }
-  [[nodiscard]] std::span<const NativeField> input_layout() const noexcept { return input_layout_; }
-  [[nodiscard]] std::span<const NativeField> output_layout() const noexcept { return output_layout_; }
+  [[nodiscard]] std::span<const NativeField> input_layout() const noexcept { return input_layout_.all(); }
+  [[nodiscard]] std::span<const NativeField> output_layout() const noexcept { return output_layout_.all(); }
 
  protected:
-  DevicePortBase(std::span<const NativeField> input_layout, MutableOctets input,
-                 std::span<const NativeField> output_layout, Octets output) noexcept
+  DevicePortBase(ObjectFields input_layout, MutableOctets input, ObjectFields output_layout,
+                 MutableOctets output) noexcept
       : input_layout_{input_layout}, input_{input}, output_layout_{output_layout}, output_{output} {}
   DevicePortBase(const DevicePortBase&) = delete;
   DevicePortBase& operator=(const DevicePortBase&) = delete;
@@ -93,10 +92,10 @@ class DevicePortBase {
 
  private:
   friend class DeviceSlot;
-  std::span<const NativeField> input_layout_;
+  ObjectFields input_layout_;
   MutableOctets input_;
-  std::span<const NativeField> output_layout_;
-  Octets output_;
+  ObjectFields output_layout_;
+  MutableOctets output_;
   std::span<const std::pair<std::string, std::string>> settings_;
   bool alive_{false};
   bool fresh_{false};
@@ -104,13 +103,14 @@ class DevicePortBase {
   std::uint32_t damaged_frames_{0};
 };
 
-/// Input and Output: aggregates with one member per <Field> of the device's <Input> and <Output>, in their order.
+/// Input and Output: aggregates with one member per <Field> of the device's <Input> and <Output>, in their order. A Sized
+/// member has its length from the first configuration with the device on.
 template <class Input, class Output>
-class DevicePort final : public DevicePortBase {
+class DevicePort final : private HasFields<Input, 0>, private HasFields<Output, 1>, public DevicePortBase {
  public:
   DevicePort() noexcept
-      : DevicePortBase{input_fields, std::as_writable_bytes(std::span{&input_, 1}), output_fields,
-                       std::as_bytes(std::span{&output_, 1})} {}
+      : DevicePortBase{HasFields<Input, 0>::fields(), std::as_writable_bytes(std::span{&input_, 1}),
+                       HasFields<Output, 1>::fields(), std::as_writable_bytes(std::span{&output_, 1})} {}
   /// What the device last said; zeros before the first frame.
   [[nodiscard]] const Input& input() const noexcept { return input_; }
   /// What the device is to do. Reaches an actuator in Operational only: in every other state, and while inhibited, the
@@ -119,8 +119,6 @@ class DevicePort final : public DevicePortBase {
   [[nodiscard]] Output& output() noexcept { return output_; }
 
  private:
-  static constexpr auto input_fields = layout_of<Input>();
-  static constexpr auto output_fields = layout_of<Output>();
   Input input_{};
   Output output_{};
 };

@@ -29,6 +29,20 @@ constexpr std::uint32_t longest_introduction = 40;
   return fields;
 }
 
+[[nodiscard]] std::vector<descriptor::Field> outputs_of(const descriptor::Device& device) {
+  std::vector<descriptor::Field> fields;
+  for (const auto& output : device.output) fields.push_back(output.field);
+  return fields;
+}
+
+/// The fields of an object that agrees with its declaration, with the lengths that this gives.
+[[nodiscard]] std::span<const NativeField> with_lengths(ObjectFields& fields,
+                                                        const std::vector<descriptor::Field>& declared,
+                                                        MutableOctets object) noexcept {
+  for (std::size_t i = 0; i < declared.size(); ++i) fields.set_length(i, declared[i].count, object);
+  return fields.all();
+}
+
 /// Declared safe values in wire form.
 [[nodiscard]] std::vector<std::byte> safe_payload(const descriptor::Device& device, std::endian order) {
   std::vector<std::byte> payload;
@@ -49,10 +63,12 @@ std::string layout_difference(std::span<const NativeField> native, const std::ve
     return "the C++ type has " + std::to_string(native.size()) + " members, the descriptor declares " +
            std::to_string(declared.size()) + " fields";
   for (std::size_t i = 0; i < native.size(); ++i) {
-    if (native[i].type == declared[i].type && native[i].count == declared[i].count) continue;
-    return "field " + declared[i].name + ": C++ has " + std::string{to_text(native[i].type)} + "[" +
-           std::to_string(native[i].count) + "], the descriptor declares " + std::string{to_text(declared[i].type)} +
-           "[" + std::to_string(declared[i].count) + "]";
+    if (native[i].takes(declared[i].type, declared[i].count)) continue;
+    const std::string held =
+        native[i].most != 0 ? "at most " + std::to_string(native[i].most) : std::to_string(native[i].count);
+    return "field " + declared[i].name + ": C++ has " + std::string{to_text(native[i].type)} + "[" + held +
+           "], the descriptor declares " + std::string{to_text(declared[i].type)} + "[" +
+           std::to_string(declared[i].count) + "]";
   }
   return {};
 }
@@ -61,6 +77,8 @@ std::string layout_difference(std::span<const NativeField> native, const std::ve
 
 LinkInputSlot::LinkInputSlot(const descriptor::Requires& terms, LinkInputPort* port, bool realtime) noexcept
     : terms_{&terms}, port_{port}, age_limit_{realtime ? terms.age.realtime : terms.age.reduced} {
+  for (std::size_t i = 0; i < terms.fields.size(); ++i)
+    port_->layout_.set_length(i, terms.fields[i].count, port_->native_);
   port_->valid_ = false;
   port_->age_cycles_ = 0;
   port_->status_ = LinkStatus::None;
@@ -78,7 +96,7 @@ Result<> LinkInputSlot::plan(AttachedLink& link) const {
       return false;
     });
     if (found == link.agreement.fields.end()) return fail(ErrorCode::Mismatch, "the agreement lacks a required field");
-    const NativeField& place = port_->layout_[wanted];
+    const NativeField& place = port_->layout()[wanted];
     if (found->type != place.type || found->count != place.count)
       return fail(ErrorCode::Mismatch, "the agreement has a required field with another type");
     link.scatter.push_back({place.type, place.count, place.offset});
@@ -201,8 +219,8 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
       order_{endian_of(use.endnode.byte_order)},
       silence_limit_{realtime ? use.silence.realtime : use.silence.reduced},
       watchdog_us_{realtime ? use.watchdog_us : use.watchdog_reduced_us},
-      input_layout_{layout_fields(port.input_layout_)},
-      output_layout_{layout_fields(port.output_layout_)},
+      input_layout_{layout_fields(with_lengths(port.input_layout_, device.input, port.input_))},
+      output_layout_{layout_fields(with_lengths(port.output_layout_, outputs_of(device), port.output_))},
       safe_payload_{safe_payload(device, order_)},
       payload_(std::max(wire_octets(input_layout_), safe_payload_.size())),
       frame_(max_device_frame_octets) {
@@ -214,9 +232,7 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
 
 std::string DeviceSlot::difference(const descriptor::Device& device, const DevicePortBase& port) {
   if (auto text = layout_difference(port.input_layout(), device.input); !text.empty()) return "input, " + text;
-  std::vector<descriptor::Field> outputs;
-  for (const auto& output : device.output) outputs.push_back(output.field);
-  auto text = layout_difference(port.output_layout(), outputs);
+  auto text = layout_difference(port.output_layout(), outputs_of(device));
   return text.empty() ? text : "output, " + text;
 }
 
@@ -308,6 +324,7 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
   epoch_ = epoch;
   Octets payload = safe_payload_;
   if (pass) {
+    port_->output_layout_.fit(port_->output_);
     const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());
     encode(output_layout_, port_->output_, room, order_);
     keep_in_range(room);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/subsystem/subsystem.hpp"
 
+#include <algorithm>
+
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
 namespace hirosco {
@@ -33,6 +35,13 @@ void Subsystem::publish(std::string_view name, ParameterCell& parameter) { frame
 void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
 void Subsystem::use_event(EventPort& event) { framework_->use_event(event); }
 void Subsystem::use_device(std::string_view name, DevicePortBase& port) { framework_->use_device(name, port); }
+
+std::size_t Subsystem::declared_values(std::string_view function) const noexcept {
+  std::size_t count = 0;
+  if (const descriptor::Function* found = own_descriptor().find_function(function))
+    for (const auto& argument : found->arguments) count += argument.field.count;
+  return std::min(count, max_function_arguments);
+}
 
 void Subsystem::bind_function(std::string_view name, std::span<const ArgumentRange> arguments,
                               FunctionHandler handler) {

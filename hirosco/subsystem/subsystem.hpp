@@ -12,6 +12,7 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/parameter.hpp"
@@ -76,6 +77,8 @@ template <FailureEnumeration E>
 
 /// Largest number of arguments of a function.
 using pus::max_function_arguments;
+/// All numbers of a call in the descriptor's order, arrays element by element, as many as it declares.
+using FunctionValues = Sized<double, max_function_arguments>;
 using FunctionHandler = std::function<Outcome(const std::array<double, max_function_arguments>&, Call)>;
 
 /// What a C++ type of a handler's argument can hold without changing it.
@@ -101,7 +104,8 @@ template <class T>
 struct HandlerTraits;
 template <class C, class R, class... A>
 struct HandlerTraits<R (C::*)(A...) const> {
-  static constexpr bool takes_call = (std::is_same_v<A, Call> || ... || false);
+  static constexpr bool takes_call = (std::is_same_v<std::remove_cvref_t<A>, Call> || ... || false);
+  static constexpr bool takes_values = (std::is_same_v<std::remove_cvref_t<A>, FunctionValues> || ... || false);
   static constexpr std::size_t arguments = sizeof...(A) - (takes_call ? 1 : 0);
   [[nodiscard]] static constexpr auto ranges() noexcept {
     return []<std::size_t... I>(std::index_sequence<I...>) {
@@ -165,16 +169,28 @@ class Subsystem {
   void use_event(EventPort& event);
   /// Gives a function of the descriptor its handler: any callable of up to eight numbers and, last, a Call if it wants
   /// to report later. Returns Result<> or Outcome. Runs at a cycle boundary; must not throw. An argument's C++ type holds
-  /// every value that the descriptor permits, or Software-Init fails.
+  /// every value that the descriptor permits, or Software-Init fails. One that takes FunctionValues instead takes as many
+  /// numbers as the descriptor declares.
   template <class Handler>
   void on_function(std::string_view name, Handler handler) {
     using Traits = detail::HandlerTraits<decltype(&Handler::operator())>;
-    static_assert(Traits::arguments <= max_function_arguments);
-    static constexpr auto ranges = Traits::ranges();
-    bind_function(name, ranges,
-                  [handler](const std::array<double, max_function_arguments>& values, Call call) -> Outcome {
-                    return Traits::invoke(handler, values, call, std::make_index_sequence<Traits::arguments>{});
-                  });
+    using Values = std::array<double, max_function_arguments>;
+    if constexpr (Traits::takes_values) {
+      static_assert(Traits::arguments == 1,
+                    "FunctionValues are all numbers of a call; beside them there is a Call only");
+      const std::vector<ArgumentRange> ranges(declared_values(name), detail::range_of<double>());
+      bind_function(name, ranges, [handler, count = ranges.size()](const Values& values, Call call) -> Outcome {
+        const auto given = FunctionValues::of(std::span{values}.first(count));
+        if constexpr (Traits::takes_call) return handler(given, call);
+        else return handler(given);
+      });
+    } else {
+      static_assert(Traits::arguments <= max_function_arguments);
+      static constexpr auto ranges = Traits::ranges();
+      bind_function(name, ranges, [handler](const Values& values, Call call) -> Outcome {
+        return Traits::invoke(handler, values, call, std::make_index_sequence<Traits::arguments>{});
+      });
+    }
   }
 
   // --- in the cycle and in function handlers ----------------------------------------------------------------------
@@ -212,6 +228,8 @@ class Subsystem {
  private:
   friend class GenericSubsystem;
   friend class CycleLoop;
+  /// Numbers in a call of a function of the descriptor, max_function_arguments at most.
+  [[nodiscard]] std::size_t declared_values(std::string_view function) const noexcept;
   void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
   void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
   void raise_encoded_in_service(std::uint16_t event, Octets auxiliary);
