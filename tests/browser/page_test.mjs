@@ -303,3 +303,38 @@ describe('the bundle', () => {
     assert.doesNotMatch(html_text, /<script(?![^>]*src=)/);
   });
 });
+
+describe('what a mission shows of itself', () => {
+  const tour_of = async (recording) => {
+    const served = await serve(recording);
+    const {page, faults} = await open_page(browser.context, `${served.url}&tour`);
+    await page.waitForSelector('[data-test=tour] h3');
+    return {page, faults, close: async () => {
+      await page.close();
+      served.end();
+    }};
+  };
+  const title = async (page) => (await page.textContent('[data-test=tour] h3')).replace('✓', '').trim();
+
+  it('is its tour and its 3D, from its folder', async () => {
+    const {page, faults, close} = await tour_of('synthetic');
+    assert.equal(await title(page), 'Move it');
+    assert.equal(await page.locator('[data-test=tour] .dots i').count(), 8);
+    await page.waitForSelector('[data-test=robot][data-loaded]');
+    await page.click('[data-test=tour-next]');
+    assert.equal(await title(page), 'Couple two machines');
+    await page.click('a[title=Help]');
+    await page.waitForSelector('.tour_list li:nth-child(8)');
+    assert.deepEqual(faults, []);
+    await close();
+  });
+
+  it('is a general tour and values where it has no folder, and no file is asked for in vain', async () => {
+    const {page, faults, close} = await tour_of('hostile');
+    assert.equal(await title(page), 'Look around');
+    assert.equal(await page.locator('[data-test=tour] .dots i').count(), 3);
+    assert.equal(await page.locator('[data-test=robot]').count(), 0);
+    assert.deepEqual(faults, []);
+    await close();
+  });
+});
