@@ -28,12 +28,10 @@ constexpr Duration writer_patience = 500ms;
   return quoted + "\"";
 }
 
-[[nodiscard]] std::string vector_text(const std::vector<double>& values, const char* format) {
+[[nodiscard]] std::string vector_text(const std::vector<double>& values, int decimals) {
   std::string text = "(";
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i != 0) text += ", ";
-    text += fmt::format(fmt::runtime(format), values[i]);
-  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text += fmt::format("{}{:+.{}f}", i != 0 ? ", " : "", values[i], decimals);
   return text + ")";
 }
 
@@ -103,14 +101,10 @@ std::string Console::status_text(const Supervisor& supervisor, Duration since_st
     if (vital->realtime.load() == 0) text += " (reduced promise: no real-time scheduling)";
   }
   text += fmt::format(" | links {}/{}", supervisor.links().up_count(), supervisor.links().defined_count());
-  const auto show_value = [&](const char* name, const char* label, const char* format, const char* unit) {
-    if (const auto value = values_.find(name); value != values_.end())
-      text += fmt::format(" {} {} {}", label, vector_text(value->second, format), unit);
-  };
-  show_value("JOYSTICK.CUR_VALUES.POSITION", "| hand", "{:+.3f}", "rad");
-  show_value("MANIPULATOR.CUR_VALUES.POSITION", "| robot", "{:+.3f}", "rad");
-  show_value("MANIPULATOR.TIP_FORCE", "| tip force", "{:+.2f}", "N");
-  show_value("JOYSTICK.CUR_VALUES.TORQUE", "| felt", "{:+.4f}", "N m");
+  for (const auto& shown : mission_.console)
+    if (const auto value = values_.find(shown.parameter); value != values_.end())
+      text += fmt::format(" | {} {}{}{}", printable(shown.label), vector_text(value->second, shown.decimals),
+                          shown.unit.empty() ? "" : " ", printable(shown.unit));
   if (const std::string waiting = supervisor.waiting_for(); !waiting.empty())
     text += " | waits for " + printable(waiting);
   return text + "\n";

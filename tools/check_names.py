@@ -21,8 +21,6 @@ OUTSIDE = {"node_modules", "__pycache__", "build", "dist"}
 ALLOWED = {
     ("simulation/spacecraft/simulated_ground.hpp", "communication"): "the other end of the ground link (adr 0050)",
     ("tools/hirosco/run.cpp", "communication"): "the variables that tell the ground link its addresses (adr 0054)",
-    ("supervisor/console.cpp", "joystick"): "until a mission says what a terminal shows",
-    ("supervisor/console.cpp", "manipulator"): "until a mission says what a terminal shows",
     ("tools/check_shape.py", "manipulator"): "goes with the exception that it makes there",
 }
 # Tests of the descriptors' readers read a copy of the demonstrator's; this tool has to name whom it allows.

@@ -125,6 +125,14 @@ struct DatabaseUse {
   std::filesystem::path path;  ///< relative to the working directory
 };
 
+/// What the live line of a terminal shows of the newest housekeeping.
+struct ShownValue {
+  std::string parameter;  ///< "SUBSYSTEM.PARAMETER" or "SUBSYSTEM.STRUCTURE.MEMBER"
+  std::string label;
+  std::string unit;  ///< of the parameter; empty = none
+  std::uint8_t decimals{3};
+};
+
 struct Mission {
   std::string name;
   std::uint16_t id{};
@@ -140,6 +148,7 @@ struct Mission {
   std::string initial_mode;
   std::string start_mode;  ///< empty = stay in the initial mode, commission nothing
   std::vector<Plan> plans;
+  std::vector<ShownValue> console;  ///< in the order of the file
 
   [[nodiscard]] const MissionSubsystem* find_subsystem(std::string_view subsystem) const noexcept;
   [[nodiscard]] const MissionSubsystem* find_subsystem(std::uint16_t apid) const noexcept;

@@ -83,6 +83,19 @@ TEST(MissionDescriptor, FillsModesAndPlans) {
   EXPECT_EQ(mission.plans.at(2).severities, (std::vector{Severity::Low, Severity::Info}));
 }
 
+TEST(MissionDescriptor, SaysWhatATerminalShows) {
+  const auto read = read_mission(data / "mission.xml", file_system());
+  ASSERT_TRUE(read.value);
+  ASSERT_EQ(read.value->console.size(), 2U);
+  const ShownValue& felt = read.value->console[0];
+  EXPECT_EQ(felt.parameter, "MANIPULATOR.CUR_VALUES.TORQUE");
+  EXPECT_EQ(felt.label, "felt");
+  EXPECT_EQ(felt.unit, "N m");
+  EXPECT_EQ(felt.decimals, 2);
+  EXPECT_EQ(read.value->console[1].unit, "");
+  EXPECT_EQ(read.value->console[1].decimals, 3);
+}
+
 TEST(MissionDescriptor, APlanForWhatIsToldOfASubsystemNamesThatOneOrTheSupervisorOrNeither) {
   for (const char* when : {R"(subsystem="JOYSTICK" event="HANG")", R"(subsystem="SUPERVISOR" event="HANG")",
                            R"(event="HANG")", R"(subsystem="JOYSTICK" event="PROCESS_DIED" severity="high")"}) {
@@ -174,6 +187,10 @@ constexpr Mistake mistakes[] = {
     {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When event="HANG"/><Do action="log"/><Restart/>)", "PROCESS_DIED"},
     {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="JOYSTICK" event="@LOG_STORE"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
+    {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES.TORQ" label)", "CUR_VALUES.TORQUE"},
+    {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES" label)"},
+    {"E0304", R"(<Show subsystem="MANIPULATOR" parameter="ACTIVE")", R"(<Show subsystem="@NOBODY" parameter="ACTIVE")"},
+    {"E0105", R"( label="active")", ""},
 };
 // clang-format on
 

@@ -42,7 +42,7 @@ Mission MissionReader::read(const xml::Element& root) {
     mission_.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
   }
   // What is referred to is read before what refers to it, whatever the order in the file.
-  std::vector<const xml::Element*> grounds, devices, links, modes, recoveries;
+  std::vector<const xml::Element*> grounds, devices, links, modes, recoveries, consoles;
   const auto later = [](auto& list) { return [&list](const xml::Element& element) { list.push_back(&element); }; };
   bool supervised = false;
   each_child(root, problems_,
@@ -57,7 +57,8 @@ Mission MissionReader::read(const xml::Element& root) {
               {"SimulatedDevice", later(devices), 255},
               {"Links", later(links), 1},
               {"Modes", later(modes), 1},
-              {"Recovery", later(recoveries), 1}});
+              {"Recovery", later(recoveries), 1},
+              {"Console", later(consoles), 1}});
   if (!supervised) problems_.add(root, "E0106", "<Mission> needs a <Supervisor>");
   if (modes.empty()) problems_.add(root, "E0106", "<Mission> needs <Modes>");
   for (const xml::Element& child : root.children)
@@ -75,6 +76,7 @@ Mission MissionReader::read(const xml::Element& root) {
   }
   for (const auto* element : modes) read_modes(*element);
   for (const auto* element : recoveries) read_recovery(*element);
+  for (const auto* element : consoles) read_console(*element);
   return std::move(mission_);
 }
 

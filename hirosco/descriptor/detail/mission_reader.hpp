@@ -44,6 +44,10 @@ class MissionReader {
   void check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems);
   [[nodiscard]] std::string executable(Attributes& attributes);
 
+  // read_console.cpp
+  void read_console(const xml::Element& element);
+  void read_shown(const xml::Element& element);
+
   // read_modes.cpp
   void read_link(const xml::Element& element);
   /// "A.SET" split and its subsystem found.
