@@ -9,7 +9,7 @@ using namespace hirosco::descriptor;
 int main() {
   const FileSource source = [](const std::filesystem::path&) {
     return hirosco::Result<std::string>{
-        "<Subsystem name=\"HELLO\" id=\"7\">\n"
+        "<Subsystem name=\"LIGHT\" id=\"7\">\n"
         "  <ParamRef name=\"GOAL\" id=\"1\" type=\"DUBLE\"/>\n"
         "</Subsystem>\n"};
   };

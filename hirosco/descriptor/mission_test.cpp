@@ -45,25 +45,25 @@ TEST(MissionDescriptor, FillsTheWholeModel) {
   const auto reading = read_mission(data / "mission.xml", file_system());
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
   const Mission& mission = *reading.value;
-  EXPECT_EQ(mission.name, "ROKVISS");
+  EXPECT_EQ(mission.name, "ORBITER");
   EXPECT_EQ(mission.id, 1);
   EXPECT_EQ(mission.file, data / "mission.xml");
   EXPECT_EQ(mission.supervisor.name, "SUPERVISOR");
-  EXPECT_EQ(mission.database.path, "log/rokviss.db");
-  EXPECT_EQ(mission.ground.subsystem, "COMMUNICATION");
+  EXPECT_EQ(mission.database.path, "log/orbiter.db");
+  EXPECT_EQ(mission.ground.subsystem, "GROUNDSTATION");
   ASSERT_EQ(mission.subsystems.size(), 3U);
-  EXPECT_EQ(mission.find_subsystem("JOYSTICK")->subsystem.id, 11);
-  EXPECT_EQ(mission.find_subsystem(std::uint16_t{10})->executable, "hirosco-manipulator");
+  EXPECT_EQ(mission.find_subsystem("FLYWHEEL")->subsystem.id, 11);
+  EXPECT_EQ(mission.find_subsystem(std::uint16_t{10})->executable, "hirosco-coronagraph");
   EXPECT_EQ(mission.find_subsystem("SUPERVISOR"), nullptr);
   EXPECT_EQ(mission.devices.at(0).seed, 7U);
   EXPECT_EQ(mission.devices.at(0).settings.at(0).first, "NOISE");
-  EXPECT_EQ(mission.find_link(2)->requires_, "JOYSTICK_STATE");
+  EXPECT_EQ(mission.find_link(2)->requires_, "FLYWHEEL_STATE");
   EXPECT_EQ(mission.initial_mode, "commissioning");
   EXPECT_EQ(mission.start_mode, "telepresence");
   EXPECT_EQ(mission.power_budget_w, 150);
-  EXPECT_EQ(mission.find_subsystem("MANIPULATOR")->subsystem.find_parameter("DES_POSITION")->init,
+  EXPECT_EQ(mission.find_subsystem("CORONAGRAPH")->subsystem.find_parameter("DES_POSITION")->init,
             (std::vector{-0.7, 1.5}));
-  EXPECT_EQ(mission.find_subsystem("MANIPULATOR")->subsystem.find_configuration("COUPLED")->power_w, 60.5);
+  EXPECT_EQ(mission.find_subsystem("CORONAGRAPH")->subsystem.find_configuration("COUPLED")->power_w, 60.5);
 }
 
 TEST(MissionDescriptor, FillsModesAndPlans) {
@@ -88,7 +88,7 @@ TEST(MissionDescriptor, SaysWhatATerminalShows) {
   ASSERT_TRUE(read.value);
   ASSERT_EQ(read.value->console.size(), 2U);
   const ShownValue& felt = read.value->console[0];
-  EXPECT_EQ(felt.parameter, "MANIPULATOR.CUR_VALUES.TORQUE");
+  EXPECT_EQ(felt.parameter, "CORONAGRAPH.CUR_VALUES.TORQUE");
   EXPECT_EQ(felt.label, "felt");
   EXPECT_EQ(felt.unit, "N m");
   EXPECT_EQ(felt.decimals, 2);
@@ -97,8 +97,8 @@ TEST(MissionDescriptor, SaysWhatATerminalShows) {
 }
 
 TEST(MissionDescriptor, APlanForWhatIsToldOfASubsystemNamesThatOneOrTheSupervisorOrNeither) {
-  for (const char* when : {R"(subsystem="JOYSTICK" event="HANG")", R"(subsystem="SUPERVISOR" event="HANG")",
-                           R"(event="HANG")", R"(subsystem="JOYSTICK" event="PROCESS_DIED" severity="high")"}) {
+  for (const char* when : {R"(subsystem="FLYWHEEL" event="HANG")", R"(subsystem="SUPERVISOR" event="HANG")",
+                           R"(event="HANG")", R"(subsystem="FLYWHEEL" event="PROCESS_DIED" severity="high")"}) {
     const auto reading = read_mission(
         data / "mission.xml",
         overlay({{"mission.xml", changed(R"(<When severity="low info"/>)", "<When " + std::string{when} + "/>")}}));
@@ -120,11 +120,11 @@ constexpr Mistake mistakes[] = {
     {"E0105", R"(<Establish link="1"/>)", "@<Establish/>"},
     {"E0106", R"(<Plan name="note"><When severity="low info"/>)", R"(@<Plan name="note">)"},
     {"E0107", R"(<Do action="log"/>)", R"(<Do action="log"/>@<Do action="log"/>)"},
-    {"E0110", R"(executable="hirosco-joystick")", R"(executable="@../../bin/sh")"},
-    {"E0110", R"(from="MANIPULATOR.ROBOT_STATE")", R"(from="@ROBOT_STATE")"},
+    {"E0110", R"(executable="hirosco-flywheel")", R"(executable="@../../bin/sh")"},
+    {"E0110", R"(from="CORONAGRAPH.PLATE_STATE")", R"(from="@PLATE_STATE")"},
     {"E0111", R"(services="3 17 20")", R"(services="@3 ping")"},
     {"E0112", R"(services="3 17 20")", R"(services="@3 256")"},
-    {"E0112", R"(<Mission name="ROKVISS" id="1">)", R"(<Mission name="ROKVISS" id="@65536">)"},
+    {"E0112", R"(<Mission name="ORBITER" id="1">)", R"(<Mission name="ORBITER" id="@65536">)"},
     {"E0113", R"(action="shut_down_network")", R"(action="@shut_down_net")"},
     {"E0113", R"(strategy="sqlite")", R"(strategy="@sqlit")", "'sqlite'"},
     {"E0113", R"(severity="low info")", R"(severity="@low inof")", "'info'"},
@@ -132,38 +132,38 @@ constexpr Mistake mistakes[] = {
     </Plan>)", R"(state="@SafeOperationl"/>
     </Plan>)", "'SafeOperational'"},
     {"E0201", R"(<Plan name="note">)", R"(@<Plan name="to-safe">)"},
-    {"E0201", R"(subsystem="JOYSTICK" configuration="COUPLED")", R"(subsystem="@MANIPULATOR" configuration="COUPLED")"},
+    {"E0201", R"(subsystem="FLYWHEEL" configuration="COUPLED")", R"(subsystem="@CORONAGRAPH" configuration="COUPLED")"},
     {"E0202", R"(<Establish link="2"/>)", R"(<Establish link="@1"/>)"},
     {"E0202", R"(id="7">)", R"(id="1">)"},
     {"E0217", R"(telemetry="127.0.0.1:10015")", R"(telemetry="@127.0.0.1")"},
-    {"E0304", R"(<Permit subsystem="JOYSTICK")", R"(<Permit subsystem="@JOYSTIK")", "'JOYSTICK'"},
-    {"E0304", R"(<Ground subsystem="COMMUNICATION")", R"(<Ground subsystem="@COMM")"},
-    {"E0304", R"(from="JOYSTICK.JOYSTICK_STATE")", R"(from="@JOYSTICKS.JOYSTICK_STATE")"},
+    {"E0304", R"(<Permit subsystem="FLYWHEEL")", R"(<Permit subsystem="@FLYWHEL")", "'FLYWHEEL'"},
+    {"E0304", R"(<Ground subsystem="GROUNDSTATION")", R"(<Ground subsystem="@COMM")"},
+    {"E0304", R"(from="FLYWHEEL.FLYWHEEL_STATE")", R"(from="@FLYWHEELS.FLYWHEEL_STATE")"},
     {"E0305", R"(start="telepresence")", R"(start="@telepresense")", "'telepresence'"},
     {"E0305", R"(mode="telepresence")", R"(mode="@none")"},
     {"E0306", R"(state="SafeOperational"/>
     </Plan>)", R"(state="@HardwareInit"/>
     </Plan>)"},
     {"E0306", R"(configuration="COUPLED" state="SafeOperational")", R"(configuration="COUPLED" state="@PostOperational")"},
-    {"E0307", R"(to="JOYSTICK.ROBOT_STATE")", R"(to="@JOYSTICK.ROBOT_STATES")", "'ROBOT_STATE'"},
-    {"E0307", R"(from="MANIPULATOR.ROBOT_STATE")", R"(from="@MANIPULATOR.ROBOT")"},
-    {"E0308", R"(<Link id="2" from="JOYSTICK.JOYSTICK_STATE" to="MANIPULATOR.JOYSTICK_STATE"/>)",
-              R"(@<Link id="2" from="JOYSTICK.JOYSTICK_STATE" to="JOYSTICK.ROBOT_STATE"/>)"},
+    {"E0307", R"(to="FLYWHEEL.PLATE_STATE")", R"(to="@FLYWHEEL.PLATE_STATES")", "'PLATE_STATE'"},
+    {"E0307", R"(from="CORONAGRAPH.PLATE_STATE")", R"(from="@CORONAGRAPH.PLATE")"},
+    {"E0308", R"(<Link id="2" from="FLYWHEEL.FLYWHEEL_STATE" to="CORONAGRAPH.FLYWHEEL_STATE"/>)",
+              R"(@<Link id="2" from="FLYWHEEL.FLYWHEEL_STATE" to="FLYWHEEL.PLATE_STATE"/>)"},
     {"E0309", R"(<Establish link="2"/>)", R"(<Establish link="@3"/>)"},
     {"E0310", R"(functions="SET_FORCE_SCALE")", R"(functions="@SET_FORCE_SCALES")", "'SET_FORCE_SCALE'"},
     {"E0310", R"(functions="SET_STATE CONFIGURE")", R"(functions="@SET_STATE NONE")"},
-    {"E0310", R"(<Permit subsystem="JOYSTICK" functions="SET_FORCE_SCALE")", R"(<Permit subsystem="JOYSTICK" functions="@SET_MODE")"},
+    {"E0310", R"(<Permit subsystem="FLYWHEEL" functions="SET_FORCE_SCALE")", R"(<Permit subsystem="FLYWHEEL" functions="@SET_MODE")"},
     {"E0311", R"(event="TORQUE_LIMIT_EXCEEDED")", R"(event="@TORQUE_LIMIT_EXCEDED")", "'TORQUE_LIMIT_EXCEEDED'"},
-    {"E0312", R"(device="ROBOT")", R"(device="@ROBOTS")", "'ROBOT'"},
+    {"E0312", R"(device="PLATE")", R"(device="@PLATES")", "'PLATE'"},
     {"E0313", R"(telemetry="127.0.0.1:10015")", R"(telemetry="@0.0.0.0:10015")", "loopback"},
     {"E0313", R"(telecommand="127.0.0.1:10025")", R"(telecommand="@127.0.0.1.example.org:10025")"},
-    {"E0314", R"(path="log/rokviss.db")", R"(path="@/tmp/rokviss.db")"},
-    {"E0314", R"(path="log/rokviss.db")", R"(path="@log/../../rokviss.db")"},
-    {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@/etc/passwd")"},
-    {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@../../../joystick.xml")"},
-    {"E0314", R"(descriptor="joystick.xml")", R"(descriptor="@@hirosco/../joystick.xml")"},
-    {"E0315", R"(descriptor="joystick.xml")", R"(descriptor="@../joystick.xml.none")"},
-    {"E0315", R"(descriptor="joystick.xml")", R"(descriptor="@@hirosco/subsystems/none.xml")"},
+    {"E0314", R"(path="log/orbiter.db")", R"(path="@/tmp/orbiter.db")"},
+    {"E0314", R"(path="log/orbiter.db")", R"(path="@log/../../orbiter.db")"},
+    {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@/etc/passwd")"},
+    {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@../../../flywheel.xml")"},
+    {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@@hirosco/../flywheel.xml")"},
+    {"E0315", R"(descriptor="flywheel.xml")", R"(descriptor="@../flywheel.xml.none")"},
+    {"E0315", R"(descriptor="flywheel.xml")", R"(descriptor="@@hirosco/subsystems/none.xml")"},
     {"E0105", R"(<Power budget_W="150"/>)", R"(@<Power/>)"},
     {"E0107", R"(<Power budget_W="150"/>)", R"(<Power budget_W="150"/>@<Power budget_W="150"/>)"},
     {"E0111", R"(budget_W="150")", R"(budget_W="@much")"},
@@ -185,11 +185,11 @@ constexpr Mistake mistakes[] = {
     {"E0325", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When event="@RECOVERY_STEP"/>)", "the other plan"},
     {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When severity="low info"/><Do action="log"/><Restart/>)", "PROCESS_DIED"},
     {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When event="HANG"/><Do action="log"/><Restart/>)", "PROCESS_DIED"},
-    {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="JOYSTICK" event="@LOG_STORE"/>)"},
+    {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="FLYWHEEL" event="@LOG_STORE"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES.TORQ" label)", "CUR_VALUES.TORQUE"},
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES" label)"},
-    {"E0304", R"(<Show subsystem="MANIPULATOR" parameter="ACTIVE")", R"(<Show subsystem="@NOBODY" parameter="ACTIVE")"},
+    {"E0304", R"(<Show subsystem="CORONAGRAPH" parameter="ACTIVE")", R"(<Show subsystem="@NOBODY" parameter="ACTIVE")"},
     {"E0105", R"( label="active")", ""},
 };
 // clang-format on
@@ -214,15 +214,15 @@ TEST(MissionErrors, AreReportedWhereTheyStand) {
   }
 }
 
-/// A second joystick of the same descriptor, as the mission names it.
-std::string with_second_joystick(const std::string& inside, const std::string& identity = R"(name="LEFT" id="30")") {
-  const std::string first = R"(<Subsystem executable="hirosco-joystick" descriptor="joystick.xml"/>)";
-  return changed(first, first + R"(<Subsystem executable="hirosco-joystick" descriptor="joystick.xml" )" + identity +
+/// A second flywheel of the same descriptor, as the mission names it.
+std::string with_second_flywheel(const std::string& inside, const std::string& identity = R"(name="LEFT" id="30")") {
+  const std::string first = R"(<Subsystem executable="hirosco-flywheel" descriptor="flywheel.xml"/>)";
+  return changed(first, first + R"(<Subsystem executable="hirosco-flywheel" descriptor="flywheel.xml" )" + identity +
                             ">" + inside + "</Subsystem>");
 }
 
 TEST(MissionInstances, OfOneDescriptorHaveNameIdParametersAndAddressesOfTheirOwn) {
-  const auto source = overlay({{"mission.xml", with_second_joystick(R"(<Device name="STICK" address="left"/>)")}});
+  const auto source = overlay({{"mission.xml", with_second_flywheel(R"(<Device name="STICK" address="left"/>)")}});
   const auto reading = read_mission(data / "mission.xml", source);
   ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
   const MissionSubsystem& left = reading.value->subsystems.at(3);
@@ -233,7 +233,7 @@ TEST(MissionInstances, OfOneDescriptorHaveNameIdParametersAndAddressesOfTheirOwn
   for (const auto& configuration : left.subsystem.configurations)
     for (const auto& use : configuration.devices) EXPECT_EQ(use.endnode.address, "left");
   // Its process makes the same of the same file.
-  Subsystem launched = read_subsystem(data / "joystick.xml", file_system()).value.value();
+  Subsystem launched = read_subsystem(data / "flywheel.xml", file_system()).value.value();
   for (const auto& [word, text] : changes_of(left)) ASSERT_TRUE(apply_change(launched, word, text)) << word << text;
   EXPECT_EQ(launched.name, "LEFT");
   EXPECT_EQ(launched.id, 30);
@@ -247,40 +247,40 @@ TEST(MissionInstances, ThatMeetAreRefused) {
     return reading.problems.empty() ? std::string{} : reading.problems.front().code;
   };
   const std::string own = R"(<Device name="STICK" address="left"/>)";
-  EXPECT_EQ(problem_of(with_second_joystick("")), "E0313") << "two devices with one address";
-  EXPECT_EQ(problem_of(with_second_joystick(own, R"(name="LEFT")")), "E0302");
-  EXPECT_EQ(problem_of(with_second_joystick(own, R"(id="30")")), "E0301");
-  EXPECT_EQ(problem_of(with_second_joystick(own, R"(name="LEFT" id="1")")), "E0303");
-  EXPECT_EQ(problem_of(with_second_joystick(own, R"(name="LEFT" id="2040")")), "E0112");
-  EXPECT_EQ(problem_of(with_second_joystick(R"(<Device name="STIKC" address="left"/>)")), "E0312");
-  EXPECT_EQ(problem_of(with_second_joystick(R"(<Device name="STICK"/>)")), "E0105");
-  EXPECT_EQ(problem_of(with_second_joystick(own + own)), "E0201");
-  EXPECT_EQ(problem_of(with_second_joystick(R"(<Device name="STICK" address="left" enable="x"/>)")), "E0217")
+  EXPECT_EQ(problem_of(with_second_flywheel("")), "E0313") << "two devices with one address";
+  EXPECT_EQ(problem_of(with_second_flywheel(own, R"(name="LEFT")")), "E0302");
+  EXPECT_EQ(problem_of(with_second_flywheel(own, R"(id="30")")), "E0301");
+  EXPECT_EQ(problem_of(with_second_flywheel(own, R"(name="LEFT" id="1")")), "E0303");
+  EXPECT_EQ(problem_of(with_second_flywheel(own, R"(name="LEFT" id="2040")")), "E0112");
+  EXPECT_EQ(problem_of(with_second_flywheel(R"(<Device name="STIKC" address="left"/>)")), "E0312");
+  EXPECT_EQ(problem_of(with_second_flywheel(R"(<Device name="STICK"/>)")), "E0105");
+  EXPECT_EQ(problem_of(with_second_flywheel(own + own)), "E0201");
+  EXPECT_EQ(problem_of(with_second_flywheel(R"(<Device name="STICK" address="left" enable="x"/>)")), "E0217")
       << "it has no second inhibit";
 }
 
 TEST(MissionInstances, ChangesOfAnotherFormAreRefused) {
-  Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   for (const auto& [word, text] :
        {std::pair{"--as", "ARM"}, std::pair{"--as", ":12"}, std::pair{"--as", "ARM:x"}, std::pair{"--as", "ARM:70000"},
-        std::pair{"--address", "ROBOT"}, std::pair{"--address", "ROBOT="}, std::pair{"--other", "ROBOT=x"}})
+        std::pair{"--address", "PLATE"}, std::pair{"--address", "PLATE="}, std::pair{"--other", "PLATE=x"}})
     EXPECT_EQ(apply_change(robot, word, text).error().code, ErrorCode::InvalidArgument) << word << " " << text;
   EXPECT_EQ(apply_change(robot, "--address", "NONE=x").error().code, ErrorCode::NotFound);
 }
 
 TEST(MissionErrors, ProblemsOfASubsystemCarryItsOwnFile) {
-  const std::string joystick = file_system()(data / "joystick.xml").value();
+  const std::string flywheel = file_system()(data / "flywheel.xml").value();
   const auto reading = read_mission(data / "mission.xml",
-                                    overlay({{"joystick.xml", changed("type=\"UINT8\"", "type=\"UNIT8\"", joystick)}}));
+                                    overlay({{"flywheel.xml", changed("type=\"UINT8\"", "type=\"UNIT8\"", flywheel)}}));
   ASSERT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, file_system());
-  EXPECT_EQ(reading.problems[0].file, data / "joystick.xml");
+  EXPECT_EQ(reading.problems[0].file, data / "flywheel.xml");
   EXPECT_EQ(reading.problems[0].code, "E0104");
 }
 
 TEST(MissionErrors, FieldsOfALinkMustMatch) {
-  const std::string joystick = file_system()(data / "joystick.xml").value();
+  const std::string flywheel = file_system()(data / "flywheel.xml").value();
   const auto with = [&](const std::string& from, const std::string& to) {
-    const auto reading = read_mission(data / "mission.xml", overlay({{"joystick.xml", changed(from, to, joystick)}}));
+    const auto reading = read_mission(data / "mission.xml", overlay({{"flywheel.xml", changed(from, to, flywheel)}}));
     EXPECT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, file_system());
     return reading.problems.empty() ? std::string{} : reading.problems[0].message;
   };
@@ -291,14 +291,14 @@ TEST(MissionErrors, FieldsOfALinkMustMatch) {
             "link 1 does not fit: field 'TORQUE': DOUBLE[2] N m against DOUBLE[2] mN m");
   EXPECT_EQ(with(torque, "name=\"FORCE\" type=\"DOUBLE\""),
             "link 1 does not fit: field 'FORCE' is not in the provided set");
-  EXPECT_EQ(with("from=\"MANIPULATOR\"", "from=\"OTHER\""),
-            "link 1 does not fit: 'ROBOT_STATE' is required from 'OTHER'");
-  EXPECT_EQ(with("from=\"MANIPULATOR\"", "byte_order=\"big\""), "link 1 does not fit: no common byte order");
+  EXPECT_EQ(with("from=\"CORONAGRAPH\"", "from=\"OTHER\""),
+            "link 1 does not fit: 'PLATE_STATE' is required from 'OTHER'");
+  EXPECT_EQ(with("from=\"CORONAGRAPH\"", "byte_order=\"big\""), "link 1 does not fit: no common byte order");
 }
 
 TEST(MissionOverrides, ReachALaunchedSubsystemAsTheyWereRead) {
   const Mission mission = read_mission(data / "mission.xml", file_system()).value.value();
-  Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   ASSERT_EQ(mission.subsystems.at(1).overrides.size(), 1U);
   EXPECT_EQ(to_string(mission.subsystems.at(1).overrides.at(0)), "DES_POSITION=-0.7 1.5");
   for (const Override& changed : {Override{"TORQUE_LIMIT", {0.1}}, Override{"DES_POSITION", {-1.0 / 3, 1e-300}}}) {
@@ -312,15 +312,15 @@ TEST(MissionOverrides, ReachALaunchedSubsystemAsTheyWereRead) {
 }
 
 TEST(MissionErrors, WhatAModeCommissionsMustFitThePowerBudget) {
-  const std::string joystick =
+  const std::string flywheel =
       changed(R"(<Configuration name="COUPLED")", R"(<Configuration power_W="25" name="COUPLED")",
-              file_system()(data / "joystick.xml").value());
+              file_system()(data / "flywheel.xml").value());
   const auto with = [&](const std::string& budget, const std::string& state) {
     const std::string text = changed(R"(budget_W="150")", budget, good_mission());
     const std::string robot = R"(configuration="COUPLED" state=")";
     return read_mission(data / "mission.xml",
                         overlay({{"mission.xml", changed(robot + "SafeOperational", robot + state, text)},
-                                 {"joystick.xml", joystick}}));
+                                 {"flywheel.xml", flywheel}}));
   };
   EXPECT_TRUE(with(R"(budget_W="85.5")", "SafeOperational").value);
   EXPECT_TRUE(with(R"(budget_W="85")", "PreOperational").value);
@@ -356,36 +356,36 @@ void expect_one(const Reading<Mission>& reading, std::string_view code, std::str
 TEST(MissionErrors, AModeBringsUpALinkIntoEachSetThatItRequires) {
   const Change without{"mission.xml", "<Establish link=\"1\"/>", ""};
   const std::string_view missing =
-      "mode 'telepresence' brings up no link into 'JOYSTICK.ROBOT_STATE', which configuration 'COUPLED' requires";
+      "mode 'telepresence' brings up no link into 'FLYWHEEL.PLATE_STATE', which configuration 'COUPLED' requires";
   expect_one(read_changed({without}), "E0321", missing);
   EXPECT_EQ(read_changed({without}).problems.at(0).hint, "add <Establish link=\"1\"/>");
-  const Change none{"mission.xml", R"(<Link id="1" from="MANIPULATOR.ROBOT_STATE" to="JOYSTICK.ROBOT_STATE"/>)", ""};
+  const Change none{"mission.xml", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", ""};
   expect_one(read_changed({without, none}), "E0321", missing);
-  const Change optional{"joystick.xml", "<Requires name=\"ROBOT_STATE\"",
-                        "<Requires name=\"ROBOT_STATE\" required=\"no\""};
+  const Change optional{"flywheel.xml", "<Requires name=\"PLATE_STATE\"",
+                        "<Requires name=\"PLATE_STATE\" required=\"no\""};
   EXPECT_TRUE(read_changed({without, optional}).value);
-  const Change resting{"mission.xml", R"(<Commission subsystem="JOYSTICK" configuration="COUPLED"/>)",
-                       R"(<Commission subsystem="JOYSTICK" configuration="COUPLED" state="PreOperational"/>)"};
+  const Change resting{"mission.xml", R"(<Commission subsystem="FLYWHEEL" configuration="COUPLED"/>)",
+                       R"(<Commission subsystem="FLYWHEEL" configuration="COUPLED" state="PreOperational"/>)"};
   EXPECT_TRUE(read_changed({without, resting}).value) << "Pre-Operational waits for no link";
 }
 
 TEST(MissionErrors, ALinkComesUpBetweenSetsThatItsModeCommissions) {
-  expect_one(read_changed({{"mission.xml", R"(subsystem="MANIPULATOR" configuration="COUPLED")",
-                            R"(subsystem="MANIPULATOR" configuration="STANDALONE")"},
+  expect_one(read_changed({{"mission.xml", R"(subsystem="CORONAGRAPH" configuration="COUPLED")",
+                            R"(subsystem="CORONAGRAPH" configuration="STANDALONE")"},
                            {"mission.xml", "<Establish link=\"2\"/>", ""}}),
              "E0322",
-             "link 1 cannot come up: configuration 'STANDALONE' of 'MANIPULATOR' does not provide 'ROBOT_STATE'");
-  expect_one(read_changed({{"mission.xml", R"(<Commission subsystem="JOYSTICK" configuration="COUPLED"/>)", ""},
+             "link 1 cannot come up: configuration 'STANDALONE' of 'CORONAGRAPH' does not provide 'PLATE_STATE'");
+  expect_one(read_changed({{"mission.xml", R"(<Commission subsystem="FLYWHEEL" configuration="COUPLED"/>)", ""},
                            {"mission.xml", "<Establish link=\"1\"/>", ""}}),
-             "E0322", "link 2 cannot come up: the mode does not commission 'JOYSTICK'");
+             "E0322", "link 2 cannot come up: the mode does not commission 'FLYWHEEL'");
 }
 
 TEST(MissionErrors, ASetIsFilledByOneLink) {
   expect_one(
       read_changed({{"mission.xml", "<Links>",
-                     R"(<Links><Link id="3" from="MANIPULATOR.ROBOT_STATE" to="JOYSTICK.ROBOT_STATE"/>)"},
+                     R"(<Links><Link id="3" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)"},
                     {"mission.xml", "<Establish link=\"2\"/>", R"(<Establish link="2"/><Establish link="3"/>)"}}),
-      "E0323", "links 1 and 3 both fill 'JOYSTICK.ROBOT_STATE'");
+      "E0323", "links 1 and 3 both fill 'FLYWHEEL.PLATE_STATE'");
 }
 
 TEST(MissionErrors, ASetHasNoMoreConsumersThanItHasRoomFor) {
@@ -393,24 +393,24 @@ TEST(MissionErrors, ASetHasNoMoreConsumersThanItHasRoomFor) {
   for (int i = 0; i < 9; ++i) {
     const std::string set = "COPY" + std::to_string(i), id = std::to_string(10 + i);
     requires_ += "<Requires name=\"" + set + "\"><Field name=\"ACTIVE\" type=\"UINT8\"/></Requires>";
-    links += "<Link id=\"" + id + "\" from=\"MANIPULATOR.ROBOT_STATE\" to=\"JOYSTICK." + set + "\"/>";
+    links += "<Link id=\"" + id + "\" from=\"CORONAGRAPH.PLATE_STATE\" to=\"FLYWHEEL." + set + "\"/>";
     establish += "<Establish link=\"" + id + "\"/>";
   }
   const auto with = [&](const std::string& established) {
-    return read_changed({{"joystick.xml", "<Requires name=\"ROBOT_STATE\"",
-                          requires_ + "<Requires name=\"ROBOT_STATE\" required=\"no\""},
+    return read_changed({{"flywheel.xml", "<Requires name=\"PLATE_STATE\"",
+                          requires_ + "<Requires name=\"PLATE_STATE\" required=\"no\""},
                          {"mission.xml", "<Links>", "<Links>" + links},
                          {"mission.xml", "<Establish link=\"1\"/>", established}});
   };
-  expect_one(with(establish), "E0323", "'MANIPULATOR.ROBOT_STATE' has more than 8 consumers");
+  expect_one(with(establish), "E0323", "'CORONAGRAPH.PLATE_STATE' has more than 8 consumers");
 }
 
 TEST(MissionErrors, TheCyclesOfAModeFitOneProcessor) {
-  const auto with = [](const char* robot, const char* joystick) {
-    return read_changed({{"manipulator.xml", R"(<Configuration name="COUPLED")",
+  const auto with = [](const char* robot, const char* flywheel) {
+    return read_changed({{"coronagraph.xml", R"(<Configuration name="COUPLED")",
                           std::string{R"(<Configuration name="COUPLED" budget_us=")"} + robot + "\""},
-                         {"joystick.xml", R"(<Configuration name="COUPLED")",
-                          std::string{R"(<Configuration name="COUPLED" budget_us=")"} + joystick + "\""}});
+                         {"flywheel.xml", R"(<Configuration name="COUPLED")",
+                          std::string{R"(<Configuration name="COUPLED" budget_us=")"} + flywheel + "\""}});
   };
   const auto good = with("300", "200");
   ASSERT_TRUE(good.value) << rendered(good.problems, file_system());
@@ -428,24 +428,24 @@ TEST(MissionWarnings, NameActuatorsWithoutASecondInhibitAndKeepTheMission) {
   };
   EXPECT_EQ(codes(read_changed({})), "");
   const auto reading =
-      read_changed({{"manipulator.xml", R"(<Enable transfer="shared_memory" address="rokviss-robot-enable"/>)", ""}});
+      read_changed({{"coronagraph.xml", R"(<Enable transfer="shared_memory" address="orbiter-robot-enable"/>)", ""}});
   EXPECT_TRUE(reading.value);
   ASSERT_EQ(codes(reading), "E0403 ");
   EXPECT_EQ(reading.warnings[0].grade, Grade::Warning);
-  EXPECT_EQ(reading.warnings[0].file, data / "manipulator.xml");
-  EXPECT_EQ(reading.warnings[0].message, "actuator 'ROBOT' has no second inhibit");
+  EXPECT_EQ(reading.warnings[0].file, data / "coronagraph.xml");
+  EXPECT_EQ(reading.warnings[0].message, "actuator 'PLATE' has no second inhibit");
 }
 
 TEST(MissionErrors, NamesAndIdsOfSubsystemsAreUnique) {
-  const std::string joystick = file_system()(data / "joystick.xml").value();
+  const std::string flywheel = file_system()(data / "flywheel.xml").value();
   const auto code = [&](const std::string& from, const std::string& to) {
-    const auto reading = read_mission(data / "mission.xml", overlay({{"joystick.xml", changed(from, to, joystick)}}));
+    const auto reading = read_mission(data / "mission.xml", overlay({{"flywheel.xml", changed(from, to, flywheel)}}));
     EXPECT_FALSE(reading.problems.empty());
     return reading.problems.empty() ? std::string{} : reading.problems[0].code;
   };
   EXPECT_EQ(code("id=\"11\"", "id=\"10\""), "E0302");
   EXPECT_EQ(code("id=\"11\"", "id=\"1\""), "E0303");
-  EXPECT_EQ(code("name=\"JOYSTICK\"", "name=\"MANIPULATOR\""), "E0301");
+  EXPECT_EQ(code("name=\"FLYWHEEL\"", "name=\"CORONAGRAPH\""), "E0301");
   const std::string supervisor = file_system()(data / "supervisor.xml").value();
   const auto reading =
       read_mission(data / "mission.xml", overlay({{"supervisor.xml", changed("id=\"1\"", "id=\"3\"", supervisor)}}));
@@ -454,22 +454,22 @@ TEST(MissionErrors, NamesAndIdsOfSubsystemsAreUnique) {
 }
 
 TEST(MissionErrors, EndnodesStayOnThisComputer) {
-  const std::string robot = file_system()(data / "manipulator.xml").value();
+  const std::string robot = file_system()(data / "coronagraph.xml").value();
   const auto reading = read_mission(data / "mission.xml",
-                                    overlay({{"manipulator.xml", changed("127.0.0.1:5001", "192.0.2.1:5001", robot)}}));
+                                    overlay({{"coronagraph.xml", changed("127.0.0.1:5001", "192.0.2.1:5001", robot)}}));
   ASSERT_EQ(reading.problems.size(), 1U);
   EXPECT_EQ(reading.problems[0].code, "E0313");
-  EXPECT_EQ(reading.problems[0].file, data / "manipulator.xml");
+  EXPECT_EQ(reading.problems[0].file, data / "coronagraph.xml");
 }
 
 TEST(MissionErrors, AnAddressBelongsToOneSubsystem) {
-  const std::string joystick = file_system()(data / "joystick.xml").value();
-  for (const char* robots : {"rokviss-robot", "rokviss-robot-enable"}) {
+  const std::string flywheel = file_system()(data / "flywheel.xml").value();
+  for (const char* robots : {"orbiter-robot", "orbiter-robot-enable"}) {
     const auto reading =
-        read_mission(data / "mission.xml", overlay({{"joystick.xml", changed("rokviss-stick", robots, joystick)}}));
+        read_mission(data / "mission.xml", overlay({{"flywheel.xml", changed("orbiter-stick", robots, flywheel)}}));
     ASSERT_EQ(reading.problems.size(), 1U) << robots;
     EXPECT_EQ(reading.problems[0].code, "E0313");
-    EXPECT_EQ(reading.problems[0].message, "'" + std::string{robots} + "' is a device's of 'MANIPULATOR'");
+    EXPECT_EQ(reading.problems[0].message, "'" + std::string{robots} + "' is a device's of 'CORONAGRAPH'");
   }
 }
 

@@ -31,7 +31,7 @@ std::string whole(const std::string& body) {
          "<ParamRef name=\"STATE\" id=\"0\" type=\"INT32\"/><ParamRef name=\"POSITION\" id=\"0\" type=\"DOUBLE\" "
          "count=\"2\"/>"
          "</StructRef>\n<ParamRef name=\"GOAL\" id=\"1\" type=\"DOUBLE\" minimum=\"-1\" maximum=\"1\"/>\n"
-         "<Device name=\"ROBOT\"><Input><Field name=\"Q\" type=\"DOUBLE\"/></Input></Device>\n</Subsystem>";
+         "<Device name=\"PLATE\"><Input><Field name=\"Q\" type=\"DOUBLE\"/></Input></Device>\n</Subsystem>";
 }
 
 // clang-format off
@@ -92,12 +92,12 @@ constexpr Bad bad_values[] = {
     {"E0112", R"(<Configuration name="C" id="1" sampling_us="100" priority="@85"/>)", "0 to 84"},
     {"E0112", R"(<Configuration name="C" id="@0" sampling_us="100"/>)"},
     {"E0112", R"(<Hang realtime="@0"/>)"},
-    {"E0112", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT" watchdog_ms="@0"><Endnode transfer="unix" address="x"/></Device></Configuration>)"},
+    {"E0112", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE" watchdog_ms="@0"><Endnode transfer="unix" address="x"/></Device></Configuration>)"},
     {"E0113", R"(<ParamRef name="X" id="2" type="DOUBLE" protection="@true"/>)"},
     {"E0113", R"(<EventService><Event name="X" id="1" severity="@meduim"/></EventService>)", "'medium'"},
     {"E0113", R"(<FunctionService><Function name="X" states="@Operational SaveOperational"/></FunctionService>)", "'SafeOperational'"},
     {"E0113", R"(<FunctionService><Function name="X" states="@Operational Operational"/></FunctionService>)"},
-    {"E0113", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="@usb" address="x"/></Device></Configuration>)", "one of"},
+    {"E0113", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="@usb" address="x"/></Device></Configuration>)", "one of"},
     {"E0114", R"(<ParamRef name="X" id="2" type="DOUBLE" unit="@123456789012345678901234567890123"/>)"},
     {"E0206", R"(<ParamRef name="X" id="2" type="DOUBLE" minimum="@2" maximum="1"/>)"},
     {"E0207", R"(<ParamRef name="X" id="2" type="DOUBLE" maximum="1" init="@2"/>)"},
@@ -150,11 +150,11 @@ constexpr Bad bad_meaning[] = {
     {"E0214", R"(<HKService id="1" interval="5"><SampledNREPTimes nrep="@10"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)"},
     {"E0215", R"(@<HKService id="1" interval="510"><SampledNREPTimes nrep="510"><ParamRef name="GOAL"/></SampledNREPTimes></HKService>)", "4072"},
     {"E0215", R"(@<Device name="X"><Input><Field name="A" type="UINT8" count="1003"/></Input><Output><Field name="B" type="UINT8" count="1002"/></Output></Device>)", "1002"},
-    {"E0216", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="@ROBOTS"><Endnode transfer="unix" address="x"/></Device></Configuration>)", "'ROBOT'"},
-    {"E0106", R"(<Configuration name="C" id="1" sampling_us="100">@<Device name="ROBOT"/></Configuration>)"},
+    {"E0216", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="@PLATES"><Endnode transfer="unix" address="x"/></Device></Configuration>)", "'PLATE'"},
+    {"E0106", R"(<Configuration name="C" id="1" sampling_us="100">@<Device name="PLATE"/></Configuration>)"},
     {"E0106", R"(<Configuration name="C" id="1" sampling_us="100"><RealTimeLinkService>@<Requires name="R"/></RealTimeLinkService></Configuration>)"},
-    {"E0217", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="udp" address="@here"/></Device></Configuration>)"},
-    {"E0217", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="unix" address="@../x"/></Device></Configuration>)"},
+    {"E0217", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="udp" address="@here"/></Device></Configuration>)"},
+    {"E0217", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="unix" address="@../x"/></Device></Configuration>)"},
     {"E0218", R"(<Device name="X" actuator="yes"><Output>@<Field name="Y" type="DOUBLE"/></Output></Device>)", "safe"},
     {"E0112", R"(<Configuration name="C" id="1" sampling_us="@49"/>)", "50 to"},
     {"E0224", R"(<ParamRef name="X" id="2" type="DOUBLE" @persistent="yes"/>)", "init"},
@@ -164,9 +164,9 @@ constexpr Bad bad_meaning[] = {
     {"E0224", R"(<FunctionService><Function name="X" @id="1"/></FunctionService>)", "name"},
     {"E0103", "<Enumeration name=\"A\"><Text value=\"1\">a</Text></Enumeration>\n<Device name=\"L\"><Input><Field name=\"Q\" type=\"INT8\" @enumeration=\"A\"/></Input></Device>"},
     {"E0103", "<Enumeration name=\"A\"><Text value=\"1\">a</Text></Enumeration>\n<RealTimeLinkService><Requires name=\"R\"><Field name=\"Q\" type=\"INT8\" @enumeration=\"A\"/></Requires></RealTimeLinkService>"},
-    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="@message_queue" address="x"/></Device></Configuration>)", "shared_memory"},
-    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="@tcp" address="127.0.0.1:5000"/></Device></Configuration>)", "udp"},
-    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="@serial" address="/dev/ttyS0"/></Device></Configuration>)"},
+    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="@message_queue" address="x"/></Device></Configuration>)", "shared_memory"},
+    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="@tcp" address="127.0.0.1:5000"/></Device></Configuration>)", "udp"},
+    {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="@serial" address="/dev/ttyS0"/></Device></Configuration>)"},
     {"E0224", R"(<Device name="L" actuator="yes"><Output><Field name="Q" type="INT8" safe="0"/></Output><Enable transfer="@serial" address="/dev/ttyS0"/></Device>)"},
     {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@udp"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)", "shared_memory is"},
     {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@shared_memory dds"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)"},
@@ -183,8 +183,8 @@ constexpr Bad bad_meaning[] = {
     {"E0228", R"(@<ParamRef name="X" id="2" type="DOUBLE" writable="PreOperational"/>)"},
     {"E0228", R"(@<ParamRef name="X" id="2" type="DOUBLE" writable="PreOperational" maximum="9"/>)"},
     {"E0228", R"(<StructRef name="A" id="1" writable="Operational">@<ParamRef name="X" id="9" type="INT8"/></StructRef>)"},
-    {"E0229", R"(<Configuration name="C" id="1" sampling_us="10000">@<Device name="ROBOT"><Endnode transfer="unix" address="x"/></Device></Configuration>)", "watchdog_ms"},
-    {"E0229", R"(<Configuration name="C" id="1" sampling_us="1000">@<Device name="ROBOT" watchdog_ms="1"><Endnode transfer="unix" address="x"/></Device></Configuration>)"},
+    {"E0229", R"(<Configuration name="C" id="1" sampling_us="10000">@<Device name="PLATE"><Endnode transfer="unix" address="x"/></Device></Configuration>)", "watchdog_ms"},
+    {"E0229", R"(<Configuration name="C" id="1" sampling_us="1000">@<Device name="PLATE" watchdog_ms="1"><Endnode transfer="unix" address="x"/></Device></Configuration>)"},
     {"E0230", R"(<Configuration name="B" id="1" sampling_us="100"/><Configuration name="C" id="2" sampling_us="100"><EventService>@<Event name="A" id="1" severity="low"/></EventService></Configuration>)", "<Subsystem>"},
     {"E0230", R"(<Configuration name="B" id="1" sampling_us="100"><EventService>@<Event name="A" id="1" severity="low"/></EventService></Configuration><Configuration name="C" id="2" sampling_us="100"/>)"},
     {"E0230", R"(<Configuration name="B" id="1" sampling_us="100"/><Configuration name="C" id="2" sampling_us="100"><FunctionService>@<Function name="A"/></FunctionService></Configuration>)", "<Subsystem>"},
@@ -201,7 +201,7 @@ constexpr Bad bad_meaning[] = {
     {"E0207", R"(<FunctionService><Function name="X"><Argument name="A" of="GOAL" default="@2"/></Function></FunctionService>)"},
     {"E0221", R"(<FunctionService><Function name="X"><Argument name="A" of="@POSITION"/></Function></FunctionService>)", "minimum and maximum"},
     {"E0221", R"(<FunctionService><Function name="X"><Argument name="A" of="@CUR_VALUES"/></Function></FunctionService>)", "members"},
-    {"E0222", R"(<Device name="L"><Input><Field name="Q" type="INT8"/></Input></Device><Configuration name="C" id="1" sampling_us="100"><Device name="ROBOT"><Endnode transfer="unix" address="x"/></Device><Device name="L">@<Endnode transfer="unix" address="x"/></Device></Configuration>)", "1"},
+    {"E0222", R"(<Device name="L"><Input><Field name="Q" type="INT8"/></Input></Device><Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="unix" address="x"/></Device><Device name="L">@<Endnode transfer="unix" address="x"/></Device></Configuration>)", "1"},
     {"E0222", R"(<Device name="L" actuator="yes"><Output><Field name="Q" type="INT8" safe="0"/></Output><Enable transfer="unix" address="x"/></Device><Configuration name="C" id="1" sampling_us="100"><Device name="L">@<Endnode transfer="unix" address="x"/></Device></Configuration>)"},
     {"E0223", R"(<Device name="L" stop="@drop"><Input><Field name="Q" type="INT8"/></Input></Device>)", "actuator"},
     {"E0223", R"(<Device name="L" stop_within_ms="@5"><Input><Field name="Q" type="INT8"/></Input></Device>)"},

@@ -67,13 +67,13 @@ TEST(SubsystemDescriptor, AcceptsTheListingsOfThePaperInParametersAndConfigurati
 }
 
 TEST(SubsystemDescriptor, FillsTheWholeModel) {
-  const auto reading = read_subsystem(data / "manipulator.xml", file_system());
+  const auto reading = read_subsystem(data / "coronagraph.xml", file_system());
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
   const Subsystem& robot = *reading.value;
-  EXPECT_EQ(robot.name, "MANIPULATOR");
+  EXPECT_EQ(robot.name, "CORONAGRAPH");
   EXPECT_EQ(robot.id, 10);
   EXPECT_EQ(robot.description, "Two-joint robot, torque controlled, flexible joints");
-  EXPECT_EQ(robot.file, data / "manipulator.xml");
+  EXPECT_EQ(robot.file, data / "coronagraph.xml");
   EXPECT_EQ(robot.enumerations.at(0).texts.at(1).text, "Operational");
   EXPECT_EQ(robot.parameters.at(0).octets(), 4U + 16 + 16 + 8);
   const Parameter* goal = robot.find_parameter("DES_POSITION");
@@ -88,7 +88,7 @@ TEST(SubsystemDescriptor, FillsTheWholeModel) {
 }
 
 TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
-  const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   ASSERT_EQ(robot.functions.size(), 4U);
   const Function* move = robot.find_function("MOVE_TO");
   EXPECT_TRUE(move->permitted_in(State::Operational));
@@ -104,7 +104,7 @@ TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
 }
 
 TEST(SubsystemDescriptor, AParameterIsWritableInTheStatesItNamesOnly) {
-  const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   const Parameter& goal = *robot.find_parameter("DES_POSITION");
   EXPECT_EQ(goal.writable_states, 1U << 3 | 1U << 4);
   EXPECT_TRUE(goal.writable_in(State::SafeOperational));
@@ -115,7 +115,7 @@ TEST(SubsystemDescriptor, AParameterIsWritableInTheStatesItNamesOnly) {
 }
 
 TEST(SubsystemDescriptor, AnArgumentOfAParameterHasItsRange) {
-  const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   const Function::Argument& limit = robot.find_function("SET_TORQUE_LIMIT")->arguments.at(0);
   EXPECT_EQ(limit.of, "TORQUE_LIMIT");
   EXPECT_EQ(limit.field.name, "LIMIT");
@@ -135,26 +135,26 @@ TEST(SubsystemDescriptor, AnArgumentOfAParameterHasItsRange) {
 }
 
 TEST(SubsystemDescriptor, AnActuatorDeclaresItsStopAndItsSecondInhibit) {
-  const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   const Device& device = robot.devices.at(0);
   EXPECT_EQ(device.stop, StopKind::Controlled);
   EXPECT_EQ(device.stop_within, 200ms);
   ASSERT_TRUE(device.enable);
   EXPECT_EQ(device.enable->transfer, Transfer::SharedMemory);
-  EXPECT_EQ(device.enable->address, "rokviss-robot-enable");
+  EXPECT_EQ(device.enable->address, "orbiter-robot-enable");
   EXPECT_EQ(device.enable->byte_order, ByteOrder::Little);
   EXPECT_TRUE(actuators_without_enable(robot).empty());
-  const Subsystem stick = read_subsystem(data / "joystick.xml", file_system()).value.value();
+  const Subsystem stick = read_subsystem(data / "flywheel.xml", file_system()).value.value();
   EXPECT_EQ(stick.devices.at(0).stop, StopKind::Drop);
   EXPECT_FALSE(stick.devices.at(0).enable);
   EXPECT_TRUE(actuators_without_enable(stick).empty()) << "it is no actuator";
   Subsystem bare = robot;
   bare.devices.at(0).enable.reset();
-  EXPECT_EQ(actuators_without_enable(bare), std::vector<std::string_view>{"ROBOT"});
+  EXPECT_EQ(actuators_without_enable(bare), std::vector<std::string_view>{"PLATE"});
 }
 
 TEST(SubsystemDescriptor, FillsTheConfiguration) {
-  const Subsystem robot = read_subsystem(data / "manipulator.xml", file_system()).value.value();
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   EXPECT_EQ(robot.find_configuration("STANDALONE")->overruns.reduced, 20U);
   const Configuration* coupled = robot.find_configuration(std::uint8_t{2});
   ASSERT_NE(coupled, nullptr);
@@ -167,7 +167,7 @@ TEST(SubsystemDescriptor, FillsTheConfiguration) {
   EXPECT_EQ(fields_of(robot, state.parameters.at(1)).at(0).name, "TORQUE") << "an unqualified member";
   const Requires& stick = coupled->requires_.at(0);
   EXPECT_FALSE(stick.required);
-  EXPECT_EQ(stick.from, "JOYSTICK");
+  EXPECT_EQ(stick.from, "FLYWHEEL");
   EXPECT_EQ(stick.age.realtime, 4U);
   EXPECT_EQ(stick.age.reduced, 40U);
   EXPECT_EQ(stick.missing, MissingPolicy::Hold);
@@ -179,7 +179,7 @@ TEST(SubsystemDescriptor, FillsTheConfiguration) {
   EXPECT_EQ(use.watchdog_us, 7500U);
   EXPECT_EQ(use.watchdog_reduced_us, 40'000U);
   EXPECT_EQ(use.settings.at(0).second, "4000");
-  EXPECT_EQ(use.endnode.address, "rokviss-robot");
+  EXPECT_EQ(use.endnode.address, "orbiter-robot");
   EXPECT_EQ(coupled->initial.at(1).values, (std::vector<double>{-0.8, 1.6}));
 }
 
@@ -199,7 +199,7 @@ TEST(SubsystemDescriptor, AcceptsTheSmallestUsefulSubsystem) {
 }
 
 TEST(SubsystemDescriptor, EveryTruncationIsRefused) {
-  std::string text = file_system()(data / "manipulator.xml").value();
+  std::string text = file_system()(data / "coronagraph.xml").value();
   while (text.ends_with('\n')) text.pop_back();
   ASSERT_TRUE(read_text(text).value);
   for (std::size_t octets = 0; octets < text.size(); ++octets) {
