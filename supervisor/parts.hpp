@@ -65,15 +65,16 @@ struct SupervisorParts final : OwnSubsystem::Author {
   // real-time links, resource management
   Links links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
-  // modes
+  // modes and procedures
+  Means means{craft, own_telecommands, graph, restarts, commissioning};
   Modes modes{craft, own};
-  Commissioning commissioning{craft, own_telecommands};
-  Shutdown shutdown{{craft, own, own_telecommands, commissioning, telecommands}};
+  Commissioning commissioning{means};
+  Shutdown shutdown{{means, own, commissioning, telecommands}};
   // event handling
-  Reactions reactions{{craft, own, own_telecommands, graph, commissioning, restarts}};
+  Reactions reactions{means, own};
   Stops stops{craft, own, own_telecommands, commissioning};
   // subsystem handling, status
-  GroundLinkCare ground_link{craft, own_telecommands, graph, commissioning};
+  GroundLinkCare ground_link{means, commissioning};
   Processes processes{
       {craft, own, reception, reactions, stops, links, telecommands, own_telecommands, ground_link, restarts}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};

@@ -92,13 +92,10 @@ struct Mode {
   Location at;
 };
 
-enum class Action : std::uint8_t { Log, SetState, ShutDownNetwork };
-
-/// A subsystem whose process ended is started again: at most `limit` times within `within`, after a pause that doubles.
-struct Restart {
-  std::uint32_t limit{3};
-  Duration within{std::chrono::seconds{60}};
-  Duration pause{std::chrono::milliseconds{100}};
+/// One step of a plan: a word of plan_steps.hpp, and a value for each of its attributes in their order.
+struct PlanStep {
+  std::string kind;
+  std::vector<std::int64_t> values{};
 };
 
 /// A recovery plan: the most specific matching one is taken (subsystem, event, severity, mode).
@@ -108,9 +105,7 @@ struct Plan {
   std::string subsystem;  ///< empty = any
   std::string event;  ///< empty = any
   std::string mode;  ///< empty = any
-  Action action{Action::Log};
-  State state{State::SafeOperational};  ///< for SetState
-  std::optional<Restart> restart{};  ///< besides the action: of whoever died
+  std::vector<PlanStep> steps{};     ///< in this order; empty = log
   Location at;
 };
 
@@ -162,12 +157,3 @@ struct Mission {
 [[nodiscard]] double cycle_share(const Mission& mission) noexcept;
 
 }  // namespace hirosco::descriptor
-
-namespace hirosco {
-template <>
-struct EnumTexts<descriptor::Action> {
-  using enum descriptor::Action;
-  static constexpr auto table =
-      enum_table<descriptor::Action>({{Log, "log"}, {SetState, "set_state"}, {ShutDownNetwork, "shut_down_network"}});
-};
-}  // namespace hirosco

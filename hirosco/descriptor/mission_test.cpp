@@ -77,8 +77,8 @@ TEST(MissionDescriptor, FillsModesAndPlans) {
   EXPECT_EQ(mode.permits.at(1).functions.at(0), "*");
   EXPECT_EQ(mode.permits.at(1).parameters, std::vector<std::string>{"DES_POSITION"});
   EXPECT_EQ(mission.find_mode("commissioning")->permits.at(2).services, (std::vector<std::uint8_t>{3, 17, 20}));
-  EXPECT_EQ(mission.plans.at(0).action, Action::ShutDownNetwork);
-  EXPECT_EQ(mission.plans.at(1).state, State::SafeOperational);
+  EXPECT_EQ(mission.plans.at(0).steps.at(0).kind, "shut_down_network");
+  EXPECT_EQ(mission.plans.at(1).steps.at(0).values, std::vector{static_cast<std::int64_t>(State::SafeOperational)});
   EXPECT_EQ(mission.plans.at(1).event, "TORQUE_LIMIT_EXCEEDED");
   EXPECT_EQ(mission.plans.at(2).severities, (std::vector{Severity::Low, Severity::Info}));
 }
@@ -106,6 +106,18 @@ TEST(MissionDescriptor, APlanForWhatIsToldOfASubsystemNamesThatOneOrTheSuperviso
   }
 }
 
+TEST(MissionDescriptor, APlanHasItsStepsInTheirOrderAndTheValuesThatAreNotGiven) {
+  const auto reading = read_mission(
+      data / "mission.xml",
+      overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)",
+                                       R"(<When event="PROCESS_DIED"/><Do action="restart" limit="5" pause_ms="20"/>)"
+                                       R"(<Do action="set_state" state="Offline"/>)")}}));
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const auto& steps = reading.value->plans.at(2).steps;
+  EXPECT_EQ(steps.at(0).values, (std::vector<std::int64_t>{5, 60, 20}));
+  EXPECT_EQ(steps.at(1).values, (std::vector<std::int64_t>{0}));
+}
+
 struct Mistake {
   const char* code;
   const char* from;
@@ -119,7 +131,7 @@ constexpr Mistake mistakes[] = {
     {"E0103", R"(seed="7")", R"(@sed="7")", "'seed'"},
     {"E0105", R"(<Establish link="1"/>)", "@<Establish/>"},
     {"E0106", R"(<Plan name="note"><When severity="low info"/>)", R"(@<Plan name="note">)"},
-    {"E0107", R"(<Do action="log"/>)", R"(<Do action="log"/>@<Do action="log"/>)"},
+    {"E0107", R"(<When severity="low info"/>)", R"(<When severity="low info"/>@<When severity="low info"/>)"},
     {"E0110", R"(executable="hirosco-flywheel")", R"(executable="@../../bin/sh")"},
     {"E0110", R"(from="CORONAGRAPH.PLATE_STATE")", R"(from="@PLATE_STATE")"},
     {"E0111", R"(services="3 17 20")", R"(services="@3 ping")"},
@@ -183,10 +195,13 @@ constexpr Mistake mistakes[] = {
     {"E0105", R"( functions="*" services="3 20" parameters="DES_POSITION")", ""},
     {"E0325", R"(severity="medium" subsystem)", R"(severity="@high low" subsystem)", "leave severity out"},
     {"E0325", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When event="@RECOVERY_STEP"/>)", "the other plan"},
-    {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When severity="low info"/><Do action="log"/><Restart/>)", "PROCESS_DIED"},
-    {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When event="HANG"/><Do action="log"/><Restart/>)", "PROCESS_DIED"},
+    {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When severity="low info"/><Do action="restart"/>)", "PROCESS_DIED"},
+    {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When event="HANG"/><Do action="restart"/>)", "PROCESS_DIED"},
     {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="FLYWHEEL" event="@LOG_STORE"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
+    {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" limit="@3"/>)"},
+    {"E0105", R"(<Do action="log"/>)", R"(@<Do action="set_state"/>)"},
+    {"E0112", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" limit="@0"/>)"},
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES.TORQ" label)", "CUR_VALUES.TORQUE"},
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES" label)"},
     {"E0304", R"(<Show subsystem="CORONAGRAPH" parameter="ACTIVE")", R"(<Show subsystem="@NOBODY" parameter="ACTIVE")"},

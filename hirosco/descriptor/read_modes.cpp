@@ -16,6 +16,8 @@ constexpr std::array<std::string_view, 2> common_functions{"SET_STATE", "CONFIGU
 constexpr std::array<std::string_view, 7> supervisor_functions{
     "SET_MODE", "LINK", "UNLINK", "SET_DATABASE", "SET_POWER_BUDGET", "SAFE_ALL", "SHUTDOWN"};
 
+constexpr std::size_t most_steps = 16;
+
 constexpr bool is_steady(State state) noexcept {
   return state == State::Offline || state == State::PreOperational || state == State::SafeOperational ||
          state == State::Operational || state == State::ErrorOperational || state == State::PostOperational;
@@ -135,9 +137,9 @@ void MissionReader::read_mode(const xml::Element& element) {
   mission_.modes.push_back(std::move(mode));
 }
 
-State MissionReader::read_steady_state(Attributes& attributes, State fallback) {
-  const State state = attributes.one_of("state", fallback);
-  const auto* at = attributes.optional("state");
+State MissionReader::read_steady_state(Attributes& attributes, std::string_view name, State fallback) {
+  const State state = attributes.one_of(name, fallback);
+  const auto* at = attributes.optional(name);
   if (at != nullptr && !is_steady(state))
     problems_.add(*at, "E0306", fmt::format("{} is passed through, not commanded", to_text(state)),
                   "Offline, PreOperational, SafeOperational, Operational, ErrorOperational or PostOperational");
@@ -151,7 +153,7 @@ void MissionReader::read_commission(const xml::Element& element, Mode& mode, Uni
   step.at = place(element.at);
   const auto* subsystem = attributes.required("subsystem");
   const auto* configuration = attributes.required("configuration");
-  step.state = read_steady_state(attributes, State::Operational);
+  step.state = read_steady_state(attributes, "state", State::Operational);
   if (step.state == State::ErrorOperational || step.state == State::PostOperational || step.state == State::Offline)
     problems_.add(*element.find("state"), "E0306",
                   fmt::format("commissioning does not lead to {}", to_text(step.state)),
@@ -290,9 +292,8 @@ void MissionReader::read_plan(const xml::Element& element) {
                  read_do(child, plan);
                  action = true;
                },
-               1},
-              {"Restart", [&](const auto& child) { read_restart(child, plan); }, 1}});
-  check_restart(element, plan);
+               most_steps}});
+  check_answers(element, plan);
   if (!condition) problems_.add(element, "E0106", "<Plan> needs a <When>");
   if (!action) problems_.add(element, "E0106", "<Plan> needs a <Do>");
   if (!plan.name.empty()) plan_names_.add(plan.name, plan.at, problems_, element.name.size() + 1);
@@ -346,39 +347,56 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
                   "name the event that the other plan answers");
 }
 
-/// A restart that can answer no death would be a promise that is never kept.
-void MissionReader::check_restart(const xml::Element& element, const Plan& plan) {
-  if (!whole() || !plan.restart) return;
-  const auto* death = mission_.supervisor.find_event(event_of_death);
-  const bool named = plan.event.empty() || plan.event == event_of_death;
-  const bool severe = plan.severities.empty() || death == nullptr ||
-                      std::ranges::find(plan.severities, death->severity) != plan.severities.end();
-  if (!named || !severe)
-    problems_.add(element, "E0326", fmt::format("plan '{}' restarts nobody: it never answers a death", plan.name),
-                  fmt::format("<Restart> belongs to the plan for {}", event_of_death));
-}
-
-void MissionReader::read_restart(const xml::Element& element, Plan& plan) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  Restart restart;
-  restart.limit = attributes.integer_or<std::uint32_t>("limit", 1, 100'000, restart.limit);
-  restart.within = std::chrono::seconds{attributes.integer_or<int>("within_s", 1, 86'400, 60)};
-  restart.pause = std::chrono::milliseconds{attributes.integer_or<int>("pause_ms", 0, 60'000, 100)};
-  plan.restart = restart;
+/// A step that can answer none of the plan's events would be a promise that is never kept.
+void MissionReader::check_answers(const xml::Element& element, const Plan& plan) {
+  if (!whole()) return;
+  for (const PlanStep& step : plan.steps) {
+    const std::string_view only = find_plan_step(step.kind)->answers;
+    if (only.empty()) continue;
+    const auto* event = mission_.supervisor.find_event(only);
+    const bool named = plan.event.empty() || plan.event == only;
+    const bool severe = plan.severities.empty() || event == nullptr ||
+                        std::ranges::find(plan.severities, event->severity) != plan.severities.end();
+    if (!named || !severe)
+      problems_.add(element, "E0326",
+                    fmt::format("plan '{}' never does '{}': that answers {} only", plan.name, step.kind, only),
+                    fmt::format("it belongs to the plan for {}", only));
+  }
 }
 
 void MissionReader::read_do(const xml::Element& element, Plan& plan) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
-  const auto* at = attributes.required("action");
-  plan.action = attributes.one_of("action", Action::Log);
-  plan.state = read_steady_state(attributes, State::SafeOperational);
-  const auto* state = attributes.optional("state");
-  if (at != nullptr && plan.action == Action::SetState && state == nullptr)
-    problems_.add(element, "E0105", "<Do action=\"set_state\"> needs the attribute 'state'");
-  if (at != nullptr && plan.action != Action::SetState && state != nullptr)
-    problems_.add(*state, "E0317", fmt::format("the action '{}' takes no state", to_text(plan.action)));
+  const auto* action = attributes.required("action");
+  const StepWord* word = action != nullptr ? find_plan_step(action->value) : nullptr;
+  PlanStep step;
+  if (word != nullptr) {
+    step.kind = action->value;
+    for (const StepAttribute& described : word->attributes) step.values.push_back(read_value(attributes, described));
+  }
+  std::vector<std::string_view> known;
+  for (const StepWord& other : plan_steps) {
+    known.push_back(other.name);
+    for (const StepAttribute& foreign : other.attributes) {
+      const auto* at = attributes.optional(foreign.name);
+      if (at == nullptr || word == nullptr) continue;
+      if (std::ranges::find(word->attributes, foreign.name, &StepAttribute::name) == word->attributes.end())
+        problems_.add(*at, "E0317", fmt::format("the action '{}' takes no {}", word->name, foreign.name));
+    }
+  }
+  if (word != nullptr) plan.steps.push_back(std::move(step));
+  else if (action != nullptr) attributes.unknown_word(*action, action->value, known);
+}
+
+std::int64_t MissionReader::read_value(Attributes& attributes, const StepAttribute& described) {
+  const auto fallback = described.otherwise.value_or(described.least);
+  if (!described.otherwise && attributes.required(described.name) == nullptr) return fallback;
+  switch (described.kind) {
+    case StepAttribute::Kind::SteadyState:
+      return static_cast<std::int64_t>(read_steady_state(attributes, described.name, State::SafeOperational));
+    case StepAttribute::Kind::Number: break;
+  }
+  return attributes.integer_or(described.name, described.least, described.most, fallback);
 }
 
 }  // namespace hirosco::descriptor::detail

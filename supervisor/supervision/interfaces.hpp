@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -36,6 +37,14 @@ class Accounts {
   virtual void refuse_waiting() = 0;
   /// Who is gone will never report what it had begun (findings LW1).
   virtual void outcome_unknown(std::uint16_t apid) = 0;
+};
+
+/// What takes many steps and goes on by itself: it would go on with what was taken down or stopped as if nothing had happened.
+class Undertaking {
+ public:
+  virtual ~Undertaking() = default;
+  /// False: it is over already.
+  virtual bool cancel(std::string_view why) = 0;
 };
 
 }  // namespace hirosco::supervisor

@@ -352,7 +352,7 @@ def an_unplug_of_what_is_not_in_use(w):
     unplug(w)
 
 
-@case(NETWORK_RULE, mission=dataclasses.replace(MISSION, high_plan="set_state"))
+@case(NETWORK_RULE, mission=dataclasses.replace(MISSION, high_plan={"set_state"}))
 def an_unplug_where_the_mission_plans_something_milder(w):
     unplug(w)
 

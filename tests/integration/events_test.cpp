@@ -92,8 +92,7 @@ descriptor::Plan to_safe(std::string subsystem, std::string event) {
   plan.name = "of ours";
   plan.subsystem = std::move(subsystem);
   plan.event = std::move(event);
-  plan.action = descriptor::Action::SetState;
-  plan.state = State::SafeOperational;
+  plan.steps = {{"set_state", {static_cast<std::int64_t>(State::SafeOperational)}}};
   return plan;
 }
 
@@ -137,7 +136,7 @@ TEST(PlansForTheSupervisorsOwnEvents, AboutASubsystemBeginWhetherTheyNameThatOne
     const bool meant = std::string_view{subsystem} != "JOYSTICK";
     Flight dying{{.edit = [&](descriptor::Mission& mission) {
       auto plan = to_safe(subsystem, "PROCESS_DIED");
-      plan.action = descriptor::Action::ShutDownNetwork;
+      plan.steps = {{"shut_down_network"}};
       mission.plans = {std::move(plan)};
     }}};
     ASSERT_TRUE(dying.commission());
@@ -149,7 +148,7 @@ TEST(PlansForTheSupervisorsOwnEvents, AboutASubsystemBeginWhetherTheyNameThatOne
     Flight powerless{{.edit = [&](descriptor::Mission& mission) {
       hand_rests(mission);
       auto plan = to_safe(subsystem, "POWER_REFUSED");
-      plan.state = State::ErrorOperational;
+      plan.steps = {{"set_state", {static_cast<std::int64_t>(State::ErrorOperational)}}};
       mission.plans.push_back(std::move(plan));
     }}};
     ASSERT_TRUE(powerless.commission());

@@ -10,6 +10,7 @@
 
 #include "hirosco/descriptor/detail/element_reader.hpp"
 #include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/plan_steps.hpp"
 
 namespace hirosco::descriptor::detail {
 
@@ -76,10 +77,10 @@ class MissionReader {
   void read_recovery(const xml::Element& element);
   void read_plan(const xml::Element& element);
   void read_when(const xml::Element& element, Plan& plan);
-  void read_restart(const xml::Element& element, Plan& plan);
-  void check_restart(const xml::Element& element, const Plan& plan);
   void read_do(const xml::Element& element, Plan& plan);
-  [[nodiscard]] State read_steady_state(Attributes& attributes, State fallback);
+  [[nodiscard]] std::int64_t read_value(Attributes& attributes, const StepAttribute& described);
+  void check_answers(const xml::Element& element, const Plan& plan);
+  [[nodiscard]] State read_steady_state(Attributes& attributes, std::string_view name, State fallback);
   void check_functions(const xml::Attribute& at, const Permit& permit);
   void check_parameters(const xml::Attribute& at, const Permit& permit);
 

@@ -7,8 +7,7 @@
 
 #include "hirosco/descriptor/supervisor_events.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
-#include "supervisor/supervision/event_handling/recovery.hpp"
-#include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/procedures/step_kinds.hpp"
 
 namespace hirosco::supervisor {
 
@@ -52,35 +51,49 @@ void Reactions::react(Member& origin, std::string_view event, Severity severity)
       choose_reaction(craft_.mission, {origin.descriptor().name, event, severity, craft_.mode->name,
                                        ours ? std::string_view{supervisor.name} : std::string_view{}});
   if (craft_.shutting_down) return;  // everything is on its way down already
-  using enum Restarts::AtLimit;
-  if (reaction.restart && event == descriptor::event_of_death &&
-      !parts_.restarts.plan(origin.apid(), *reaction.restart, craft_.now,
-                            craft_.is_ground_link(origin) ? GoesOn : StaysDown))
-    craft_.tell(origin.descriptor().name + " stays down: it died too often", origin.apid());
-  if (reaction.action == descriptor::Action::Log) return;
+  const Stage steps = steps_for(origin, reaction, event, {std::string{reaction.plan}, std::string{event}});
+  if (steps.empty()) return;
   // One plan at a time for a subsystem; only something worse overrides it.
   if (origin.recovering && *origin.recovering >= severity && !is_loss(event)) return;
-  if (reaction.action == descriptor::Action::ShutDownNetwork) {
-    origin.recovering = severity;
-    return shut_down_network(origin, reaction.plan);
-  }
-  const auto state = origin.state();
-  const bool to_safe = reaction.state == State::SafeOperational;
-  if (to_safe && state != State::Operational) return;  // decision 11: elsewhere it is logged
-  origin.recovering = severity;
-  craft_.tell("plan " + std::string{reaction.plan} + ": " + origin.descriptor().name + " to " +
-                  std::string{to_text(reaction.state)} + " because of " + std::string{event},
-              origin.apid());
-  const std::uint16_t apid = origin.apid();
-  const auto done = [this, apid, severity](bool success, const std::string& why) {
-    recovered(apid, severity);
+  begin(origin, severity, steps, [this, apid = origin.apid()](const ProcedureEnd& end) {
     Member* subject = craft_.member(apid);
-    if (success || subject == nullptr || !subject->alive()) return;
+    if (end.success || !subject->alive()) return;
     // A plan that fails escalates once, to the whole network; shutting down has no further step.
-    craft_.tell("plan failed (" + why + "): escalating", apid);
+    craft_.tell("plan failed (" + end.why + "): escalating", apid);
     react(*subject, "RECOVERY_FAILED", Severity::High);
+  });
+}
+
+/// Of a plan, what there is to do for this subsystem about this event.
+Stage Reactions::steps_for(const Member& subject, const Reaction& reaction, std::string_view event,
+                           const Occasion& occasion) const {
+  Stage steps;
+  for (const descriptor::PlanStep& planned : reaction.steps) {
+    const std::string_view only = descriptor::find_plan_step(planned.kind)->answers;
+    const ProcedureStep step{find_step_kind(planned.kind), subject.apid(), planned.values, occasion};
+    const bool does_something =
+        step.kind->run != nullptr && (step.kind->answers == nullptr || step.kind->answers(step, craft_));
+    if (does_something && (only.empty() || only == event)) steps.push_back(step);
+  }
+  return steps;
+}
+
+/// The steps of a plan, one after the other; while one that holds its subject runs, nothing lesser begins for that.
+void Reactions::begin(Member& subject, Severity severity, const Stage& steps,
+                      std::function<void(const ProcedureEnd&)> finished) {
+  const bool holds = std::ranges::any_of(
+      steps, [](const ProcedureStep& each) { return each.kind->holds == StepKind::Holds::Subject; });
+  if (holds) subject.recovering = severity;
+  Procedure procedure;
+  for (const ProcedureStep& each : steps) procedure.stages.push_back({each});
+  procedure.finished = [this, apid = subject.apid(), severity, holds,
+                        finished = std::move(finished)](const ProcedureEnd& end) {
+    // One that goes down with its network is not recovered by the end of something else.
+    Member* again = craft_.member(apid);
+    if (holds && !again->going_down) again->recovered(severity);
+    if (finished) finished(end);
   };
-  recover_to(apid, reaction.state, done);
+  Engine{means_}.start(std::move(procedure));
 }
 
 /// The supervisor has no network and no actuators: what a plan asks for concerns all that have.
@@ -89,71 +102,28 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
   const Reaction reaction = choose_reaction(
       craft_.mission,
       {craft_.mission.supervisor.name, event, severity, craft_.mode->name, {}, RaisedEvent::Origin::Supervisor});
-  if (reaction.action == descriptor::Action::Log || craft_.shutting_down) return;
-  craft_.tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event}, 1);
-  if (parts_.commissioning.cancel("plan " + std::string{reaction.plan})) craft_.failed = true;
+  const auto acts = [](const descriptor::PlanStep& planned) { return find_step_kind(planned.kind)->run != nullptr; };
+  if (craft_.shutting_down || std::ranges::none_of(reaction.steps, acts)) return;
+  craft_.tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event},
+              supervisor_apid);
+  if (means_.commissioning.cancel("plan " + std::string{reaction.plan})) craft_.failed = true;
   for (Member& subject : craft_.members) {
     if (!subject.alive() || craft_.is_ground_link(subject) || subject.recovering) continue;
-    if (reaction.action == descriptor::Action::ShutDownNetwork) {
-      shut_down_network(subject, reaction.plan);
-    } else if (reaction.state != State::SafeOperational || subject.state() == State::Operational) {
-      subject.recovering = severity;
-      recover_to(subject.apid(), reaction.state,
-                 [this, apid = subject.apid(), severity](bool, const std::string&) { recovered(apid, severity); });
-    }
+    const Stage steps = steps_for(subject, reaction, event, {std::string{reaction.plan}});
+    if (!steps.empty()) begin(subject, severity, steps, nullptr);
   }
 }
 
-/// One step of a plan: ground is told of it, whatever becomes of it.
-void Reactions::recover_to(std::uint16_t apid, State state, CommandDone done) {
-  parts_.desk.command(apid, "SET_STATE", static_cast<double>(state), std::move(done));
-  parts_.own.announce("RECOVERY_STEP", {static_cast<double>(apid), static_cast<double>(state)});
+/// Ground is told of each state that a plan commands, whatever becomes of it.
+void Reactions::Desk::command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
+                              CommandDone done) {
+  desk_.command(apid, function, argument, std::move(done));
+  if (function == "SET_STATE" && argument) own_.announce("RECOVERY_STEP", {static_cast<double>(apid), *argument});
 }
 
-/// The end of a recovery. One of lower severity that something worse has overridden does not end that.
-void Reactions::recovered(std::uint16_t apid, Severity severity) {
-  Member* subject = craft_.member(apid);
-  if (subject == nullptr || subject->recovering != severity) return;
-  subject->recovering.reset();
-  subject->going_down = false;
-}
-
-void Reactions::shut_down_network(Member& origin, std::string_view plan) {
-  auto network = parts_.links.network_of(origin.apid());
-  // The ground link may carry sets of the network; it has no actuators, and ground must hear what goes on.
-  std::erase_if(network, [&](std::uint16_t apid) {
-    const Member* subject = craft_.member(apid);
-    return subject != nullptr && subject != &origin && craft_.is_ground_link(*subject);
-  });
-  std::string names;
-  for (const std::uint16_t apid : network) names += (names.empty() ? "" : ", ") + craft_.name_of(apid);
-  // The actuators first, by shared memory: no packet, no queue and no disk is in that way.
-  for (const std::uint16_t apid : network) craft_.guard.fence(apid);
-  craft_.tell("plan " + std::string{plan} + ": network {" + names + "} to ErrorOperational and down", origin.apid());
-  if (parts_.commissioning.cancel("plan " + std::string{plan})) craft_.failed = true;
-  for (const std::uint16_t apid : network) {
-    Member* subject = craft_.member(apid);
-    if (subject == nullptr || !subject->alive()) continue;
-    subject->recovering = Severity::High;
-    if (!std::exchange(subject->going_down, true)) bring_down(*subject);
-  }
-}
-
-void Reactions::bring_down(Member& subject) {
-  const std::uint16_t apid = subject.apid();
-  const auto to_offline = [this, apid](bool, const std::string&) {
-    Member* again = craft_.member(apid);
-    if (again == nullptr || !again->alive() || again->state() == State::Offline) return recovered(apid, Severity::High);
-    recover_to(apid, State::Offline, [this, apid](bool success, const std::string& why) {
-      recovered(apid, Severity::High);
-      craft_.tell(craft_.name_of(apid) + (success ? " is Offline" : " did not reach Offline: " + why), apid);
-    });
-  };
-  const auto state = subject.state();
-  const bool can_stop =
-      state == State::PreOperational || state == State::SafeOperational || state == State::Operational;
-  if (!can_stop) return to_offline(true, {});
-  recover_to(apid, State::ErrorOperational, to_offline);
+void Reactions::Desk::send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
+                           const MemoryHandle& memory, CommandDone done) {
+  desk_.send(apid, service, subtype, data, memory, std::move(done));
 }
 
 }  // namespace hirosco::supervisor

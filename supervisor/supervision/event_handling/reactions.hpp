@@ -3,32 +3,27 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string_view>
 
 #include "hirosco/pus/words/describe.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/event_handling/restarts.hpp"
+#include "supervisor/supervision/event_handling/recovery.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/realtime_links/link_graph.hpp"
+#include "supervisor/supervision/procedures/engine.hpp"
 
 namespace hirosco::supervisor {
-
-class Commissioning;
 
 /// Events are heard here and nowhere else, and answered by the recovery plans of the mission (paper 4.3 and 5): whether
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Thread: the supervisor's.
 class Reactions {
  public:
-  struct Parts {
-    Craft& craft;
-    OwnSubsystem& own;
-    CommandDesk& desk;
-    const LinkGraph& links;
-    Commissioning& commissioning;
-    Restarts& restarts;
-  };
-  explicit Reactions(const Parts& parts) : parts_{parts}, craft_{parts.craft}, describer_{craft_.mission} {}
+  Reactions(const Means& means, OwnSubsystem& own)
+      : craft_{means.craft},
+        desk_{means.desk, own},
+        means_{means.craft, desk_, means.links, means.restarts, means.commissioning},
+        describer_{craft_.mission} {}
 
   /// False: it cannot be read.
   [[nodiscard]] bool take_event(std::uint16_t from, Octets message);
@@ -37,13 +32,27 @@ class Reactions {
 
  private:
   void react_to_own(std::string_view event, descriptor::Severity severity);
-  void shut_down_network(Member& origin, std::string_view plan);
-  void bring_down(Member& subject);
-  void recover_to(std::uint16_t apid, descriptor::State state, CommandDone done);
-  void recovered(std::uint16_t apid, descriptor::Severity severity);
+  [[nodiscard]] Stage steps_for(const Member& subject, const Reaction& reaction, std::string_view event,
+                                const Occasion& occasion) const;
+  void begin(Member& subject, descriptor::Severity severity, const Stage& steps,
+             std::function<void(const ProcedureEnd&)> finished);
 
-  Parts parts_;
+  class Desk final : public CommandDesk {
+   public:
+    Desk(CommandDesk& desk, OwnSubsystem& own) : desk_{desk}, own_{own} {}
+    void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
+                 CommandDone done) override;
+    void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory,
+              CommandDone done) override;
+
+   private:
+    CommandDesk& desk_;
+    OwnSubsystem& own_;
+  };
+
   Craft& craft_;
+  Desk desk_;
+  Means means_;
   pus::PacketDescriber describer_;
 };
 

@@ -3,6 +3,7 @@
 #include "supervisor/supervision/event_handling/recovery.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace hirosco::supervisor {
 namespace {
@@ -32,13 +33,13 @@ Reaction choose_reaction(const descriptor::Mission& mission, const RaisedEvent& 
     best = &plan;
     best_score = *score;
   }
-  if (best != nullptr) return {best->name, best->action, best->state, best->restart};
-  if (event.origin == RaisedEvent::Origin::Supervisor) return {"default", descriptor::Action::Log, {}, {}};
+  if (best != nullptr) return {best->name, best->steps};
+  if (event.origin == RaisedEvent::Origin::Supervisor) return {"default", {{"log"}}};
   switch (event.severity) {
-    case descriptor::Severity::High: return {"default", descriptor::Action::ShutDownNetwork, {}, {}};
+    case descriptor::Severity::High: return {"default", {{"shut_down_network"}}};
     case descriptor::Severity::Medium:
-      return {"default", descriptor::Action::SetState, descriptor::State::SafeOperational, {}};
-    default: return {"default", descriptor::Action::Log, {}, {}};
+      return {"default", {{"set_state", {static_cast<std::int64_t>(descriptor::State::SafeOperational)}}}};
+    default: return {"default", {{"log"}}};
   }
 }
 

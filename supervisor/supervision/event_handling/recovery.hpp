@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string_view>
+#include <vector>
 
 #include "hirosco/descriptor/mission.hpp"
 
@@ -21,9 +21,7 @@ struct RaisedEvent {
 
 struct Reaction {
   std::string_view plan;             ///< name, "default" when no plan of the mission matched
-  descriptor::Action action{descriptor::Action::Log};
-  descriptor::State state{};         ///< for Action::SetState
-  std::optional<descriptor::Restart> restart;  ///< besides
+  std::vector<descriptor::PlanStep> steps;
 };
 
 /// Events of the supervisor itself are answered only by plans that name it or the event: no actuator of

@@ -7,7 +7,6 @@
 namespace hirosco::supervisor {
 namespace {
 
-using descriptor::Action;
 using descriptor::Severity;
 using descriptor::State;
 
@@ -27,14 +26,15 @@ constexpr RaisedEvent raised{.subsystem = "ARM", .event = "HOT", .severity = Sev
 TEST(Recovery, WithoutPlansThePapersDefaultsHold) {
   const descriptor::Mission mission;
   const auto action = [&](Severity severity) {
-    return choose_reaction(mission, {.subsystem = "ARM", .event = "HOT", .severity = severity, .mode = "open"});
+    return choose_reaction(mission, {.subsystem = "ARM", .event = "HOT", .severity = severity, .mode = "open"})
+        .steps.at(0);
   };
-  EXPECT_EQ(action(Severity::High).action, Action::ShutDownNetwork);
-  EXPECT_EQ(action(Severity::Medium).action, Action::SetState);
-  EXPECT_EQ(action(Severity::Medium).state, State::SafeOperational);
-  EXPECT_EQ(action(Severity::Low).action, Action::Log);
-  EXPECT_EQ(action(Severity::Info).action, Action::Log);
-  EXPECT_EQ(action(Severity::High).plan, "default");
+  EXPECT_EQ(action(Severity::High).kind, "shut_down_network");
+  EXPECT_EQ(action(Severity::Medium).kind, "set_state");
+  EXPECT_EQ(action(Severity::Medium).values, std::vector{static_cast<std::int64_t>(State::SafeOperational)});
+  EXPECT_EQ(action(Severity::Low).kind, "log");
+  EXPECT_EQ(action(Severity::Info).kind, "log");
+  EXPECT_EQ(choose_reaction(mission, raised).plan, "default");
 }
 
 TEST(Recovery, APlanThatDoesNotMatchInOneCriterionIsNotTaken) {
@@ -76,14 +76,14 @@ TEST(Recovery, OfEquallySpecificPlansTheFirstIsTaken) {
   EXPECT_EQ(choose_reaction(mission, raised).plan, "first");
 }
 
-TEST(Recovery, APlansActionAndStateAreHandedOn) {
+TEST(Recovery, APlansStepsAreHandedOnInTheirOrder) {
   descriptor::Mission mission;
   mission.plans = {plan("stop", "HOT", "", "", {})};
-  mission.plans[0].action = Action::SetState;
-  mission.plans[0].state = State::ErrorOperational;
+  mission.plans[0].steps = {{"restart", {3, 60, 100}}, {"set_state", {7}}};
   const Reaction reaction = choose_reaction(mission, raised);
-  EXPECT_EQ(reaction.action, Action::SetState);
-  EXPECT_EQ(reaction.state, State::ErrorOperational);
+  ASSERT_EQ(reaction.steps.size(), 2U);
+  EXPECT_EQ(reaction.steps[0].kind, "restart");
+  EXPECT_EQ(reaction.steps[1].values, std::vector<std::int64_t>{7});
 }
 
 }  // namespace

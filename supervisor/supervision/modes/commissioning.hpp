@@ -6,33 +6,32 @@
 #include <string_view>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/modes/sequence.hpp"
+#include "supervisor/supervision/procedures/engine.hpp"
 
 namespace hirosco::supervisor {
 
 /// From Offline to the start mode of the mission: the supervisor first, then all that the mode names, with the telecommands
 /// that an operator would use (decision 5). Thread: the supervisor's.
-class Commissioning {
+class Commissioning final : public Undertaking {
  public:
-  Commissioning(Craft& craft, CommandDesk& desk) : craft_{craft}, sequence_{desk} {}
+  explicit Commissioning(const Means& means) : craft_{means.craft}, engine_{means} {}
 
   /// `failed` is called when the supervisor itself cannot be commissioned.
   void start(std::function<void()> failed);
-  /// It would go on with what was taken down or stopped as if nothing had happened. False: it is over already.
-  bool cancel(std::string_view why);
+  bool cancel(std::string_view why) override;
   /// The shutdown takes over.
-  void drop() { sequence_.cancel(); }
+  void drop() { engine_.cancel(); }
 
-  [[nodiscard]] bool running() const noexcept { return sequence_.running(); }
+  [[nodiscard]] bool running() const noexcept { return engine_.running(); }
   [[nodiscard]] bool succeeded() const noexcept { return succeeded_; }
-  [[nodiscard]] std::string waiting_for() const { return sequence_.waiting_for(); }
+  [[nodiscard]] std::string waiting_for() const { return engine_.waiting_for(); }
 
  private:
   void commission(const descriptor::Mode& start_mode);
   void ended(const descriptor::Mode& start_mode, const std::string& failure);
 
   Craft& craft_;
-  Sequence sequence_;
+  Engine engine_;
   bool succeeded_{false};
 };
 

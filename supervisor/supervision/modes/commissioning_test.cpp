@@ -14,7 +14,7 @@ using enum descriptor::State;
 
 struct CommissioningTest : PartsTest {
   PlayedDesk desk;
-  Commissioning commissioning{craft, desk};
+  Commissioning commissioning{means_with(desk)};
   int failures{0};
   void start() {
     start_all(Offline);

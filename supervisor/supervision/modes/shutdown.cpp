@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/shutdown.hpp"
 
+#include "supervisor/supervision/procedures/step_kinds.hpp"
+
 namespace hirosco::supervisor {
 
 using descriptor::State;
@@ -27,20 +29,18 @@ void Shutdown::request() {
   deadline_ = craft_.now + limit;
   craft_.tell("shutdown");
   parts_.commissioning.drop();
-  Sequence::Stage safe, offline;
+  Stage safe, offline;
   for (const Member& member : craft_.members) {
-    const auto add = [&](Sequence::Stage& stage, State target) {
-      stage.push_back({member.apid(), member.descriptor().name, "SET_STATE", static_cast<double>(target),
-                       std::string{to_text(target)}});
-    };
     if (!member.alive() || !member.state() || member.state() == State::Offline) continue;
-    if (member.state() == State::Operational) add(safe, State::SafeOperational);
-    if (!craft_.is_ground_link(member)) add(offline, State::Offline);
+    if (member.state() == State::Operational) safe.push_back(to_state(member.apid(), State::SafeOperational));
+    if (!craft_.is_ground_link(member)) offline.push_back(to_state(member.apid(), State::Offline));
   }
-  sequence_.start({safe, offline}, Sequence::OnFailure::GoOn, [this](bool success, const std::string& why) {
-    if (!success) craft_.tell("shutdown: " + why);
-    bring_down_ground_link();
-  });
+  engine_.start({.stages = {safe, offline},
+                 .on_failure = Procedure::OnFailure::GoOn,
+                 .finished = [this](const ProcedureEnd& done) {
+                   if (!done.success) craft_.tell("shutdown: " + done.text());
+                   bring_down_ground_link();
+                 }});
 }
 
 /// Last, so that the ground sees the others go, and hears what became of what it had asked them.
@@ -48,14 +48,14 @@ void Shutdown::bring_down_ground_link() {
   parts_.accounts.refuse_waiting();
   for (const Member& member : craft_.members)
     if (!craft_.is_ground_link(member)) parts_.accounts.outcome_unknown(member.apid());
-  Sequence::Stage ground;
+  Stage ground;
   if (const Member* link = craft_.ground_link(); link != nullptr && link->alive())
-    ground.push_back(
-        {link->apid(), link->descriptor().name, "SET_STATE", static_cast<double>(State::Offline), "Offline"});
-  sequence_.start({ground}, Sequence::OnFailure::GoOn, [this](bool success, const std::string& why) {
-    if (!success) craft_.tell("shutdown: " + why);
-    end();
-  });
+    ground.push_back(to_state(link->apid(), State::Offline));
+  engine_.start(
+      {.stages = {ground}, .on_failure = Procedure::OnFailure::GoOn, .finished = [this](const ProcedureEnd& done) {
+         if (!done.success) craft_.tell("shutdown: " + done.text());
+         end();
+       }});
 }
 
 void Shutdown::end() {
@@ -75,7 +75,7 @@ void Shutdown::enforce(TimePoint now) {
     craft_.tell("shutdown: time limit, ending what is left");
     for (Member& member : craft_.members)
       if (member.alive()) craft_.launcher.kill(member.process());
-    sequence_.cancel();
+    engine_.cancel();
     craft_.failed = true;
     end();
   }

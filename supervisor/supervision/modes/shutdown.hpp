@@ -7,8 +7,8 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
-#include "supervisor/supervision/modes/sequence.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/procedures/engine.hpp"
 
 namespace hirosco::supervisor {
 
@@ -16,13 +16,12 @@ namespace hirosco::supervisor {
 class Shutdown final {
  public:
   struct Parts {
-    Craft& craft;
+    const Means& means;
     OwnSubsystem& own;
-    CommandDesk& desk;
     Commissioning& commissioning;
     Accounts& accounts;
   };
-  explicit Shutdown(const Parts& parts) : parts_{parts}, craft_{parts.craft}, sequence_{parts.desk} {}
+  explicit Shutdown(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, engine_{parts.means} {}
 
   void provide();
   /// SHUTDOWN, carried out where it is received.
@@ -32,7 +31,7 @@ class Shutdown final {
   /// is in the log.
   void enforce(TimePoint now);
   [[nodiscard]] bool finished() const noexcept { return finished_; }
-  [[nodiscard]] std::string waiting_for() const { return sequence_.waiting_for(); }
+  [[nodiscard]] std::string waiting_for() const { return engine_.waiting_for(); }
 
  private:
   void bring_down_ground_link();
@@ -40,7 +39,7 @@ class Shutdown final {
 
   Parts parts_;
   Craft& craft_;
-  Sequence sequence_;
+  Engine engine_;
   TimePoint deadline_{};
   bool ended_{false};
   bool finished_{false};

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "supervisor/supervision/event_handling/restarts.hpp"
+#include "supervisor/supervision/modes/way.hpp"
 
 namespace hirosco::supervisor {
 
@@ -15,7 +15,7 @@ void GroundLinkCare::watch(TimePoint now) {
   if (link == nullptr) return;
   // In Offline, and after that until a configuration is in force, it hears nobody who could bring it up again.
   const bool deaf = link->state() == State::Offline || link->configuration() == 0;
-  const bool others_at_it = craft_.shutting_down || commissioning_.running() || sequence_.running();
+  const bool others_at_it = craft_.shutting_down || commissioning_.running() || engine_.running();
   if (!link->alive() || !deaf || others_at_it) return lost_at_.reset();
   if (!lost_at_) lost_at_ = now;
   if (now - *lost_at_ < patience_) return;
@@ -47,22 +47,15 @@ void GroundLinkCare::restore(const Member& link) {
   if (step == nullptr) return;
   const descriptor::Subsystem& subsystem = link.descriptor();
   const auto& configuration = able(subsystem, step->configuration);
-  std::vector<Sequence::Stage> stages;
-  const auto add = [&](std::string_view function, double argument, std::string text) {
-    stages.push_back({{subsystem.id, subsystem.name, std::string{function}, argument, std::move(text)}});
-  };
-  const auto take_to = [&](State state) { add("SET_STATE", static_cast<double>(state), std::string{to_text(state)}); };
-  if (link.state() == State::ErrorOperational) take_to(State::PostOperational);
-  if (link.state() != State::PreOperational) take_to(State::PreOperational);
-  add("CONFIGURE", configuration.id, "configuration " + configuration.name);
-  for (const State state : {State::SafeOperational, State::Operational})
-    if (state <= step->state) take_to(state);
+  Way way;
+  way.add(subsystem, configuration, link.state(), step->state);
   craft_.restoring_ground_link = true;
-  sequence_.start(std::move(stages), Sequence::OnFailure::Stop, [this](bool success, const std::string& why) {
-    craft_.restoring_ground_link = false;
-    patience_ = success ? pause : std::min(2 * patience_, Restarts::longest_pause);
-    craft_.tell(success ? "the ground link is back" : "the ground link did not come back: " + why);
-  });
+  engine_.start({.stages = way.stages(), .finished = [this](const ProcedureEnd& end) {
+                   craft_.restoring_ground_link = false;
+                   patience_ = end.success ? pause : std::min(2 * patience_, Restarts::longest_pause);
+                   craft_.tell(end.success ? "the ground link is back"
+                                           : "the ground link did not come back: " + end.text());
+                 }});
 }
 
 }  // namespace hirosco::supervisor

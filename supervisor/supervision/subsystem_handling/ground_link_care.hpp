@@ -7,8 +7,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
-#include "supervisor/supervision/modes/sequence.hpp"
-#include "supervisor/supervision/realtime_links/link_graph.hpp"
+#include "supervisor/supervision/procedures/engine.hpp"
 
 namespace hirosco::supervisor {
 
@@ -16,8 +15,8 @@ namespace hirosco::supervisor {
 /// away (adr 0043). Thread: the supervisor's.
 class GroundLinkCare final : public Watch {
  public:
-  GroundLinkCare(Craft& craft, CommandDesk& desk, const LinkGraph& links, const Commissioning& commissioning)
-      : craft_{craft}, links_{links}, commissioning_{commissioning}, sequence_{desk} {}
+  GroundLinkCare(const Means& means, const Commissioning& commissioning)
+      : craft_{means.craft}, links_{means.links}, commissioning_{commissioning}, engine_{means} {}
 
   void watch(TimePoint now) override;
   /// To what its mode asks for, or, while links that this requires are down, to a configuration that requires none that is.
@@ -32,7 +31,7 @@ class GroundLinkCare final : public Watch {
   Craft& craft_;
   const LinkGraph& links_;
   const Commissioning& commissioning_;
-  Sequence sequence_;
+  Engine engine_;
   std::optional<TimePoint> lost_at_;
   Duration patience_{pause};  ///< longer after each time that it did not come back
 };

@@ -39,6 +39,12 @@ class Member {
   std::optional<descriptor::Severity> recovering;
   /// On its way to Offline with its network; a second reason does not command it again.
   bool going_down{false};
+  /// The end of a recovery. One of lower severity that something worse has overridden does not end that.
+  void recovered(descriptor::Severity severity) noexcept {
+    if (recovering != severity) return;
+    recovering.reset();
+    going_down = false;
+  }
   /// Since when its channel is closed. A process that ends closes it a moment before its handle says so; one that
   /// lives on without it can be neither commanded nor heard.
   std::optional<TimePoint> closed_at;

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/event_handling/restarts.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/procedures/restarts.hpp"
 
 namespace hirosco::supervisor {
 

@@ -16,12 +16,15 @@
 #include "hirosco/data_transfer/simulated/heap_memory.hpp"
 #include "hirosco/data_transfer/simulated/simulated_flows.hpp"
 #include "hirosco/descriptor/read.hpp"
+#include "hirosco/pus/st05_event/event_message.hpp"
 #include "supervisor/parts.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
 /// All parts of a supervisor on virtual time, in a small mission whose members the test plays: each has a channel, pages and a
 /// process that does what the test says. CAMERA is the ground link.
 namespace hirosco::supervisor::testing {
+
+using descriptor::Severity;
 
 struct PlayedMember {
   struct End final : Channel {
@@ -64,15 +67,21 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   std::vector<std::uint32_t> killed;
   std::vector<std::string> story;
   std::vector<std::uint8_t> routed_services;
+  std::map<std::uint8_t, std::vector<std::byte>> last_routed;  ///< source data by service
+  std::unique_ptr<Database> next_database;  ///< what SET_DATABASE finds
   SupervisorParts parts{{.mission = mission,
                          .world = {clock, memory, flows},
                          .launcher = *this,
                          .guard = guard,
                          .log = log,
-                         .open_database = [](DatabaseStrategy) { return nullptr; },
+                         .open_database = [this](DatabaseStrategy) { return std::move(next_database); },
                          .observer = *this}};
   Craft& craft = parts.craft;
 
+  /// What steps act with, and a desk that the test plays.
+  [[nodiscard]] Means means_with(CommandDesk& desk) {
+    return {craft, desk, parts.graph, parts.restarts, parts.commissioning};
+  }
   void SetUp() override {
     clock.set(TimePoint{10s});
     craft.now = clock.now();
@@ -100,7 +109,10 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   void kill(std::uint32_t process) override { killed.push_back(process); }
   // Observer
   void told(OnboardTime, std::string_view line) override { story.emplace_back(line); }
-  void routed(const pus::TelemetryView& packet) override { routed_services.push_back(packet.service()); }
+  void routed(const pus::TelemetryView& packet) override {
+    routed_services.push_back(packet.service());
+    last_routed[packet.service()].assign(packet.source_data().begin(), packet.source_data().end());
+  }
 
   /// All are started and stand in this state, in their first configuration.
   void start_all(State state) {
@@ -110,6 +122,35 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   void set(std::uint16_t apid, State state, std::uint8_t configuration = 1) {
     played[apid].vital->state = static_cast<std::uint32_t>(state);
     played[apid].vital->configuration = state == State::Offline ? std::uint8_t{0} : configuration;
+  }
+  /// A step of the subsystem that the supervisor is, a millisecond later, and what it said.
+  void own_step() {
+    wait(1ms);
+    parts.telecommands.forward_durable();
+    static_cast<void>(parts.own.step(clock.now()));
+    parts.reception.read_own();
+  }
+  /// It is commissioned, with a start mode that commissions nobody else: its own functions are there.
+  void start_supervisor() {
+    parts.own.start(craft.mode_epoch);
+    parts.commissioning.start([] {});
+    for (int step = 0; step < 200 && parts.commissioning.running(); ++step) own_step();
+    ASSERT_TRUE(parts.commissioning.succeeded()) << parts.commissioning.waiting_for();
+  }
+  /// A function of its own is called; "done", or why not; empty while it goes on.
+  std::string call_own(std::string_view name, double argument) {
+    parts.own_telecommands.command(supervisor_apid, name, argument,
+                                   [this](bool success, const std::string& why) { own_end = success ? "done" : why; });
+    for (int step = 0; step < 50 && own_end.empty(); ++step) own_step();
+    return std::exchange(own_end, {});
+  }
+  std::string own_end;  ///< of the last function of its own
+  /// An event of a member, heard by the supervisor.
+  void event(std::uint16_t apid, std::uint16_t id, Severity severity) {
+    std::array<std::byte, pus::event_message_head_octets> buffer{};
+    const auto octets = pus::write_event_message(buffer, {.severity = severity, .id = id});
+    ASSERT_TRUE(played[apid].channel.subsystem_end().send({.kind = MessageKind::Event, .packet = *octets}));
+    parts.reception.read(*craft.member(apid));
   }
   void wait(Duration span) {
     clock.advance(span);

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
@@ -19,10 +18,16 @@ namespace hirosco::supervisor {
 class Restarts {
  public:
   enum class AtLimit { StaysDown, GoesOn };
+  /// At most `limit` times within `within`, after a pause that doubles.
+  struct Rule {
+    std::size_t limit{0};
+    Duration within{};
+    Duration pause{};
+  };
   static constexpr Duration longest_pause = std::chrono::seconds{10};
 
   /// False: the limit is reached, it stays down.
-  bool plan(std::uint16_t apid, const descriptor::Restart& rule, TimePoint now, AtLimit at_limit = AtLimit::StaysDown) {
+  bool plan(std::uint16_t apid, const Rule& rule, TimePoint now, AtLimit at_limit = AtLimit::StaysDown) {
     std::vector<TimePoint>& before = history_[apid];
     std::erase_if(before, [&](TimePoint at) { return now - at >= rule.within; });
     if (before.size() >= rule.limit && at_limit == AtLimit::StaysDown) return false;

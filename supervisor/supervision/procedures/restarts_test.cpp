@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/event_handling/restarts.hpp"
+#include "supervisor/supervision/procedures/restarts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 using enum Restarts::AtLimit;
 
 constexpr std::uint16_t crashing = 10;
-constexpr descriptor::Restart rule{.limit = 3, .within = 60s, .pause = 100ms};
+constexpr Restarts::Rule rule{.limit = 3, .within = 60s, .pause = 100ms};
 
 TEST(Restarts, ThePauseDoublesAndAtTheLimitItStaysDown) {
   Restarts restarts;

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/reception.hpp"
+
+#include "supervisor/supervision/testing/parts_rig.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using enum descriptor::State;
+
+struct ReceptionTest : PartsTest {
+  void SetUp() override {
+    PartsTest::SetUp();
+    start_all(Operational);
+    for (const std::uint16_t apid : {arm, hand}) ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  }
+  void send(std::uint16_t from, MessageKind kind, Octets octets) {
+    ASSERT_TRUE(played[from].channel.subsystem_end().send({.kind = kind, .packet = octets}));
+  }
+  void read(std::uint16_t from) { parts.reception.read(*craft.member(from)); }
+  [[nodiscard]] std::uint32_t unreadable(std::uint16_t apid) { return craft.member(apid)->unreadable; }
+  const std::vector<std::byte> ping = telecommand(arm, 17, 1, {});
+};
+
+TEST_F(ReceptionTest, OnlyTheGroundLinkBringsWhatGroundSent) {
+  send(hand, MessageKind::GroundTelecommand, ping);
+  read(hand);
+  EXPECT_THAT(texts(arm), IsEmpty());
+  EXPECT_EQ(unreadable(hand), 1U);
+  send(camera, MessageKind::GroundTelecommand, ping);
+  read(camera);
+  EXPECT_THAT(texts(arm), ElementsAre("TC[17,1]"));
+}
+
+TEST_F(ReceptionTest, DamageIsCountedAndWhatFollowsIsRead) {
+  const std::array damaged{std::byte{1}, std::byte{2}};
+  send(hand, MessageKind::Packet, damaged);
+  report(hand, 17, 2, {});
+  EXPECT_EQ(unreadable(hand), 1U);
+  EXPECT_THAT(routed_services, ElementsAre(17));
+}
+
+TEST_F(ReceptionTest, WhatCouldNotBeReadIsToldOnceASecondWithItsCountTheLastOfADeadOneAtOnce) {
+  const std::array damaged{std::byte{1}};
+  Member& member = *craft.member(hand);
+  const auto damage = [&](int times) {
+    for (int i = 0; i < times; ++i) send(hand, MessageKind::Packet, damaged);
+    read(hand);
+    parts.reception.tell_unreadable(member);
+  };
+  damage(1);
+  damage(2);
+  EXPECT_THAT(story, ::testing::Contains("HAND: 1 messages could not be read"));
+  EXPECT_FALSE(was_told("HAND: 2 messages"));
+  wait(1s);
+  damage(1);
+  EXPECT_TRUE(was_told("HAND: 3 messages could not be read"));
+  damage(1);
+  parts.reception.tell_last_unreadable(member);
+  EXPECT_EQ(story.back(), "HAND: 1 messages could not be read");
+}
+
+TEST_F(ReceptionTest, WhoCanBeNeitherCommandedNorHeardIsStoppedAtOnce) {
+  ASSERT_FALSE(guard.fenced(hand));
+  played[hand].channel.close_subsystem_end();
+  read(hand);
+  EXPECT_TRUE(guard.fenced(hand));
+  EXPECT_EQ(craft.member(hand)->closed_at, clock.now());
+  EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(ReceptionTest, TheGroundWaitsWhileItsTelecommandsAreNotAnswered) {
+  const Member& ground = *craft.member(camera);
+  for (std::uint16_t count = 0; count < 128; ++count) {
+    EXPECT_TRUE(parts.reception.reads(ground)) << count;
+    parts.telecommands.take({.packet = ping, .sender = Sender::Ground, .source = 0, .memory = {}});
+    if (count == 0) verify(arm, pus::TelecommandView::parse(ping)->request_id(), 7, {}, 7);
+  }
+  parts.telecommands.take({.packet = ping, .sender = Sender::Ground, .source = 0, .memory = {}});
+  EXPECT_FALSE(parts.reception.reads(ground));
+  EXPECT_TRUE(parts.reception.reads(*craft.member(hand))) << "what members say is read";
+  wait(1ms);
+  EXPECT_TRUE(parts.reception.reads(ground)) << "the addressee stands still, and SAFE_ALL may be behind it";
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/modes/way.hpp"
+
+#include "supervisor/supervision/testing/parts_rig.hpp"
+#include "supervisor/supervision/testing/played_desk.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using ::testing::ElementsAre;
+using enum descriptor::State;
+
+struct WayTest : PartsTest {
+  PlayedDesk desk;
+  Way way;
+  const descriptor::Subsystem& subsystem = craft.mission.subsystems.front().subsystem;
+  const descriptor::Configuration& coupled = subsystem.configurations.front();
+
+  std::vector<std::string> commands() {
+    desk.at_once = true;
+    Engine engine{means_with(desk)};
+    engine.start({.stages = way.stages()});
+    return desk.sent;
+  }
+};
+
+TEST_F(WayTest, FromOfflineItGoesThroughEachStateInItsOrder) {
+  way.add(subsystem, coupled, Offline, Operational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 3", "10 CONFIGURE 2", "10 SET_STATE 4", "10 SET_STATE 5"));
+}
+
+TEST_F(WayTest, ItEndsWhereTheModeWantsIt) {
+  way.add(subsystem, coupled, Offline, PreOperational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 3", "10 CONFIGURE 2"));
+}
+
+TEST_F(WayTest, WhatIsThereAlreadyIsLeftOut) {
+  way.add(subsystem, coupled, PreOperational, SafeOperational);
+  EXPECT_THAT(commands(), ElementsAre("10 CONFIGURE 2", "10 SET_STATE 4"));
+}
+
+TEST_F(WayTest, FromErrorOperationalItLeadsThroughPostOperational) {
+  way.add(subsystem, coupled, ErrorOperational, SafeOperational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 7", "10 SET_STATE 3", "10 CONFIGURE 2", "10 SET_STATE 4"));
+}
+
+TEST_F(WayTest, LinksAreMadeBetweenPreOperationalAndSafeOperationalAndTheModeComesLast) {
+  way.enter(craft.mission.modes.front());
+  way.link(1);
+  way.add(subsystem, coupled, Offline, SafeOperational);
+  EXPECT_THAT(commands(),
+              ElementsAre("10 SET_STATE 3", "10 CONFIGURE 2", "1 LINK 1", "10 SET_STATE 4", "1 SET_MODE 1"));
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "supervisor/supervision/command_desk.hpp"
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/procedures/restarts.hpp"
+#include "supervisor/supervision/realtime_links/link_graph.hpp"
+
+/// One step of a procedure, and what a kind of step is (docs/adr/0057).
+namespace hirosco::supervisor {
+
+/// What steps act with. Thread: the supervisor's.
+struct Means {
+  Craft& craft;
+  CommandDesk& desk;
+  const LinkGraph& links;
+  Restarts& restarts;
+  Undertaking& commissioning;
+};
+
+/// Why a plan runs; empty where none does.
+struct Occasion {
+  std::string plan;
+  std::string event{};  ///< empty: the story has it already
+};
+
+struct StepKind;
+struct ProcedureStep {
+  const StepKind* kind{nullptr};
+  std::uint16_t subject{0};              ///< APID
+  std::vector<std::int64_t> values{};    ///< as many as its kind has
+  Occasion occasion{};
+};
+
+/// A kind of step: a file in steps/ and a row in step_kinds.hpp.
+struct StepKind {
+  enum class Holds : std::uint8_t { Subject, Nobody };
+  std::string_view name;
+  std::size_t values{0};
+  /// What it asks of its subject: "Operational", "link 1". Null: it never waits and never fails.
+  std::string (*text)(const ProcedureStep&, const descriptor::Mission&){nullptr};
+  /// Begins it; `done` is called once, now or later. Null: there is nothing to do.
+  void (*run)(const ProcedureStep&, const Means&, CommandDone done){nullptr};
+  /// What may wait for nothing, as fences: done for all steps of a procedure before its first one begins.
+  void (*act_first)(const ProcedureStep&, const Means&){nullptr};
+  /// For plans: whether there is something to do now. Null: always.
+  bool (*answers)(const ProcedureStep&, const Craft&){nullptr};
+  /// For plans: whether a lesser event of its subject begins nothing else while it runs.
+  Holds holds{Holds::Subject};
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+
+#include "supervisor/supervision/procedures/step.hpp"
+
+namespace hirosco::supervisor::steps {
+
+/// Its subject, whose process ended, is started again. Values: how often, within how many seconds, after how many
+/// milliseconds; the limit does not hold for the ground link (docs/adr/0043).
+inline constexpr StepKind restart{
+    .name = "restart",
+    .values = 3,
+    .run =
+        [](const ProcedureStep& step, const Means& means, CommandDone done) {
+          using enum Restarts::AtLimit;
+          const Restarts::Rule rule{.limit = static_cast<std::size_t>(step.values[0]),
+                                    .within = std::chrono::seconds{step.values[1]},
+                                    .pause = std::chrono::milliseconds{step.values[2]}};
+          const Member* subject = means.craft.member(step.subject);
+          const bool spared = subject != nullptr && means.craft.is_ground_link(*subject);
+          if (!means.restarts.plan(step.subject, rule, means.craft.now, spared ? GoesOn : StaysDown))
+            means.craft.tell(means.craft.name_of(step.subject) + " stays down: it died too often", step.subject);
+          done(true, {});
+        },
+    .holds = StepKind::Holds::Nobody,
+};
+
+}  // namespace hirosco::supervisor::steps
