@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 
-#include "subsystems/manipulator/control_law.hpp"
+#include "subsystems/manipulator/control/joints.hpp"
 
-/// Structures of manipulator.xml: same members, same order.
+/// Structures of an arm's descriptor: same members, same order; lengths are the descriptor's.
 namespace hirosco::manipulator {
 
 struct CurrentValues {
@@ -15,7 +14,7 @@ struct CurrentValues {
   Joints position_rad;
   Joints velocity_rad_per_s;
   Joints torque_n_m;
-  std::array<float, 2> temperature_deg_c;
+  Temperatures temperature_deg_c;
   std::uint16_t device_flags;
 };
 struct ClutchValues {
@@ -38,17 +37,12 @@ struct RobotInput {
   Joints position_rad;
   Joints velocity_rad_per_s;
   Joints torque_n_m;
-  std::array<float, 2> temperature_deg_c;
-  std::uint8_t spring;  ///< hooked, 0: none
+  Temperatures temperature_deg_c;
+  std::uint8_t tool;  ///< what it holds, 0: nothing
 };
 struct RobotOutput {
   Joints torque_n_m;
-  std::uint8_t spring;  ///< to be hooked; the device acts on a change
-};
-struct ScriptValues {
-  double speed_m_per_s;
-  double over_press_m;
-  double bump_height_m;
+  std::uint8_t tool;  ///< to be held; the device acts on a change
 };
 struct GainValues {
   double kp_n_m_per_rad;

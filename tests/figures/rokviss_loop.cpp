@@ -16,6 +16,18 @@ Vec2 get(OctetReader& reader) noexcept {
   return {first, reader.get<double>()};
 }
 
+manipulator::Joints joints(const Vec2& pair) noexcept { return {pair[0], pair[1]}; }
+
+/// What remains of a motor torque while the joint torque is at its limit: it may relieve the joint, not load it further.
+Vec2 relieving(const manipulator::Joints& motor_torque_n_m, const Vec2& joint_torque_n_m, double limit_n_m) noexcept {
+  Vec2 torque{motor_torque_n_m[0], motor_torque_n_m[1]};
+  for (std::size_t i = 0; i < torque.size(); ++i) {
+    if (joint_torque_n_m[i] > limit_n_m) torque[i] = std::min(torque[i], limit_n_m);
+    if (joint_torque_n_m[i] < -limit_n_m) torque[i] = std::max(torque[i], -limit_n_m);
+  }
+  return torque;
+}
+
 }  // namespace
 
 RokvissLoop::Sample RokvissLoop::Link::pass(const Sample& written) noexcept {
@@ -42,8 +54,8 @@ RokvissLoop::RokvissLoop(const Settings& settings)
   joystick_.step(TimePoint{});
   trace_.robot.motor_position_rad = trace_.robot.position_rad = settings_.arm.home_rad;
   trace_.desired_rad = settings_.arm.home_rad;
-  clutch_.engage(settings_.arm.home_rad, {});
-  controller_.reset(settings_.arm.home_rad);
+  clutch_.engage(joints(settings_.arm.home_rad), joints({}));
+  controller_.reset(joints(settings_.arm.home_rad));
 }
 
 void RokvissLoop::read_robot() noexcept {
@@ -53,7 +65,7 @@ void RokvissLoop::read_robot() noexcept {
   const auto status = read_status(Octets{buffer}.first(received->octets));
   if (!status) return;
   OctetReader reader{status->payload, std::endian::little};
-  manipulator::Measured& robot = trace_.robot;
+  Sensors& robot = trace_.robot;
   for (auto* field : {&robot.motor_position_rad, &robot.motor_velocity_rad_s, &robot.position_rad,
                       &robot.velocity_rad_s, &robot.torque_n_m})
     *field = get(reader);
@@ -71,13 +83,20 @@ void RokvissLoop::read_joystick() noexcept {
 }
 
 Vec2 RokvissLoop::manipulator_cycle(const Sample& handle) noexcept {
-  if (handle.active) trace_.desired_rad = clutch_.desired(handle.value, 1.0);
-  const auto finding = limit_.update(trace_.robot.torque_n_m, settings_.soft_limit_n_m, settings_.hard_limit_n_m);
+  if (handle.active) {
+    const manipulator::Joints desired = clutch_.desired(joints(handle.value), 1.0);
+    trace_.desired_rad = {desired[0], desired[1]};
+  }
+  const Sensors& robot = trace_.robot;
+  const auto finding = limit_.update(joints(robot.torque_n_m), settings_.soft_limit_n_m, settings_.hard_limit_n_m);
   if (finding.verdict != manipulator::TorqueVerdict::Fine && !trip_)
     trip_ = Trip{time_s_, finding, robot_.arm().contact().normal_force_n};
-  const Vec2 torque = controller_.motor_torque(trace_.desired_rad, trace_.robot, {});
-  if (!trip_ || !settings_.reacting) return torque;
-  return manipulator::relieving(torque, trace_.robot.torque_n_m, settings_.soft_limit_n_m);  // FC1: in the same cycle
+  const manipulator::Measured measured{joints(robot.motor_position_rad), joints(robot.motor_velocity_rad_s),
+                                       joints(robot.position_rad), joints(robot.velocity_rad_s),
+                                       joints(robot.torque_n_m)};
+  const manipulator::Joints torque = controller_.motor_torque(joints(trace_.desired_rad), measured, {});
+  if (!trip_ || !settings_.reacting) return {torque[0], torque[1]};
+  return relieving(torque, robot.torque_n_m, settings_.soft_limit_n_m);  // FC1: in the same cycle
 }
 
 void RokvissLoop::command(DataFlow& flow, DeviceMode mode, std::uint32_t sequence, const Vec2& torque_n_m,

@@ -11,7 +11,9 @@
 #include "simulation/devices/joystick/joystick_device.hpp"
 #include "simulation/devices/robot/robot_device.hpp"
 #include "subsystems/joystick/control_law.hpp"
-#include "subsystems/manipulator/control_law.hpp"
+#include "subsystems/manipulator/control/clutch.hpp"
+#include "subsystems/manipulator/control/guards.hpp"
+#include "subsystems/manipulator/control/joint_controller.hpp"
 
 namespace hirosco::simulation {
 
@@ -40,9 +42,16 @@ class RokvissLoop {
     ArmParameters arm{};
     HandleParameters handle{};
   };
+  struct Sensors {
+    Vec2 motor_position_rad{};
+    Vec2 motor_velocity_rad_s{};
+    Vec2 position_rad{};
+    Vec2 velocity_rad_s{};
+    Vec2 torque_n_m{};
+  };
   /// What both laws saw and said in the last cycle, all of one instant.
   struct Trace {
-    manipulator::Measured robot{};
+    Sensors robot{};
     Vec2 desired_rad{};
     Vec2 joystick_rad{};
     Vec2 joystick_rad_s{};
@@ -111,7 +120,7 @@ class RokvissLoop {
   std::unique_ptr<DataFlow> to_robot_;
   std::unique_ptr<DataFlow> to_joystick_;
 
-  manipulator::JointController controller_{period_s};
+  manipulator::JointController controller_{2, period_s};
   manipulator::Clutch clutch_;
   manipulator::TorqueLimit limit_;
   joystick::PositionForce position_force_{period_s};
