@@ -227,6 +227,7 @@ struct Forgetful final : Probe {
     if (link) require_link("HAND", hand);
     if (device) use_device("ARM", arm);
     use_device("LAMP", lamp);
+    use_event(own);
     on_function("SET_GOAL", [](double) -> Result<> { return ok(); });
     on_function("MOVE", [](Call) -> Outcome { return running; });
     return done;

@@ -217,12 +217,13 @@ TEST(CycleTimes, WithoutRealtimeRightsTheSecondLimitOfOverrunsHolds) {
   EXPECT_EQ(told(), 1) << "once for a row";
 }
 
-/// Raises so many events of one number in each cycle.
+/// Raises so many events in each cycle.
 struct Raising final : Probe {
   int events{0};
-  std::uint16_t number{7};
+  bool unknown{false};
+  Event<double> nobodys{"NOBODYS"};
   Result<> work(const Cycle& cycle) noexcept override {
-    for (int i = 0; i < events; ++i) raise(number, {1.0});
+    for (int i = 0; i < events; ++i) raise(unknown ? nobodys : own, 1.0);
     return Probe::work(cycle);
   }
 };
@@ -250,7 +251,7 @@ TEST(CycleEvents, ThatNobodyDeclaredAreNotRaised) {
   Rig rig{author, probe_descriptor};
   rig.bring_to(State::PreOperational);
   rig.forget_telemetry();
-  author.number = 99;
+  author.unknown = true;
   author.events = 3;
   rig.cycle();
   rig.service();

@@ -39,6 +39,8 @@ class EventPort {
 template <layout_detail::FieldType... Arguments>
 class Event final : public EventPort {
  public:
+  static_assert(((layout_detail::ArrayOf<Arguments>::count != 0) && ...),
+                "an event's arguments have a fixed length: no Sized");
   /// `name` is a string literal.
   explicit Event(const char* name) noexcept : EventPort{name, fields} {}
 

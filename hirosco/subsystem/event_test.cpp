@@ -145,7 +145,7 @@ struct Talkative : Probe {
   int events{0};
   int steps{0};
   Result<> work(const Cycle& cycle) noexcept override {
-    for (int i = 0; i < events; ++i) raise(7, {1.0 * i});
+    for (int i = 0; i < events; ++i) raise(own, 1.0 * i);
     if (move)
       for (int i = 0; i < steps; ++i) progress(*move, 1);
     return Probe::work(cycle);

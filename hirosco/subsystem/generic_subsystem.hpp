@@ -102,8 +102,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void use_device(std::string_view name, DevicePortBase& port);
   void provide(CustomService& service);
   void use_event(EventPort& event);
-  /// An event with its auxiliary data, from the service loop.
-  void raise_event(std::uint16_t event, Octets auxiliary);
+  /// An event with its auxiliary data, from the service loop in any state: before Software-Init it is not bound yet.
+  void raise_named(std::string_view event, Octets auxiliary);
+  /// For one that announces its events by name: each that it declares counts as used.
+  void uses_all_events() noexcept { uses_all_events_ = true; }
   void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
@@ -170,6 +172,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void mistake(std::string problem);
   void check_introduction();
   void forget_introduction();
+  void raise_event(std::uint16_t event, Octets auxiliary);
   /// STATE_FAILED and CONFIGURATION_FAILED of `what`.
   void raise_failure(std::uint16_t event, std::uint8_t what, const Failure& why);
   void tell_losses(TimePoint now);
@@ -211,6 +214,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::string refusal_;  ///< of an error, which does not own its words
   std::vector<pus::Request> open_calls_;  ///< functions that run: each gets exactly one final report
 
+  std::vector<std::uint16_t> used_events_;
+  bool uses_all_events_{false};
   std::vector<std::string> problems_;  ///< of publish() and its kin: all of them fail the same Software-Init
   std::string problems_text_;  ///< of an error, which does not own its words
 

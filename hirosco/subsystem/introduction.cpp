@@ -97,6 +97,7 @@ void GenericSubsystem::use_event(EventPort& event) {
   const bool same = std::ranges::equal(event.arguments(), declared->arguments, [](const NativeField& n, const auto& d) {
     return n.type == d.type && n.count == d.count;
   });
+  used_events_.push_back(declared->id);
   if (same) return event.bind(declared->id);
   std::string native, wanted;
   for (const auto& field : event.arguments()) native.append(native.empty() ? "" : ", ").append(cpp_text(field));
@@ -128,6 +129,10 @@ void GenericSubsystem::check_introduction() {
   for (std::size_t i = 0; i < descriptor_.functions.size(); ++i)
     if (!cycle_.functions()[i].handler)
       mistake("function declared but without a handler: " + descriptor_.functions[i].name);
+  for (const auto& event : descriptor_.events)
+    if (event.id < descriptor::framework_event::first && !uses_all_events_ &&
+        std::ranges::find(used_events_, event.id) == used_events_.end())
+      mistake("event declared but never used: " + event.name);
   for (const CustomService* service : own_services_)
     for (std::string& problem : service->problems()) mistake(std::move(problem));
   for (const auto& declared : descriptor_.services)
@@ -138,6 +143,7 @@ void GenericSubsystem::check_introduction() {
 void GenericSubsystem::forget_introduction() {
   dictionary_.unpublish_all();
   for (CustomService* service : own_services_) service->release();
+  used_events_.clear();
   link_ports_.clear();
   device_ports_.clear();
   cycle_.functions().assign(descriptor_.functions.size(), {});

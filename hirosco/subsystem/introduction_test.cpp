@@ -135,7 +135,7 @@ TEST(AuthorsMistakes, AreToldAllAtOnce) {
           begin + "on_function: the descriptor declares no function 'JUMP'",
           begin + "on_function SET_GOAL: the C++ type of argument 1 does not hold every value of GOAL, which is DOUBLE",
           begin + "parameters declared but not published: KD, SEEN",
-          begin + "function declared but without a handler: MOVE"));
+          begin + "function declared but without a handler: MOVE", begin + "event declared but never used: OWN"));
 }
 
 /// One function whose argument is declared as `argument` says.

@@ -149,6 +149,11 @@ void GenericSubsystem::raise_event(std::uint16_t event, Octets auxiliary) {
   static_cast<void>(event_service_.raise(event, auxiliary));
 }
 
+void GenericSubsystem::raise_named(std::string_view event, Octets auxiliary) {
+  const descriptor::Event* declared = descriptor_.find_event(event);
+  if (declared != nullptr && pus::octets_of(*declared) == auxiliary.size()) raise_event(declared->id, auxiliary);
+}
+
 void GenericSubsystem::raise_in_service(std::uint16_t event, std::span<const double> arguments) {
   const auto found = std::ranges::find(descriptor_.events, event, &descriptor::Event::id);
   if (found == descriptor_.events.end()) return;

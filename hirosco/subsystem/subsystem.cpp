@@ -48,14 +48,11 @@ void Subsystem::bind_function(std::string_view name, std::span<const ArgumentRan
   framework_->bind_function(name, arguments, std::move(handler));
 }
 
-void Subsystem::raise(std::uint16_t event, std::initializer_list<double> arguments) noexcept {
-  framework_->cycle().raise(event, std::span{arguments.begin(), arguments.size()});
-}
 void Subsystem::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {
   framework_->cycle().raise_encoded(event, auxiliary);
 }
-void Subsystem::raise_encoded_in_service(std::uint16_t event, Octets auxiliary) {
-  framework_->raise_event(event, auxiliary);
+void Subsystem::raise_encoded_in_service(const EventPort& event, Octets auxiliary) {
+  framework_->raise_named(event.name(), auxiliary);
 }
 void Subsystem::inhibit_actuators() noexcept { framework_->cycle().inhibit(inhibited_by_author); }
 
@@ -70,9 +67,6 @@ void Subsystem::abort_call(const Call& call, pus::FailureCode code, const Error&
 
 Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
   return framework_->submit_ground_telecommand(client, packet);
-}
-void Subsystem::raise_in_service(std::uint16_t event, std::initializer_list<double> arguments) {
-  framework_->raise_in_service(event, std::span{arguments.begin(), arguments.size()});
 }
 State Subsystem::state() const noexcept { return framework_->state(); }
 const descriptor::Subsystem& Subsystem::own_descriptor() const noexcept { return framework_->descriptor(); }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -194,8 +193,7 @@ class Subsystem {
   }
 
   // --- in the cycle and in function handlers ----------------------------------------------------------------------
-  /// Reports an event of the descriptor; arguments in their order and unit.  Realtime: wait-free.
-  void raise(std::uint16_t event, std::initializer_list<double> arguments = {}) noexcept;
+  /// Reports an event; arguments in the unit of the descriptor.  Realtime: wait-free.
   template <class... Arguments>
   void raise(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) noexcept {
     raise_encoded(event.id(), event.encode(arguments...));
@@ -216,11 +214,10 @@ class Subsystem {
   /// Sends a telecommand that came from the ground link client `client` to the supervisor. ResourceExhausted: the
   /// supervisor is behind; offer it again.
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
-  /// Reports an event from the service loop.
-  void raise_in_service(std::uint16_t event, std::initializer_list<double> arguments = {});
+  /// Reports an event from the service loop, in any state.
   template <class... Arguments>
   void raise_in_service(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) {
-    raise_encoded_in_service(event.id(), event.encode(arguments...));
+    raise_encoded_in_service(event, event.encode(arguments...));
   }
   [[nodiscard]] State state() const noexcept;
   [[nodiscard]] const descriptor::Subsystem& own_descriptor() const noexcept;
@@ -232,7 +229,7 @@ class Subsystem {
   [[nodiscard]] std::size_t declared_values(std::string_view function) const noexcept;
   void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
   void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
-  void raise_encoded_in_service(std::uint16_t event, Octets auxiliary);
+  void raise_encoded_in_service(const EventPort& event, Octets auxiliary);
   void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
   GenericSubsystem* framework_{nullptr};
 };

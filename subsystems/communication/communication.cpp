@@ -54,12 +54,6 @@ class Communication final : public Subsystem, private communication::GroundTraff
     std::uint8_t active;
   };
   static constexpr Duration ground_patience = 2s;
-  enum Event : std::uint16_t {
-    ground_link_lost = 201,
-    ground_link_restored = 202,
-    client_cut = 203,
-    telecommands_dropped = 204
-  };
 
   Result<Step> software_init() override {
     publish("LINK", link_);
@@ -70,6 +64,10 @@ class Communication final : public Subsystem, private communication::GroundTraff
     publish("DOWNLINK", downlink_);
     require_link("JOYSTICK_STATE", joystick_);
     require_link("ROBOT_STATE", robot_);
+    use_event(ground_link_lost_);
+    use_event(ground_link_restored_);
+    use_event(client_cut_);
+    use_event(telecommands_dropped_);
     on_function("SET_DELAY", [this](float delay_ms, float loss) -> Outcome {
       if (!remote_) return refused(pus::FailureCode::NotPermittedNow);
       delay_ms_.store(delay_ms);
@@ -109,7 +107,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
     if (!closing_since_) closing_since_ = now_;
     const std::size_t left = transport_->finish(now_);
     if (left != 0 && now_ - *closing_since_ < closing_patience) return again;
-    if (left != 0) raise_in_service(telecommands_dropped, {static_cast<double>(left)});
+    if (left != 0) raise_in_service(telecommands_dropped_, static_cast<std::uint32_t>(left));
     dropped_ += static_cast<std::uint32_t>(left);
     closing_since_.reset();
     transport_.reset();
@@ -141,12 +139,12 @@ class Communication final : public Subsystem, private communication::GroundTraff
     const auto closed = [&](CloseReason reason) { return u32(counters.closed[static_cast<std::size_t>(reason)]); };
     const bool connected = counters.clients > 0;
     if (connected) last_client_ = now;
-    if (connected && !had_client_) raise_in_service(ground_link_restored);
+    if (connected && !had_client_) raise_in_service(ground_link_restored_);
     if (connected) had_client_ = true;
     // A tool that asks and goes is no loss of the ground: only a silence is, and only after somebody was there.
     if (had_client_ && now - last_client_ > ground_patience) {
       had_client_ = false;
-      raise_in_service(ground_link_lost);
+      raise_in_service(ground_link_lost_);
     }
     tell_cuts(now);
     const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(now - last_rx_).count();
@@ -178,7 +176,8 @@ class Communication final : public Subsystem, private communication::GroundTraff
       const auto place = static_cast<std::size_t>(reason);
       const std::uint64_t closed = transport_->counters().closed[place];
       if (closed == cuts_told_[place]) continue;
-      raise_in_service(client_cut, {static_cast<double>(reason), static_cast<double>(closed - cuts_told_[place])});
+      raise_in_service(client_cut_, static_cast<std::uint8_t>(reason),
+                       static_cast<std::uint32_t>(closed - cuts_told_[place]));
       cuts_told_[place] = closed;
       next_cut_told_ = now + cuts_period;
     }
@@ -210,7 +209,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
     uplink_.store(up);
     downlink_.store(down);
     const bool lost = up_.age_cycles() != up_.never && up_.age_cycles() * cycle.period > ground_patience;
-    if (lost != relay_lost_) raise(lost ? ground_link_lost : ground_link_restored);
+    if (lost != relay_lost_) raise(lost ? ground_link_lost_ : ground_link_restored_);
     relay_lost_ = lost;
   }
 
@@ -220,6 +219,10 @@ class Communication final : public Subsystem, private communication::GroundTraff
 
   OpenGroundTransport open_;
   std::unique_ptr<GroundTransport> transport_;
+  Event<> ground_link_lost_{"GROUND_LINK_LOST"};
+  Event<> ground_link_restored_{"GROUND_LINK_RESTORED"};
+  Event<std::uint8_t, std::uint32_t> client_cut_{"CLIENT_CUT"};  ///< reason, clients
+  Event<std::uint32_t> telecommands_dropped_{"TELECOMMANDS_DROPPED"};
   Parameter<Link> link_;
   Parameter<Clients> clients_;
   Parameter<float> delay_ms_;  ///< there and back

@@ -13,6 +13,7 @@ OwnSubsystem::OwnSubsystem(const descriptor::Subsystem& described, const World& 
       engine_{*this, described, world, channels_.subsystem_end(), *vital_, *permit_} {}
 
 Result<Step> OwnSubsystem::software_init() {
+  engine_.uses_all_events();
   author_.provide(*this);
   return done;
 }

@@ -69,7 +69,6 @@ class Greedy final : public Subsystem {
   struct Torque {
     double n_m;
   };
-  enum Event : std::uint16_t { trouble = 2010, more_trouble = 2011, remark = 2012 };
 
   void grab(State node) noexcept {
     trace_.node = node;
@@ -95,13 +94,16 @@ class Greedy final : public Subsystem {
   void introduce() {
     publish("RUNS", runs_);
     use_device("MOTOR", motor_);
+    use_event(trouble_);
+    use_event(more_trouble_);
+    use_event(remark_);
     on_function("TWO_TROUBLES", [this]() -> Outcome {
-      raise(trouble);
-      raise(more_trouble);
+      raise(trouble_);
+      raise(more_trouble_);
       return ok();
     });
     on_function("REMARK", [this]() -> Outcome {
-      raise(remark);
+      raise(remark_);
       return ok();
     });
   }
@@ -126,6 +128,9 @@ class Greedy final : public Subsystem {
   }
 
   GreedyTrace& trace_;
+  Event<> trouble_{"TROUBLE"};
+  Event<> more_trouble_{"MORE_TROUBLE"};
+  Event<> remark_{"REMARK"};
   Parameter<std::uint32_t> runs_;
   DevicePort<Angle, Torque> motor_;
 };

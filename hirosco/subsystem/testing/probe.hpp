@@ -114,6 +114,7 @@ class Probe : public Subsystem {
   Parameter<CurrentValues> current;
   Parameter<double> goal, kp, kd, seen;
   LinkInput<Hand> hand;
+  Event<double> own{"OWN"};
   DevicePort<Angle, Torque> arm;
   DevicePort<Lit, Lit> lamp;
 
@@ -127,6 +128,7 @@ class Probe : public Subsystem {
     publish("KD", kd);
     publish("SEEN", seen);
     require_link("HAND", hand);
+    use_event(own);
     use_device("ARM", arm);
     use_device("LAMP", lamp);
     on_function("SET_GOAL", [this](double value) -> Result<> {
@@ -161,7 +163,7 @@ class Probe : public Subsystem {
     current.store({static_cast<std::int32_t>(cycle.state), 0.25 * static_cast<double>(cycle.count)});
     if (record_gains) gains_seen.emplace_back(kp.load(), kd.load());
     if (inhibits) inhibit_actuators();
-    if (raises) raise(7, {2.5});
+    if (raises) raise(own, 2.5);
     if (move && step_due) progress(*move, *step_due);
     step_due.reset();
     if (move && finish_due) {
