@@ -158,7 +158,7 @@ void Manipulator::arrive(std::optional<Call>& call, const Joints& goal_rad, cons
       arrival_.judge(robot_.input().position_rad, goal_rad, goal_tolerance_.load(), seconds(cycle.period));
   if (verdict == Verdict::UnderWay) return;
   if (verdict == Verdict::There) {
-    raise(motion_done);
+    raise(motion_done_);
     finish(*call);
   } else {
     abort(*call, Trouble::goal_not_reached);
@@ -248,8 +248,8 @@ void Manipulator::check_torque(const Cycle& cycle) noexcept {
   if (!finding) return;
   inhibit_actuators();
   const bool is_hard = finding->verdict == TorqueVerdict::Hard;
-  raise(is_hard ? torque_hard_exceeded : torque_limit_exceeded,
-        {static_cast<double>(finding->joint + 1), finding->value_n_m, is_hard ? hard : soft});
+  raise(is_hard ? torque_hard_exceeded_ : torque_limit_exceeded_, static_cast<std::uint8_t>(finding->joint + 1),
+        finding->value_n_m, is_hard ? hard : soft);
 }
 
 /// What a function that runs is told when the actuators were taken away from it.
@@ -266,10 +266,10 @@ void Manipulator::check_temperature(const Cycle& cycle) noexcept {
   const auto finding = temperature_guard_.update(robot_.input().temperature_deg_c, {limits[0], limits[1], limits[2]},
                                                  entry ? Moment::EntryIntoOperational : Moment::Other);
   if (!finding) return;
-  const std::uint16_t event = finding->verdict == TemperatureVerdict::Warning    ? temperature_warning
-                              : finding->verdict == TemperatureVerdict::Critical ? temperature_critical
-                                                                                 : temperature_maximum;
-  raise(event, {static_cast<double>(finding->joint + 1), static_cast<double>(finding->value_c)});
+  const auto& event = finding->verdict == TemperatureVerdict::Warning    ? temperature_warning_
+                      : finding->verdict == TemperatureVerdict::Critical ? temperature_critical_
+                                                                         : temperature_maximum_;
+  raise(event, static_cast<std::uint8_t>(finding->joint + 1), static_cast<float>(finding->value_c));
 }
 
 // --- functions ---------------------------------------------------------------------------------------------------------

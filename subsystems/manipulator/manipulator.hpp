@@ -63,15 +63,6 @@ class Manipulator : public Subsystem {
   Result<> configure(const descriptor::Configuration& configuration) override;
 
  private:
-  enum Event : std::uint16_t {
-    motion_done = 1001,
-    temperature_warning = 1010,
-    temperature_critical = 1011,
-    temperature_maximum = 1012,
-    torque_limit_exceeded = 1020,
-    torque_hard_exceeded = 1021,
-  };
-
   Result<Step> software_init() final;
   Result<> pre_operational(const Cycle& cycle) noexcept final;
   Result<> safe_operational(const Cycle& cycle) noexcept final;
@@ -108,6 +99,12 @@ class Manipulator : public Subsystem {
 
   Parameter<manipulator::CurrentValues> current_;
   Parameter<manipulator::Joints> desired_position_, desired_velocity_;
+  Event<> motion_done_{"MOTION_DONE"};
+  Event<std::uint8_t, float> temperature_warning_{"TEMPERATURE_WARNING"};  // joint from 1, degC
+  Event<std::uint8_t, float> temperature_critical_{"TEMPERATURE_CRITICAL"};
+  Event<std::uint8_t, float> temperature_maximum_{"TEMPERATURE_MAXIMUM"};
+  Event<std::uint8_t, double, double> torque_limit_exceeded_{"TORQUE_LIMIT_EXCEEDED"};  // joint from 1, N m, limit
+  Event<std::uint8_t, double, double> torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"};
   Parameter<double> kp_, kd_, torque_limit_, torque_hard_, position_scale_, goal_tolerance_;
   Parameter<std::array<float, 3>> temperature_limits_;
   Parameter<manipulator::ClutchValues> clutch_values_;

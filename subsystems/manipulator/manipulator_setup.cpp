@@ -36,6 +36,12 @@ Result<Step> Manipulator::software_init() {
   // One handle leads at a time: that of the set which the configuration requires.
   for (const auto& set : descriptor::required_sets(own_descriptor())) require_link(set, handle_);
   use_device("ROBOT", robot_);
+  use_event(motion_done_);
+  use_event(temperature_warning_);
+  use_event(temperature_critical_);
+  use_event(temperature_maximum_);
+  use_event(torque_limit_exceeded_);
+  use_event(torque_hard_exceeded_);
   HIROSCO_TRY(take_joints_of_the_descriptor());
   bind_functions();
   declare();

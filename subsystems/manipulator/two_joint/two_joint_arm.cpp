@@ -20,13 +20,12 @@ class TwoJointArm final : public Manipulator {
   TwoJointArm() : Manipulator{std::make_unique<Contour>(Geometry{})} {}
 
  private:
-  enum Event : std::uint16_t { spring_out_of_reach = 1006 };
-
   void declare() override {
     publish("TIP", tip_);
     publish("TIP_FORCE", tip_force_);
     publish("SPRING", spring_);
     publish("SCRIPT", script_values_);
+    use_event(spring_out_of_reach_);
     on_function("HOOK_SPRING", [this](std::uint8_t spring, Call call) { return hook(spring, call); });
     on_function("RELEASE_SPRING", [this](Call call) { return release(call); });
     on_function("RUN_SCRIPT", [this](std::uint8_t script, Call call) { return run_script(script, call); });
@@ -50,7 +49,7 @@ class TwoJointArm final : public Manipulator {
     if (spring_.load() != 0) return refused(pus::FailureCode::WrongStatus);
     const double distance_m = distance_to_spring(spring, tip_.load());
     if (!(distance_m <= hook_reach_m)) {
-      raise(spring_out_of_reach, {static_cast<double>(spring), distance_m});
+      raise(spring_out_of_reach_, spring, distance_m);
       return refused(pus::FailureCode::NotPermittedNow);
     }
     return use_tool(spring, call);
@@ -76,6 +75,7 @@ class TwoJointArm final : public Manipulator {
     return run(script_, call);
   }
 
+  Event<std::uint8_t, double> spring_out_of_reach_{"SPRING_OUT_OF_REACH"};  ///< spring, m
   Parameter<Point> tip_;
   Parameter<Point> tip_force_;
   Parameter<std::uint8_t> spring_;

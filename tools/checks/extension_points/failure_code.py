@@ -1,0 +1,20 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""A failure code of the framework: its number and its words stand in one file. (An author's own is a row of the descriptor.)"""
+WHO = "a failure code"
+GOAL = "1 row; here its number and its words"
+MOST_FILES, MOST_EDITED = 0, 1
+FILES = {}
+EDITS = [
+    ("hirosco/pus/packet/failure.hpp", "      {PowerShort, \"power budget exceeded\"},\n",
+     "      {PowerShort, \"power budget exceeded\"},\n      {TooDark, \"too dark\"},\n"),
+    ("hirosco/pus/packet/failure.hpp", "enum class FailureCode : std::uint16_t {\n", "enum class FailureCode : std::uint16_t {\n  TooDark = 0x7F,\n"),
+]
+SOURCES = []
+TRY = """\
+#include <gtest/gtest.h>
+
+#include "hirosco/pus/packet/failure.hpp"
+
+TEST(NewCode, HasWords) { EXPECT_EQ(to_text(hirosco::pus::FailureCode::TooDark), "too dark"); }
+"""

@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""A service of the framework that adds two numbers: every subsystem has it, permission and words know it."""
+WHO = "a PUS service of the framework"
+GOAL = "own folder + 1 row (and its file in CMake)"
+MOST_FILES, MOST_EDITED = 2, 1
+FILES = {"hirosco/pus/st30_sum/sum_service.hpp": """\
+#pragma once
+
+#include "hirosco/pus/st01_verification/verification.hpp"
+
+namespace hirosco::pus {
+
+class SumService final : public Service {
+ public:
+  static const ServiceKind service_kind;
+  explicit SumService(ServiceHome& home) : home_{home} {}
+  [[nodiscard]] const ServiceKind& kind() const noexcept override { return service_kind; }
+  void handle(const TelecommandView& telecommand, const Request& request) override;
+
+ private:
+  ServiceHome& home_;
+};
+
+}  // namespace hirosco::pus
+""", "hirosco/pus/st30_sum/sum_service.cpp": """\
+#include "hirosco/pus/st30_sum/sum_service.hpp"
+
+#include <array>
+
+namespace hirosco::pus {
+namespace {
+constexpr Part two[]{number("ONE", Type::Uint16), number("OTHER", Type::Uint16)};
+constexpr Part sum[]{number("SUM", Type::Uint32)};
+constexpr RequestKind requests[]{{1, "ADD", two}};
+constexpr ReportKind reports[]{{2, "SUM", sum}};
+}  // namespace
+
+const ServiceKind SumService::service_kind{
+    .type = 30, .name = "sum", .requests = requests, .reports = reports,
+    .make = [](ServiceHome& home) -> std::unique_ptr<Service> { return std::make_unique<SumService>(home); }};
+
+void SumService::handle(const TelecommandView& telecommand, const Request& request) {
+  OctetReader reader{telecommand.application_data()};
+  const std::uint32_t one = reader.get<std::uint16_t>(), other = reader.get<std::uint16_t>();
+  if (!reader.exhausted()) return home_.verification().rejected(request, FailureNotice{FailureCode::DataLength});
+  home_.verification().accepted(request);
+  std::array<std::byte, 4> data;
+  OctetWriter{data}.put(one + other);
+  home_.telemetry().report(30, 2, request.source, data);
+  home_.verification().completed(request);
+}
+
+}  // namespace hirosco::pus
+"""}
+EDITS = [
+    ("hirosco/pus/standard_services.cpp", '#include "hirosco/pus/st20_parameter/parameter_service.hpp"\n',
+     '#include "hirosco/pus/st20_parameter/parameter_service.hpp"\n#include "hirosco/pus/st30_sum/sum_service.hpp"\n'),
+    ("hirosco/pus/standard_services.cpp", "&st128::service_kind", "&SumService::service_kind, &st128::service_kind"),
+]
+SOURCES = ["hirosco/pus/standard_services.cpp", "hirosco/pus/st30_sum/sum_service.cpp"]
+TRY = """\
+#include <gtest/gtest.h>
+
+#include "hirosco/pus/words/describe.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/testing/small_mission.hpp"
+
+namespace hirosco {
+namespace {
+
+TEST(NewService, IsAnsweredPermittedAndNamed) {
+  struct : Subsystem {} author;
+  testing::Rig rig{author, "<Subsystem name=\\"BARE\\" id=\\"10\\"><Configuration name=\\"ONE\\" id=\\"1\\" sampling_us=\\"1000\\"/></Subsystem>"};
+  const std::array data{std::byte{0}, std::byte{2}, std::byte{0}, std::byte{3}};
+  const auto sent = rig.send(30, 1, data);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(sent), "1 7");
+  EXPECT_EQ(rig.reports(30, 2).at(0), "00000005");
+  auto mission = supervisor::testing::small_mission();
+  const supervisor::LinkGraph links{mission};
+  const auto packet = supervisor::testing::telecommand(10, 30, 1, data);
+  const auto view = pus::TelecommandView::parse(packet).value();
+  const supervisor::Situation now{mission, mission.modes[0], links, State::Operational};
+  EXPECT_EQ(decide(view, supervisor::Sender::Ground, now).error().code(), pus::FailureCode::WrongMode);
+  mission.modes[0].permits.front().services.push_back(30);
+  EXPECT_TRUE(decide(view, supervisor::Sender::Ground, now));
+  EXPECT_EQ(pus::PacketDescriber{mission}.describe(packet), "TC[30,1] ARM #0 ADD ONE=2 OTHER=3");
+}
+
+}  // namespace
+}  // namespace hirosco
+"""

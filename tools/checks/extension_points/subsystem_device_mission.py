@@ -1,0 +1,14 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""A subsystem, its simulated device and a mission, all in one folder of whatever repository: tests/author builds, checks, simulates
+and flies this one against an installed tree, which is more than could be tried here."""
+import pathlib
+
+LAMP = pathlib.Path(__file__).resolve().parents[3] / "tests/author/lamp"
+WHO = "a subsystem, device and mission"
+GOAL = "own folder, in any repository"
+FILES = {f"outside/lamp/{file.name}": file.read_text() for file in sorted(LAMP.iterdir())}
+MOST_FILES, MOST_EDITED = len(FILES), 0
+EDITS = []
+SOURCES = []
+TRY = None
