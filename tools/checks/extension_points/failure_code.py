@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A failure code of the framework: its number and its words stand in one file. (An author's own is a row of the descriptor.)"""
 WHO = "a failure code"
+BEFORE = "0 + 5"
 GOAL = "1 row; here its number and its words"
 MOST_FILES, MOST_EDITED = 0, 1
 FILES = {}
@@ -16,5 +17,5 @@ TRY = """\
 
 #include "hirosco/pus/packet/failure.hpp"
 
-TEST(NewCode, HasWords) { EXPECT_EQ(to_text(hirosco::pus::FailureCode::TooDark), "too dark"); }
+TEST(NewCode, HasWords) { EXPECT_EQ(hirosco::to_text(hirosco::pus::FailureCode::TooDark), "too dark"); }
 """

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A service of an author's own, declared in the descriptor of its subsystem. tests/author flies one, with page and client."""
 WHO = "a PUS service of an author's own"
+BEFORE = "not to be commanded"
 GOAL = "own folder"
 MOST_FILES, MOST_EDITED = 2, 0
 FILES = {"subsystems/diary/diary.hpp": """\

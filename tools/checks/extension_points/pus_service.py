@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A service of the framework that adds two numbers: every subsystem has it, permission and words know it."""
 WHO = "a PUS service of the framework"
+BEFORE = "3 to 4 + 25"
 GOAL = "own folder + 1 row (and its file in CMake)"
 MOST_FILES, MOST_EDITED = 2, 1
 FILES = {"hirosco/pus/st30_sum/sum_service.hpp": """\

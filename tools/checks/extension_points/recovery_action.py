@@ -3,6 +3,7 @@
 """A kind of step that no mission flies: the process of its subject is ended. Code that names it needs the first edit only; the
 second is the word that plans of missions write."""
 WHO = "a recovery / mode action"
+BEFORE = "0 + 8"
 GOAL = "1 file + 1 row; + 1 row where missions may write it"
 MOST_FILES, MOST_EDITED = 1, 2
 FILES = {"supervisor/supervision/procedures/steps/kill.hpp": """\

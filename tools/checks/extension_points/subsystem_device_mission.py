@@ -6,8 +6,9 @@ import pathlib
 
 LAMP = pathlib.Path(__file__).resolve().parents[3] / "tests/author/lamp"
 WHO = "a subsystem, device and mission"
+BEFORE = "7 + 3, 4 + 3, and 8 rooms"
 GOAL = "own folder, in any repository"
-FILES = {f"outside/lamp/{file.name}": file.read_text() for file in sorted(LAMP.iterdir())}
+FILES = {f"outside/{file.relative_to(LAMP.parent)}": file.read_text() for file in sorted(LAMP.rglob("*")) if file.is_file()}
 MOST_FILES, MOST_EDITED = len(FILES), 0
 EDITS = []
 SOURCES = []
