@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +43,23 @@ inline Marked marked(const std::string& text) {
   }
   if (mark != std::string::npos) result.text.erase(mark, 1);
   return result;
+}
+
+/// Files in memory; what is not there is read from the test data.
+inline FileSource overlay(std::map<std::string, std::string> files) {
+  return [files = std::move(files)](const std::filesystem::path& file) -> Result<std::string> {
+    const auto found = files.find(file.filename().string());
+    return found == files.end() ? file_system()(file) : found->second;
+  };
+}
+
+inline std::string good_mission() { return file_system()(data / "mission.xml").value(); }
+
+/// The good mission with the first `from` replaced.
+inline std::string changed(const std::string& from, const std::string& to, std::string text = good_mission()) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 }  // namespace hirosco::descriptor::testing
