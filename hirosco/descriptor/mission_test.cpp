@@ -100,8 +100,11 @@ TEST(MissionDescriptor, APlanHasItsStepsInTheirOrderAndTheValuesThatAreNotGiven)
                                        R"(<Do action="set_state" state="Offline"/>)")}}));
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
   const auto& steps = reading.value->plans.at(2).steps;
-  EXPECT_EQ(steps.at(0).values, (std::vector<std::int64_t>{5, 60, 20}));
-  EXPECT_EQ(steps.at(1).values, (std::vector<std::int64_t>{0}));
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0].kind, "restart");
+  EXPECT_EQ(steps[0].values, (std::vector<std::int64_t>{5, 60, 20}));
+  EXPECT_EQ(steps[1].kind, "set_state");
+  EXPECT_EQ(steps[1].values, (std::vector<std::int64_t>{0}));
 }
 
 struct Mistake {
@@ -186,6 +189,7 @@ constexpr Mistake mistakes[] = {
     {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="FLYWHEEL" event="@LOG_STORE"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" limit="@3"/>)"},
+    {"E0103", R"(<Do action="log"/>)", R"(<Do action="log" @lmit="3"/>)"},
     {"E0105", R"(<Do action="log"/>)", R"(@<Do action="set_state"/>)"},
     {"E0112", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" limit="@0"/>)"},
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES.TORQ" label)", "CUR_VALUES.TORQUE"},
