@@ -232,6 +232,12 @@ class GroundLink:
 
 # What the descriptors say.
 
+# What every subsystem has without declaring it; members are known by their full names only (docs/adr/0056).
+BUILT_IN = {"CYCLE_STATS": (("OVERRUNS", "UINT32", 1), ("MAX_US", "FLOAT", 1), ("AVG_US", "FLOAT", 1)),
+            "CYCLE_TIMES": (("EXECUTION", "UINT32", 16), ("LATENCY", "UINT32", 16)),
+            "LINK_STATS": (("RECEIVED", "UINT32", 1), ("LOST", "UINT32", 1))}
+
+
 class Descriptor:
     """Parameters, housekeeping structures and functions of one subsystem, read from its XML."""
 
@@ -247,13 +253,16 @@ class Descriptor:
                                          for m in element.iterfind("ParamRef")]
             else:
                 self.parameters[name] = [(name, element.get("type"), int(element.get("count", "1")))]
+        for name, members in BUILT_IN.items():
+            self.parameters[name] = [(f"{name}.{member}", kind, count) for member, kind, count in members]
 
     def fields(self, reference):
         """Fields of `CUR_VALUES`, `CUR_VALUES.POSITION` or an unambiguous member name."""
         if reference in self.parameters:
             return self.parameters[reference]
         found = [field for fields in self.parameters.values() for field in fields
-                 if field[0] == reference or field[0].endswith("." + reference)]
+                 if field[0] == reference or
+                 field[0].endswith("." + reference) and field[0].split(".")[0] not in BUILT_IN]
         if len(found) != 1:
             raise KeyError(f"{self.name}: {reference} names {len(found)} fields")
         return found

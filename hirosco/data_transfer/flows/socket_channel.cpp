@@ -83,7 +83,7 @@ Result<> SocketChannel::send(const Message& message) {
   std::array<std::byte, envelope_octets> envelope{};
   OctetWriter{envelope}
       .put(static_cast<std::uint8_t>(message.kind))
-      .put(std::uint8_t{0})
+      .put(version)
       .put(message.link)
       .put(message.mode_epoch);
   std::array<iovec, 2> parts{iovec{envelope.data(), envelope.size()},
@@ -127,9 +127,9 @@ Result<Channel::Found> SocketChannel::receive(MessageBuffer& buffer) {
 
   OctetReader reader{envelope};
   const auto kind = reader.get<std::uint8_t>();
-  const auto reserved = reader.get<std::uint8_t>();
-  if (reserved != 0 || kind < static_cast<std::uint8_t>(MessageKind::Packet) ||
-      kind > static_cast<std::uint8_t>(MessageKind::Event))
+  const auto theirs = reader.get<std::uint8_t>();
+  if (theirs != version) return fail(ErrorCode::Mismatch, "version of the control channel", theirs);
+  if (kind < static_cast<std::uint8_t>(MessageKind::Packet) || kind > static_cast<std::uint8_t>(MessageKind::Event))
     return fail(ErrorCode::Malformed, "kind of message", kind);
   Found found;
   found.flow = Flow::New;

@@ -98,8 +98,11 @@ class SocketChannelAbuse : public ::testing::Test {
   FileDescriptor peer_;
   std::optional<SocketChannel> channel_;
   MessageBuffer buffer_{};
-  static constexpr std::array good{std::byte{1}, std::byte{0}, std::byte{0}, std::byte{0},   std::byte{0},
-                                   std::byte{0}, std::byte{0}, std::byte{5}, std::byte{0xAA}};
+  static constexpr std::array good{std::byte{1},   std::byte{SocketChannel::version},
+                                   std::byte{0},   std::byte{0},
+                                   std::byte{0},   std::byte{0},
+                                   std::byte{0},   std::byte{5},
+                                   std::byte{0xAA}};
 };
 
 TEST_F(SocketChannelAbuse, EnvelopeIsBigEndianAndEightOctetsLong) {
@@ -116,11 +119,19 @@ TEST_F(SocketChannelAbuse, IsRefusedAndTheNextMessageIsRead) {
   auto kind = good;
   kind[0] = std::byte{0};
   send_raw(kind);
-  auto reserved = good;
-  reserved[1] = std::byte{1};
-  send_raw(reserved);
   send_raw(std::vector<std::byte>(SocketChannel::envelope_octets + max_packet_octets + 1, std::byte{1}));
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(refusal(), ErrorCode::Malformed) << i;
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(refusal(), ErrorCode::Malformed) << i;
+  send_raw(good);
+  EXPECT_EQ(channel_->receive(buffer_).value().flow, Flow::New);
+}
+
+TEST_F(SocketChannelAbuse, OfAnotherVersionIsRefusedAndTheNextMessageIsRead) {
+  for (const std::uint8_t version : {std::uint8_t{0}, std::uint8_t{SocketChannel::version + 1}}) {
+    auto other = good;
+    other[1] = std::byte{version};
+    send_raw(other);
+    EXPECT_EQ(refusal(), ErrorCode::Mismatch) << int{version};
+  }
   send_raw(good);
   EXPECT_EQ(channel_->receive(buffer_).value().flow, Flow::New);
 }
