@@ -7,7 +7,9 @@
 namespace hirosco::pus {
 namespace {
 constexpr std::size_t max_report_octets = 4 + 2 + 2 + FailureNotice::max_data_octets;
+}  // namespace
 
+namespace st01 {
 constexpr Part success[]{number("REQUEST", Type::Uint32)};
 constexpr Part step[]{number("REQUEST", Type::Uint32), number("STEP", Type::Uint16)};
 constexpr Part failure[]{
@@ -21,10 +23,10 @@ constexpr ReportKind reports[]{{1, "accepted", success},   {2, "not accepted", f
                                {5, "progress", step},      {6, "progress failed", failed_step},
                                {7, "completed", success},  {8, "completion failed", failure},
                                {10, "not routed", failure}};
-}  // namespace
+}  // namespace st01
 
 const ServiceKind Verification::service_kind{
-    .type = service_type, .name = "verification", .requests = {}, .reports = reports};
+    .type = service_type, .name = "verification", .requests = {}, .reports = st01::reports};
 
 void Verification::accepted(const Request& request) {
   if ((request.ack & ack_acceptance) != 0) send(1, request, nullptr, nullptr);

@@ -3,7 +3,7 @@
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 
 namespace hirosco::pus {
-namespace {
+namespace st03 {
 
 constexpr Part structure_id[]{number("STRUCTURE", Type::Uint16)};
 constexpr Part structures[]{list("STRUCTURES", structure_id)};
@@ -33,9 +33,9 @@ constexpr ReportKind reports[]{{structure_report, "STRUCTURE", defined},
                                {parameter_report, "HOUSEKEEPING", values},
                                {properties_report, "PROPERTIES", all_properties}};
 
-}  // namespace
+}  // namespace st03
 
 const ServiceKind HousekeepingService::service_kind{
-    .type = service_type, .name = "housekeeping", .requests = requests, .reports = reports};
+    .type = service_type, .name = "housekeeping", .requests = st03::requests, .reports = st03::reports};
 
 }  // namespace hirosco::pus

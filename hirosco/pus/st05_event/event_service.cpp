@@ -15,7 +15,9 @@ constexpr std::size_t max_auxiliary_octets = max_telemetry_octets - telemetry_ov
 [[nodiscard]] std::uint16_t id_at(Octets data, std::size_t index) noexcept {
   return OctetReader{data.subspan(1 + 2 * index, 2)}.get<std::uint16_t>();
 }
+}  // namespace
 
+namespace st05 {
 constexpr Part id[]{number("EVENT", Type::Uint16)};
 constexpr Part ids[]{list("EVENTS", id)};
 constexpr Part event[]{number("EVENT", Type::Uint16), {.name = "ARGUMENTS", .form = Form::Rest}};
@@ -25,10 +27,10 @@ constexpr RequestKind requests[]{{enable_reports, "ENABLE_EVENTS", ids},
                                  {report_disabled, "REPORT_DISABLED", {}}};
 constexpr ReportKind reports[]{
     {1, "info", event}, {2, "low", event}, {3, "medium", event}, {4, "high", event}, {disabled_list, "DISABLED", ids}};
-}  // namespace
+}  // namespace st05
 
 const ServiceKind EventService::service_kind{
-    .type = service_type, .name = "events", .requests = requests, .reports = reports};
+    .type = service_type, .name = "events", .requests = st05::requests, .reports = st05::reports};
 
 EventService::EventService(const std::vector<descriptor::Event>& events, Verification& verification,
                            TelemetrySink& sink)

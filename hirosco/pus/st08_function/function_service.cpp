@@ -16,10 +16,6 @@ using descriptor::Function;
 
 constexpr std::size_t max_arguments = 255;   ///< ids are one octet
 
-constexpr Part call_data[]{{.name = "FUNCTION", .form = Form::Text, .count = function_name_octets},
-                           {.name = "ARGUMENTS", .form = Form::Arguments}};
-constexpr RequestKind requests[]{{FunctionService::perform_function, "PERFORM", call_data}};
-
 [[nodiscard]] std::string_view name_in(Octets field) noexcept {
   std::size_t length = 0;
   while (length < field.size() && field[length] != std::byte{}) ++length;
@@ -185,8 +181,14 @@ enum class WithIds : std::uint8_t { No, Yes };
 
 }  // namespace
 
+namespace st08 {
+constexpr Part call_data[]{{.name = "FUNCTION", .form = Form::Text, .count = function_name_octets},
+                           {.name = "ARGUMENTS", .form = Form::Arguments}};
+constexpr RequestKind requests[]{{FunctionService::perform_function, "PERFORM", call_data}};
+}  // namespace st08
+
 const ServiceKind FunctionService::service_kind{
-    .type = service_type, .name = "functions", .requests = requests, .reports = {}};
+    .type = service_type, .name = "functions", .requests = st08::requests, .reports = {}};
 
 std::vector<Function> common_functions() {
   return {built_in_with("SET_STATE", "STATE", 9, "Changes the state (0 Offline .. 9 Software-Deinit)"),

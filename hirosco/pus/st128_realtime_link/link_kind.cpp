@@ -3,7 +3,7 @@
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 
 namespace hirosco::pus::st128 {
-namespace {
+namespace kind {
 
 constexpr Part word(std::string_view name) noexcept { return {.name = name, .form = Form::Word}; }
 
@@ -57,12 +57,12 @@ constexpr ReportKind reports[]{{offer, "OFFER", offered},
                                {attached, "ATTACHED", link_end},
                                {detached, "DETACHED", link_end}};
 
-}  // namespace
+}  // namespace kind
 
 const ServiceKind service_kind{.type = service_type,
                                .name = "real-time links",
                                .needs = Needs::SupervisorAsks,
-                               .requests = requests,
-                               .reports = reports};
+                               .requests = kind::requests,
+                               .reports = kind::reports};
 
 }  // namespace hirosco::pus::st128

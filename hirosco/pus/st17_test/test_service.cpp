@@ -5,17 +5,17 @@
 #include "hirosco/pus/st01_verification/instructions.hpp"
 
 namespace hirosco::pus {
-namespace {
+namespace st17 {
 using enum TestService::Subtype;
 constexpr RequestKind requests[]{{are_you_alive, "PING", {}}};
 constexpr ReportKind reports[]{{alive_report, "ALIVE", {}}};
-}  // namespace
+}  // namespace st17
 
 const ServiceKind TestService::service_kind{.type = service_type,
                                             .name = "test",
                                             .needs = Needs::Essential,
-                                            .requests = requests,
-                                            .reports = reports,
+                                            .requests = st17::requests,
+                                            .reports = st17::reports,
                                             .make = [](ServiceHome& home) -> std::unique_ptr<Service> {
                                               return std::make_unique<TestService>(home.verification(),
                                                                                    home.telemetry());

@@ -9,7 +9,9 @@
 namespace hirosco::pus {
 namespace {
 constexpr std::size_t max_source_octets = max_telemetry_octets - telemetry_overhead_octets;
+}  // namespace
 
+namespace st20 {
 constexpr Part id[]{number("PARAMETER", Type::Uint32)};
 constexpr Part ids[]{list("PARAMETERS", id)};
 constexpr Part value[]{number("PARAMETER", Type::Uint32), {.name = "VALUE", .form = Form::Value}};
@@ -17,10 +19,10 @@ constexpr Part values[]{list("PARAMETERS", value)};
 using enum ParameterService::Subtype;
 constexpr RequestKind requests[]{{report_values, "REPORT_VALUES", ids}, {set_values, "SET_VALUES", values}};
 constexpr ReportKind reports[]{{value_report, "VALUES", values}};
-}  // namespace
+}  // namespace st20
 
 const ServiceKind ParameterService::service_kind{
-    .type = service_type, .name = "parameters", .requests = requests, .reports = reports};
+    .type = service_type, .name = "parameters", .requests = st20::requests, .reports = st20::reports};
 
 void ParameterService::handle(const TelecommandView& telecommand, const Request& request) {
   switch (telecommand.subtype()) {
