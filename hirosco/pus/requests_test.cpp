@@ -123,9 +123,9 @@ TEST(Requests, HaveWordsForWhateverOctetsCome) {
   const auto mission = one_with_a_service();
   std::array<std::byte, 40> data;
   unsigned state = 1;
-  for (int round = 0; round < 2000; ++round) {
+  for (std::size_t round = 0; round < 2000; ++round) {
     for (auto& octet : data) octet = static_cast<std::byte>((state = state * 1664525U + 1013904223U) >> 24);
-    const auto service = static_cast<std::uint8_t>(std::array{3, 5, 8, 17, 20, 128, 129, 200}[round % 8]);
+    const auto service = static_cast<std::uint8_t>(std::array{3, 5, 8, 17, 20, 128, 129, 200}.at(round % 8));
     EXPECT_FALSE(
         described(mission, service, static_cast<std::uint8_t>(1 + round / 8 % 40), Octets{data}.first(round % 41))
             .empty());

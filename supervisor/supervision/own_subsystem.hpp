@@ -54,6 +54,7 @@ class OwnSubsystem final : private Subsystem {
   [[nodiscard]] const VitalPage& vital() const noexcept { return *vital_; }
 
  private:
+  using Subsystem::telemetry;  // of the ground link only
   Result<Step> software_init() override;
   Result<> pre_operational(const Cycle&) noexcept override { return show(); }
   Result<> safe_operational(const Cycle&) noexcept override { return show(); }

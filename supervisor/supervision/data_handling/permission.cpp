@@ -39,6 +39,10 @@ struct Asked {
   /// The function called or the request of the subsystem's own service; null: none that the descriptor declares.
   const descriptor::Function* request{nullptr};
 
+  [[nodiscard]] std::string_view name() const {
+    if (call) return call->name;
+    return request != nullptr ? std::string_view{request->name} : std::string_view{};
+  }
   [[nodiscard]] bool calls(std::string_view name) const { return call && call->name == name; }
   [[nodiscard]] bool asks_for(State target) const {
     return calls("SET_STATE") && call->first_argument == static_cast<std::uint8_t>(target);
@@ -175,7 +179,7 @@ using Notice = std::optional<FailureNotice>;
   constexpr std::uint8_t parameters = pus::ParameterService::service_type;
   if (service == parameters && asked.telecommand.subtype() == pus::ParameterService::set_values)
     if (const auto refused = write_refused(asked)) return refused;
-  const std::string_view name = asked.call ? asked.call->name : asked.request != nullptr ? asked.request->name : "";
+  const std::string_view name = asked.name();
   const bool opened = std::ranges::any_of(asked.situation.mode.permits, [&](const descriptor::Permit& permit) {
     if (permit.subsystem != "*" && permit.subsystem != asked.subsystem.name) return false;
     if (std::ranges::find(permit.services, service) != permit.services.end()) return true;
