@@ -41,7 +41,8 @@ class CustomService final : public pus::Service {
   void on_request(std::string_view request, Handler handler) {
     using Argument = typename Traits<decltype(&Handler::operator())>::Argument;
     using Takes = Traits<decltype(&Handler::operator())>;
-    static_assert(!std::is_void_v<typename Takes::Outcome>, "a handler returns Result<> or Outcome");
+    static_assert(detail::Answers<typename Takes::Outcome>,
+                  "on_request: a handler returns Result<> or Outcome: write '-> Result<>' and end with 'return ok();'");
     if constexpr (std::is_void_v<Argument>) {
       bind(request, {}, [handler](Octets, const Call& call) -> Outcome {
         if constexpr (Takes::wants_call) return handler(call);

@@ -103,6 +103,11 @@ template <class T>
 struct HandlerTraits;
 template <class C, class R, class... A>
 struct HandlerTraits<R (C::*)(A...) const> {
+  using Answer = R;
+  template <class T>
+  static constexpr bool is_an_argument =
+      layout_detail::Scalar<T> || std::is_same_v<T, Call> || std::is_same_v<T, FunctionValues>;
+  static constexpr bool takes_what_a_call_brings = (is_an_argument<std::remove_cvref_t<A>> && ...);
   static constexpr bool takes_call = (std::is_same_v<std::remove_cvref_t<A>, Call> || ... || false);
   static constexpr bool takes_values = (std::is_same_v<std::remove_cvref_t<A>, FunctionValues> || ... || false);
   static constexpr std::size_t arguments = sizeof...(A) - (takes_call ? 1 : 0);
@@ -120,6 +125,11 @@ struct HandlerTraits<R (C::*)(A...) const> {
     else return handler(static_cast<std::tuple_element_t<I, Types>>(values[I])...);
   }
 };
+/// Not `mutable`, not overloaded, no template.
+template <class H>
+concept Handler = requires { typename HandlerTraits<decltype(&H::operator())>::Answer; };
+template <class R>
+concept Answers = std::is_same_v<R, Result<>> || std::is_same_v<R, Outcome>;
 }  // namespace detail
 
 /// Base of every subsystem. Steady nodes run in the cycle: noexcept, no allocation, no lock, no I/O. Everything else
@@ -172,7 +182,15 @@ class Subsystem {
   /// numbers as the descriptor declares.
   template <class Handler>
   void on_function(std::string_view name, Handler handler) {
+    static_assert(detail::Handler<Handler>,
+                  "on_function: a handler is a lambda with arguments of definite types, and not mutable");
     using Traits = detail::HandlerTraits<decltype(&Handler::operator())>;
+    static_assert(
+        detail::Answers<typename Traits::Answer>,
+        "on_function: a handler returns Result<> or Outcome: write '-> Result<>' and end with 'return ok();'");
+    static_assert(
+        Traits::takes_what_a_call_brings,
+        "on_function: a handler takes numbers or enumerations, or FunctionValues, and last a Call if it reports later");
     using Values = std::array<double, max_function_arguments>;
     if constexpr (Traits::takes_values) {
       static_assert(Traits::arguments == 1,

@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""What a newcomer writes by mistake as a handler is told in words, by the compiler and first of all."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+AUTHOR = """
+#include "hirosco/subsystem/custom_service.hpp"
+using namespace hirosco;
+struct Author : Subsystem {
+  CustomService book{"BOOK"};
+  Result<Step> software_init() override { %s; return done; }
+};
+"""
+COMPILER = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else "c++"
+
+
+class Handlers(unittest.TestCase):
+    def first_error(self, handler):
+        with tempfile.NamedTemporaryFile("w", suffix=".cpp") as source:
+            source.write(AUTHOR % handler)
+            source.flush()
+            told = subprocess.run([COMPILER, "-std=c++23", f"-I{ROOT}", "-fsyntax-only", source.name], capture_output=True,
+                                  text=True, check=False, env={"LC_ALL": "C", "PATH": "/usr/bin:/bin:/usr/local/bin"}).stderr
+        return next((line for line in told.splitlines() if "error:" in line), "")
+
+    def test_good_ones_compile(self):
+        for handler in ('on_function("X", [](double, std::uint8_t) -> Result<> { return ok(); })',
+                        'on_function("X", [](const FunctionValues&, Call) -> Outcome { return running; })',
+                        'book.on_request("X", [](const std::uint16_t&) -> Result<> { return ok(); })'):
+            self.assertEqual(self.first_error(handler), "", handler)
+
+    def test_one_that_returns_nothing_is_told_what_to_return(self):
+        for handler in ('on_function("X", [](double) {})', 'book.on_request("X", [](const std::uint16_t&) {})'):
+            self.assertIn("a handler returns Result<> or Outcome: write '-> Result<>'", self.first_error(handler))
+
+    def test_one_with_arguments_that_no_call_brings_is_told_which_it_may_have(self):
+        self.assertIn("a handler takes numbers or enumerations", self.first_error(
+            'on_function("X", [](const char*) -> Result<> { return ok(); })'))
+
+    def test_one_that_changes_itself_or_takes_anything_is_told_what_a_handler_is(self):
+        for handler in ('on_function("X", [n = 0](double) mutable -> Result<> { ++n; return ok(); })',
+                        'on_function("X", [](auto) -> Result<> { return ok(); })'):
+            self.assertIn("a handler is a lambda with arguments of definite types", self.first_error(handler))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
