@@ -106,7 +106,7 @@ struct HandlerTraits<R (C::*)(A...) const> {
   using Answer = R;
   template <class T>
   static constexpr bool is_an_argument =
-      layout_detail::Scalar<T> || std::is_same_v<T, Call> || std::is_same_v<T, FunctionValues>;
+      std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, Call> || std::is_same_v<T, FunctionValues>;
   static constexpr bool takes_what_a_call_brings = (is_an_argument<std::remove_cvref_t<A>> && ...);
   static constexpr bool takes_call = (std::is_same_v<std::remove_cvref_t<A>, Call> || ... || false);
   static constexpr bool takes_values = (std::is_same_v<std::remove_cvref_t<A>, FunctionValues> || ... || false);
