@@ -16,6 +16,7 @@ namespace {
 
 using descriptor::State;
 using testing::arm;
+using testing::camera;
 using testing::hand;
 
 enum : std::size_t { open_mode, narrow_mode };
@@ -352,6 +353,39 @@ TEST(Permission, ARequestOfASubsystemsOwnServiceIsPermittedByServiceOrNameInItsS
   EXPECT_EQ(decided(arm, 3, State::Operational), "essential");
   EXPECT_EQ(decided(arm, 2, State::Operational), "7 200 2");
   EXPECT_EQ(decided(hand, 1, State::SafeOperational), "6 200") << "it is the arm's own";
+}
+
+TEST(Permission, TheHandshakeOfLinksStaysTheSupervisorsInAModeThatOpensItsService) {
+  auto mission = testing::small_mission();
+  mission.modes[open_mode].permits.front().services.push_back(128);
+  const LinkGraph links{mission};
+  const auto packet = testing::telecommand(arm, 128, 1, {});
+  const auto permitted = [&](Sender sender) {
+    return decide(pus::TelecommandView::parse(packet).value(), sender,
+                  {mission, mission.modes[open_mode], links, State::PreOperational, 0})
+        .has_value();
+  };
+  EXPECT_FALSE(permitted(Sender::Ground));
+  EXPECT_FALSE(permitted(Sender::Subsystem));
+  EXPECT_TRUE(permitted(Sender::Supervisor));
+}
+
+TEST(Permission, APermitOfOneSubsystemOpensNoFunctionOfAnotherWhicheverComesFirst) {
+  auto mission = testing::small_mission();
+  const LinkGraph links{mission};
+  for (const auto& [name, apid] : {std::pair{"ARM", arm}, std::pair{"HAND", hand}}) {
+    mission.modes[narrow_mode].permits = {
+        {.subsystem = name, .functions = {"MOVE_TO"}, .services = {}, .parameters = {}, .at = {}}};
+    for (const std::uint16_t to : {arm, hand, camera}) {
+      const auto packet = testing::telecommand(to, 8, 1, call("MOVE_TO"));
+      const auto decision = decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+                                   {mission, mission.modes[narrow_mode], links, State::Operational, 0});
+      EXPECT_EQ(decision.has_value(), to == apid) << name << " " << to;
+      if (decision) {
+        EXPECT_EQ(decision->reserves_w, 0) << "nobody goes up";
+      }
+    }
+  }
 }
 
 TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {

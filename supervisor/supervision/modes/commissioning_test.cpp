@@ -31,8 +31,8 @@ struct CommissioningTest : PartsTest {
 
 TEST_F(CommissioningTest, TheSupervisorComesFirstThenAllMembersStageByStageThenTheMode) {
   start();
-  for (int own = 0; own < 4; ++own) {
-    EXPECT_EQ(desk.sent.size(), own + 1U);
+  for (unsigned own = 0; own < 4; ++own) {
+    EXPECT_EQ(desk.sent.size(), own + 1);
     desk.answer(true);
   }
   set(arm, Operational);
