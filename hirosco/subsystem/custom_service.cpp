@@ -12,6 +12,9 @@
 namespace hirosco {
 namespace {
 
+/// Requests of one service that run at once: an author who never ends them is asked for no more.
+constexpr std::size_t most_running = 64;
+
 using pus::FailureCode;
 using pus::FailureNotice;
 
@@ -117,6 +120,7 @@ void CustomService::handle(const pus::TelecommandView& telecommand, const pus::R
   if (!declared->permitted_in(home_->state()))
     return verification.rejected(
         request, FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(home_->state())));
+  if (open_.size() >= most_running) return verification.rejected(request, FailureNotice{FailureCode::QueueFull});
   verification.accepted(request);
   if (const auto bad = bad_argument(fields, data))
     return verification.start_failed(

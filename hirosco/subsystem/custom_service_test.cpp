@@ -115,6 +115,14 @@ TEST_F(OwnService, EndsARunningRequestOnce) {
   EXPECT_EQ(rig.outcome(sent), "1 3 7");
 }
 
+TEST_F(OwnService, RefusesMoreThanRunAtOnceUntilOneHasEnded) {
+  rig.set_state_now(State::PreOperational);
+  for (int running = 0; running < 64; ++running) ASSERT_EQ(ask(5), "1 3") << running;
+  EXPECT_EQ(ask(5), "2:000b");
+  author.book.finish(*author.copying);
+  EXPECT_EQ(ask(5), "1 3");
+}
+
 TEST_F(OwnService, AbortsWhatStillRunsWhenTheSubsystemGoesDown) {
   rig.bring_to(State::SafeOperational);
   const auto sent = rig.send(200, 5, {});
