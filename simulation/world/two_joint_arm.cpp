@@ -70,18 +70,12 @@ ArmParameters ArmParameters::without_friction() const noexcept {
   return clean;
 }
 
-Vec2 tip_of(const ArmParameters& arm, const Vec2& q) noexcept {
-  const double l1 = arm.links[0].length_m;
-  const double l2 = arm.links[1].length_m;
-  return {l1 * std::cos(q[0]) + l2 * std::cos(q[0] + q[1]), l1 * std::sin(q[0]) + l2 * std::sin(q[0] + q[1])};
-}
-
-Mat2 jacobian_of(const ArmParameters& arm, const Vec2& q) noexcept {
-  const double x2 = arm.links[1].length_m * std::cos(q[0] + q[1]);
-  const double y2 = arm.links[1].length_m * std::sin(q[0] + q[1]);
+Placement placement_of(const ArmParameters& arm, const Vec2& q) noexcept {
   const double x1 = arm.links[0].length_m * std::cos(q[0]);
   const double y1 = arm.links[0].length_m * std::sin(q[0]);
-  return {{{-y1 - y2, -y2}, {x1 + x2, x2}}};
+  const double x2 = arm.links[1].length_m * std::cos(q[0] + q[1]);
+  const double y2 = arm.links[1].length_m * std::sin(q[0] + q[1]);
+  return {.tip_m = {x1 + x2, y1 + y2}, .jacobian = {{{-y1 - y2, -y2}, {x1 + x2, x2}}}};
 }
 
 Contact contact_at(const ContourParameters& contour, const Vec2& tip, const Vec2& velocity) noexcept {
@@ -114,8 +108,8 @@ TwoJointArm::Numbers TwoJointArm::derivative(const Numbers& x, const Vec2& motor
   const Vec2 link_rate{x[6], x[7]};
   const JointParameters& joint = parameters_.joint;
   const Vec2 between = joint_torque(joint, motor - link, motor_rate - link_rate);
-  const Mat2 jacobian = jacobian_of(parameters_, link);
-  const Vec2 force = tip_force(tip_of(parameters_, link), times(jacobian, link_rate));
+  const auto [tip, jacobian] = placement_of(parameters_, link);
+  const Vec2 force = tip_force(tip, times(jacobian, link_rate));
   const Vec2 drive = between + transposed_times(jacobian, force) - coriolis(parameters_, link, link_rate);
   const Vec2 link_acceleration = solve(mass_matrix(parameters_, link), drive);
   Numbers rate{x[2], x[3], 0, 0, x[6], x[7], link_acceleration[0], link_acceleration[1]};
@@ -149,9 +143,8 @@ int TwoJointArm::pieces_of(const Numbers& x, double h) const noexcept {
   constexpr double most_pieces = 32;  // so that a cycle is bounded: beyond 1 kN at 125 us
   const ContourParameters& contour = parameters_.contour;
   const Vec2 link{x[4], x[5]};
-  const Vec2 tip = tip_of(parameters_, link);
+  const auto [tip, jacobian] = placement_of(parameters_, link);
   if (contour.friction == 0 || tip[0] + contour.finger_radius_m < contour.rail_x_m - contour.bump_height_m) return 1;
-  const Mat2 jacobian = jacobian_of(parameters_, link);
   const Vec2 velocity = times(jacobian, {x[6], x[7]});
   const Contact contact = contact_at(contour, tip, velocity);
   const double deeper_n = contour.stiffness_n_per_m * std::hypot(velocity[0], velocity[1]) * h;

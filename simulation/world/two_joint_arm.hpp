@@ -73,9 +73,12 @@ struct ArmParameters {
   [[nodiscard]] ArmParameters without_friction() const noexcept;
 };
 
-/// Kinematics of the two links.
-[[nodiscard]] Vec2 tip_of(const ArmParameters& arm, const Vec2& q) noexcept;
-[[nodiscard]] Mat2 jacobian_of(const ArmParameters& arm, const Vec2& q) noexcept;
+/// Where the two links put the tip, and how it moves with them. In one, because both need the same sines.
+struct Placement {
+  Vec2 tip_m{};
+  Mat2 jacobian{};
+};
+[[nodiscard]] Placement placement_of(const ArmParameters& arm, const Vec2& q) noexcept;
 
 struct ArmState {
   Vec2 motor_rad{};
@@ -105,9 +108,9 @@ class TwoJointArm {
   void set_state(const ArmState& state) noexcept { state_ = state; }
   /// K (theta - q) + D (theta' - q'): what the torque sensors see.
   [[nodiscard]] Vec2 joint_torque_n_m() const noexcept;
-  [[nodiscard]] Vec2 tip_m() const noexcept { return tip_of(parameters_, state_.link_rad); }
+  [[nodiscard]] Vec2 tip_m() const noexcept { return placement_of(parameters_, state_.link_rad).tip_m; }
   [[nodiscard]] Vec2 tip_m_s() const noexcept;
-  [[nodiscard]] Mat2 jacobian() const noexcept { return jacobian_of(parameters_, state_.link_rad); }
+  [[nodiscard]] Mat2 jacobian() const noexcept { return placement_of(parameters_, state_.link_rad).jacobian; }
   [[nodiscard]] Contact contact() const noexcept;
   [[nodiscard]] Vec2 spring_force_n() const noexcept;
   /// Kinetic, elastic and contact energy.

@@ -15,7 +15,7 @@ namespace {
 
 Mat2 robot_home_jacobian() noexcept {
   const ArmParameters robot;
-  return jacobian_of(robot, robot.home_rad);
+  return placement_of(robot, robot.home_rad).jacobian;
 }
 
 constexpr double farthest_m = 0.2;

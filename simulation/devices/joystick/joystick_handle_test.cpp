@@ -15,7 +15,7 @@ constexpr Duration cycle = std::chrono::microseconds{500};
 
 Mat2 home_jacobian() {
   const ArmParameters arm;
-  return jacobian_of(arm, arm.home_rad);
+  return placement_of(arm, arm.home_rad).jacobian;
 }
 
 JoystickHandle a_handle(std::uint64_t seed = 1) { return {seed, home_jacobian()}; }
