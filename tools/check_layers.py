@@ -14,11 +14,17 @@ system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|s
 include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
 def rank(path):
     return libraries.index(name) if (name := pathlib.Path(path).parts[1].split(".")[0]) in libraries else -1
+station = ["archive", "model", "link", "commands", "replay", "api", "shell"]  # of ground/, lowest first
+def level(path):
+    name = pathlib.Path(path).parts[1]
+    return 1 if name == "clients" else station.index(name) if name in station else len(station)
 def wrong(path, to):
     top, target = path.split("/")[0], to.split("/")[0]
     if system.match(to):
         asks = path.startswith(shells) or path.endswith(("_test.cpp", "main.cpp", "run.cpp")) or "/testing/" in path or "/tcp_server." in path
         return not asks and "the operating system"
+    if to.startswith("boost/"): return not path.startswith("ground/shell/") and "Boost, which ground/shell/ alone knows"
+    if path.startswith("ground/") and to.startswith("ground/") and not path.endswith("_test.cpp") and level(to) > level(path): return "a higher folder of the ground station"
     if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
     if target == "missions" and top not in ("missions", "tests"): return "a mission"
     if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return False  # assemble and fly all parts
@@ -32,7 +38,9 @@ planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "subsystems/a/a.cpp subsystems
            "ground/a.cpp hirosco/subsystem/b.hpp", "hirosco/pus/a.cpp sys/mman.h", "supervisor/a.cpp unistd.h",
            "hirosco/pus/a.cpp hirosco/parameter/detail/b.hpp", "simulation/world/a.cpp simulation/spacecraft/b.hpp",
            "subsystems/a/a.cpp supervisor/b.hpp", "hirosco/pus/a.cpp supervisor/b.hpp",
-           "simulation/scenarios/a.cpp missions/b/b.hpp", "tools/hirosco/a.cpp missions/b/b.hpp"]
+           "simulation/scenarios/a.cpp missions/b/b.hpp", "tools/hirosco/a.cpp missions/b/b.hpp",
+           "ground/api/a.cpp boost/asio.hpp", "tools/ground/a.cpp boost/asio.hpp", "ground/model/a.cpp ground/api/b.hpp",
+           "ground/api/a.cpp ground/shell/b.hpp", "ground/clients/python/a.cpp ground/replay/b.hpp"]
 missed = [plant for plant in planted if not wrong(*plant.split())]
 root = pathlib.Path(__file__).resolve().parent.parent
 files = [file for top in [*may, "missions", "tools", "tests", "bench"] for file in sorted((root / top).rglob("*.[hc]pp"))]

@@ -4,54 +4,18 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "ground/session.hpp"
+#include "ground/api/application.hpp"
+#include "ground/link/way.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// The shell of the ground station: loop, sockets, timer. All of Boost stands behind this interface, in this folder.
 namespace hirosco::ground {
-
-struct HttpRequest {
-  std::string method;
-  std::string target;                ///< path and query as sent
-  std::map<std::string, std::string> headers;  ///< names in small letters
-  std::string body;
-};
-struct HttpResponse {
-  unsigned status{200};
-  std::string type{"application/json"};
-  std::string body;
-  std::vector<std::pair<std::string, std::string>> headers;
-};
-
-/// What the server serves. Every call comes from the thread of run().
-class Application {
- public:
-  virtual ~Application() = default;
-  /// Answers now or later, once.
-  virtual void handle(const HttpRequest& request, std::function<void(HttpResponse)> respond) = 0;
-  /// A WebSocket asks to be opened: empty lets it in.
-  [[nodiscard]] virtual std::optional<HttpResponse> refuse_socket(const HttpRequest& request) = 0;
-  virtual void opened(const HttpRequest& request, Peer& peer) = 0;
-  virtual void received(const Peer& peer, const std::string& text) = 0;
-  virtual void closed(const Peer& peer) = 0;
-  /// The spacecraft's stream.
-  virtual void link_up() = 0;
-  virtual void link_down() = 0;
-  /// A telecommand that send() took and that has not left, or not as a whole.
-  virtual void not_sent(Octets packet) = 0;
-  /// False: close the link and make a new one.
-  [[nodiscard]] virtual bool link_received(Octets octets) = 0;
-  virtual void tick() = 0;
-};
 
 class HttpServer {
  public:

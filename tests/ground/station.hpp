@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "ground/api.hpp"
-#include "ground/archive.hpp"
-#include "ground/catalogue.hpp"
-#include "ground/session.hpp"
+#include "ground/api/api.hpp"
+#include "ground/api/session.hpp"
+#include "ground/archive/archive.hpp"
+#include "ground/model/catalogue.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "simulation/scenarios/flight.hpp"
 

@@ -14,7 +14,7 @@
 #include <set>
 #include <string>
 
-#include "ground/api.hpp"
+#include "ground/api/api.hpp"
 #include "ground/shell/http_server.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/os/clock.hpp"

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "ground/python/python_package.hpp"
+#include "ground/clients/python/python_package.hpp"
 #include "tools/hirosco/commands.hpp"
 
 namespace hirosco::tools {

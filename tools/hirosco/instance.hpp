@@ -34,7 +34,7 @@ struct FlightEntry {
   [[nodiscard]] bool named() const { return instance != mission; }
 };
 
-/// One NAME=VALUE a line; other programs read it, too (ground/python/runtime.py).
+/// One NAME=VALUE a line; other programs read it, too (ground/clients/python/runtime.py).
 [[nodiscard]] std::string entry_text(const FlightEntry& entry);
 [[nodiscard]] std::optional<FlightEntry> entry_from_text(const std::string& text);
 

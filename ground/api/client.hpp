@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "ground/api/session.hpp"
+
+namespace hirosco::ground {
+
+/// One page: what it has been told, and where it is in the past when it replays. Housekeeping goes out when the network
+/// has taken what went before, so that only the latest waits; all else is queued at once, and who lets too much of it
+/// pile up is disconnected.
+class Client {
+ public:
+  static constexpr std::size_t most_pending_octets = std::size_t{4} << 20;
+  /// Above this, housekeeping waits.
+  static constexpr std::size_t busy_octets = std::size_t{64} << 10;
+
+  Client(Session& session, Peer& peer, std::string id, bool is_operator);
+  [[nodiscard]] const Peer& peer() const noexcept { return peer_; }
+  [[nodiscard]] const std::string& id() const noexcept { return id_; }
+  [[nodiscard]] bool in_replay() const noexcept { return replay_ != nullptr; }
+  void received(const std::string& text);
+  /// A message of the live view that must not be lost.
+  void tell(const nlohmann::json& message);
+  void tick(TimePoint now);
+
+ private:
+  struct Replay {
+    explicit Replay(const Catalogue& catalogue) : model{catalogue} {}
+    Model model;
+    OnboardTime at{};
+    OnboardTime end{};
+    double speed{1.0};
+    bool ended{false};
+    TimePoint last{};
+    TimePoint announced{};
+  };
+  void send(const nlohmann::json& message);
+  void show(const Model& model, OnboardTime at, TimePoint now, bool replay);
+  void begin_replay(double at, double speed);
+  void play(TimePoint now);
+  /// Where a step of the replay ends: a burst takes several, so that no event is left out and none chokes the page.
+  [[nodiscard]] OnboardTime step_end(const Span& span) const;
+  void tell_past(const Span& span);
+  void announce_replay(TimePoint now);
+
+  Session& session_;
+  Peer& peer_;
+  std::string id_;
+  bool closing_{false};
+  std::uint64_t values_told_{0};
+  std::uint64_t status_told_{0};
+  bool status_due_{true};
+  TimePoint status_at_{};
+  bool connected_told_{false};
+  std::unique_ptr<Replay> replay_;
+};
+
+}  // namespace hirosco::ground

@@ -1,0 +1,351 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""The runtime of exported clients against the test vectors of the packet library, and against a peer that answers by a
+script; against a spacecraft it flies in tests/ground/python_client_test.py."""
+import fcntl
+import json
+import math
+import pathlib
+import re
+import socket
+import struct
+import sys
+import tempfile
+import threading
+import unittest
+import unittest.mock
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))            # the files of an exported package know each other by their package
+
+from python import runtime  # noqa: E402
+from python.runtime import (ArgumentError, CommandFailed, Craft, EventKind, Field, Function, Layout, LinkLost, MissionAbout,
+                            NoAnswer, Parameter, Subsystem, SubsystemAbout, Telemetry)
+
+VECTORS = json.loads((HERE.parents[2] / "hirosco/pus/testing/test_vectors.json").read_text())
+
+
+def vectors(group):
+    return [vector for vector in VECTORS if vector["group"] == group]
+
+
+class Packets(unittest.TestCase):
+    def test_error_control_is_that_of_the_vectors(self):
+        for vector in vectors("crc16"):
+            octets = bytes.fromhex(vector["fields"]["input"])
+            self.assertEqual(runtime.crc16(octets), int(vector["hex"], 16), vector["id"])
+
+    def test_telecommands_are_those_of_the_vectors(self):
+        checked = 0
+        for vector in [v for v in VECTORS if v["group"] in ("tc", "st03", "st05", "st08", "st17", "st20")]:
+            fields = vector["fields"]
+            if "ack" not in fields or "app_data" not in fields:
+                continue
+            packet = runtime.telecommand(fields["apid"], fields["seq"], fields["service"], fields["subtype"],
+                                         fields["source"], bytes.fromhex(fields["app_data"]),
+                                         int(fields["ack"].split()[0], 16))
+            self.assertEqual(packet.hex(), vector["hex"], vector["id"])
+            checked += 1
+        self.assertGreaterEqual(checked, 12)
+
+    def test_telemetry_is_read_as_in_the_vectors(self):
+        for vector in [*vectors("tm"), *vectors("st01")]:
+            fields, octets = vector["fields"], bytes.fromhex(vector["hex"])
+            packet = Telemetry.parse(octets)
+            self.assertIsNotNone(packet, vector["id"])
+            self.assertEqual((packet.apid, packet.count, packet.destination), (fields["apid"], fields["seq"],
+                                                                             fields["destination"]), vector["id"])
+            self.assertEqual(packet.time_s, runtime.cuc_seconds(bytes.fromhex(fields["time"])))
+            if "source_data" in fields:
+                self.assertEqual(packet.data.hex(), fields["source_data"], vector["id"])
+
+    def test_a_changed_octet_anywhere_is_seen(self):
+        octets = bytes.fromhex(vectors("tm")[0]["hex"])
+        for place in range(len(octets)):
+            damaged = bytearray(octets)
+            damaged[place] ^= 0x10
+            self.assertIsNone(Telemetry.parse(bytes(damaged)), place)
+
+    def test_a_stream_is_cut_whatever_the_pieces_are(self):
+        whole = b"".join(bytes.fromhex(v["hex"]) for v in vectors("tm"))
+        for size in (1, 5, 7, 64, len(whole)):
+            stream, found = bytearray(), []
+            for start in range(0, len(whole), size):
+                stream += whole[start:start + size]
+                found += runtime.cut(stream)
+            self.assertEqual((b"".join(found), len(stream)), (whole, 0))
+
+    def test_what_is_no_telemetry_ends_the_link(self):
+        for octets in (b"HTTP/1.1 400 Bad Request\r\n", b"\x18" * 8, b"\x08\x0a\xc0\x00\xff\xff"):
+            with self.assertRaises(LinkLost):
+                runtime.cut(bytearray(octets))
+
+
+class Fields(unittest.TestCase):
+    ANGLE = Field("Q1", "DOUBLE", unit="rad", minimum=-2.0, maximum=1.0)
+    STATE = Field("STATE", "UINT8", texts=((0, "Offline"), (5, "Operational")))
+
+    def refused(self, field, value, words):
+        with self.assertRaisesRegex(ArgumentError, re.escape(words)):
+            field.encode(value)
+
+    def test_a_value_outside_its_range_is_refused_in_words(self):
+        self.refused(self.ANGLE, 5, "Q1: 5 rad is above its maximum 1 rad")
+        self.refused(self.ANGLE, -2.5, "Q1: -2.5 rad is below its minimum -2 rad")
+        self.assertEqual(self.ANGLE.encode(1), struct.pack(">d", 1.0))
+
+    def test_names_of_values_are_known_in_any_case(self):
+        self.assertEqual(self.STATE.encode("operational"), b"\x05")
+        self.refused(self.STATE, "flying", "'flying' is none of Offline, Operational")
+        self.refused(self.ANGLE, "far", "a number is wanted")
+
+    def test_what_the_type_cannot_hold_is_refused(self):
+        self.refused(Field("N", "UINT8"), 256, "does not fit into UINT8")
+        self.refused(Field("N", "UINT8"), -1, "does not fit into UINT8")
+        self.refused(Field("N", "UINT8"), 1.5, "a whole number is wanted")
+        self.refused(Field("N", "FLOAT"), 1e39, "does not fit into FLOAT")
+        self.refused(Field("N", "UINT64"), 2**53 + 1, "above 2^53")
+        for value in (math.nan, math.inf, None, [1], object()):
+            self.refused(Field("N", "DOUBLE"), value, "a finite number is wanted")
+
+    def test_an_array_takes_as_many_values_as_it_has(self):
+        pair = Field("P", "INT16", count=2)
+        self.assertEqual(pair.encode((1, -1)), b"\x00\x01\xff\xff")
+        for value in (1, (1,), (1, 2, 3), "ab"):
+            self.refused(pair, value, "2 values are wanted")
+
+    def test_a_function_call_is_that_of_the_vectors(self):
+        vector = vectors("st08")[0]["fields"]
+        function = Function("GRIPPER_OPEN", arguments=(Field("WIDTH", "FLOAT"), Field("SPEED", "UINT8", default=3)))
+        self.assertEqual(function.encode((0.25, None)).hex(), vector["app_data"])
+        with self.assertRaisesRegex(ArgumentError, "WIDTH is missing"):
+            function.encode((None, 3))
+
+
+class Arm(Subsystem):
+    _about = SubsystemAbout("ARM", 10, functions=(Function("MOVE", arguments=(Field("Q", "UINT8"),)),),
+                            parameters=(Parameter("KP", 0x0A0A03, (Field("KP", "DOUBLE"),)),),
+                            layouts=(Layout(7, 4, (Field("A", "UINT8", offset=2), Field("B", "INT8", offset=3))),
+                                     Layout(9, 8, (Field("SUBSYSTEMS.APID", "UINT16", count=2, offset=2),
+                                                   Field("SUBSYSTEMS.STATE", "UINT8", count=2, offset=6)))),
+                            events=(EventKind(17, "BUMP", (Field("JOINT", "UINT8"), Field("FORCE", "FLOAT"))),
+                                    EventKind(19, "STATE_CHANGED", (Field("STATE", "UINT8"),))))
+
+    def move(self, q, *, wait=2.0):
+        return self._call("MOVE", (q,), wait)
+
+
+class Peer:
+    """The other end of one connection: reads telecommands, sends telemetry."""
+
+    def __init__(self):
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listener.getsockname()[1]
+        self._count = 0
+
+    def accept(self):
+        self.socket = self._listener.accept()[0]
+        self.socket.settimeout(5.0)
+        self._listener.close()
+
+    def telecommand(self):
+        data = self.socket.recv(6, socket.MSG_WAITALL)
+        return data + self.socket.recv(1 + int.from_bytes(data[4:6], "big"), socket.MSG_WAITALL)
+
+    def tell(self, service, subtype, data, destination=0, time_s=0):
+        self._count += 1
+        packet = struct.pack(">HHHBBBHH", 0x080A, 0xC000 | self._count, len(data) + 15, 0x20, service, subtype, 0,
+                             destination)
+        packet += struct.pack(">I3x", time_s) + data
+        self.socket.sendall(packet + struct.pack(">H", runtime.crc16(packet)))
+
+    def verify(self, request, subtype, data=b""):
+        self.tell(1, subtype, request[:4] + data, int.from_bytes(request[9:11], "big"))
+
+
+class Registry(unittest.TestCase):
+    """The flights of this computer, as `hirosco run` enters them (docs/adr/0037)."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="hirosco-flights-test-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def fly(self, instance, mission="SMALL", telemetry="127.0.0.1:31115"):
+        path = self.folder / instance
+        path.write_text(f"instance={instance}\nmission={mission}\ntelemetry={telemetry}\nlog=/l/a=b.db\n")
+        lock = path.open("r+")
+        self.addCleanup(lock.close)
+        fcntl.fcntl(lock, fcntl.F_OFD_SETLK, struct.pack("hhqqi4x", fcntl.F_WRLCK, 0, 0, 0, 0))
+        return lock
+
+    def test_who_has_its_entry_locked_flies(self):
+        self.assertEqual(runtime.flights(str(self.folder / "none")), [])
+        lock = self.fly("one")
+        (self.folder / "over").write_text("instance=over\nmission=SMALL\ntelemetry=127.0.0.1:1\n")
+        (self.folder / "binary").write_bytes(b"\xff\0")
+        for _ in range(2):
+            self.assertEqual([flight["instance"] for flight in runtime.flights(str(self.folder))], ["one"])
+        self.assertEqual(runtime.flights(str(self.folder))[0]["log"], "/l/a=b.db")
+        lock.close()
+        self.assertEqual(runtime.flights(str(self.folder)), [])
+
+    def test_the_only_flight_of_the_mission_is_meant_else_a_name_is_asked_for(self):
+        find = lambda **which: runtime.find_flight("SMALL", folder=str(self.folder), **which)
+        self.assertIsNone(find())
+        self.fly("hello", mission="OTHER")
+        self.assertIsNone(find())
+        self.fly("one")
+        self.assertEqual(find()["instance"], "one")
+        self.fly("two", telemetry="127.0.0.1:31215")
+        with self.assertRaisesRegex(LinkLost, "2 flights of SMALL are in the air: say instance"):
+            find()
+        self.assertEqual(find(instance="two")["telemetry"], "127.0.0.1:31215")
+        for unknown in ("three", "hello"):
+            with self.assertRaisesRegex(LinkLost, f"no instance '{unknown}' of SMALL flies; on this computer: hello"):
+                find(instance=unknown)
+
+    def test_a_client_connects_to_the_flight_that_is_meant(self):
+        peer = Peer()
+        flight = {"instance": "two", "telemetry": f"127.0.0.1:{peer.port}"}
+        about = MissionAbout("SMALL", "127.0.0.1", 1, "ARM", (), (), ())
+        small = type("Small", (Craft,), {"_about": about})
+        with unittest.mock.patch.object(runtime, "find_flight", lambda mission, instance: flight):
+            craft = small(instance="two")
+        self.addCleanup(craft._socket.close)
+        peer.accept()                           # the other port is closed, so it was this one
+        self.addCleanup(peer.socket.close)
+
+
+class Client(unittest.TestCase):
+    def setUp(self):
+        self.peer = Peer()
+
+        class Small(Craft):
+            _about = MissionAbout("SMALL", "127.0.0.1", self.peer.port, "ARM", ((4, "safe"),), (),
+                                  ((10, "not permitted in this state"), (13, "not permitted in this mode")))
+
+        self.craft = Small()
+        self.craft.arm = Arm(self.craft)
+        self.craft._subsystems = (self.craft.arm,)
+        self.peer.accept()
+        self.craft._start()
+        self.addCleanup(self.peer.socket.close)
+        self.addCleanup(self.craft.close)
+
+    def answer(self, *reports):
+        """Answers the next telecommand by reports [(subtype, data)]."""
+        def run():
+            request = self.peer.telecommand()
+            for subtype, data in reports:
+                self.peer.verify(request, subtype, data)
+        thread = threading.Thread(target=run)
+        thread.start()
+        self.addCleanup(thread.join)
+
+    def test_a_request_returns_with_its_whole_chain(self):
+        self.answer((1, b""), (3, b""), (5, b"\x00\x01"), (7, b""))
+        request = self.craft.arm.move(3)
+        self.assertEqual([v.stage for v in request.verifications], ["accepted", "started", "progress", "completed"])
+        self.assertEqual(request.verifications[2].step, 1)
+
+    def test_a_refusal_names_code_text_and_numbers(self):
+        for data, words, parameters in ((b"\x00\x0a\x04", "not permitted in this state", {"state": "SafeOperational"}),
+                                        (b"\x00\x0d\x04", "not permitted in this mode", {"mode": "safe"}),
+                                        (b"\x80\x01\xab", "not documented", {"data": "ab"})):
+            self.answer((2, data))
+            with self.assertRaisesRegex(CommandFailed, words) as caught:
+                self.craft.arm.move(3)
+            self.assertEqual(caught.exception.parameters, parameters)
+
+    def test_an_argument_is_named_by_its_name(self):
+        self.answer((1, b""), (4, b"\x01\x05\x00" + b"\x00\x00\x00\x01"))
+        with self.assertRaises(CommandFailed) as caught:
+            self.craft.arm.move(3)
+        self.assertEqual(caught.exception.parameters, {"index": 0, "identifier": "Q"})
+
+    def test_a_failed_step_is_no_failed_request(self):
+        self.answer((1, b""), (6, b"\x00\x01\x02\x05"), (7, b""))
+        self.assertEqual(len(self.craft.arm.move(3).verifications), 3)
+
+    def test_reports_of_others_are_not_ours(self):
+        request = self.craft.arm.move(3, wait=None)
+        packet = self.peer.telecommand()
+        self.peer.tell(1, 7, packet[:4], self.craft.source ^ 1)
+        self.peer.tell(1, 7, struct.pack(">I", int.from_bytes(packet[:4], "big") ^ 1), self.craft.source)
+        self.peer.verify(packet, 1)
+        self.craft.wait_until(lambda: request.verifications)
+        self.assertFalse(request.done)
+        with self.assertRaises(NoAnswer):
+            request.result(0.01)
+
+    def test_a_parameter_is_asked_for(self):
+        def run():
+            request = self.peer.telecommand()
+            self.peer.verify(request, 7)
+            self.peer.tell(20, 2, b"\x01" + struct.pack(">Id", 0x0A0A03, 300.0), self.craft.source)
+        thread = threading.Thread(target=run)
+        thread.start()
+        self.assertEqual(self.craft.arm._get("KP", 2.0), 300.0)
+        thread.join()
+        self.assertEqual(self.craft._requests, {})
+
+    def test_housekeeping_is_decoded_recorded_and_kept(self):
+        with self.craft.arm.record(7) as reports:
+            for octets in (b"\x00\x07\x01\xff", b"\x00\x07\x02\xfe", b"\x00\x07\x02", b"\x00\x08\x02\x02"):
+                self.peer.tell(3, 25, octets)
+            self.craft.wait_until(lambda: self.craft.received == 4)
+        self.assertEqual([report.values for report in reports], [{"A": 1, "B": -1}, {"A": 2, "B": -2}])
+        self.assertEqual(self.craft.arm.latest(7)["B"], -2)
+        with self.assertRaisesRegex(ArgumentError, "has no report 8; it has 7, 9"):
+            self.craft.arm.record(8).__enter__()
+
+    def test_events_are_named_even_when_unknown_or_too_short(self):
+        for octets in (b"\x00\x11\x02\x40\x00\x00\x00", b"\x00\x12\x01", b"\x00\x11\x02"):
+            self.peer.tell(5, 3, octets)
+        self.craft.wait_until(lambda: len(self.craft.events) == 3)
+        self.assertEqual([(e.name, e.severity, e.values) for e in self.craft.events],
+                         [("BUMP", "medium", {"JOINT": 2, "FORCE": 2.0}), ("18", "medium", {}),
+                          ("BUMP", "medium", {"JOINT": 2})])
+
+    def test_a_state_is_the_newest_that_was_told(self):
+        self.assertIsNone(self.craft.arm.state)
+        for time_s, state in ((10, 5), (12, 4), (11, 6)):
+            self.peer.tell(5, 1, b"\x00\x13" + bytes([state]), time_s=time_s)
+            overview = b"\x00\x09" + struct.pack(">HHBB", 1, 10, 9, 3)
+            self.peer.tell(3, 25, overview, time_s=time_s - 1)
+        self.craft.wait_until(lambda: self.craft.received == 6)
+        self.assertEqual(self.craft.arm.state, "SafeOperational")
+        self.peer.tell(3, 25, overview, time_s=13)
+        self.craft.wait_until(lambda: self.craft.received == 7)
+        self.assertEqual(self.craft.arm.state, "PreOperational")
+
+    def test_damaged_packets_are_counted_and_the_next_is_read(self):
+        self.peer.socket.sendall(bytes.fromhex("0800c000000f") + bytes(16))
+        self.peer.tell(3, 25, b"\x00\x07\x01\xff")
+        self.craft.wait_until(lambda: self.craft.received == 1)
+        self.assertEqual(self.craft.damaged, 1)
+
+    def test_whoever_waits_learns_that_the_link_is_lost(self):
+        request = self.craft.arm.move(3, wait=None)
+        self.peer.socket.close()
+        with self.assertRaises(LinkLost):
+            request.result(5.0)
+        with self.assertRaises(LinkLost):
+            self.craft.arm.move(3)
+        self.assertFalse(self.craft.connected)
+
+    def test_nobody_there_is_said_at_once(self):
+        with self.assertRaisesRegex(LinkLost, "does the mission fly"):
+            type(self.craft)(port=1)
+
+    def test_no_exported_name_can_hide_a_public_name_of_the_runtime(self):
+        text = (HERE / "python_package.cpp").read_text()
+        for one, variable in ((self.craft.arm, "subsystem_names"), (self.craft, "craft_names")):
+            taken = set(re.findall(r'"(\w+)"', re.search(variable + r"\{(.*?)\};", text, re.S)[1]))
+            self.assertEqual({name for name in dir(one) if not name.startswith("_")} - {"arm", "move"}, taken)
+
+
+if __name__ == "__main__":
+    unittest.main()
