@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/realtime_link.hpp"
-#include "hirosco/data_transfer/simulated/heap_memory.hpp"
+#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -32,8 +32,8 @@ Figures measure_ours(const Clock& clock, int cycles) {
   const LinkLayout layout{1, payload_octets, 1, period};
   const Mapping memory =
       provider.map(provider.create("link", link_memory_octets(payload_octets)).value(), Access::ReadWrite).value();
-  LinkWriter writer = LinkWriter::make(memory.octets, layout).value();
-  LinkReader reader = LinkReader::make(memory.octets, layout).value();
+  LatestWriter writer = LatestWriter::make(memory.octets, layout).value();
+  LatestReader reader = LatestReader::make(memory.octets, layout).value();
   std::array<std::byte, payload_octets> payload{};
   std::vector<std::int64_t> late;
   late.reserve(static_cast<std::size_t>(cycles));

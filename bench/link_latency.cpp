@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-// Round trip between two processes: 256 octets by LinkWriter and LinkReader against one word on a bare cache line.
+// Round trip between two processes: 256 octets by LatestWriter and LatestReader against one word on a bare cache line.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/flows/sealed_memory.hpp"
-#include "hirosco/data_transfer/realtime_link.hpp"
+#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 
@@ -44,9 +44,11 @@ struct Arena {
 class End {
  public:
   End(Arena& arena, bool first) : arena_{arena}, out_{first ? 0U : 1U}, in_{first ? 1U : 0U} {
-    writer_ = LinkWriter::make((first ? arena.there : arena.back).octets, layout).value();
+    writer_ = LatestWriter::make((first ? arena.there : arena.back).octets, layout).value();
   }
-  void connect() { reader_.emplace(LinkReader::make((in_ == 1 ? arena_.back : arena_.there).octets, layout).value()); }
+  void connect() {
+    reader_.emplace(LatestReader::make((in_ == 1 ? arena_.back : arena_.there).octets, layout).value());
+  }
 
   void send_line(std::uint64_t value) { arena_.line(out_).store(value, std::memory_order_release); }
   void await_line(std::uint64_t value) {
@@ -61,8 +63,8 @@ class End {
   Arena& arena_;
   std::size_t out_;
   std::size_t in_;
-  LinkWriter writer_;
-  std::optional<LinkReader> reader_;
+  LatestWriter writer_;
+  std::optional<LatestReader> reader_;
   std::array<std::byte, payload_octets> payload_{};
 };
 

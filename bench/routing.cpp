@@ -17,9 +17,9 @@
 #include <new>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/flows/sealed_memory.hpp"
-#include "hirosco/data_transfer/flows/socket_channel.hpp"
-#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/os/clock.hpp"

@@ -13,8 +13,8 @@
 #include <set>
 #include <system_error>
 
-#include "hirosco/data_transfer/flows/sealed_memory.hpp"
-#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <span>
 
-#include "hirosco/data_transfer/flows/sealed_memory.hpp"
-#include "hirosco/data_transfer/realtime_link.hpp"
+#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
 
 using namespace hirosco;
 
@@ -19,11 +19,11 @@ Result<> deliver_one_sample() {
 
   HIROSCO_TRY_LET(const Mapping ours, provider.map(memory, Access::ReadWrite));
   HIROSCO_TRY(provider.seal_writers(memory));  // no second writer from now on
-  HIROSCO_TRY_LET(LinkWriter writer, LinkWriter::make(ours.octets, layout));
+  HIROSCO_TRY_LET(LatestWriter writer, LatestWriter::make(ours.octets, layout));
 
   HIROSCO_TRY(provider.verify(memory, link_memory_octets(layout.payload_octets), true));
   HIROSCO_TRY_LET(const Mapping theirs, provider.map(memory, Access::ReadOnly));
-  HIROSCO_TRY_LET(LinkReader reader, LinkReader::make(theirs.octets, layout));
+  HIROSCO_TRY_LET(LatestReader reader, LatestReader::make(theirs.octets, layout));
 
   const double position_rad = 0.25;
   writer.write(std::as_bytes(std::span{&position_rad, 1}), TimePoint{1ms}, LinkStatus::Valid);

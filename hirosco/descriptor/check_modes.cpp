@@ -8,9 +8,6 @@
 namespace hirosco::descriptor::detail {
 namespace {
 
-/// Consumers that one provided set has room for (subsystem/slots.hpp).
-constexpr std::size_t max_consumers = 8;
-
 struct Commissioned {
   const Subsystem* subsystem{nullptr};
   const Configuration* configuration{nullptr};
@@ -118,7 +115,6 @@ std::string MissionReader::refuse_link(const Mode& mode, const MissionLink& link
 
 void MissionReader::check_established(const xml::Element& element, const Mode& mode) {
   std::map<std::string, std::uint8_t> filled;
-  std::map<std::string, std::size_t> consumers;
   for (const xml::Element& child : element.children) {
     const auto* at = child.name == "Establish" ? child.find("link") : nullptr;
     const auto id = at == nullptr ? std::nullopt : to_integer(at->value);
@@ -134,10 +130,6 @@ void MissionReader::check_established(const xml::Element& element, const Mode& m
       problems_.add(*at, "E0323",
                     fmt::format("links {} and {} both fill '{}'", before->second, link->id, before->first),
                     "one link into each required set");
-    if (++consumers[link->from + "." + link->provides] == max_consumers + 1)
-      problems_.add(*at, "E0323",
-                    fmt::format("'{}.{}' has more than {} consumers", link->from, link->provides, max_consumers),
-                    "a further one would never get a sample");
   }
 }
 

@@ -324,23 +324,6 @@ TEST(MissionErrors, ASetIsFilledByOneLink) {
       "E0323", "links 1 and 3 both fill 'FLYWHEEL.PLATE_STATE'");
 }
 
-TEST(MissionErrors, ASetHasNoMoreConsumersThanItHasRoomFor) {
-  std::string requires_, links, establish;
-  for (int i = 0; i < 9; ++i) {
-    const std::string set = "COPY" + std::to_string(i), id = std::to_string(10 + i);
-    requires_ += "<Requires name=\"" + set + "\"><Field name=\"ACTIVE\" type=\"UINT8\"/></Requires>";
-    links += "<Link id=\"" + id + "\" from=\"CORONAGRAPH.PLATE_STATE\" to=\"FLYWHEEL." + set + "\"/>";
-    establish += "<Establish link=\"" + id + "\"/>";
-  }
-  const auto with = [&](const std::string& established) {
-    return read_changed({{"flywheel.xml", "<Requires name=\"PLATE_STATE\"",
-                          requires_ + "<Requires name=\"PLATE_STATE\" required=\"no\""},
-                         {"mission.xml", "<Links>", "<Links>" + links},
-                         {"mission.xml", "<Establish link=\"1\"/>", established}});
-  };
-  expect_one(with(establish), "E0323", "'CORONAGRAPH.PLATE_STATE' has more than 8 consumers");
-}
-
 TEST(MissionErrors, TheCyclesOfAModeFitOneProcessor) {
   const auto with = [](const char* robot, const char* flywheel) {
     return read_changed({{"coronagraph.xml", R"(<Configuration name="COUPLED")",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/descriptor/detail/subsystem_reader.hpp"
 
 namespace hirosco::descriptor::detail {
@@ -14,20 +15,16 @@ constexpr std::int64_t least_sampling_us = least_sampling / std::chrono::microse
 constexpr std::int64_t max_sampling_us = 3'600'000'000;  // an hour
 constexpr double max_watchdog_ms = 60'000;
 
-/// What is wrong with an address for this transfer; empty when nothing is.
-std::string_view refuse_address(Transfer transfer, std::string_view address) noexcept {
+/// What is wrong with an address of this form; empty when nothing is.
+std::string_view refuse_address(AddressForm form, std::string_view address) noexcept {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
            c == '.';
   };
-  switch (transfer) {
-    case Transfer::Udp:
+  switch (form) {
+    case AddressForm::HostPort:
       return classify_address(address) == Address::Malformed ? "host:port is needed, for example 127.0.0.1:5000" : "";
-    case Transfer::Tcp:
-    case Transfer::Serial:
-    case Transfer::MessageQueue: return "";  // not built in: reported, and no address helps
-    case Transfer::SharedMemory:
-    case Transfer::Unix:
+    case AddressForm::Name:
       return !address.empty() && address.size() <= 64 && address.front() != '.' && std::ranges::all_of(address, plain)
                  ? ""
                  : "a name of 1 to 64 letters, digits, '_', '-' and '.' is needed, no path";
@@ -160,12 +157,13 @@ Endnode SubsystemReader::read_address(Attributes& attributes) {
   if (const auto* transfer = attributes.required("transfer"); transfer != nullptr) {
     const auto known = attributes.word<Transfer>(*transfer, transfer->value);
     if (known) endnode.transfer = *known;
-    if (known == Transfer::MessageQueue || known == Transfer::Tcp || known == Transfer::Serial)
-      problems_.not_built_in(*transfer, transfer->value, "shared_memory, unix and udp are");
+    const FlowMeans* means = known ? find_flow_means(*known) : nullptr;
+    if (known && means == nullptr)
+      problems_.not_built_in(*transfer, transfer->value, are_built_in(standard_flow_means(), &FlowMeans::transfer));
     const auto* address = attributes.required("address");
     if (address != nullptr) {
       endnode.address = address->value;
-      const std::string_view wrong = known ? refuse_address(*known, endnode.address) : "";
+      const std::string_view wrong = means != nullptr ? refuse_address(means->form, endnode.address) : "";
       if (!wrong.empty())
         problems_.add(*address, "E0217",
                       fmt::format("{} is no address for {}", in_quotes(endnode.address), transfer->value),

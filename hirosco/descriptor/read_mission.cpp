@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/descriptor/detail/mission_reader.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
@@ -279,8 +280,8 @@ void MissionReader::check_endnodes(const Subsystem& subsystem) {
 }
 
 void MissionReader::check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems) {
-  const bool network = endnode.transfer == Transfer::Udp || endnode.transfer == Transfer::Tcp;
-  if (network && classify_address(endnode.address) == Address::Foreign)
+  const FlowMeans* means = find_flow_means(endnode.transfer);
+  if (means != nullptr && means->form == AddressForm::HostPort && classify_address(endnode.address) == Address::Foreign)
     problems.add(endnode.at, "E0313", in_quotes(endnode.address) + " leaves this computer",
                  "only loopback addresses are allowed: 127.0.0.1", 8);
   const auto taken = addresses_.try_emplace({endnode.transfer, endnode.address}, subsystem).first;

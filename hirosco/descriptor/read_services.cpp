@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -18,14 +19,17 @@ constexpr std::size_t max_arguments = 255;
 constexpr std::size_t max_structures = 256;
 constexpr std::size_t max_sets = 32;
 
-/// A list of words of which one is built in.
-template <class E>
-void expect_built_in(Attributes& attributes, Problems& problems, std::string_view name, E built_in) {
+/// Words of a list that no mechanism has.
+template <auto Has>
+void expect_built_in(Attributes& attributes, Problems& problems, std::string_view name) {
+  using E = std::invoke_result_t<decltype(Has), const LinkMechanism&>;
   const auto* given = attributes.optional(name);
   if (given == nullptr) return;
+  const auto has = [](const LinkMechanism* mechanism) { return std::invoke(Has, *mechanism); };
   for (const std::string_view word : words(given->value))
-    if (const auto known = from_text<E>(word); known && *known != built_in)
-      problems.not_built_in(*given, word, fmt::format("{} is", to_text(built_in)));
+    if (const auto known = from_text<E>(word);
+        known && std::ranges::find(standard_link_mechanisms(), *known, has) == standard_link_mechanisms().end())
+      problems.not_built_in(*given, word, are_built_in(standard_link_mechanisms(), has));
 }
 
 constexpr std::size_t max_set_fields = 64;
@@ -270,10 +274,10 @@ void SubsystemReader::read_sampled(const xml::Element& element, std::vector<Para
 
 LinkTerms SubsystemReader::read_terms(Attributes& attributes) {
   LinkTerms terms;
-  terms.methods = attributes.list_of<Method>("methods", terms.methods);
+  terms.methods = attributes.list_of<LinkMethod>("methods", terms.methods);
   terms.kinds = attributes.list_of<LinkKind>("kind", terms.kinds);
-  expect_built_in(attributes, problems_, "methods", Method::SharedMemory);
-  expect_built_in(attributes, problems_, "kind", LinkKind::Latest);
+  expect_built_in<&LinkMechanism::method>(attributes, problems_, "methods");
+  expect_built_in<&LinkMechanism::kind>(attributes, problems_, "kind");
   const auto* orders = attributes.optional("byte_order");
   if (orders == nullptr) return terms;
   if (orders->value != "native") terms.byte_orders = attributes.list_of<ByteOrder>("byte_order", terms.byte_orders);
@@ -305,15 +309,15 @@ void SubsystemReader::read_provides(const xml::Element& element, Services& servi
     octets += octets_of_reference(reference);
     const auto& members = subsystem_.parameters[reference.parameter].members;
     fields += reference.member || members.empty() ? 1 : members.size();
-    if (octets > max_link_octets || fields > max_set_fields) break;
+    if (octets > max_link_payload_octets || fields > max_set_fields) break;
     for (const Field& field : fields_of(subsystem_, reference))
       if (!field.name.empty() &&
           !names.add(field.name, reference.at, problems_, reference.text.size(), "fields of a set are matched by name"))
         break;
   }
-  if (octets > max_link_octets)
+  if (octets > max_link_payload_octets)
     problems_.add(element, "E0215", fmt::format("{} takes {} octets or more in one sample", user, octets),
-                  fmt::format("at most {}", max_link_octets));
+                  fmt::format("at most {}", max_link_payload_octets));
   if (fields > max_set_fields)
     problems_.add(element, "E0215", fmt::format("{} has {} fields or more", user, fields),
                   fmt::format("at most {}", max_set_fields));
@@ -337,9 +341,9 @@ void SubsystemReader::read_requires(const xml::Element& element, Services& servi
   if (set.fields.empty()) problems_.add(element, "E0106", "<Requires> needs at least one <Field>");
   std::size_t octets = 0;
   for (const Field& field : set.fields) octets += field.octets();
-  if (octets > max_link_octets)
+  if (octets > max_link_payload_octets)
     problems_.add(element, "E0215", fmt::format("set '{}' takes {} octets in one sample", set.name, octets),
-                  fmt::format("at most {}", max_link_octets));
+                  fmt::format("at most {}", max_link_payload_octets));
   if (!set.name.empty()) services.required.add(set.name, set.at, problems_, element.name.size() + 1);
   services.requires_.push_back(std::move(set));
 }

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/enum_text.hpp"
 #include "hirosco/utilities/id.hpp"
@@ -152,13 +154,11 @@ struct CustomService {
   Location at;
 };
 
-enum class Method : std::uint8_t { SharedMemory = 1, Udp = 2, Tcp = 3, Unix = 4, Dds = 5, Tipc = 6 };
 enum class ByteOrder : std::uint8_t { Little = 1, Big = 2 };
-enum class LinkKind : std::uint8_t { Latest = 1, Queued = 2 };
 
 /// What one side of a real-time link can do; lists are in order of preference, never empty.
 struct LinkTerms {
-  std::vector<Method> methods{Method::SharedMemory};
+  std::vector<LinkMethod> methods{LinkMethod::SharedMemory};
   std::vector<ByteOrder> byte_orders{ByteOrder::Little};
   std::vector<LinkKind> kinds{LinkKind::Latest};
 };
@@ -191,8 +191,6 @@ struct Requires {
   std::vector<Field> fields;
   Location at;
 };
-
-enum class Transfer : std::uint8_t { SharedMemory, MessageQueue, Unix, Udp, Tcp, Serial };
 
 /// Address and means of transfer of a data flow (paper 4.1).
 struct Endnode {
@@ -333,20 +331,9 @@ struct EnumTexts<descriptor::Severity> {
       enum_table<descriptor::Severity>({{Info, "info"}, {Low, "low"}, {Medium, "medium"}, {High, "high"}});
 };
 template <>
-struct EnumTexts<descriptor::Method> {
-  using enum descriptor::Method;
-  static constexpr auto table = enum_table<descriptor::Method>(
-      {{SharedMemory, "shared_memory"}, {Udp, "udp"}, {Tcp, "tcp"}, {Unix, "unix"}, {Dds, "dds"}, {Tipc, "tipc"}});
-};
-template <>
 struct EnumTexts<descriptor::ByteOrder> {
   using enum descriptor::ByteOrder;
   static constexpr auto table = enum_table<descriptor::ByteOrder>({{Little, "little"}, {Big, "big"}});
-};
-template <>
-struct EnumTexts<descriptor::LinkKind> {
-  using enum descriptor::LinkKind;
-  static constexpr auto table = enum_table<descriptor::LinkKind>({{Latest, "latest"}, {Queued, "queued"}});
 };
 template <>
 struct EnumTexts<descriptor::MissingPolicy> {
@@ -358,15 +345,5 @@ struct EnumTexts<descriptor::StopKind> {
   using enum descriptor::StopKind;
   static constexpr auto table =
       enum_table<descriptor::StopKind>({{Drop, "drop"}, {Controlled, "controlled"}, {Hold, "hold"}});
-};
-template <>
-struct EnumTexts<descriptor::Transfer> {
-  using enum descriptor::Transfer;
-  static constexpr auto table = enum_table<descriptor::Transfer>({{SharedMemory, "shared_memory"},
-                                                                  {MessageQueue, "message_queue"},
-                                                                  {Unix, "unix"},
-                                                                  {Udp, "udp"},
-                                                                  {Tcp, "tcp"},
-                                                                  {Serial, "serial"}});
 };
 }  // namespace hirosco

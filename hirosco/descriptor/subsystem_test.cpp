@@ -162,7 +162,7 @@ TEST(SubsystemDescriptor, FillsTheConfiguration) {
   EXPECT_EQ(coupled->priority, 80);
   EXPECT_EQ(coupled->sampling, 500us);
   const Provides& state = coupled->provides.at(0);
-  EXPECT_EQ(state.terms.methods, std::vector{Method::SharedMemory});
+  EXPECT_EQ(state.terms.methods, std::vector{LinkMethod::SharedMemory});
   EXPECT_EQ(state.parameters.at(0).member, 1);
   EXPECT_EQ(fields_of(robot, state.parameters.at(1)).at(0).name, "TORQUE") << "an unqualified member";
   const Requires& stick = coupled->requires_.at(0);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
@@ -69,9 +69,7 @@ class CountedFlight {
 
  private:
   std::unique_ptr<DataFlow> open(const char* address) {
-    return std::move(rig_.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), address},
-                                     FlowSide::Device))
-        .value();
+    return std::move(rig_.flows.open({Transfer::SharedMemory, address}, FlowSide::Device)).value();
   }
   /// Hand and devices say something new; now and then the hand misses some cycles and becomes stale, which is reported.
   void sample() {

@@ -7,7 +7,7 @@
 #include <deque>
 #include <vector>
 
-#include "hirosco/data_transfer/channel.hpp"
+#include "hirosco/data_transfer/control/channel.hpp"
 
 namespace hirosco {
 

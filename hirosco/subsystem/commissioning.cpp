@@ -136,7 +136,7 @@ Result<Step> GenericSubsystem::leave_cycle() {
 void GenericSubsystem::end_configuration() {
   for (const auto& [link, end] : link_ends_) {
     // An announced end is not a stale link: consumers make themselves safe without an alarm.
-    if (end.role == pus::st128::Role::Producer) end.link->writer.set_status(LinkStatus::Stopping);
+    if (end.role == pus::st128::Role::Producer) end.link->writer->set_status(LinkStatus::Stopping);
     link_service_.report_detached(link, end.role);
   }
   for (auto& [link, end] : link_ends_) leaving_links_.push_back(std::move(end.link));
@@ -292,8 +292,7 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     if (port == device_ports_.end()) return mismatch("no port for the device " + device.name);
     if (const auto difference = DeviceSlot::difference(device, *port->second); !difference.empty())
       return mismatch("device " + device.name + ": " + difference);
-    auto flow =
-        world_.flows.open({static_cast<std::uint8_t>(use.endnode.transfer), use.endnode.address}, FlowSide::Subsystem);
+    auto flow = world_.flows.open({use.endnode.transfer, use.endnode.address}, FlowSide::Subsystem);
     if (!flow) return of("device " + device.name + ": ", flow.error());
     plan.devices.emplace_back(device, use, *port->second, std::move(*flow), world_.realtime);
     plan.device_lost_events.push_back(descriptor::framework_event::device_lost(use.device));

@@ -83,8 +83,7 @@ TEST_F(Commissioning, ASoftwareInitThatTakesItsTimeIsCalledAgainUntilItIsDone) {
 }
 
 TEST_F(Commissioning, ADeviceThatSomebodyElseHoldsFailsTheConfigurationByItsName) {
-  const auto held =
-      rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "arm"}, FlowSide::Subsystem);
+  const auto held = rig.flows.open({Transfer::SharedMemory, "arm"}, FlowSide::Subsystem);
   ASSERT_TRUE(held);
   rig.set_state_now(State::PreOperational);
   EXPECT_THAT(rig.configure_now(3), StartsWith("1 3 8:"));

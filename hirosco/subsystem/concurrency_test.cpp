@@ -93,7 +93,7 @@ class Threaded {
 
   SystemClock clock_;
   HeapMemory memory_;
-  SimulatedFlows flows_;
+  LocalFlows flows_;
   ChannelPair channels_{4096};
   VitalPage vital_{};
   PermitPage permit_{};

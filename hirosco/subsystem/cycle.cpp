@@ -133,7 +133,7 @@ void CycleLoop::take_commands() noexcept {
         plan_.inputs[command->index].detach(command->link);
         report(ReportKind::InputDetached, command->index, {}, command->link);
         break;
-      case CommandKind::AttachOutput: static_cast<void>(plan_.outputs[command->index].attach(command->link)); break;
+      case CommandKind::AttachOutput: plan_.outputs[command->index].attach(command->link); break;
       case CommandKind::DetachOutput:
         plan_.outputs[command->index].detach(command->link);
         report(ReportKind::OutputDetached, command->index, {}, command->link);

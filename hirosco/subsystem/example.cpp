@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
-#include "hirosco/data_transfer/simulated/channel_pair.hpp"
-#include "hirosco/data_transfer/simulated/heap_memory.hpp"
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
@@ -64,7 +64,7 @@ int main() {
   if (!reading.value) return 1;
   ManualClock clock;
   HeapMemory memory;
-  SimulatedFlows flows;
+  LocalFlows flows;
   ChannelPair channels;
   VitalPage vital;
   PermitPage permit;

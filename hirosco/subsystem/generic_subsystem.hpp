@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/channel.hpp"
-#include "hirosco/data_transfer/data_flow.hpp"
-#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/parameter/write_queue.hpp"
 #include "hirosco/pus/packet/packet_counters.hpp"
@@ -42,6 +42,7 @@ struct World {
   bool realtime{true};               ///< SCHED_FIFO is granted; false: the reduced limits hold (decision 21)
   /// Explains to a developer why something was refused (standard error, a test's list). Service loop only.
   std::function<void(std::string_view)> explain{};
+  LinkMechanisms links{standard_link_mechanisms()};
 };
 
 /// What failed, in words that outlive whoever said them.
@@ -131,6 +132,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   const LinkOutputSlot* find_provided(std::string_view set) override;
   std::string refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) override;
   Duration period() override;
+  bool carries(LinkMethod method, LinkKind kind) override;
   Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) override;
   bool detach(std::uint8_t link) override;
 

@@ -194,7 +194,7 @@ TEST(AuthorsMistakes, OfADescriptorBuiltInCodeAreToldAndCrashNothing) {
   Probe probe;
   ManualClock clock;
   HeapMemory memory;
-  SimulatedFlows flows;
+  LocalFlows flows;
   ChannelPair channels;
   VitalPage vital;
   const PermitPage permit;

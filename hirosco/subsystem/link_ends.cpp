@@ -22,23 +22,23 @@ const LinkOutputSlot* GenericSubsystem::find_provided(std::string_view set) {
 
 /// The same for the handshake, where it can be said in words, and for the attachment, where it counts.
 std::string GenericSubsystem::refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) {
-  const bool consumer = role == pus::st128::Role::Consumer;
+  if (role == pus::st128::Role::Producer) return {};
   // Decision 12: what a consumer acts on is settled before it acts. A link that it has, whose partner left and came back, is
   // no new one; and a set whose absence is only held over comes and goes (adr 0021).
-  const descriptor::Requires* wanted = consumer ? find_required(set) : nullptr;
+  const descriptor::Requires* wanted = find_required(set);
   const bool settled = wanted != nullptr && wanted->required && !link_ends_.contains(link) &&
                        wanted->missing == descriptor::MissingPolicy::Inhibit;
   if (settled && state_ != State::PreOperational)
     return "links into a set are made in PreOperational, this is " + std::string{to_text(state_)};
-  const auto others = std::ranges::count_if(link_ends_, [&](const auto& entry) {
+  const bool has_another = std::ranges::any_of(link_ends_, [&](const auto& entry) {
     const LinkEnd& end = entry.second;
-    if (entry.first == link || end.role != role) return false;
-    return (consumer ? configuration_->requires_[end.slot].name : configuration_->provides[end.slot].name) == set;
+    return entry.first != link && end.role == role && configuration_->requires_[end.slot].name == set;
   });
-  if (consumer && others != 0) return "the set has a link already";
-  if (!consumer && others >= static_cast<std::ptrdiff_t>(LinkOutputSlot::max_consumers))
-    return "the set has " + std::to_string(LinkOutputSlot::max_consumers) + " consumers already, which is the most";
-  return {};
+  return has_another ? "the set has a link already" : "";
+}
+
+bool GenericSubsystem::carries(LinkMethod method, LinkKind kind) {
+  return find_link_mechanism(world_.links, method, kind) != nullptr;
 }
 
 Duration GenericSubsystem::period() { return configuration_ != nullptr ? configuration_->sampling : Duration{}; }
@@ -58,14 +58,12 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
                           .payload_octets = agreement.payload_octets(),
                           .layout_hash = agreement.layout_hash(),
                           .period = agreement.producer_period};
-  const std::size_t octets = link_memory_octets(layout.payload_octets);
+  const LinkMechanism* mechanism = find_link_mechanism(world_.links, agreement.method, agreement.kind);
+  if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
   auto link = std::make_unique<AttachedLink>();
-  HIROSCO_TRY(world_.memory.verify(memory, octets, !producer));
-  HIROSCO_TRY_LET(link->mapping, world_.memory.map(memory, producer ? Access::ReadWrite : Access::ReadOnly));
   link->id = request.link;
   link->agreement = agreement;
   link->order = agreement.byte_order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
-  link->payload.resize(layout.payload_octets);
   LinkEnd end{.link = nullptr, .role = request.role, .epoch = request.epoch, .slot = 0};
   CyclePlan& plan = cycle_.plan();
   if (producer) {
@@ -73,13 +71,13 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
     if (slot == plan.outputs.end()) return fail(ErrorCode::NotFound, "no such provided set");
     // Another configuration may be in force than the one that negotiated; the cycle writes these fields unchecked.
     if (agreement.fields != slot->fields()) return fail(ErrorCode::Mismatch, "the agreement is not of this set");
-    HIROSCO_TRY_LET(link->writer, LinkWriter::make(link->mapping.octets, layout));
-    HIROSCO_TRY(world_.memory.seal_writers(memory));
+    HIROSCO_TRY_LET(link->writer, mechanism->produce(world_.memory, memory, layout));
     end.slot = static_cast<std::uint16_t>(slot - plan.outputs.begin());
   } else {
     const auto slot = std::ranges::find_if(plan.inputs, [&](const auto& s) { return s.terms().name == request.set; });
     if (slot == plan.inputs.end()) return fail(ErrorCode::NotFound, "no such required set");
-    HIROSCO_TRY_LET(link->reader, LinkReader::make(link->mapping.octets, layout));
+    HIROSCO_TRY_LET(link->reader, mechanism->consume(world_.memory, memory, layout));
+    link->payload.resize(layout.payload_octets);
     HIROSCO_TRY(slot->plan(*link));
     const auto ratio = agreement.producer_period / std::max(agreement.consumer_period, Duration{1});
     link->producer_cycles_per_sample = static_cast<std::uint32_t>(std::max<std::int64_t>(ratio, 1));

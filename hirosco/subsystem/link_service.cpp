@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "hirosco/data_transfer/channel.hpp"
+#include "hirosco/data_transfer/control/channel.hpp"
 
 namespace hirosco {
 
@@ -55,7 +55,8 @@ void LinkService::negotiate(Octets data, const pus::Request& request) {
     return refuse(asked->link, {4, std::move(why)}, request);
   const st128::Offer own{
       .set = asked->set, .period = owner_.period(), .terms = provided->terms().terms, .fields = provided->fields()};
-  const auto outcome = st128::negotiate(own, asked->consumer);
+  const auto outcome = st128::negotiate(
+      own, asked->consumer, [this](LinkMethod method, LinkKind kind) { return owner_.carries(method, kind); });
   if (!outcome) return refuse(asked->link, outcome.error(), request);
   std::array<std::byte, max_packet_octets> buffer;
   const auto octets = st128::write_agreement(buffer, asked->link, *outcome);

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 #include "hirosco/subsystem/slots.hpp"
@@ -24,6 +24,8 @@ class LinkServiceOwner {
   /// Why no link may be made into a required set, or out of a provided one, now; empty when it may.
   virtual std::string refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) = 0;
   virtual Duration period() = 0;
+  /// Whether a mechanism of the platform carries such links.
+  virtual bool carries(LinkMethod method, LinkKind kind) = 0;
   /// Maps the memory and hands this end to the cycle.
   virtual Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) = 0;
   /// Takes an end back from the cycle; false when there is no such link here.

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "hirosco/data_transfer/realtime_link.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/parameter/layout.hpp"
 #include "hirosco/utilities/octets.hpp"
 

@@ -172,8 +172,7 @@ TEST(FailedPostOperational, GivesBackConfigurationPlanAndFlowsWhenTheCycleHasCom
   rig.cycle();  // it rests at last
   rig.service();
   EXPECT_EQ(rig.vital.configuration.load(), 0u);
-  const auto arm =
-      rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "arm"}, FlowSide::Subsystem);
+  const auto arm = rig.flows.open({Transfer::SharedMemory, "arm"}, FlowSide::Subsystem);
   EXPECT_TRUE(arm) << "its data flow is free for the next";
   EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
 }

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/flows/sealed_memory.hpp"
-#include "hirosco/data_transfer/flows/socket_channel.hpp"
-#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <ranges>
 
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
@@ -37,9 +37,7 @@ struct Devices : ::testing::Test {
   std::uint16_t flags{device_flag::over_temperature};
 
   std::unique_ptr<DataFlow> open(const char* address) {
-    return std::move(rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), address},
-                                    FlowSide::Device))
-        .value();
+    return std::move(rig.flows.open({Transfer::SharedMemory, address}, FlowSide::Device)).value();
   }
   struct Command {
     DeviceMode mode{};

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 
@@ -104,9 +104,7 @@ struct SizedParts : ::testing::TestWithParam<std::size_t> {
   AxesSubsystem axes;
   Rig rig{axes, with_axes(n)};
   std::unique_ptr<DataFlow> device =
-      std::move(
-          rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "motors"}, FlowSide::Device))
-          .value();
+      std::move(rig.flows.open({Transfer::SharedMemory, "motors"}, FlowSide::Device)).value();
   std::vector<double> numbers;
 
   void SetUp() override {

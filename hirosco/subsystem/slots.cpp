@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/parameter/number.hpp"
 
 namespace hirosco {
@@ -129,7 +129,7 @@ void LinkInputSlot::read(TimePoint now) noexcept {
     port_->valid_ = false;
     return;
   }
-  const LinkSample sample = link_->reader.read(link_->payload);
+  const LinkSample sample = link_->reader->read(link_->payload);
   if (sample.flow == Flow::New) {
     for (std::size_t i = 0; i < link_->scatter.size(); ++i) {
       const LayoutField& field = link_->scatter[i];
@@ -179,33 +179,42 @@ LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const des
       sources_.push_back({cell, {native.type, native.count, native.offset}});
     }
   }
+  std::size_t octets = 0;
+  for (const auto& field : fields_) octets += octets_of(field.type) * field.count;
+  for (auto& payload : payloads_) payload.resize(octets);
 }
 
-bool LinkOutputSlot::attach(AttachedLink* link) noexcept {
-  for (AttachedLink*& place : links_)
-    if (place == nullptr) {
-      place = link;
-      return true;
-    }
-  return false;
+void LinkOutputSlot::attach(AttachedLink* link) noexcept {
+  link->next = first_;
+  first_ = link;
 }
 
 void LinkOutputSlot::detach(AttachedLink* link) noexcept {
-  for (AttachedLink*& place : links_)
-    if (place == link) place = nullptr;
+  for (AttachedLink** place = &first_; *place != nullptr; place = &(*place)->next)
+    if (*place == link) {
+      *place = link->next;
+      return;
+    }
+}
+
+void LinkOutputSlot::encode_for(std::endian order) noexcept {
+  std::size_t at = 0;
+  for (const Source& source : sources_) {
+    const std::size_t octets = octets_of(source.field.type) * source.field.count;
+    encode(std::span{&source.field, 1}, source.cell->live(), payload(order).subspan(at, octets), order);
+    at += octets;
+  }
 }
 
 void LinkOutputSlot::write(TimePoint now, LinkStatus status) noexcept {
-  for (AttachedLink* link : links_) {
-    if (link == nullptr) continue;
-    std::size_t at = 0;
-    for (const Source& source : sources_) {
-      const std::size_t octets = octets_of(source.field.type) * source.field.count;
-      encode(std::span{&source.field, 1}, source.cell->live(), MutableOctets{link->payload}.subspan(at, octets),
-             link->order);
-      at += octets;
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    bool encoded = false;
+    for (AttachedLink* link = first_; link != nullptr; link = link->next) {
+      if (link->order != order) continue;
+      if (!encoded) encode_for(order);
+      encoded = true;
+      link->writer->write(payload(order), now, status);
     }
-    link->writer.write(link->payload, now, status);
   }
 }
 

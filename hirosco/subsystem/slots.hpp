@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/data_flow.hpp"
+#include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/layout.hpp"
-#include "hirosco/data_transfer/memory.hpp"
-#include "hirosco/data_transfer/realtime_link.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
@@ -27,14 +27,14 @@ namespace hirosco {
 
 /// One end of an established link: made by the service loop, used by the cycle, freed by the service loop.
 struct AttachedLink {
-  Mapping mapping;
   std::uint8_t id{0};                    ///< in the mission
   pus::st128::Agreement agreement;
-  LinkWriter writer;
-  LinkReader reader;
+  std::unique_ptr<LinkWriter> writer;    ///< producer
+  std::unique_ptr<LinkReader> reader;    ///< consumer
+  AttachedLink* next{nullptr};           ///< producer: of the same set; the cycle's
   std::vector<LayoutField> scatter;      ///< consumer: where each agreed field goes in the port, size 0 = unused
   std::vector<std::size_t> wire_offset;  ///< consumer: of each entry of `scatter`
-  std::vector<std::byte> payload;
+  std::vector<std::byte> payload;        ///< consumer
   std::endian order{std::endian::little};
   std::uint32_t producer_cycles_per_sample{1};  ///< own cycles that one sample of a slower producer may take
 };
@@ -69,14 +69,13 @@ class LinkInputSlot {
   std::uint32_t latency_max_ns_{0};
 };
 
-/// A provided set of real-time data. A set may have several consumers: one link each.
+/// A provided set of real-time data. A set may have any number of consumers, one link each: what they get is encoded once.
 class LinkOutputSlot {
  public:
   LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms, Dictionary& dictionary);
   [[nodiscard]] const descriptor::Provides& terms() const noexcept { return *terms_; }
   [[nodiscard]] const std::vector<pus::st128::OfferedField>& fields() const noexcept { return fields_; }
-  static constexpr std::size_t max_consumers = 8;
-  [[nodiscard]] bool attach(AttachedLink* link) noexcept;
+  void attach(AttachedLink* link) noexcept;
   void detach(AttachedLink* link) noexcept;
   void write(TimePoint now, LinkStatus status) noexcept;
 
@@ -88,7 +87,13 @@ class LinkOutputSlot {
   const descriptor::Provides* terms_;
   std::vector<pus::st128::OfferedField> fields_;
   std::vector<Source> sources_;
-  std::array<AttachedLink*, max_consumers> links_{};
+  void encode_for(std::endian order) noexcept;
+  [[nodiscard]] MutableOctets payload(std::endian order) noexcept {
+    return payloads_[order == std::endian::big ? 1 : 0];
+  }
+
+  std::array<std::vector<std::byte>, 2> payloads_;  ///< little and big endian
+  AttachedLink* first_{nullptr};
 };
 
 /// A device and its data flow.
@@ -137,9 +142,9 @@ class DeviceSlot {
   std::uint32_t sequence_{0};
   Loss since_good_;
   bool hung_up_{false};
-  std::uint32_t echoed_{0};          ///< command sequence that the newest status frame answers
-  std::uint32_t epoch_{0};           ///< of the newest command
-  std::uint32_t active_cycles_{0};   ///< in a row in which outputs were to reach the actuators
+  std::uint32_t echoed_{0};  ///< command sequence that the newest status frame answers
+  std::uint32_t epoch_{0};  ///< of the newest command
+  std::uint32_t active_cycles_{0};  ///< in a row in which outputs were to reach the actuators
   bool heard_{false};
   bool just_lost_{false};
 };

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "hirosco/data_transfer/device_frame.hpp"
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
 
 /// One device, one set: what counts as alive, and what is written, octet by octet.
 namespace hirosco {
@@ -31,7 +31,7 @@ descriptor::Field field(const char* name, Type type, std::uint16_t count = 1) {
 
 /// A motor with an angle and two currents; three cycles of silence are too many, ten without real-time rights.
 struct MotorSlot : ::testing::Test {
-  SimulatedFlows flows;
+  LocalFlows flows;
   descriptor::Device device = [] {
     descriptor::Device made;
     made.name = "MOTOR";
@@ -52,8 +52,7 @@ struct MotorSlot : ::testing::Test {
   std::array<std::byte, max_device_frame_octets> frame{};
 
   std::unique_ptr<DataFlow> open(FlowSide side) {
-    return std::move(flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "motor"}, side))
-        .value();
+    return std::move(flows.open({Transfer::SharedMemory, "motor"}, side)).value();
   }
   DeviceSlot slot(bool realtime = true) { return DeviceSlot{device, use, port, open(FlowSide::Subsystem), realtime}; }
   void say(std::uint32_t sequence, std::uint16_t flags = 0, std::array<std::byte, 2> angle = {}) {

@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
-#include "hirosco/data_transfer/channel.hpp"
-#include "hirosco/data_transfer/data_flow.hpp"
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 
 /// What stands between two parts and changes what they say to each other.
 namespace hirosco::campaign {

@@ -10,9 +10,7 @@
 namespace hirosco::simulation {
 namespace {
 
-FlowAddress address_of(const descriptor::Endnode& endnode) {
-  return {static_cast<std::uint8_t>(endnode.transfer), endnode.address};
-}
+FlowAddress address_of(const descriptor::Endnode& endnode) { return {endnode.transfer, endnode.address}; }
 
 SimulatedDevice::Stop stop_of(descriptor::StopKind kind) {
   switch (kind) {

@@ -20,14 +20,14 @@ descriptor::Mission a_mission() {
   device.stop = descriptor::StopKind::Controlled;
   device.stop_within = std::chrono::milliseconds{200};
   device.enable.emplace();
-  device.enable->transfer = descriptor::Transfer::Unix;
+  device.enable->transfer = Transfer::Unix;
   device.enable->address = "joints.enable";
   for (const auto sampling : {std::chrono::microseconds{2000}, std::chrono::microseconds{250}}) {
     auto& configuration = member.subsystem.configurations.emplace_back();
     configuration.name = sampling.count() == 250 ? "FAST" : "SLOW";
     configuration.sampling = sampling;
     auto& use = configuration.devices.emplace_back();
-    use.endnode.transfer = descriptor::Transfer::Udp;
+    use.endnode.transfer = Transfer::Udp;
     use.endnode.address = "joints";
     use.endnode.byte_order = descriptor::ByteOrder::Big;
   }

@@ -19,7 +19,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -31,15 +32,19 @@ namespace {
 constexpr int priority = 85;         // above every cycle: a device does not wait for those whom it serves
 constexpr Duration control_period = std::chrono::milliseconds{10};
 
-// Numbers of descriptor::Transfer, which ranks above the flows that this program opens.
-const std::map<std::string, std::uint8_t> transfers{{"shared_memory", 0}, {"unix", 2}, {"udp", 3}};
+std::map<std::string, Transfer> transfers() {
+  std::map<std::string, Transfer> found;
+  for (const FlowMeans& means : standard_flow_means()) found.emplace(to_text(means.transfer), means.transfer);
+  return found;
+}
+
 const std::map<std::string, std::endian> byte_orders{{"little", std::endian::little}, {"big", std::endian::big}};
 const std::map<std::string, SimulatedDevice::Stop> stops{{"drop", SimulatedDevice::Stop::Drop},
                                                          {"controlled", SimulatedDevice::Stop::Controlled},
                                                          {"hold", SimulatedDevice::Stop::Hold}};
 
 struct Options {
-  std::uint8_t transfer{0};
+  Transfer transfer{Transfer::SharedMemory};
   std::string address;
   std::string control;
   std::uint64_t seed{1};
@@ -47,7 +52,7 @@ struct Options {
   std::endian byte_order{std::endian::little};
   SimulatedDevice::Stop stop{SimulatedDevice::Stop::Drop};
   std::int64_t stop_within_ms{0};
-  std::uint8_t enable_transfer{0};
+  Transfer enable_transfer{Transfer::SharedMemory};
   std::string enable_address;
   std::vector<std::string> settings;
 };
@@ -55,7 +60,7 @@ struct Options {
 /// An exit code when the program is to end here.
 std::optional<int> read_options(int argc, char** argv, const char* name, Options& options) {
   CLI::App app{"A simulated device of HIROSCO", name};
-  app.add_option("--transfer", options.transfer, "Means of transfer")->transform(CLI::CheckedTransformer{transfers});
+  app.add_option("--transfer", options.transfer, "Means of transfer")->transform(CLI::CheckedTransformer{transfers()});
   app.add_option("--address", options.address, "Address of the data flow")->required();
   app.add_option("--control", options.control, "Path of the control socket");
   app.add_option("--seed", options.seed, "Seed of all that is random");
@@ -65,7 +70,7 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
       ->transform(CLI::CheckedTransformer{stops});
   app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")->check(CLI::Range(0, 60'000));
   app.add_option("--enable-transfer", options.enable_transfer, "Means of transfer of the second inhibit")
-      ->transform(CLI::CheckedTransformer{transfers});
+      ->transform(CLI::CheckedTransformer{transfers()});
   app.add_option("--enable-address", options.enable_address, "Its address; without one there is none");
   app.add_option("--set", options.settings, "NAME=VALUE, carried out at the start");
   try {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include "hirosco/data_transfer/data_flow.hpp"
+#include "hirosco/data_transfer/device/data_flow.hpp"
 #include "simulation/devices/simulated_device.hpp"
 
 namespace hirosco::simulation {

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/data_transfer/data_flow.hpp"
-#include "hirosco/data_transfer/device_frame.hpp"
-#include "hirosco/data_transfer/enable_frame.hpp"
+#include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/data_transfer/simulated/channel_pair.hpp"
-#include "hirosco/data_transfer/simulated/heap_memory.hpp"
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "simulation/devices/simulated_device.hpp"
@@ -116,7 +116,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   Parts parts_;
   ManualClock clock_;
   HeapMemory memory_;
-  SimulatedFlows flows_;
+  LocalFlows flows_;
   SimulatedGround ground_;
   std::unique_ptr<supervisor::PacketLog> log_;
   std::vector<std::unique_ptr<Member>> members_;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 
@@ -19,9 +19,7 @@ struct JoystickTest : ::testing::Test {
   std::unique_ptr<Subsystem> joystick = make_joystick();
   testing::Rig rig{*joystick, descriptor::file_system()(file).value()};
   std::unique_ptr<DataFlow> handle =
-      std::move(rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "rokviss-joystick"},
-                               FlowSide::Device))
-          .value();
+      std::move(rig.flows.open({Transfer::SharedMemory, "rokviss-joystick"}, FlowSide::Device)).value();
   testing::Rig::Partner robot;
   std::array<double, 2> robot_torque_n_m{};
   bool robot_active{true};

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 #include "subsystems/manipulator/manipulator.hpp"
@@ -57,9 +57,7 @@ struct ArmTest : ::testing::TestWithParam<std::size_t> {
   std::unique_ptr<Subsystem> arm = make_arm();
   testing::Rig rig{*arm, arm_descriptor(n)};
   std::unique_ptr<DataFlow> device =
-      std::move(
-          rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "arm"}, FlowSide::Device))
-          .value();
+      std::move(rig.flows.open({Transfer::SharedMemory, "arm"}, FlowSide::Device)).value();
   testing::Rig::Partner handle;
   std::vector<double> handle_rad = std::vector<double>(n);
   std::vector<double> position_rad, speed_rad_s = std::vector<double>(n), load_n_m = std::vector<double>(n);

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 
@@ -21,9 +21,7 @@ struct ManipulatorTest : ::testing::Test {
   std::unique_ptr<Subsystem> manipulator = make_manipulator();
   testing::Rig rig{*manipulator, descriptor::file_system()(file).value()};
   std::unique_ptr<DataFlow> robot =
-      std::move(rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "rokviss-robot"},
-                               FlowSide::Device))
-          .value();
+      std::move(rig.flows.open({Transfer::SharedMemory, "rokviss-robot"}, FlowSide::Device)).value();
   testing::Rig::Partner joystick;
   std::array<double, 2> position_rad{-0.8, 1.6};
   std::array<double, 2> torque_n_m{};

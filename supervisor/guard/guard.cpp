@@ -80,8 +80,7 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
   for (const descriptor::Device& device : described.subsystem.devices) {
     if (!device.enable) continue;
     HIROSCO_TRY_LET(auto flow,
-                    parts_.flows.open({static_cast<std::uint8_t>(device.enable->transfer), device.enable->address},
-                                      FlowSide::Subsystem));
+                    parts_.flows.open({device.enable->transfer, device.enable->address}, FlowSide::Subsystem));
     Device watched;
     watched.name = device.name;
     watched.flow = std::move(flow);

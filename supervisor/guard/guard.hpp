@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/data_flow.hpp"
-#include "hirosco/data_transfer/enable_frame.hpp"
+#include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/subsystem/pages.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/os/mutex.hpp"

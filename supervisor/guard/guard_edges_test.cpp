@@ -361,7 +361,7 @@ TEST_F(GuardTest, OneDeviceThatHasStoppedDoesNotStandForTheOther) {
   launched.grip = lives[hand].process;
   second.adopt(hand, launched);
   const auto open = [&](const char* name) {
-    return flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), name}, FlowSide::Device).value();
+    return flows.open({Transfer::SharedMemory, name}, FlowSide::Device).value();
   };
   const auto left = open("LEFT"), right = open("RIGHT");
   const auto stop = second.stop_all();

@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "hirosco/data_transfer/channel.hpp"
-#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"

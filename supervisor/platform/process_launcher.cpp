@@ -13,7 +13,7 @@
 #include <new>
 #include <string>
 
-#include "hirosco/data_transfer/flows/socket_channel.hpp"
+#include "hirosco/data_transfer/control/socket_channel.hpp"
 #include "hirosco/subsystem/pages.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 

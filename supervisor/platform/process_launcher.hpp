@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "hirosco/data_transfer/flows/sealed_memory.hpp"
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
 #include "supervisor/platform/error_lines.hpp"
 #include "supervisor/platform/launcher.hpp"

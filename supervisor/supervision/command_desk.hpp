@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 namespace hirosco::supervisor {

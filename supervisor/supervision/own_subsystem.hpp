@@ -7,7 +7,7 @@
 #include <memory>
 #include <string_view>
 
-#include "hirosco/data_transfer/simulated/channel_pair.hpp"
+#include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
 

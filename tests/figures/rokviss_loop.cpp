@@ -7,8 +7,8 @@
 namespace hirosco::simulation {
 namespace {
 
-const FlowAddress robot_address{0, "robot"};
-const FlowAddress joystick_address{0, "joystick"};
+const FlowAddress robot_address{Transfer::SharedMemory, "robot"};
+const FlowAddress joystick_address{Transfer::SharedMemory, "joystick"};
 constexpr Duration cycle = std::chrono::microseconds{500};
 
 Vec2 get(OctetReader& reader) noexcept {

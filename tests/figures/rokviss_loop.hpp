@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "hirosco/data_transfer/device_frame.hpp"
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
 #include "simulation/devices/joystick/joystick_device.hpp"
 #include "simulation/devices/robot/robot_device.hpp"
 #include "subsystems/joystick/control_law.hpp"
@@ -114,7 +114,7 @@ class RokvissLoop {
                       std::size_t payload_octets) noexcept;
 
   Settings settings_;
-  SimulatedFlows flows_;
+  LocalFlows flows_;
   RobotDevice robot_;
   JoystickDevice joystick_;
   std::unique_ptr<DataFlow> to_robot_;

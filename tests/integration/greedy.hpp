@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/device_frame.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "tests/integration/flight.hpp"
 
 /// A careless subsystem, GREEDY, with a motor that notes all that it hears: it writes torque in every node of the state

@@ -12,6 +12,8 @@
 #include <cerrno>
 #include <charconv>
 
+#include "hirosco/data_transfer/device/flow_means.hpp"
+
 namespace hirosco::tools {
 
 namespace fs = std::filesystem;
@@ -40,10 +42,11 @@ struct Address {
 }
 
 /// What a second process at the same address would get in the way of: neither name nor port is the instance's.
-[[nodiscard]] std::vector<std::string> udp_of(const descriptor::Mission& mission) {
+[[nodiscard]] std::vector<std::string> ports_of(const descriptor::Mission& mission) {
   std::vector<std::string> found;
   const auto note = [&](const descriptor::Endnode& endnode) {
-    if (endnode.transfer == descriptor::Transfer::Udp) found.push_back(endnode.address);
+    const FlowMeans* means = find_flow_means(endnode.transfer);
+    if (means != nullptr && means->form == AddressForm::HostPort) found.push_back(endnode.address);
   };
   for (const auto& member : mission.subsystems) {
     for (const auto& device : member.subsystem.devices)
@@ -103,7 +106,7 @@ FlightEntry plan_flight(const descriptor::Mission& mission, const std::string& i
                     .file = fs::absolute(mission.file, failed),
                     .folder = runtime_folder(instance),
                     .log = fs::absolute(instance_log(mission, instance), failed),
-                    .udp = udp_of(mission),
+                    .udp = ports_of(mission),
                     .load = descriptor::cycle_share(mission),
                     .keeper = ::getpid()};
   if (mission.ground.subsystem.empty()) return entry;

@@ -222,18 +222,17 @@ TEST(Instance, KnowsTheUdpAddressesOfItsDevices) {
   descriptor::Mission mission = some_mission();
   descriptor::MissionSubsystem member;
   descriptor::Device device;
-  const auto endnode = [](descriptor::Transfer transfer, const char* address) {
+  const auto endnode = [](Transfer transfer, const char* address) {
     descriptor::Endnode made;
     made.transfer = transfer;
     made.address = address;
     return made;
   };
-  device.enable = endnode(descriptor::Transfer::Udp, "127.0.0.1:5001");
+  device.enable = endnode(Transfer::Udp, "127.0.0.1:5001");
   member.subsystem.devices.push_back(device);
   descriptor::Configuration configuration;
-  for (const auto& used :
-       {endnode(descriptor::Transfer::Udp, "127.0.0.1:5000"), endnode(descriptor::Transfer::Udp, "127.0.0.1:5000"),
-        endnode(descriptor::Transfer::Unix, "/tmp/x")})
+  for (const auto& used : {endnode(Transfer::Udp, "127.0.0.1:5000"), endnode(Transfer::Udp, "127.0.0.1:5000"),
+                           endnode(Transfer::Unix, "/tmp/x")})
     configuration.devices.emplace_back().endnode = used;
   member.subsystem.configurations.push_back(configuration);
   mission.subsystems.push_back(member);

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "simulation/spacecraft/modules.hpp"
 
@@ -32,8 +32,8 @@ class Findings {
   }
 
   void settings(const descriptor::SimulatedDevice& device, const simulation::MakeDevice& make) {
-    SimulatedFlows flows;
-    const auto played = make(flows, {0, device.name}, {});
+    LocalFlows flows;
+    const auto played = make(flows, {Transfer::SharedMemory, device.name}, {});
     if (!played->plug()) return;
     for (const auto& [name, value] : device.settings) {
       const auto taken = played->fault(name + " " + value);

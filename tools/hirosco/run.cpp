@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "hirosco/data_transfer/flows/system_flow_factory.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "simulation/devices/described_device.hpp"

@@ -43,6 +43,19 @@ inline constexpr std::int64_t max_exact_integer = std::int64_t{1} << 53;
 /// More problems than this are not worth reading: reading stops, which bounds its time on hostile files.
 inline constexpr std::size_t max_problems = 200;
 
+/// "a, b and c are": the words of what is built in, each once.
+template <class Rows, class Word>
+[[nodiscard]] std::string are_built_in(const Rows& rows, Word word) {
+  std::vector<std::string> found;
+  for (const auto& row : rows)
+    if (std::string text{to_text(std::invoke(word, row))}; std::ranges::find(found, text) == found.end())
+      found.push_back(std::move(text));
+  std::string text;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < found.size() ? ", " : " and ") + found[i];
+  return text + (found.size() == 1 ? " is" : " are");
+}
+
 /// The problems of one file.
 class Problems {
  public:

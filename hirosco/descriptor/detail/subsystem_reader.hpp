@@ -18,8 +18,6 @@ namespace hirosco::descriptor::detail {
 inline constexpr std::size_t max_housekeeping_octets = 4096 - 22 - 2;
 /// Octets of an event's arguments: the same packet less the event's id.
 inline constexpr std::size_t max_event_octets = 4096 - 22 - 2;
-/// Of one sample of a link (data_transfer/realtime_link.hpp).
-inline constexpr std::size_t max_link_octets = 65'536;
 
 /// Reads one <Subsystem>. Declarations first, then what refers to them, whatever their order in the file.
 class SubsystemReader {

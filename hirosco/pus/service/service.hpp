@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/pus/packet/failure.hpp"
 #include "hirosco/pus/packet/packet.hpp"

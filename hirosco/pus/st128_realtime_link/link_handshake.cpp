@@ -7,13 +7,12 @@
 #include <initializer_list>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace hirosco::pus::st128 {
 namespace {
 
 using descriptor::ByteOrder;
-using descriptor::LinkKind;
-using descriptor::Method;
 
 /// An element of the handshake; the value is Refusal::item.
 enum class Item : std::uint8_t { Method = 0, ByteOrder = 1, Kind = 2, Rate = 3, Field = 4 };
@@ -21,7 +20,6 @@ enum class Item : std::uint8_t { Method = 0, ByteOrder = 1, Kind = 2, Rate = 3, 
 constexpr std::size_t max_choices = 16;          ///< methods, byte orders or kinds of one offer
 constexpr std::size_t max_fields = 255;
 constexpr std::size_t max_text = 255;
-constexpr std::size_t max_payload_octets = 65'536;
 
 [[nodiscard]] std::size_t octets_of(const OfferedField& field) noexcept {
   return hirosco::octets_of(field.type) * field.count;
@@ -53,6 +51,21 @@ template <class E>
   return refuse(item, std::string{what} + ": consumer " + list_text(consumer) + ", producer " + list_text(producer));
 }
 
+/// Method and kind go together: each alone may be common while nothing carries both.
+[[nodiscard]] std::expected<std::pair<LinkMethod, LinkKind>, Refusal> first_common_way(
+    const descriptor::LinkTerms& producer, const descriptor::LinkTerms& consumer, const Carried& carried) {
+  const auto method = first_common(Item::Method, "method", producer.methods, consumer.methods);
+  if (!method) return std::unexpected{method.error()};
+  const auto kind = first_common(Item::Kind, "kind", producer.kinds, consumer.kinds);
+  if (!kind) return std::unexpected{kind.error()};
+  const auto has = [](const auto& list, auto value) { return std::ranges::find(list, value) != list.end(); };
+  for (const LinkMethod by : producer.methods)
+    for (const LinkKind of : producer.kinds)
+      if (has(consumer.methods, by) && has(consumer.kinds, of) && carried(by, of)) return std::pair{by, of};
+  return refuse(Item::Method, "method and kind: nothing here carries what both sides know, as " +
+                                  std::string{to_text(*method)} + " with " + std::string{to_text(*kind)});
+}
+
 [[nodiscard]] std::optional<Refusal> check_rates(Duration producer, Duration consumer) {
   const bool positive = producer.count() > 0 && consumer.count() > 0;
   if (positive && (producer % consumer == Duration{} || consumer % producer == Duration{})) return std::nullopt;
@@ -73,7 +86,7 @@ template <class E>
   }
   std::size_t payload = 0;
   for (const auto& field : producer) payload += octets_of(field);
-  if (payload == 0 || payload > max_payload_octets)
+  if (payload == 0 || payload > max_link_payload_octets)
     return Refusal{static_cast<std::uint8_t>(Item::Field), "payload of " + std::to_string(payload) + " octets"};
   return std::nullopt;
 }
@@ -228,7 +241,7 @@ class Reader {
     fields(agreement.fields);
     std::size_t payload = 0;
     for (const auto& field : agreement.fields) payload += octets_of(field);
-    require(payload <= max_payload_octets);
+    require(payload <= max_link_payload_octets);
   }
   void require(bool condition) noexcept { good_ = good_ && condition; }
   [[nodiscard]] bool good() const noexcept { return good_ && in_.good(); }
@@ -265,17 +278,15 @@ std::uint64_t Agreement::layout_hash() const noexcept {
   return hash.value();
 }
 
-std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer) {
-  const auto method = first_common(Item::Method, "method", producer.terms.methods, consumer.terms.methods);
-  if (!method) return std::unexpected{method.error()};
+std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer, const Carried& carried) {
+  const auto way = first_common_way(producer.terms, consumer.terms, carried);
+  if (!way) return std::unexpected{way.error()};
   const auto order =
       first_common(Item::ByteOrder, "byte order", producer.terms.byte_orders, consumer.terms.byte_orders);
   if (!order) return std::unexpected{order.error()};
-  const auto kind = first_common(Item::Kind, "kind", producer.terms.kinds, consumer.terms.kinds);
-  if (!kind) return std::unexpected{kind.error()};
   if (auto refusal = check_rates(producer.period, consumer.period)) return std::unexpected{*std::move(refusal)};
   if (auto refusal = check_fields(producer.fields, consumer.fields)) return std::unexpected{*std::move(refusal)};
-  return Agreement{*method, *order, *kind, producer.period, consumer.period, producer.fields};
+  return Agreement{way->first, *order, way->second, producer.period, consumer.period, producer.fields};
 }
 
 Result<std::size_t> write_offer(MutableOctets to, std::uint8_t link, const Offer& offer) {

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <expected>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/pus/service/service_kind.hpp"
 #include "hirosco/utilities/octets.hpp"
@@ -59,9 +61,9 @@ struct Offer {
 
 /// What was agreed: the producer's whole layout in order, and the terms.
 struct Agreement {
-  descriptor::Method method{};
+  LinkMethod method{};
   descriptor::ByteOrder byte_order{};
-  descriptor::LinkKind kind{};
+  LinkKind kind{};
   Duration producer_period{};
   Duration consumer_period{};
   std::vector<OfferedField> fields;  ///< the producer's, packed in this order on the link
@@ -75,10 +77,14 @@ struct Refusal {
   std::string text;  ///< "field POSITION: consumer FLOAT[2], producer DOUBLE[2]"
 };
 
+/// Whether a mechanism of the platform carries links of this method and kind.
+using Carried = std::function<bool(LinkMethod, LinkKind)>;
+
 /// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
 /// consumer has too; an integer ratio of the rates either way; every field the consumer requires present with the same
-/// name, type and count (the producer may have more). Pure.
-[[nodiscard]] std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer);
+/// name, type and count (the producer may have more). Method and kind are chosen together, by what can be carried. Pure.
+[[nodiscard]] std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer,
+                                                          const Carried& carried);
 
 /// Wire forms. write_* return the octets used; read_* refuse what is not exactly of the form (Malformed) and bound every
 /// count. Strings are u8 length + ASCII.

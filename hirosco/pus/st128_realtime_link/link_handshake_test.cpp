@@ -13,17 +13,15 @@ namespace hirosco::pus::st128 {
 namespace {
 using namespace testing;
 using descriptor::ByteOrder;
-using descriptor::LinkKind;
-using descriptor::Method;
 
-constexpr auto shm = Method::SharedMemory;
+constexpr auto shm = LinkMethod::SharedMemory;
 constexpr auto little = ByteOrder::Little;
 constexpr auto big = ByteOrder::Big;
 constexpr auto latest = LinkKind::Latest;
 constexpr auto queued = LinkKind::Queued;
 
 struct Side {
-  std::vector<Method> methods{shm};
+  std::vector<LinkMethod> methods{shm};
   std::vector<ByteOrder> orders{little};
   std::vector<LinkKind> kinds{latest};
   int period_us{1000};
@@ -36,7 +34,7 @@ Offer offer_of(const Side& side) {
 
 /// "shared_memory little latest 1000/1000", or the refusal as "item: text".
 std::string outcome(const Side& producer, const Side& consumer) {
-  const auto result = negotiate(offer_of(producer), offer_of(consumer));
+  const auto result = negotiate(offer_of(producer), offer_of(consumer), [](LinkMethod, LinkKind) { return true; });
   if (!result) return std::to_string(result.error().item) + ": " + result.error().text;
   EXPECT_EQ(result->fields, producer.fields) << "the layout is the producer's";
   return std::string{to_text(result->method)} + " " + std::string{to_text(result->byte_order)} + " " +
@@ -57,13 +55,19 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
   const Case table[] = {
       // Methods: the first of the producer's list that the consumer has.
       {{}, {}, "shared_memory little latest 1000/1000"},
-      {{.methods = {Method::Udp, shm}}, {.methods = {shm, Method::Udp}}, "udp little latest 1000/1000"},
-      {{.methods = {shm, Method::Udp}}, {.methods = {Method::Udp, shm}}, "shared_memory little latest 1000/1000"},
-      {{.methods = {Method::Dds, Method::Tcp}}, {.methods = {shm, Method::Tcp}}, "tcp little latest 1000/1000"},
-      {{.methods = {Method::Tipc}}, {.methods = {Method::Unix, Method::Tipc}}, "tipc little latest 1000/1000"},
-      {{.methods = {Method::Udp}}, {}, "0: method: consumer shared_memory, producer udp"},
-      {{.methods = {Method::Udp, Method::Tcp}},
-       {.methods = {shm, Method::Dds}},
+      {{.methods = {LinkMethod::Udp, shm}}, {.methods = {shm, LinkMethod::Udp}}, "udp little latest 1000/1000"},
+      {{.methods = {shm, LinkMethod::Udp}},
+       {.methods = {LinkMethod::Udp, shm}},
+       "shared_memory little latest 1000/1000"},
+      {{.methods = {LinkMethod::Dds, LinkMethod::Tcp}},
+       {.methods = {shm, LinkMethod::Tcp}},
+       "tcp little latest 1000/1000"},
+      {{.methods = {LinkMethod::Tipc}},
+       {.methods = {LinkMethod::Unix, LinkMethod::Tipc}},
+       "tipc little latest 1000/1000"},
+      {{.methods = {LinkMethod::Udp}}, {}, "0: method: consumer shared_memory, producer udp"},
+      {{.methods = {LinkMethod::Udp, LinkMethod::Tcp}},
+       {.methods = {shm, LinkMethod::Dds}},
        "0: method: consumer shared_memory, dds, producer udp, tcp"},
       {{.methods = {}}, {}, "0: method: consumer shared_memory, producer none"},
       // Byte orders.
@@ -108,7 +112,7 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
       {{.fields = {{"BIG", Type::Double, 8193}}}, {.fields = {}}, "4: payload of 65544 octets"},
       {{.fields = {{"BIG", Type::Double, 8192}}}, {.fields = {}}, "shared_memory little latest 1000/1000"},
       // Several reasons: the first in the order of the terms is told.
-      {{.methods = {Method::Udp}, .orders = {big}, .period_us = 3000},
+      {{.methods = {LinkMethod::Udp}, .orders = {big}, .period_us = 3000},
        {.period_us = 2000},
        "0: method: consumer shared_memory, producer udp"},
       {{.orders = {big}, .period_us = 3000}, {.period_us = 2000}, "1: byte order: consumer little, producer big"},
@@ -124,7 +128,23 @@ Agreement agreement() {
   return {shm, little, latest, 1ms, 5ms, {{"POSITION", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}}};
 }
 Offer full_offer() {
-  return {"JOINTS", 1ms, {{shm, Method::Udp}, {big, little}, {queued, latest}}, agreement().fields};
+  return {"JOINTS", 1ms, {{shm, LinkMethod::Udp}, {big, little}, {queued, latest}}, agreement().fields};
+}
+
+TEST(LinkHandshake, ChoosesMethodAndKindTogetherByWhatIsCarried) {
+  const Side both{.methods = {LinkMethod::Udp, shm}, .kinds = {queued, latest}};
+  const auto way = [&](const Carried& carried) {
+    const auto result = negotiate(offer_of(both), offer_of(both), carried);
+    return result ? std::string{to_text(result->method)} + " " + std::string{to_text(result->kind)}
+                  : result.error().text;
+  };
+  EXPECT_EQ(way([](LinkMethod, LinkKind) { return true; }), "udp queued");
+  EXPECT_EQ(way([](LinkMethod method, LinkKind) { return method == shm; }), "shared_memory queued");
+  EXPECT_EQ(way([](LinkMethod, LinkKind kind) { return kind == latest; }), "udp latest");
+  EXPECT_EQ(way([](LinkMethod method, LinkKind kind) { return method == shm && kind == latest; }),
+            "shared_memory latest");
+  EXPECT_EQ(way([](LinkMethod, LinkKind) { return false; }),
+            "method and kind: nothing here carries what both sides know, as udp with queued");
 }
 
 TEST(LinkAgreement, HasThePayloadOfItsPackedFields) { EXPECT_EQ(agreement().payload_octets(), 17U); }
@@ -144,12 +164,12 @@ TEST(LinkAgreement, HasAHashThatAllOfItsLayoutChanges) {
   EXPECT_NE(changed([](Agreement& a) { a.fields[0].count = 3; }), hash);
   EXPECT_NE(changed([](Agreement& a) { std::swap(a.fields[0], a.fields[1]); }), hash);
   EXPECT_NE(changed([](Agreement& a) { a.fields.pop_back(); }), hash);
-  EXPECT_EQ(changed([](Agreement& a) { a.method = Method::Udp; }), hash) << "the way is no part of the layout";
+  EXPECT_EQ(changed([](Agreement& a) { a.method = LinkMethod::Udp; }), hash) << "the way is no part of the layout";
 }
 
 TEST(LinkMessages, HaveTheOctetsWrittenHere) {
   Bytes buffer(256);
-  const Offer offer{"AB", 1ms, {{shm, Method::Udp}, {little}, {latest}}, {{"P", Type::Double, 2}}};
+  const Offer offer{"AB", 1ms, {{shm, LinkMethod::Udp}, {little}, {latest}}, {{"P", Type::Double, 2}}};
   const auto used = write_terms_request(buffer, {7, "CD", offer});
   EXPECT_EQ(to_hex(Octets{buffer}.first(used.value())),
             "07"
@@ -289,7 +309,7 @@ TEST(LinkMessages, WithMeaninglessContentAreRefused) {
   EXPECT_TRUE(bad([](Offer& o) { o.set = "caf\xC3\xA9"; }));
   EXPECT_TRUE(bad([](Offer& o) { o.period = 0ns; }));
   EXPECT_TRUE(bad([](Offer& o) { o.terms.methods.clear(); }));
-  EXPECT_TRUE(bad([](Offer& o) { o.terms.methods[0] = Method{77}; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.terms.methods[0] = LinkMethod{77}; }));
   EXPECT_TRUE(bad([](Offer& o) { o.terms.kinds[0] = LinkKind{0}; }));
   EXPECT_TRUE(bad([](Offer& o) { o.fields.clear(); }));
   EXPECT_TRUE(bad([](Offer& o) { o.fields[0].type = Type::Struct; }));

@@ -170,9 +170,9 @@ Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set, s
                                      .role = role,
                                      .epoch = link_epoch,
                                      .set = std::move(set),
-                                     .agreement = {.method = descriptor::Method::SharedMemory,
+                                     .agreement = {.method = LinkMethod::SharedMemory,
                                                    .byte_order = descriptor::ByteOrder::Little,
-                                                   .kind = descriptor::LinkKind::Latest,
+                                                   .kind = LinkKind::Latest,
                                                    .producer_period = producer_period,
                                                    .consumer_period = subsystem.cycle_demand().period,
                                                    .fields = std::move(fields)}};
@@ -185,7 +185,7 @@ Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set, s
   const bool we_produce = role == st128::Role::Consumer;
   if (we_produce) {
     partner.mapping = memory.map(partner.memory, Access::ReadWrite).value();
-    partner.writer = LinkWriter::make(partner.mapping.octets, layout).value();
+    partner.writer = LatestWriter::make(partner.mapping.octets, layout).value();
     static_cast<void>(memory.seal_writers(partner.memory));
   }
   std::vector<std::byte> buffer(max_packet_octets);
@@ -196,7 +196,7 @@ Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set, s
   if (outcome_text != nullptr) *outcome_text = outcome(sent);
   if (!we_produce) {
     partner.mapping = memory.map(partner.memory, Access::ReadOnly).value();
-    if (auto reader = LinkReader::make(partner.mapping.octets, layout)) partner.reader = std::move(*reader);
+    if (auto reader = LatestReader::make(partner.mapping.octets, layout)) partner.reader = std::move(*reader);
   }
   return partner;
 }

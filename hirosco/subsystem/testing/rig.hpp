@@ -10,9 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/data_transfer/simulated/channel_pair.hpp"
-#include "hirosco/data_transfer/simulated/heap_memory.hpp"
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
@@ -89,8 +90,8 @@ class Rig {
   struct Partner {
     MemoryHandle memory;
     Mapping mapping;
-    LinkWriter writer;
-    LinkReader reader;
+    LatestWriter writer;
+    LatestReader reader;
   };
   /// Attaches the subsystem's end of a link with the fields of the agreement; the test holds the other end.
   Partner attach(std::uint8_t link, pus::st128::Role role, std::string set,
@@ -100,7 +101,7 @@ class Rig {
 
   ManualClock clock;
   HeapMemory memory;
-  SimulatedFlows flows;
+  LocalFlows flows;
   ChannelPair channels{4096};
   VitalPage vital{};
   PermitPage permit{};

@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/device_frame.hpp"
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
 #include "simulation/devices/joystick/joystick_device.hpp"
 
 namespace hirosco::simulation {
@@ -77,8 +77,8 @@ struct PersonsHand : EvdevStickTest {
     return std::to_integer<std::uint8_t>(status->payload.back());
   }
 
-  SimulatedFlows flows;
-  const FlowAddress address{0, "joystick"};
+  LocalFlows flows;
+  const FlowAddress address{Transfer::SharedMemory, "joystick"};
   JoystickDevice device{
       flows, address, {}, {}, [this](std::string_view) -> Result<std::unique_ptr<Stick>> { return stick(); }};
   bool plugged = device.plug().has_value();

@@ -37,11 +37,11 @@ TEST(JoystickDevice, UnderstandsEveryHandLineAndRefusesOthers) {
 }
 
 TEST(JoystickDevice, IsRefusedAtTheStartWithADeclaredStopThatItDoesNotHave) {
-  SimulatedFlows flows;
+  LocalFlows flows;
   SimulatedDevice::Settings settings;
   settings.stop = SimulatedDevice::Stop::Controlled;
   settings.stop_within = std::chrono::milliseconds{200};
-  JoystickDevice joystick{flows, {0, "joystick"}, settings};
+  JoystickDevice joystick{flows, {Transfer::SharedMemory, "joystick"}, settings};
   EXPECT_EQ(joystick.plug().error().code, ErrorCode::InvalidArgument);
 }
 

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
 #include "simulation/devices/robot/robot_device.hpp"
 
 namespace hirosco::simulation {
@@ -19,8 +19,8 @@ namespace {
 
 constexpr Duration tick = std::chrono::microseconds{500};
 constexpr Duration stop_time = std::chrono::milliseconds{200};
-const FlowAddress frames_at{0, "robot"};
-const FlowAddress enable_at{0, "robot.enable"};
+const FlowAddress frames_at{Transfer::SharedMemory, "robot"};
+const FlowAddress enable_at{Transfer::SharedMemory, "robot.enable"};
 
 SimulatedDevice::Settings actuator(SimulatedDevice::Stop stop) {
   SimulatedDevice::Settings settings;
@@ -62,7 +62,7 @@ struct Guarded {
                      std::abs(state.link_rad_s[1])});
   }
 
-  SimulatedFlows flows;
+  LocalFlows flows;
   RobotDevice device;
   std::unique_ptr<DataFlow> frames, enable;
   TimePoint now{};

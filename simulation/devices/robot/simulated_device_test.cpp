@@ -35,8 +35,8 @@ TEST(RobotDevice, AnswersEachCommandWithItsSensors) {
 }
 
 TEST(RobotDevice, SpeaksTheByteOrderOfItsEndnode) {
-  SimulatedFlows flows;
-  const FlowAddress at{0, "robot"};
+  LocalFlows flows;
+  const FlowAddress at{Transfer::SharedMemory, "robot"};
   SimulatedDevice::Settings settings;
   settings.byte_order = std::endian::big;
   RobotDevice robot{flows, at, settings};

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
 #include "simulation/devices/simulated_device.hpp"
 
 /// For tests of devices whose command begins with two torques.
@@ -65,8 +65,8 @@ class Bench {
     return Status{*read, {read->payload.begin(), read->payload.end()}};
   }
 
-  SimulatedFlows flows;
-  FlowAddress address{0, "device"};
+  LocalFlows flows;
+  FlowAddress address{Transfer::SharedMemory, "device"};
   Device device;
   std::unique_ptr<DataFlow> flow;
   TimePoint now{};

@@ -8,8 +8,8 @@
 #include <map>
 #include <new>
 
-#include "hirosco/data_transfer/simulated/heap_memory.hpp"
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
@@ -35,7 +35,7 @@ struct Life {
 /// ARM with a device that can be asked, HAND without; CAMERA is the ground link and spared.
 struct GuardTest : ::testing::Test {
   ManualClock clock;
-  SimulatedFlows flows;
+  LocalFlows flows;
   HeapMemory memory;
   descriptor::Mission mission = [] {
     auto made = small_mission();
@@ -59,9 +59,7 @@ struct GuardTest : ::testing::Test {
     for (const auto& described : mission.subsystems)
       ASSERT_TRUE(guard.add(described, described.subsystem.id == camera));
     for (const std::uint16_t apid : {arm, hand, camera}) start(apid);
-    motor =
-        flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "motor-enable"}, FlowSide::Device)
-            .value();
+    motor = flows.open({Transfer::SharedMemory, "motor-enable"}, FlowSide::Device).value();
     guard.beat();
   }
   void start(std::uint16_t apid) {

@@ -6,7 +6,7 @@
 #include <deque>
 #include <vector>
 
-#include "hirosco/data_transfer/channel.hpp"
+#include "hirosco/data_transfer/control/channel.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/time.hpp"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/outstanding.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"

@@ -4,8 +4,7 @@
 
 #include <array>
 
-#include "hirosco/data_transfer/channel.hpp"
-#include "hirosco/data_transfer/realtime_link.hpp"
+#include "hirosco/data_transfer/control/channel.hpp"
 
 namespace hirosco::supervisor {
 
@@ -111,13 +110,19 @@ void LinkHandling::offered(Handshake& handshake, const st128::Offer& offer) {
 
 void LinkHandling::agreed(Handshake& handshake, const st128::Agreement& agreement) {
   const std::uint32_t payload = agreement.payload_octets();
-  constexpr std::uint32_t largest_payload = 65'536;
-  if (payload == 0 || payload > largest_payload) return give_up(handshake.link->id, "payload size out of range");
-  auto memory = memory_.create("hirosco-link", link_memory_octets(payload));
-  if (!memory) return give_up(handshake.link->id, memory.error().text);
+  if (payload == 0 || payload > max_link_payload_octets)
+    return give_up(handshake.link->id, "payload size out of range");
+  const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, agreement.method, agreement.kind);
+  if (mechanism == nullptr) return give_up(handshake.link->id, "no mechanism here carries " + terms_text(agreement));
+  const std::uint32_t epoch = epoch_ + 1;
+  auto shared = mechanism->establish(memory_, {.epoch = epoch,
+                                               .payload_octets = payload,
+                                               .layout_hash = agreement.layout_hash(),
+                                               .period = agreement.producer_period});
+  if (!shared) return give_up(handshake.link->id, shared.error().text);
   handshake.agreement = agreement;
-  handshake.memory = std::move(*memory);
-  handshake.epoch = ++epoch_;
+  handshake.shared = std::move(*shared);
+  handshake.epoch = epoch_ = epoch;
   handshake.stage = Stage::AwaitProducer;
   handshake.deadline += stage_limit;
   attach(handshake, st128::Role::Producer);
@@ -134,7 +139,7 @@ void LinkHandling::attach(const Handshake& handshake, st128::Role role) {
                                            .agreement = handshake.agreement});
   if (!octets) return;  // the same agreement came in a packet: it fits; else the stage's time limit ends it
   operator_.send_link_command(producer ? handshake.producer : handshake.consumer, st128::attach,
-                              Octets{buffer}.first(*octets), handshake.memory);
+                              Octets{buffer}.first(*octets), handshake.shared);
 }
 
 void LinkHandling::attached(Handshake& handshake, st128::Role role) {
@@ -147,7 +152,9 @@ void LinkHandling::attached(Handshake& handshake, st128::Role role) {
   const std::uint8_t link = handshake.link->id;
   Handshake finished = std::move(handshake);
   handshakes_.erase(link);
-  established_[link] = finished.memory;
+  // Without a view the link is only not told about.
+  const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, finished.agreement.method, finished.agreement.kind);
+  if (auto view = mechanism->look(memory_, finished.shared)) views_[link] = std::move(*view);
   graph_.set_up(link, true);
   operator_.link_changed(*finished.link, true, terms_text(finished.agreement));
   if (finished.done) finished.done(true);
@@ -168,15 +175,15 @@ void LinkHandling::give_up(std::uint8_t link, const std::string& why, std::uint1
   if (failed.done) failed.done(false);
 }
 
-MemoryHandle LinkHandling::memory_of(std::uint8_t link) const {
-  const auto found = established_.find(link);
-  return found != established_.end() ? found->second : MemoryHandle{};
+std::optional<LinkGlance> LinkHandling::glance(std::uint8_t link) const noexcept {
+  const auto found = views_.find(link);
+  return found != views_.end() ? found->second->glance() : std::nullopt;
 }
 
 void LinkHandling::down(std::uint8_t link, const std::string& why) {
   if (graph_.is_up(link)) {
     graph_.set_up(link, false);
-    established_.erase(link);
+    views_.erase(link);
     operator_.link_changed(*mission_.find_link(link), false, why);
   }
   if (auto release = releases_.extract(link); !release.empty() && release.mapped().done) release.mapped().done(true);

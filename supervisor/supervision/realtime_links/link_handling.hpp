@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
@@ -32,16 +35,17 @@ class LinkHandling {
   /// Called once with the outcome of an establish or release.
   using Done = std::function<void(bool success)>;
 
-  LinkHandling(const descriptor::Mission& mission, LinkGraph& graph, MemoryProvider& memory, LinkOperator& supervisor)
-      : mission_{mission}, memory_{memory}, operator_{supervisor}, graph_{graph} {}
+  LinkHandling(const descriptor::Mission& mission, LinkGraph& graph, MemoryProvider& memory, LinkMechanisms mechanisms,
+               LinkOperator& supervisor)
+      : mission_{mission}, memory_{memory}, mechanisms_{mechanisms}, operator_{supervisor}, graph_{graph} {}
 
   [[nodiscard]] const LinkGraph& graph() const noexcept { return graph_; }
   /// Begins the handshake. False: unknown link, already up, or a handshake of it is under way.
   [[nodiscard]] bool establish(std::uint8_t link, TimePoint now, Done done);
   /// Takes a link down at both ends. False: it is not up, or being taken down already.
   [[nodiscard]] bool release(std::uint8_t link, Done done);
-  /// Of a link that is up; else an empty handle.
-  [[nodiscard]] MemoryHandle memory_of(std::uint8_t link) const;
+  /// How a link does. Empty: it is not up, nothing was produced yet, or it cannot be seen.
+  [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept;
   /// Reports of service 128.
   void handle(std::uint16_t from, const pus::TelemetryView& report);
   /// What was sent for a handshake, TC[128,subtype], did not reach its addressee or failed there: the handshake ends with the
@@ -63,7 +67,7 @@ class LinkHandling {
     std::string failure{};  ///< why it ends before its deadline
     std::uint32_t epoch{};
     pus::st128::Agreement agreement;
-    MemoryHandle memory;
+    MemoryHandle shared;  ///< by both ends
     Done done;
   };
   void offered(Handshake& handshake, const pus::st128::Offer& offer);
@@ -78,10 +82,11 @@ class LinkHandling {
 
   const descriptor::Mission& mission_;
   MemoryProvider& memory_;
+  LinkMechanisms mechanisms_;
   LinkOperator& operator_;
   LinkGraph& graph_;
   std::map<std::uint8_t, Handshake> handshakes_;
-  std::map<std::uint8_t, MemoryHandle> established_;
+  std::map<std::uint8_t, std::unique_ptr<LinkView>> views_;  ///< of links that are up
   struct Release {
     Done done;
     TimePoint deadline{};  ///< set by the first step() after it was asked for

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/realtime_link.hpp"
-#include "hirosco/data_transfer/simulated/heap_memory.hpp"
+#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
 namespace hirosco::supervisor {
@@ -43,12 +43,12 @@ struct LinkHandlingTest : ::testing::Test {
   HeapMemory memory;
   Operator supervisor;
   LinkGraph graph{mission};
-  LinkHandling links{mission, graph, memory, supervisor};
+  LinkHandling links{mission, graph, memory, standard_link_mechanisms(), supervisor};
   std::vector<bool> ends;
   TimePoint now{};
   const st128::Offer offer{.set = "HAND_STATE", .period = 1ms, .terms = {}, .fields = {{"ANGLE", Type::Double, 2}}};
   const st128::Agreement agreement{
-      descriptor::Method::SharedMemory, descriptor::ByteOrder::Little, descriptor::LinkKind::Latest, 500us, 1ms,
+      LinkMethod::SharedMemory,    descriptor::ByteOrder::Little, LinkKind::Latest, 500us, 1ms,
       {{"ANGLE", Type::Double, 2}}};
 
   LinkHandling::Done done() {
@@ -115,6 +115,37 @@ TEST_F(LinkHandlingTest, BothEndsGetTheSameMemoryOfTheAgreedSizeAndTheSameEpoch)
   EXPECT_EQ(supervisor.last_memory.block(), producers);
   EXPECT_EQ(st128::read_attach_request(supervisor.last)->epoch, epoch);
   EXPECT_TRUE(memory.verify(supervisor.last_memory, link_memory_octets(16), false));
+}
+
+TEST_F(LinkHandlingTest, ALinkIsLookedAtWhileItIsUpAndTellsWhatItsProducerWrote) {
+  advance(2);
+  const auto attach = *st128::read_attach_request(supervisor.last);
+  const LinkLayout layout{.epoch = attach.epoch,
+                          .payload_octets = 16,
+                          .layout_hash = attach.agreement.layout_hash(),
+                          .period = attach.agreement.producer_period};
+  auto writer = LatestMemory{}.produce(memory, supervisor.last_memory, layout).value();
+  writer->write(std::array<std::byte, 16>{}, TimePoint{5ms}, LinkStatus::Valid);
+  attaches(hand, Role::Producer);
+  EXPECT_FALSE(links.glance(2)) << "not up";
+  attaches(arm, Role::Consumer);
+  ASSERT_TRUE(links.glance(2));
+  EXPECT_EQ(links.glance(2)->count, 1U);
+  EXPECT_EQ(links.glance(2)->sampled_at, TimePoint{5ms});
+  links.forget(hand);
+  EXPECT_FALSE(links.glance(2)) << "nobody looks into what was given back";
+}
+
+TEST_F(LinkHandlingTest, WhatNoMechanismCarriesIsNotAttached) {
+  advance(1);
+  supervisor.take();
+  auto queued = agreement;
+  queued.kind = LinkKind::Queued;
+  say(hand, st128::agreement, st128::write_agreement, queued);
+  EXPECT_THAT(supervisor.take(), ::testing::IsEmpty());
+  ASSERT_EQ(supervisor.changes.size(), 1U);
+  EXPECT_THAT(supervisor.changes.front(), ::testing::StartsWith("2 down: no mechanism here carries shared_memory"));
+  EXPECT_THAT(ends, ElementsAre(false));
 }
 
 TEST_F(LinkHandlingTest, EveryHandshakeHasAnEpochOfItsOwn) {

@@ -23,11 +23,6 @@ void Links::provide() {
   });
 }
 
-const Mapping* Links::memory_of(std::uint8_t link) const {
-  const auto found = seen_.find(link);
-  return found != seen_.end() ? &found->second : nullptr;
-}
-
 void Links::hear(std::uint16_t from, const pus::TelemetryView& report) {
   if (report.service() == pus::st128::service_type) handling_.handle(from, report);
 }
@@ -40,11 +35,6 @@ void Links::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets d
 }
 
 void Links::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {
-  seen_.erase(link.id);
-  // Without a mapping the link is only not told about.
-  if (auto mapping = up ? craft_.world.memory.map(handling_.memory_of(link.id), Access::ReadOnly)
-                        : Result<Mapping>{fail(ErrorCode::NotFound, "link is down")})
-    seen_.emplace(link.id, std::move(*mapping));
   craft_.tell("link " + std::to_string(link.id) + " " + link.from + "." + link.provides + " -> " + link.to +
               (up ? " up: " : " down: ") + text);
 }

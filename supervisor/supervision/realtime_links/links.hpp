@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <optional>
 
-#include "hirosco/data_transfer/memory.hpp"
+#include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/interfaces.hpp"
@@ -14,18 +14,20 @@
 
 namespace hirosco::supervisor {
 
-/// The real-time links of the mission in a flight: LINK and UNLINK, the handshakes, and a look into the memory of the links
-/// that are up. Thread: the supervisor's.
+/// The real-time links of the mission in a flight: LINK and UNLINK, the handshakes, and a look at the links that are up. Thread: the supervisor's.
 class Links final : public Watch, public Hearer, private LinkOperator {
  public:
   Links(Craft& craft, OwnSubsystem& own, CommandDesk& desk, LinkGraph& graph)
-      : craft_{craft}, own_{own}, desk_{desk}, handling_{craft.mission, graph, craft.world.memory, *this} {}
+      : craft_{craft},
+        own_{own},
+        desk_{desk},
+        handling_{craft.mission, graph, craft.world.memory, craft.world.links, *this} {}
 
   /// LINK and UNLINK.
   void provide();
   [[nodiscard]] const LinkGraph& graph() const noexcept { return handling_.graph(); }
-  /// Memory of a link that is up; nullptr: it is not, or cannot be seen into.
-  [[nodiscard]] const Mapping* memory_of(std::uint8_t link) const;
+  /// How a link does. Empty: it is not up, nothing was produced yet, or it cannot be seen.
+  [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept { return handling_.glance(link); }
   /// A subsystem is gone without reporting: all its links are down.
   void forget(std::uint16_t apid) { handling_.forget(apid); }
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
@@ -39,7 +41,6 @@ class Links final : public Watch, public Hearer, private LinkOperator {
   OwnSubsystem& own_;
   CommandDesk& desk_;
   LinkHandling handling_;
-  std::map<std::uint8_t, Mapping> seen_;
 };
 
 }  // namespace hirosco::supervisor

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "hirosco/data_transfer/realtime_link.hpp"
-
 namespace hirosco::supervisor {
 namespace {
 
@@ -101,9 +99,7 @@ void Housekeeping::show_links() noexcept {
       status.latency_mean_ns[i] = seen->latency_mean_ns.load(std::memory_order_relaxed);
       status.latency_max_ns[i] = seen->latency_max_ns.load(std::memory_order_relaxed);
     }
-    const Mapping* memory = parts_.links.memory_of(link);
-    if (memory == nullptr) continue;
-    const auto glance = glance_at_link(memory->octets);
+    const auto glance = parts_.links.glance(link);
     if (!glance) continue;
     const auto age_us = std::chrono::duration_cast<std::chrono::microseconds>(craft_.now - glance->sampled_at).count();
     status.samples[i] = wrapped(glance->count);

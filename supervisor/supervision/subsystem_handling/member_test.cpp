@@ -6,8 +6,8 @@
 
 #include <new>
 
-#include "hirosco/data_transfer/simulated/channel_pair.hpp"
-#include "hirosco/data_transfer/simulated/heap_memory.hpp"
+#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
 namespace hirosco::supervisor {

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/simulated/channel_pair.hpp"
-#include "hirosco/data_transfer/simulated/heap_memory.hpp"
-#include "hirosco/data_transfer/simulated/simulated_flows.hpp"
+#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
 #include "supervisor/parts.hpp"
@@ -43,7 +43,7 @@ struct PlayedMember {
 struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   ManualClock clock;
   HeapMemory memory;
-  SimulatedFlows flows;
+  LocalFlows flows;
   descriptor::Mission mission = [] {
     auto made = small_mission();
     auto own = descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/supervisor/supervisor.xml", descriptor::file_system());

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <hirosco/data_transfer/device_frame.hpp>
+#include <hirosco/data_transfer/device/device_frame.hpp>
 #include <hirosco/descriptor/read.hpp>
 #include <hirosco/subsystem/testing/rig.hpp>
 
@@ -14,9 +14,7 @@ using namespace hirosco;
 TEST(Lamp, FadesToWhatItIsToldAndNotBeyond) {
   const auto lamp = make_lamp();
   hirosco::testing::Rig rig{*lamp, descriptor::file_system()("lamp.xml").value()};
-  const auto device = std::move(rig.flows.open({static_cast<std::uint8_t>(descriptor::Transfer::SharedMemory), "lamp"},
-                                               FlowSide::Device))
-                          .value();
+  const auto device = std::move(rig.flows.open({Transfer::SharedMemory, "lamp"}, FlowSide::Device)).value();
   double current_a = 0;
   const auto cycle = [&](int count) {
     for (int i = 0; i < count; ++i) {

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/data_transfer/control/socket_channel.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
+#include "hirosco/utilities/octets.hpp"
+
+namespace hirosco {
+namespace {
+
+/// Room for more descriptors than a message may carry, so that a surplus is seen; the kernel closes what does not fit.
+constexpr std::size_t noticed_descriptors = 4;
+
+Error send_error(int number) noexcept {
+  switch (number) {
+    case EAGAIN:
+    case ENOBUFS:
+    case ETOOMANYREFS: return {ErrorCode::ResourceExhausted, "peer does not read", number};
+    case EPIPE:
+    case ECONNRESET:
+    case ENOTCONN: return {ErrorCode::Unavailable, "peer of control channel is gone", number};
+    default: return {ErrorCode::SystemFailure, "send on control channel", number};
+  }
+}
+
+void attach(msghdr& header, std::span<std::byte> room, int descriptor) noexcept {
+  header.msg_control = room.data();
+  header.msg_controllen = room.size();
+  cmsghdr* const control = CMSG_FIRSTHDR(&header);
+  control->cmsg_level = SOL_SOCKET;
+  control->cmsg_type = SCM_RIGHTS;
+  control->cmsg_len = CMSG_LEN(sizeof descriptor);
+  std::memcpy(CMSG_DATA(control), &descriptor, sizeof descriptor);
+}
+
+struct Arrived {
+  FileDescriptor first;
+  std::size_t count{0};
+};
+
+/// Takes the descriptors that came; all but the first are closed.
+Arrived take_descriptors(msghdr& header) noexcept {
+  Arrived arrived;
+  for (cmsghdr* control = CMSG_FIRSTHDR(&header); control != nullptr; control = CMSG_NXTHDR(&header, control)) {
+    if (control->cmsg_level != SOL_SOCKET || control->cmsg_type != SCM_RIGHTS) continue;
+    const std::size_t count = (control->cmsg_len - CMSG_LEN(0)) / sizeof(int);
+    for (std::size_t i = 0; i < count; ++i) {
+      int number = -1;
+      std::memcpy(&number, CMSG_DATA(control) + i * sizeof number, sizeof number);
+      FileDescriptor descriptor{number};
+      if (arrived.count++ == 0) arrived.first = std::move(descriptor);
+    }
+  }
+  return arrived;
+}
+
+/// An empty datagram and the end look alike to recvmsg.
+bool hung_up(int socket) noexcept {
+  pollfd entry{socket, POLLRDHUP, 0};
+  return ::poll(&entry, 1, 0) > 0 && (entry.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
+}
+
+}  // namespace
+
+Result<std::pair<FileDescriptor, FileDescriptor>> SocketChannel::make_pair() {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) != 0)
+    return fail(ErrorCode::SystemFailure, "make control channel", errno);
+  return std::pair{FileDescriptor{ends[0]}, FileDescriptor{ends[1]}};
+}
+
+Result<> SocketChannel::send(const Message& message) {
+  if (message.packet.size() > max_packet_octets)
+    return fail(ErrorCode::InvalidArgument, "octets of packet", static_cast<std::int64_t>(message.packet.size()));
+  std::array<std::byte, envelope_octets> envelope{};
+  OctetWriter{envelope}
+      .put(static_cast<std::uint8_t>(message.kind))
+      .put(version)
+      .put(message.link)
+      .put(message.mode_epoch);
+  std::array<iovec, 2> parts{iovec{envelope.data(), envelope.size()},
+                             iovec{const_cast<std::byte*>(message.packet.data()), message.packet.size()}};
+  msghdr header{};
+  header.msg_iov = parts.data();
+  header.msg_iovlen = parts.size();
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(int))> control{};
+  if (message.memory) {
+    const int descriptor = SealedMemory::descriptor(message.memory);
+    if (descriptor < 0) return fail(ErrorCode::InvalidArgument, "memory handle cannot leave this process");
+    attach(header, control, descriptor);
+  }
+  if (::sendmsg(socket_.get(), &header, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) return fail(send_error(errno));
+  return ok();
+}
+
+Result<Channel::Found> SocketChannel::receive(MessageBuffer& buffer) {
+  std::array<std::byte, envelope_octets> envelope{};
+  std::array<iovec, 2> parts{iovec{envelope.data(), envelope.size()},
+                             iovec{buffer.octets.data(), buffer.octets.size()}};
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(noticed_descriptors * sizeof(int))> control{};
+  msghdr header{};
+  header.msg_iov = parts.data();
+  header.msg_iovlen = parts.size();
+  header.msg_control = control.data();
+  header.msg_controllen = control.size();
+  const ssize_t octets = ::recvmsg(socket_.get(), &header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+  if (octets < 0 && (errno == EAGAIN || errno == EINTR)) return Found{};
+  if (octets < 0) {
+    return errno == ECONNRESET ? fail(ErrorCode::Unavailable, "peer of control channel is gone", errno)
+                               : fail(ErrorCode::SystemFailure, "receive on control channel", errno);
+  }
+  Arrived arrived = take_descriptors(header);
+  if (octets == 0 && hung_up(socket_.get())) return fail(ErrorCode::Unavailable, "peer of control channel is gone");
+  if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0)
+    return fail(ErrorCode::Malformed, "message is too long", octets);
+  if (arrived.count > 1) return fail(ErrorCode::Malformed, "message carries several descriptors");
+  if (static_cast<std::size_t>(octets) < envelope_octets)
+    return fail(ErrorCode::Malformed, "message is too short", octets);
+
+  OctetReader reader{envelope};
+  const auto kind = reader.get<std::uint8_t>();
+  const auto theirs = reader.get<std::uint8_t>();
+  if (theirs != version) return fail(ErrorCode::Mismatch, "version of the control channel", theirs);
+  if (kind < static_cast<std::uint8_t>(MessageKind::Packet) || kind > static_cast<std::uint8_t>(MessageKind::Event))
+    return fail(ErrorCode::Malformed, "kind of message", kind);
+  Found found;
+  found.flow = Flow::New;
+  found.message.kind = static_cast<MessageKind>(kind);
+  found.message.link = reader.get<std::uint16_t>();
+  found.message.mode_epoch = reader.get<std::uint32_t>();
+  found.message.packet = Octets{buffer.octets}.first(static_cast<std::size_t>(octets) - envelope_octets);
+  if (arrived.first) found.message.memory = SealedMemory::adopt(std::move(arrived.first));
+  return found;
+}
+
+}  // namespace hirosco

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "hirosco/utilities/enum_text.hpp"
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco {
+
+/// Longest frame of a flow, whatever its means.
+inline constexpr std::size_t max_frame_octets = 1024;
+
+/// What a receive found.
+struct Received {
+  Flow flow{Flow::None};
+  std::size_t octets{0};             ///< of the buffer that were filled
+};
+
+/// Any means of communication with a device (paper 4.1): whole frames, both ways, never blocking.
+/// Realtime: send and receive are bounded (at most one system call). Thread: the one user.
+class DataFlow {
+ public:
+  virtual ~DataFlow() = default;
+  /// Hands one frame over. Unavailable: nobody listens or no room; the frame is gone. OutOfRange: it is longer than
+  /// max_frame_octets.
+  [[nodiscard]] Result<> send(Octets frame) noexcept { return do_send(frame); }
+  /// Newest frame if one came since the last call. Unavailable: the peer is gone (hang-up); a flow
+  /// without connection reports that after the next send. Malformed: a frame came that is longer than `buffer`; it is
+  /// gone.
+  [[nodiscard]] Result<Received> receive(MutableOctets buffer) noexcept { return do_receive(buffer); }
+  /// Waits until a frame may be there, at most `timeout`; false on timeout. Blocks: never in a cycle.
+  [[nodiscard]] bool wait(Duration timeout) noexcept { return do_wait(timeout); }
+
+ private:
+  [[nodiscard]] virtual Result<> do_send(Octets frame) noexcept = 0;
+  [[nodiscard]] virtual Result<Received> do_receive(MutableOctets buffer) noexcept = 0;
+  [[nodiscard]] virtual bool do_wait(Duration timeout) noexcept = 0;
+};
+
+/// How frames travel between a subsystem and a device.
+enum class Transfer : std::uint8_t { SharedMemory, MessageQueue, Unix, Udp, Tcp, Serial };
+template <>
+struct EnumTexts<Transfer> {
+  using enum Transfer;
+  static constexpr auto table = enum_table<Transfer>({{SharedMemory, "shared_memory"},
+                                                      {MessageQueue, "message_queue"},
+                                                      {Unix, "unix"},
+                                                      {Udp, "udp"},
+                                                      {Tcp, "tcp"},
+                                                      {Serial, "serial"}});
+};
+
+/// Which end of a flow is opened: the subsystem's or the device's.
+enum class FlowSide : std::uint8_t { Subsystem, Device };
+
+/// The part of an endnode descriptor that a flow needs.
+struct FlowAddress {
+  Transfer transfer{};
+  std::string address;  ///< a name, a path, or host:port
+};
+
+/// Opens data flows. Real: by means of transfer; simulated: a pair of mailboxes in memory.  Realtime: allocates.
+class FlowFactory {
+ public:
+  virtual ~FlowFactory() = default;
+  [[nodiscard]] Result<std::unique_ptr<DataFlow>> open(const FlowAddress& address, FlowSide side) {
+    return do_open(address, side);
+  }
+
+ private:
+  [[nodiscard]] virtual Result<std::unique_ptr<DataFlow>> do_open(const FlowAddress& address, FlowSide side) = 0;
+};
+
+}  // namespace hirosco

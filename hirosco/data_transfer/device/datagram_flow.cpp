@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/data_transfer/device/datagram_flow.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <time.h>
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+
+#include "hirosco/utilities/os/file_descriptor.hpp"
+
+namespace hirosco {
+namespace {
+
+struct Address {
+  sockaddr_storage storage{};
+  socklen_t octets{0};
+  [[nodiscard]] const sockaddr* get() const noexcept { return reinterpret_cast<const sockaddr*>(&storage); }
+};
+
+bool is_gone(int number) noexcept {
+  return number == ECONNREFUSED || number == ENOENT || number == ECONNRESET || number == ENOTCONN || number == EPIPE;
+}
+
+Duration since_boot() noexcept {
+  timespec now{};
+  (void)::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::chrono::seconds{now.tv_sec} + std::chrono::nanoseconds{now.tv_nsec};
+}
+
+class DatagramFlow final : public DataFlow {
+ public:
+  /// `peer` empty: learnt from what arrives. `own_path` is removed at the end.
+  DatagramFlow(FileDescriptor socket, Address peer, bool learns, std::string own_path)
+      : socket_{std::move(socket)}, peer_{peer}, learns_{learns}, own_path_{std::move(own_path)} {}
+  ~DatagramFlow() override {
+    if (!own_path_.empty()) (void)::unlink(own_path_.c_str());
+  }
+  DatagramFlow(const DatagramFlow&) = delete;
+  DatagramFlow& operator=(const DatagramFlow&) = delete;
+
+ private:
+  [[nodiscard]] Result<> do_send(Octets frame) noexcept override {
+    if (frame.size() > max_frame_octets)
+      return fail(ErrorCode::OutOfRange, "octets of frame", static_cast<std::int64_t>(frame.size()));
+    if (learns_ && peer_.octets == 0) return fail(ErrorCode::Unavailable, "nobody listens");
+    const sockaddr* const to = peer_.octets == 0 ? nullptr : peer_.get();
+    if (::sendto(socket_.get(), frame.data(), frame.size(), MSG_DONTWAIT | MSG_NOSIGNAL, to, peer_.octets) >= 0)
+      return ok();
+    if (errno == EAGAIN || errno == ENOBUFS || is_gone(errno))
+      return fail(ErrorCode::Unavailable, is_gone(errno) ? "nobody listens" : "peer does not read", errno);
+    return fail(ErrorCode::SystemFailure, "send frame", errno);
+  }
+
+  [[nodiscard]] Result<Received> do_receive(MutableOctets buffer) noexcept override {
+    Address from;
+    from.octets = sizeof from.storage;
+    const ssize_t octets = ::recvfrom(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT | MSG_TRUNC,
+                                      reinterpret_cast<sockaddr*>(&from.storage), &from.octets);
+    if (octets < 0) {
+      if (errno == EAGAIN || errno == EINTR) return Received{};
+      return is_gone(errno) ? fail(ErrorCode::Unavailable, "peer has hung up", errno)
+                            : fail(ErrorCode::SystemFailure, "receive frame", errno);
+    }
+    if (learns_) peer_ = from;
+    if (static_cast<std::size_t>(octets) > buffer.size())
+      return fail(ErrorCode::Malformed, "frame is longer than expected", octets);
+    return Received{Flow::New, static_cast<std::size_t>(octets)};
+  }
+
+  [[nodiscard]] bool do_wait(Duration timeout) noexcept override {
+    const Duration end = since_boot() + std::max(timeout, Duration{0});
+    for (;;) {
+      const Duration left = std::max(end - since_boot(), Duration{0});
+      const timespec rest{std::chrono::duration_cast<std::chrono::seconds>(left).count(), left.count() % 1'000'000'000};
+      pollfd entry{socket_.get(), POLLIN, 0};
+      const int ready = ::ppoll(&entry, 1, &rest, nullptr);
+      if (ready > 0) return true;
+      if (ready == 0 || errno != EINTR) return false;
+    }
+  }
+
+  FileDescriptor socket_;
+  Address peer_;
+  bool learns_;
+  std::string own_path_;
+};
+
+Result<Address> loopback(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return fail(ErrorCode::InvalidArgument, "address is not host:port");
+  const std::string host = text.substr(0, colon) == "localhost" ? "127.0.0.1" : text.substr(0, colon);
+  std::uint16_t port = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data() + colon + 1, end, port);
+  if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0)
+    return fail(ErrorCode::InvalidArgument, "port is not 1 .. 65535");
+  sockaddr_in internet{};
+  internet.sin_family = AF_INET;
+  internet.sin_port = htons(port);
+  if (::inet_pton(AF_INET, host.c_str(), &internet.sin_addr) != 1)
+    return fail(ErrorCode::InvalidArgument, "host is not an IPv4 address");
+  if (ntohl(internet.sin_addr.s_addr) >> 24 != 127)
+    return fail(ErrorCode::NotPermitted, "address is not a loopback one");
+  Address address;
+  std::memcpy(&address.storage, &internet, sizeof internet);
+  address.octets = sizeof internet;
+  return address;
+}
+
+Address unix_address(const std::string& path) noexcept {
+  sockaddr_un local{};
+  local.sun_family = AF_UNIX;
+  std::memcpy(local.sun_path, path.c_str(), path.size() + 1);
+  Address address;
+  std::memcpy(&address.storage, &local, sizeof local);
+  address.octets = sizeof local;
+  return address;
+}
+
+Result<FileDescriptor> make_socket(int family) noexcept {
+  FileDescriptor socket{::socket(family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+  if (!socket) return fail(ErrorCode::SystemFailure, "make socket", errno);
+  return socket;
+}
+
+Result<> bind_to(const FileDescriptor& socket, const Address& address) noexcept {
+  if (::bind(socket.get(), address.get(), address.octets) == 0) return ok();
+  return errno == EADDRINUSE ? fail(ErrorCode::AlreadyExists, "this side of the flow is open", errno)
+                             : fail(ErrorCode::SystemFailure, "bind socket", errno);
+}
+
+/// Removes what a dead process left at a path, never what is alive or is no socket.
+void remove_stale(const std::string& path, const Address& address) noexcept {
+  struct stat status{};
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISSOCK(status.st_mode)) return;
+  const FileDescriptor probe{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+  if (probe && ::connect(probe.get(), address.get(), address.octets) != 0 && errno == ECONNREFUSED)
+    (void)::unlink(path.c_str());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<DataFlow>> open_udp_flow(const std::string& address, FlowSide side) {
+  HIROSCO_TRY_LET(const Address device, loopback(address));
+  HIROSCO_TRY_LET(FileDescriptor socket, make_socket(AF_INET));
+  if (side == FlowSide::Device) {
+    HIROSCO_TRY(bind_to(socket, device));
+    return std::make_unique<DatagramFlow>(std::move(socket), Address{}, true, std::string{});
+  }
+  // Connected: only then does the system tell that nobody listens, and drop what others send.
+  if (::connect(socket.get(), device.get(), device.octets) != 0)
+    return fail(ErrorCode::SystemFailure, "connect socket", errno);
+  return std::make_unique<DatagramFlow>(std::move(socket), Address{}, false, std::string{});
+}
+
+Result<std::unique_ptr<DataFlow>> open_unix_flow(const std::string& address, FlowSide side) {
+  if (address.empty() || address.size() > 90 || address.find('\0') != std::string::npos)
+    return fail(ErrorCode::InvalidArgument, "path of a socket");
+  const std::string subsystem = address + ".subsystem";
+  const std::string& own_path = side == FlowSide::Device ? address : subsystem;
+  const Address own = unix_address(own_path);
+  HIROSCO_TRY_LET(FileDescriptor socket, make_socket(AF_UNIX));
+  remove_stale(own_path, own);
+  HIROSCO_TRY(bind_to(socket, own));
+  return std::make_unique<DatagramFlow>(std::move(socket), unix_address(side == FlowSide::Device ? subsystem : address),
+                                        false, own_path);
+}
+
+}  // namespace hirosco

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/shared_memory.hpp"
+
+namespace hirosco {
+
+/// Device frames between two processes of one computer: a named segment with one mailbox each way that keeps the newest
+/// frame. The side that opens first makes the segment, the last one to close removes it; what a dead owner left behind
+/// is used again. send and receive make no system call, but for the one that wakes a waiting peer.
+class SharedMemoryFlow final : public DataFlow {
+ public:
+  /// `address`: 1 .. 200 characters, "/" becomes ".". AlreadyExists: another live flow has this side. Realtime: blocks.
+  [[nodiscard]] static Result<std::unique_ptr<DataFlow>> open(const std::string& address, FlowSide side);
+  ~SharedMemoryFlow() override;
+  SharedMemoryFlow(const SharedMemoryFlow&) = delete;
+  SharedMemoryFlow& operator=(const SharedMemoryFlow&) = delete;
+
+ private:
+  struct Segment;
+  struct Mailbox;
+  SharedMemoryFlow(std::string name, FileDescriptor file, MappedMemory memory, FlowSide side) noexcept;
+  static Result<std::unique_ptr<SharedMemoryFlow>> try_open(const std::string& name, FlowSide side);
+  [[nodiscard]] Result<> do_send(Octets frame) noexcept override;
+  [[nodiscard]] Result<Received> do_receive(MutableOctets buffer) noexcept override;
+  [[nodiscard]] bool do_wait(Duration timeout) noexcept override;
+  void take_over() noexcept;
+  [[nodiscard]] bool something_to_tell() const noexcept;
+  [[nodiscard]] bool peer_hung_up() const noexcept;
+
+  std::string name_;
+  FileDescriptor file_;  ///< its lock on one octet is the claim to this side; it goes with the process
+  MappedMemory memory_;
+  Segment& segment_;
+  std::size_t own_;  ///< index of this side: 0 subsystem, 1 device
+  std::uint64_t sent_sequence_{0};
+  std::uint64_t seen_sequence_{0};
+  std::uint64_t peer_at_start_{0};  ///< peer's opening count when this side was opened
+};
+
+}  // namespace hirosco

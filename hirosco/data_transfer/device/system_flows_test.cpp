@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/data_transfer/device/testing/flow_conformance.hpp"
+#include "hirosco/utilities/os/file_descriptor.hpp"
+
+namespace hirosco::testing {
+namespace {
+
+/// Tests of several checkouts may run side by side.
+std::string unique_name() {
+  static std::atomic<int> number{0};
+  return "test-" + std::to_string(::getpid()) + "-" + std::to_string(number++);
+}
+
+/// A port that the system says is free.
+std::string free_port() {
+  const FileDescriptor socket{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t octets = sizeof address;
+  EXPECT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), octets), 0);
+  EXPECT_EQ(::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &octets), 0);
+  return std::to_string(ntohs(address.sin_port));
+}
+
+struct SharedMemoryTraits {
+  using Factory = SystemFlowFactory;
+  static constexpr bool newest_wins = true;
+  static constexpr bool knows_its_peer = true;
+  static FlowAddress address() { return {Transfer::SharedMemory, unique_name()}; }
+};
+struct UnixTraits {
+  using Factory = SystemFlowFactory;
+  static constexpr bool newest_wins = false;
+  static constexpr bool knows_its_peer = false;
+  static FlowAddress address() { return {Transfer::Unix, "/tmp/hirosco-" + unique_name()}; }
+};
+struct UdpTraits {
+  using Factory = SystemFlowFactory;
+  static constexpr bool newest_wins = false;
+  static constexpr bool knows_its_peer = false;
+  static FlowAddress address() { return {Transfer::Udp, "127.0.0.1:" + free_port()}; }
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(SharedMemory, FlowConformance, SharedMemoryTraits);
+INSTANTIATE_TYPED_TEST_SUITE_P(Unix, FlowConformance, UnixTraits);
+INSTANTIATE_TYPED_TEST_SUITE_P(Udp, FlowConformance, UdpTraits);
+
+TEST(SystemFlowFactory, RefusesMeansThatAreNotBuiltIn) {
+  SystemFlowFactory factory;
+  for (const Transfer means : {Transfer::MessageQueue, Transfer::Tcp, Transfer::Serial, static_cast<Transfer>(99)})
+    EXPECT_EQ(factory.open({means, "x"}, FlowSide::Subsystem).error().code, ErrorCode::NotPermitted);
+}
+
+TEST(SystemFlowFactory, KeepsTheDevicesOfTwoFlightsOfOneMissionApart) {
+  SystemFlowFactory plain{""};
+  SystemFlowFactory one{"one"};
+  SystemFlowFactory two{"two"};
+  for (const FlowAddress& address : {SharedMemoryTraits::address(), UnixTraits::address()}) {
+    const auto of_plain = plain.open(address, FlowSide::Device);
+    const auto of_one = one.open(address, FlowSide::Device);
+    ASSERT_TRUE(of_plain);
+    ASSERT_TRUE(of_one) << "the same side of the same address, in another flight";
+    const auto subsystem = two.open(address, FlowSide::Subsystem);
+    const std::array<std::byte, 4> frame{};
+    if (subsystem) {
+      EXPECT_FALSE((*subsystem)->send(frame)) << "nobody listens in that flight";
+    }
+    EXPECT_TRUE(one.open(address, FlowSide::Subsystem).value()->send(frame));
+    std::array<std::byte, 64> buffer;
+    EXPECT_EQ((*of_plain)->receive(buffer).value().octets, 0U) << "it was for the other flight";
+    EXPECT_EQ((*of_one)->receive(buffer).value().octets, frame.size());
+  }
+}
+
+TEST(UdpFlow, RefusesEveryAddressOutsideThisComputer) {
+  SystemFlowFactory factory;
+  for (const char* address : {"0.0.0.0:5000", "192.0.2.1:5000", "128.0.0.1:5000"})
+    EXPECT_EQ(factory.open({Transfer::Udp, address}, FlowSide::Device).error().code, ErrorCode::NotPermitted)
+        << address;
+  for (const char* address : {"127.0.0.1", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:12x", "somewhere:5000", ""})
+    EXPECT_EQ(factory.open({Transfer::Udp, address}, FlowSide::Device).error().code, ErrorCode::InvalidArgument)
+        << address;
+}
+
+TEST(UnixFlow, TakesOverThePathOfADeadProcessButNoFile) {
+  SystemFlowFactory factory;
+  const FlowAddress address = UnixTraits::address();
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const auto opened = factory.open(address, FlowSide::Device);
+    ::_exit(opened ? 0 : 1);  // leaves the path behind
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_EQ(status, 0);
+  ASSERT_TRUE(std::filesystem::exists(address.address));
+  EXPECT_TRUE(factory.open(address, FlowSide::Device));
+
+  const std::string file = address.address + ".file";
+  std::ofstream{file} << "kept";
+  EXPECT_EQ(factory.open({Transfer::Unix, file}, FlowSide::Device).error().code, ErrorCode::AlreadyExists);
+  EXPECT_TRUE(std::filesystem::remove(file));
+}
+
+TEST(SharedMemoryFlow, UsesTheSegmentOfAKilledProcessAgain) {
+  SystemFlowFactory factory;
+  const FlowAddress address = SharedMemoryTraits::address();
+  auto subsystem = factory.open(address, FlowSide::Subsystem).value();
+  for (int life = 0; life < 3; ++life) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      auto device = factory.open(address, FlowSide::Device);
+      if (!device) ::_exit(1);
+      std::array<std::byte, max_frame_octets> frame{};
+      for (;;) (void)(*device)->send(frame);  // killed most likely in the middle of a frame
+    }
+    EXPECT_TRUE(subsystem->wait(std::chrono::seconds{60}));
+    ASSERT_EQ(::kill(child, SIGKILL), 0);
+    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  }
+  auto device = factory.open(address, FlowSide::Device);
+  ASSERT_TRUE(device) << device.error().text;
+  std::array<std::byte, max_frame_octets> buffer{};
+  (void)subsystem->receive(buffer);
+  ASSERT_TRUE((*device)->send(std::array{std::byte{1}, std::byte{2}}));
+  const auto received = subsystem->receive(buffer).value();
+  EXPECT_EQ(received.flow, Flow::New);
+  EXPECT_EQ(received.octets, 2u);
+}
+
+TEST(SharedMemoryFlow, LeavesNoNameBehindWhenBothSidesHaveClosed) {
+  SystemFlowFactory factory;
+  const FlowAddress address = SharedMemoryTraits::address();
+  auto subsystem = factory.open(address, FlowSide::Subsystem).value();
+  auto device = factory.open(address, FlowSide::Device).value();
+  subsystem.reset();
+  const std::string name = "/hirosco." + address.address;
+  EXPECT_TRUE(FileDescriptor{::shm_open(name.c_str(), O_RDWR | O_CLOEXEC, 0)}.valid());
+  device.reset();
+  EXPECT_FALSE(FileDescriptor{::shm_open(name.c_str(), O_RDWR | O_CLOEXEC, 0)}.valid());
+}
+
+TEST(SharedMemoryFlow, NeitherSideHasGoneBeforeItCame) {
+  SystemFlowFactory factory;
+  const FlowAddress address = SharedMemoryTraits::address();
+  auto subsystem = factory.open(address, FlowSide::Subsystem).value();
+  std::array<std::byte, 8> buffer{};
+  EXPECT_EQ(subsystem->receive(buffer).value().flow, Flow::None);
+  EXPECT_EQ(subsystem->send(buffer).error().code, ErrorCode::Unavailable);
+}
+
+TEST(SharedMemoryFlow, WakesAWaitingSideForAFrameAndForTheEnd) {
+  SystemFlowFactory factory;
+  const FlowAddress address = SharedMemoryTraits::address();
+  auto device = factory.open(address, FlowSide::Device).value();
+  auto subsystem = factory.open(address, FlowSide::Subsystem).value();
+  int frames = 0;
+  bool ended = false;
+  std::thread waiting{[&] {
+    std::array<std::byte, max_frame_octets> buffer{};
+    while (!ended) {
+      if (!device->wait(std::chrono::hours{1})) break;
+      const auto received = device->receive(buffer);
+      ended = !received;
+      if (received && received->flow == Flow::New) {
+        ++frames;
+        (void)device->send(Octets{buffer}.first(received->octets));
+      }
+    }
+  }};
+  std::array<std::byte, max_frame_octets> buffer{};
+  for (std::size_t octets = 1; octets <= 200; ++octets) {
+    ASSERT_TRUE(subsystem->send(Octets{buffer}.first(octets)));
+    ASSERT_TRUE(subsystem->wait(std::chrono::hours{1}));
+    EXPECT_EQ(subsystem->receive(buffer).value().octets, octets);
+  }
+  subsystem.reset();
+  waiting.join();
+  EXPECT_EQ(frames, 200);
+  EXPECT_TRUE(ended);
+}
+
+}  // namespace
+}  // namespace hirosco::testing

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "hirosco/data_transfer/memory/memory.hpp"
+#include "hirosco/utilities/enum_text.hpp"
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// The real-time link as a contract (paper 4.1): whoever makes, uses or watches a link knows what stands here and no mechanism
+/// by name. A mechanism is a class beside this file and a row in `mechanisms.cpp`.
+namespace hirosco {
+
+/// How samples travel.
+enum class LinkMethod : std::uint8_t { SharedMemory = 1, Udp = 2, Tcp = 3, Unix = 4, Dds = 5, Tipc = 6 };
+/// Which samples a consumer gets: the newest one, or every one in order.
+enum class LinkKind : std::uint8_t { Latest = 1, Queued = 2 };
+
+/// Octets of one sample, at most.
+inline constexpr std::uint32_t max_link_payload_octets = 65'536;
+
+/// Written by the producer beside each sample. What no producer wrote is read as Fault: no damage of the word turns a
+/// fault into something to rely on (findings SF19).
+enum class LinkStatus : std::uint32_t { None = 0, Valid = 1, Degraded = 2, Stopping = 3, Fault = 4 };
+
+/// What both sides agreed on and find again at the other end.
+struct LinkLayout {
+  std::uint32_t epoch{};  ///< of the handshake that made this link
+  std::uint32_t payload_octets{};  ///< of one sample, 1 .. max_link_payload_octets
+  std::uint64_t layout_hash{};  ///< of the agreed fields, byte order and kind
+  Duration period{};  ///< of the producer
+};
+
+/// What a read found. `flow` None: never a sample yet. Old: the same sample as last time, or none could be had whole and
+/// `payload` still holds the reader's last copy.
+struct LinkSample {
+  Flow flow{Flow::None};
+  LinkStatus status{LinkStatus::None};
+  std::uint64_t count{0};  ///< of the sample in `payload`
+  std::uint64_t lost{0};  ///< samples never seen between this and the one before
+  TimePoint sampled_at{};
+};
+
+/// How a link is doing, for displays. The two values may be of neighbouring samples.
+struct LinkGlance {
+  std::uint64_t count{0};  ///< samples written so far
+  TimePoint sampled_at{};  ///< of the newest
+};
+
+/// The producer's end.  Realtime: bounded, never waits for a consumer. Thread: one.
+class LinkWriter {
+ public:
+  virtual ~LinkWriter() = default;
+  /// Publishes one sample. `payload` has the agreed size (invariant). Counts from 1.
+  virtual void write(Octets payload, TimePoint sampled_at, LinkStatus status) noexcept = 0;
+  /// Changes the status without a new sample (stopping, fault).
+  virtual void set_status(LinkStatus status) noexcept = 0;
+};
+
+/// A consumer's end. Keeps the last whole sample itself, so that no producer can take it away.
+/// Realtime: bounded, never waits for the producer. Thread: one.
+class LinkReader {
+ public:
+  virtual ~LinkReader() = default;
+  /// Copies the next sample into `payload` (agreed size, invariant), never a torn one; on Old the last one again, on None
+  /// nothing.
+  virtual LinkSample read(MutableOctets payload) noexcept = 0;
+};
+
+/// A look at a link from outside: no sample is read, no reader's count moves.  Realtime: wait-free. Thread: one.
+class LinkView {
+ public:
+  virtual ~LinkView() = default;
+  /// Empty: nothing was ever produced, or it cannot be told.
+  [[nodiscard]] virtual std::optional<LinkGlance> glance() const noexcept = 0;
+};
+
+/// One way to carry a link. The supervisor establishes what both ends share and hands it to them beside ST[128] attach;
+/// each end makes of it what it needs.  Realtime: allocates, system calls. Thread: any.
+class LinkMechanism {
+ public:
+  virtual ~LinkMechanism() = default;
+  [[nodiscard]] virtual LinkMethod method() const noexcept = 0;
+  [[nodiscard]] virtual LinkKind kind() const noexcept = 0;
+  /// Mismatch: the layout is impossible.
+  [[nodiscard]] virtual Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const = 0;
+  /// From now on nobody else can become the producer. Mismatch: what was handed over is not what such a link needs.
+  [[nodiscard]] virtual Result<std::unique_ptr<LinkWriter>> produce(MemoryProvider& provider,
+                                                                    const MemoryHandle& shared,
+                                                                    const LinkLayout& layout) const = 0;
+  /// Mismatch: what was handed over is not what was agreed, or a second producer may yet come.
+  [[nodiscard]] virtual Result<std::unique_ptr<LinkReader>> consume(MemoryProvider& provider,
+                                                                    const MemoryHandle& shared,
+                                                                    const LinkLayout& layout) const = 0;
+  [[nodiscard]] virtual Result<std::unique_ptr<LinkView>> look(MemoryProvider& provider,
+                                                               const MemoryHandle& shared) const = 0;
+};
+
+/// The mechanisms of a platform.
+using LinkMechanisms = std::span<const LinkMechanism* const>;
+/// Those that are built in, one row each in `mechanisms.cpp`.
+[[nodiscard]] LinkMechanisms standard_link_mechanisms() noexcept;
+/// Null: there is none for this method and kind.
+[[nodiscard]] const LinkMechanism* find_link_mechanism(LinkMechanisms mechanisms, LinkMethod method,
+                                                       LinkKind kind) noexcept;
+
+template <>
+struct EnumTexts<LinkMethod> {
+  using enum LinkMethod;
+  static constexpr auto table = enum_table<LinkMethod>(
+      {{SharedMemory, "shared_memory"}, {Udp, "udp"}, {Tcp, "tcp"}, {Unix, "unix"}, {Dds, "dds"}, {Tipc, "tipc"}});
+};
+template <>
+struct EnumTexts<LinkKind> {
+  using enum LinkKind;
+  static constexpr auto table = enum_table<LinkKind>({{Latest, "latest"}, {Queued, "queued"}});
+};
+
+}  // namespace hirosco

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
+
+namespace hirosco {
+namespace {
+
+const LatestMemory latest_memory;
+
+/// A mechanism is in force where it stands here: for descriptors, handshake, both ends and the supervisor's view.
+constexpr const LinkMechanism* built_in[]{
+    &latest_memory,
+};
+
+}  // namespace
+
+LinkMechanisms standard_link_mechanisms() noexcept { return built_in; }
+
+const LinkMechanism* find_link_mechanism(LinkMechanisms mechanisms, LinkMethod method, LinkKind kind) noexcept {
+  const auto found = std::ranges::find_if(mechanisms, [&](const LinkMechanism* mechanism) {
+    return mechanism->method() == method && mechanism->kind() == kind;
+  });
+  return found != mechanisms.end() ? *found : nullptr;
+}
+
+}  // namespace hirosco

@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""POSIX message queues as a means of transfer to devices. It passes the conformance of all flows, and descriptors may ask for it."""
+WHO = "a data flow"
+BEFORE = "3 + 5"
+GOAL = "own files + 1 row (and its file in CMake)"
+MOST_FILES, MOST_EDITED = 2, 1
+FILES = {"hirosco/data_transfer/device/message_queue_flow.hpp": """\
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hirosco/data_transfer/device/data_flow.hpp"
+
+namespace hirosco {
+
+/// Frames in order by POSIX message queues; each side owns the queue that it reads.
+[[nodiscard]] Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& address, FlowSide side);
+
+}  // namespace hirosco
+""", "hirosco/data_transfer/device/message_queue_flow.cpp": """\
+#include "hirosco/data_transfer/device/message_queue_flow.hpp"
+
+#include <fcntl.h>
+#include <mqueue.h>
+#include <poll.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace hirosco {
+namespace {
+
+class MessageQueueFlow final : public DataFlow {
+ public:
+  MessageQueueFlow(std::string own, std::string peer, mqd_t queue)
+      : own_{std::move(own)}, peer_{std::move(peer)}, queue_{queue} {}
+  ~MessageQueueFlow() override {
+    ::mq_close(queue_);
+    ::mq_unlink(own_.c_str());
+  }
+
+ private:
+  Result<> do_send(Octets frame) noexcept override {
+    if (frame.size() > max_frame_octets)
+      return fail(ErrorCode::OutOfRange, "octets of frame", static_cast<std::int64_t>(frame.size()));
+    const mqd_t to = ::mq_open(peer_.c_str(), O_WRONLY | O_NONBLOCK);
+    if (to < 0) return fail(ErrorCode::Unavailable, "nobody listens", errno);
+    const int sent = ::mq_send(to, reinterpret_cast<const char*>(frame.data()), frame.size(), 0);
+    const int reason = errno;
+    ::mq_close(to);
+    return sent == 0 ? ok() : Result<>{fail(ErrorCode::Unavailable, "no room", reason)};
+  }
+  Result<Received> do_receive(MutableOctets buffer) noexcept override {
+    std::array<char, max_frame_octets> frame;
+    const auto octets = ::mq_receive(queue_, frame.data(), frame.size(), nullptr);
+    if (octets < 0) return Received{};
+    if (static_cast<std::size_t>(octets) > buffer.size())
+      return fail(ErrorCode::Malformed, "frame is longer than expected", octets);
+    std::memcpy(buffer.data(), frame.data(), static_cast<std::size_t>(octets));
+    return Received{Flow::New, static_cast<std::size_t>(octets)};
+  }
+  bool do_wait(Duration timeout) noexcept override {
+    pollfd look{.fd = queue_, .events = POLLIN, .revents = 0};
+    return ::poll(&look, 1, static_cast<int>(timeout / std::chrono::milliseconds{1})) > 0;
+  }
+  std::string own_, peer_;
+  mqd_t queue_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& address, FlowSide side) {
+  const std::string subsystem = "/" + address + ".subsystem", device = "/" + address + ".device";
+  const auto& [own, peer] = side == FlowSide::Device ? std::tie(device, subsystem) : std::tie(subsystem, device);
+  mq_attr room{};
+  room.mq_maxmsg = 8;
+  room.mq_msgsize = max_frame_octets;
+  const mqd_t queue = ::mq_open(own.c_str(), O_RDONLY | O_NONBLOCK | O_CREAT | O_EXCL, 0600, &room);
+  if (queue < 0 && errno == EEXIST) return fail(ErrorCode::AlreadyExists, "this side of the flow is open");
+  if (queue < 0) return fail(ErrorCode::Unavailable, "message queue", errno);
+  return std::make_unique<MessageQueueFlow>(own, peer, queue);
+}
+
+}  // namespace hirosco
+"""}
+EDITS = [
+    ("hirosco/data_transfer/device/flow_means.cpp", '#include "hirosco/data_transfer/device/shared_memory_flow.hpp"\n',
+     '#include "hirosco/data_transfer/device/message_queue_flow.hpp"\n#include "hirosco/data_transfer/device/shared_memory_flow.hpp"\n'),
+    ("hirosco/data_transfer/device/flow_means.cpp", "    FlowMeans{Transfer::Udp,",
+     "    FlowMeans{Transfer::MessageQueue, AddressForm::Name, open_message_queue_flow},\n    FlowMeans{Transfer::Udp,"),
+]
+SOURCES = ["hirosco/data_transfer/device/flow_means.cpp", "hirosco/data_transfer/device/message_queue_flow.cpp"]
+TRY = """\
+#include <unistd.h>
+
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/data_transfer/device/testing/flow_conformance.hpp"
+#include "hirosco/descriptor/read.hpp"
+
+namespace hirosco::testing {
+namespace {
+
+struct MessageQueueTraits {
+  using Factory = SystemFlowFactory;
+  static constexpr bool newest_wins = false;
+  static constexpr bool knows_its_peer = false;
+  static FlowAddress address() {
+    static int number = 0;
+    return {Transfer::MessageQueue, "hirosco-" + std::to_string(::getpid()) + "-" + std::to_string(number++)};
+  }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(MessageQueue, FlowConformance, MessageQueueTraits);
+
+TEST(MessageQueueFlow, ADescriptorMayAskForIt) {
+  const descriptor::FileSource source = [](const std::filesystem::path& file) {
+    auto text = descriptor::file_system()(file);
+    constexpr std::string_view now = "<Endnode transfer=\\"shared_memory\\"", then = "<Endnode transfer=\\"message_queue\\"";
+    text->replace(text->find(now), now.size(), then);
+    return text;
+  };
+  const auto reading = descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/hirosco/descriptor/testdata/flywheel.xml", source);
+  for (const auto& problem : reading.problems) ADD_FAILURE() << problem.message;
+  EXPECT_TRUE(reading.value);
+}
+
+}  // namespace
+}  // namespace hirosco::testing
+"""
