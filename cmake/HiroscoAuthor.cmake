@@ -50,7 +50,7 @@ function(hirosco_part name main framework)
   endif()
   if(TARGET hirosco_modules)  # in this repository
     add_dependencies(hirosco_modules ${name}_module)
-    add_dependencies(optimised ${name} ${name}_module)
+    add_dependencies(flown ${name} ${name}_module)
   endif()
   install(TARGETS ${name} RUNTIME DESTINATION bin)
   install(TARGETS ${name}_module LIBRARY DESTINATION lib/hirosco)

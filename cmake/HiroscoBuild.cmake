@@ -76,10 +76,13 @@ endfunction()
 # Every module of this repository, for what loads them.
 add_custom_target(hirosco_modules)
 
-# ./check builds each test once: with the sanitizers those with these two labels, optimised all others, and what flies.
+# ./check builds each test once: with the sanitizers those with these two labels, optimised all others. `flown` is all that tests of
+# real processes need: programs, modules, page, libraries for authors.
 add_custom_target(unit_tests)
 add_custom_target(concurrency_tests)
+add_custom_target(flown)
 add_custom_target(optimised)
+add_dependencies(optimised flown)
 
 # hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit])
 # One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast. Labels: unit (the default) beside
@@ -157,6 +160,6 @@ function(hirosco_executable name)
   endif()
   get_directory_property(on_demand EXCLUDE_FROM_ALL)  # as bench/
   if(NOT on_demand)
-    add_dependencies(optimised ${name})
+    add_dependencies(flown ${name})
   endif()
 endfunction()
