@@ -148,7 +148,9 @@ class Prepared final : public supervisor::ProcessLauncher {
     auto* vital = ::new (launched.vital.octets.data()) VitalPage;
     ::new (launched.permit.octets.data()) PermitPage;
     vital->state.store(static_cast<std::uint32_t>(descriptor::State::PreOperational));
-    launched.channel = std::make_unique<SocketChannel>(std::move(ends_[subsystem.subsystem.id]));
+    FileDescriptor& end = ends_[subsystem.subsystem.id];
+    if (!end) std::tie(end, silent_.emplace_back()) = SocketChannel::make_pair().value();
+    launched.channel = std::make_unique<SocketChannel>(std::move(end));
     launched.process = subsystem.subsystem.id;
     return launched;
   }
@@ -158,6 +160,7 @@ class Prepared final : public supervisor::ProcessLauncher {
  private:
   SealedMemory& memory_;
   std::map<std::uint16_t, FileDescriptor> ends_;
+  std::vector<FileDescriptor> silent_;  ///< the other ends of those who say nothing
 };
 
 struct Silent final : supervisor::Observer {

@@ -21,6 +21,9 @@ constexpr Duration unreadable_period = 1s;
 constexpr std::size_t most_outstanding = 128;
 constexpr Duration outstanding_patience = 1ms;
 
+/// Of one message; everything else is of the channel, and the next one would fare no better.
+bool is_damage(ErrorCode code) noexcept { return code == ErrorCode::Malformed || code == ErrorCode::Mismatch; }
+
 }  // namespace
 
 bool Reception::reads(const Member& member) const {
@@ -35,13 +38,13 @@ void Reception::read(Member& member) {
   const int most = craft_.is_ground_link(member) ? ground_messages_per_step : messages_per_step;
   for (int left = most; left > 0 && member.alive() && reads(member); --left) {
     const auto found = member.channel()->receive(buffer);
-    if (!found && found.error().code != ErrorCode::Unavailable) {
+    if (!found && is_damage(found.error().code)) {
       // Damage is no loss: it is counted and told, and what follows is read.
       ++member.unreadable;
       continue;
     }
     if (!found && !member.closed_at) {
-      // Whoever can be neither commanded nor heard moves nothing any more.
+      // Whoever can be neither commanded nor heard moves nothing any more, whatever became of the channel.
       member.closed_at = craft_.now;
       craft_.guard.fence(member.apid());
     }

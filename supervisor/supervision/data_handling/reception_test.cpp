@@ -73,6 +73,32 @@ TEST_F(ReceptionTest, WhoCanBeNeitherCommandedNorHeardIsStoppedAtOnce) {
   EXPECT_FALSE(guard.fenced(arm));
 }
 
+/// The operating system has taken its socket.
+struct LostChannel final : Channel {
+  explicit LostChannel(int& looked) : looked_{looked} {}
+  Result<> send(const Message&) override { return fail(ErrorCode::SystemFailure, "send on control channel"); }
+  Result<Found> receive(MessageBuffer&) override {
+    ++looked_;
+    return fail(ErrorCode::SystemFailure, "receive on control channel");
+  }
+
+ private:
+  int& looked_;
+};
+
+TEST_F(ReceptionTest, AChannelThatTheSystemRefusesIsClosedAndNoDamageToBeReadPast) {
+  Member& member = *craft.member(hand);
+  int looked = 0;
+  auto launched = launch(member.described()).value();
+  launched.channel = std::make_unique<LostChannel>(looked);
+  member.started(std::move(launched));
+  read(hand);
+  EXPECT_TRUE(guard.fenced(hand));
+  EXPECT_EQ(member.closed_at, clock.now());
+  EXPECT_EQ(unreadable(hand), 0U);
+  EXPECT_EQ(looked, 1) << "once a step, or it takes the time of all others";
+}
+
 TEST_F(ReceptionTest, TheGroundWaitsWhileItsTelecommandsAreNotAnswered) {
   const Member& ground = *craft.member(camera);
   for (std::uint16_t count = 0; count < 128; ++count) {
