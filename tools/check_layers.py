@@ -18,14 +18,16 @@ def rank(path):
 station = ["archive", "model", "link", "commands", "replay", "api", "shell"]  # of ground/, lowest first
 def level(path):
     name = pathlib.Path(path).parts[1]
-    return 1 if name == "clients" else station.index(name) if name in station else len(station)
+    return station.index(name) if name in station else len(station)
 def wrong(path, to):
     top, target = path.split("/")[0], to.split("/")[0]
     if system.match(to):
         asks = path.startswith(shells) or path.endswith(("_test.cpp", "main.cpp", "run.cpp")) or "/testing/" in path or "/tcp_server." in path
         return not asks and "the operating system"
     if to.startswith("boost/"): return not path.startswith("ground/shell/") and "Boost, which ground/shell/ alone knows"
-    if path.startswith("ground/") and to.startswith("ground/") and not path.endswith("_test.cpp") and level(to) > level(path): return "a higher folder of the ground station"
+    if top == target == "ground" and not path.endswith("_test.cpp"):
+        if path.startswith("ground/clients/"): return not to.startswith(("ground/clients/", "ground/model/")) and "more than the model"
+        if level(to) > level(path): return "a higher folder of the ground station"
     if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
     if target == "missions" and top not in ("missions", "tests"): return "a mission"
     if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return False  # assemble and fly all parts

@@ -20,7 +20,6 @@ version = re.search(r"^project\(hirosco VERSION (\S+)", read("CMakeLists.txt"), 
 said = {
     "CITATION.cff": re.search(r"^version: (\S+)$", read("CITATION.cff"), re.M)[1],
     "CHANGELOG.md": re.search(r"^## (\S+?),", read("CHANGELOG.md"), re.M)[1],
-    "ground/api/openapi.json": json.loads(read("ground/api/openapi.json"))["info"]["version"],
 }
 for folder in ("ground/web", "tests/browser"):
     lock = json.loads(read(f"{folder}/package-lock.json"))

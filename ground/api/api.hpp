@@ -6,37 +6,19 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
-#include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "ground/api/application.hpp"
+#include "ground/api/mission_json.hpp"
 #include "ground/api/page_files.hpp"
 #include "ground/api/session.hpp"
 #include "ground/api/target.hpp"
 
-/// ground/api/README.md as code: who may ask, what is asked, what is answered. No I/O but reading the page's files.
+/// Who may ask; what is asked and answered stands in routes.hpp. No I/O but reading the page's files.
 namespace hirosco::ground {
-
-/// One edge of the ten states' table, which belongs to the generic subsystem.
-struct Transition {
-  descriptor::State from{};
-  descriptor::State to{};
-  bool failure{false};  ///< taken only when the state it leaves has failed
-};
-
-/// A line that a simulated device takes, for a button of the page.
-struct FaultText {
-  std::string line;
-  std::string text;
-};
-/// By the names of the devices, which tell them themselves.
-using FaultTexts = std::map<std::string, std::vector<FaultText>>;
 
 class Api final : public Application {
  public:
@@ -70,14 +52,6 @@ class Api final : public Application {
   /// 401; from the sixth wrong token in a minute on each is answered a second after the one before. What keeps guessers out is the length of
   /// the token; this keeps them from taking the processor, and shows. Right ones never wait.
   void refuse_token(std::function<void(HttpResponse)> respond);
-  void post(const HttpRequest& request, const Target& target, Role role,
-            const std::function<void(HttpResponse)>& respond);
-  [[nodiscard]] HttpResponse get(const Target& target);
-  [[nodiscard]] HttpResponse history(const Target& target);
-  [[nodiscard]] HttpResponse csv(const Target& target);
-  [[nodiscard]] nlohmann::json timeline(const Target& target);
-  [[nodiscard]] nlohmann::json log(const Target& target);
-  [[nodiscard]] Span span_of(const Target& target, double last_s) const;
   [[nodiscard]] HttpResponse page_file(const HttpRequest& request, const std::string& path) const;
 
   struct Late {
@@ -94,13 +68,5 @@ class Api final : public Application {
   unsigned wrong_tokens_{0};
   std::deque<Late> late_;
 };
-
-/// GET /api/mission.
-[[nodiscard]] nlohmann::json mission_json(const Catalogue& catalogue, std::span<const Transition> transitions,
-                                          const FaultTexts& faults);
-
-/// Samples of one column in a span, oldest first. Calls `take(t, value)`. False: there were `most` or more.
-[[nodiscard]] bool samples(Session& session, std::size_t column, const Span& span, std::size_t most,
-                           const std::function<void(OnboardTime, double)>& take);
 
 }  // namespace hirosco::ground

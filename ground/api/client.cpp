@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/api/client.hpp"
 
-#include <algorithm>
-
-#include "ground/api/views.hpp"
 #include "ground/model/json.hpp"
+#include "ground/model/views.hpp"
 #include "hirosco/utilities/version.hpp"
 
 namespace hirosco::ground {
@@ -14,11 +12,6 @@ namespace {
 using nlohmann::json;
 
 constexpr Duration status_period = 1s;
-constexpr double greatest_speed = 100.0;
-/// A long pause of the server is not caught up in one leap.
-constexpr Duration longest_step = 500ms;
-/// Events in one step of a replay.
-constexpr std::size_t most_events = 1000;
 constexpr std::uint16_t try_again_later = 1013;
 
 }  // namespace
@@ -32,7 +25,7 @@ Client::Client(Session& session, Peer& peer, std::string id, bool is_operator)
         {"client", id_},
         {"operator", is_operator},
         {"archive_from", extent ? json(json_time(extent->from)) : json(nullptr)}});
-  tick(session_.parts_.clock.now());
+  tick(session_.clock().now());
 }
 
 void Client::send(const json& message) {
@@ -45,15 +38,15 @@ void Client::send(const json& message) {
 }
 
 void Client::tell(const json& message) {
-  if (replay_ == nullptr) send(message);
+  if (!replay_) send(message);
 }
 
 void Client::tick(TimePoint now) {
   if (closing_) return;
-  if (replay_ != nullptr) return play(now);
+  if (replay_) return play(now);
   if (peer_.pending_octets() > busy_octets) return;
-  if (session_.connected_ != connected_told_) status_due_ = true;
-  connected_told_ = session_.connected_;
+  if (session_.connected() != connected_told_) status_due_ = true;
+  connected_told_ = session_.connected();
   show(session_.model(), session_.now(), now, false);
 }
 
@@ -62,7 +55,7 @@ void Client::show(const Model& model, OnboardTime at, TimePoint now, bool replay
     json status = status_json(session_.catalogue(), model, at);
     status["type"] = "status";
     status["link"] = session_.link_json();
-    status["commandable"] = session_.connected_ && !replay;
+    status["commandable"] = session_.connected() && !replay;
     if (replay) status["replay"] = true;
     send(status);
     status_due_ = false;
@@ -92,7 +85,7 @@ void Client::received(const std::string& text) {
     values_told_ = 0;
     status_due_ = true;
     send({{"type", "replay"}, {"at", json_time(session_.now())}, {"speed", 1}, {"state", "live"}});
-    return tick(session_.parts_.clock.now());
+    return tick(session_.clock().now());
   }
   send({{"type", "error"}, {"error", "understood are {type:\"replay\", at, speed} and {type:\"live\"}"}});
 }
@@ -100,96 +93,33 @@ void Client::received(const std::string& text) {
 void Client::begin_replay(double at, double speed) {
   const auto extent = session_.archive().extent();
   if (!extent) return send({{"type", "error"}, {"error", "the archive is empty"}});
-  auto replay = std::make_unique<Replay>(session_.catalogue());
-  replay->at = std::clamp(onboard_time(at), extent->from, extent->to);
-  replay->end = extent->to;
-  replay->speed = std::isfinite(speed) ? std::clamp(speed, 0.0, greatest_speed) : 1.0;
-  replay->last = session_.parts_.clock.now();
-  std::vector<StoredPacket> newest;
-  for (const Report& report : session_.catalogue().reports())
-    if (auto packet = session_.archive().last_of(report.apid, report.sid, replay->at))
-      newest.push_back(std::move(*packet));
-  // In order of time, or an old report would be taken for a clock that went back.
-  std::ranges::sort(newest, {}, &StoredPacket::t);
-  for (const StoredPacket& packet : newest)
-    if (const auto view = pus::TelemetryView::parse(packet.octets)) static_cast<void>(replay->model.take(*view));
-  replay_ = std::move(replay);
+  const TimePoint now = session_.clock().now();
+  replay_.emplace(session_.catalogue(), session_.archive(), *extent, onboard_time(at), speed, now);
   values_told_ = 0;
   status_due_ = true;
-  announce_replay(replay_->last);
-  play(replay_->last);
+  announce_replay(now);
+  play(now);
 }
 
 void Client::announce_replay(TimePoint now) {
-  const char* state = replay_->ended ? "ended" : replay_->speed == 0.0 ? "paused" : "playing";
   send({{"type", "replay"},
-        {"at", json_time(replay_->at)},
-        {"speed", replay_->speed},
-        {"state", state},
+        {"at", json_time(replay_->at())},
+        {"speed", replay_->speed()},
+        {"state", replay_->state()},
         {"replay", true}});
-  replay_->announced = now;
+  replay_announced_ = now;
 }
 
 void Client::play(TimePoint now) {
-  if (peer_.pending_octets() > busy_octets) {
-    replay_->last = now;  // the past waits for whoever looks at it
-    return;
-  }
-  const Duration step = std::min(now - replay_->last, longest_step);
-  replay_->last = now;
-  const OnboardTime before = replay_->at;
-  const auto ahead = Duration{static_cast<std::int64_t>(static_cast<double>(step.count()) * replay_->speed)};
-  if (!replay_->ended && ahead > Duration{0}) {
-    replay_->at = step_end({before + Duration{1}, std::min(before + ahead, replay_->end)});
-    replay_->ended = replay_->at == replay_->end;
-    tell_past({before + Duration{1}, replay_->at});
-  }
-  const bool playing = replay_->speed > 0.0 && before != replay_->at;
-  if (playing && (replay_->ended || now - replay_->announced >= status_period)) announce_replay(now);
-  show(replay_->model, replay_->at, now, true);
-}
-
-OnboardTime Client::step_end(const Span& span) const {
-  const auto events =
-      session_.archive().events({.span = span, .text = {}, .limit = most_events, .newest_first = false});
-  return events.size() < most_events ? span.to : events.back().t;
-}
-
-void Client::tell_past(const Span& span) {
-  Archive& archive = session_.archive();
-  archive.packets(span, [&](const StoredPacket& packet) {
-    if (const auto view = pus::TelemetryView::parse(packet.octets)) static_cast<void>(replay_->model.take(*view));
-    return true;
-  });
-  const auto past = [this](json message, const char* type) {
-    message["type"] = type;
+  if (peer_.pending_octets() > busy_octets) return replay_->wait(now);
+  const OnboardTime before = replay_->at();
+  replay_->play(now, [this](json message) {
     message["replay"] = true;
     send(message);
-  };
-  constexpr std::size_t no_limit = 1'000'000;
-  const Archive::Filter all{.span = span, .text = {}, .limit = no_limit, .newest_first = false};
-  for (const auto& event : archive.events(all)) past(event_json(event), "event");
-  for (auto& command : archive.commands(all)) {
-    command.stage = "sent";
-    command.code.reset();
-    command.reason.clear();
-    past(command_json(command), "command");
-  }
-  for (const auto& [number, report] : archive.reports_in(span)) {
-    auto command = archive.command(number);
-    if (!command) continue;
-    command->t = report.t;
-    command->stage = report.stage;
-    command->code = report.code;
-    command->reason = report.reason;
-    past(command_json(*command), "command");
-  }
-  for (const auto& fault : archive.faults(span))
-    past({{"t", json_time(fault.t)}, {"device", fault.device}, {"line", fault.line}, {"answer", fault.answer}},
-         "fault");
-  for (const auto& gap : archive.gaps(span))
-    if (gap.to >= span.from && gap.to <= span.to)
-      past({{"from", json_time(gap.from)}, {"to", json_time(gap.to)}}, "gap");
+  });
+  const bool playing = replay_->speed() > 0.0 && before != replay_->at();
+  if (playing && (replay_->ended() || now - replay_announced_ >= status_period)) announce_replay(now);
+  show(replay_->model(), replay_->at(), now, true);
 }
 
 }  // namespace hirosco::ground

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "ground/api/session.hpp"
+#include "ground/replay/replay.hpp"
 
 namespace hirosco::ground {
 
@@ -23,30 +24,17 @@ class Client {
   Client(Session& session, Peer& peer, std::string id, bool is_operator);
   [[nodiscard]] const Peer& peer() const noexcept { return peer_; }
   [[nodiscard]] const std::string& id() const noexcept { return id_; }
-  [[nodiscard]] bool in_replay() const noexcept { return replay_ != nullptr; }
+  [[nodiscard]] bool in_replay() const noexcept { return replay_.has_value(); }
   void received(const std::string& text);
   /// A message of the live view that must not be lost.
   void tell(const nlohmann::json& message);
   void tick(TimePoint now);
 
  private:
-  struct Replay {
-    explicit Replay(const Catalogue& catalogue) : model{catalogue} {}
-    Model model;
-    OnboardTime at{};
-    OnboardTime end{};
-    double speed{1.0};
-    bool ended{false};
-    TimePoint last{};
-    TimePoint announced{};
-  };
   void send(const nlohmann::json& message);
   void show(const Model& model, OnboardTime at, TimePoint now, bool replay);
   void begin_replay(double at, double speed);
   void play(TimePoint now);
-  /// Where a step of the replay ends: a burst takes several, so that no event is left out and none chokes the page.
-  [[nodiscard]] OnboardTime step_end(const Span& span) const;
-  void tell_past(const Span& span);
   void announce_replay(TimePoint now);
 
   Session& session_;
@@ -58,7 +46,8 @@ class Client {
   bool status_due_{true};
   TimePoint status_at_{};
   bool connected_told_{false};
-  std::unique_ptr<Replay> replay_;
+  std::optional<Replay> replay_;
+  TimePoint replay_announced_{};
 };
 
 }  // namespace hirosco::ground

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "ground/api/api.hpp"
+#include "ground/api/mission_json.hpp"
+
 #include "ground/model/json.hpp"
 
 namespace hirosco::ground {

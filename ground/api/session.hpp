@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <expected>
 #include <functional>
-#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -15,7 +13,8 @@
 
 #include "ground/api/application.hpp"
 #include "ground/archive/archive.hpp"
-#include "ground/link/way.hpp"
+#include "ground/commands/commands.hpp"
+#include "ground/link/downlink.hpp"
 #include "ground/model/catalogue.hpp"
 #include "ground/model/model.hpp"
 
@@ -32,14 +31,6 @@ struct Surroundings {
                      std::function<void(std::optional<std::string>)>)>
       ask_device;
 };
-
-/// Why a request was not done, as an HTTP status.
-struct Refusal {
-  unsigned status{400};
-  std::string text;
-};
-template <class T>
-using Answered = std::expected<T, Refusal>;
 
 class Client;
 
@@ -62,7 +53,7 @@ class Session {
   void link_up();
   void link_down();
   /// A telecommand that was to be sent has not left: its sender is told.
-  void not_sent(Octets packet);
+  void not_sent(Octets packet) { commands_.not_sent(packet); }
   /// Octets of the telemetry stream as they come, in pieces of any size. False: this is no telemetry, close the link.
   [[nodiscard]] bool receive(Octets octets);
   /// Batches to the clients, limits of time. Call 20 times a second.
@@ -82,65 +73,31 @@ class Session {
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   void fault(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   [[nodiscard]] nlohmann::json status() const;
+  /// Of the link, in every status.
+  [[nodiscard]] nlohmann::json link_json() const;
 
   [[nodiscard]] const Catalogue& catalogue() const noexcept { return parts_.catalogue; }
   [[nodiscard]] Archive& archive() const noexcept { return parts_.archive; }
   [[nodiscard]] const Model& model() const noexcept { return model_; }
+  [[nodiscard]] const Clock& clock() const noexcept { return parts_.clock; }
+  [[nodiscard]] bool connected() const noexcept { return connected_; }
   /// On-board time now as far as the ground can tell.
   [[nodiscard]] OnboardTime now() const;
   [[nodiscard]] std::size_t client_count() const noexcept { return clients_.size(); }
 
  private:
-  friend class Client;
-  struct Open {
-    StoredCommand command;  ///< as its last report left it: pages hear of it even when the disk is full
-    TimePoint since{};
-  };
-  struct Prepared {
-    const descriptor::Subsystem* subsystem{};
-    std::string function;
-    std::uint8_t service{};
-    std::uint8_t subtype{};
-    Way way{Way::InTurn};
-    std::string arguments;  ///< a JSON object with the values that are sent
-    std::vector<std::byte> data;
-  };
-  [[nodiscard]] Answered<Prepared> prepare(const nlohmann::json& body) const;
-  [[nodiscard]] Answered<std::vector<std::byte>> packet_of(std::uint16_t apid, std::uint8_t service,
-                                                           std::uint8_t subtype, std::uint8_t ack, Octets data,
-                                                           std::uint16_t count) const;
-  void take_packet(Octets octets);
-  void count_lost(const pus::TelemetryView& packet);
+  void take(const pus::TelemetryView& packet, Octets octets);
   void add_gap(OnboardTime from, OnboardTime to);
-  void take_verdict(const Verdict& verdict, OnboardTime t);
-  /// The copy of a telecommand of another ground, before the reports on it.
-  void take_copy(Octets packet, OnboardTime t);
-  /// A telecommand of another ground without a copy: known is whom it went to and what became of it.
-  [[nodiscard]] Open add_foreign(const Verdict& verdict, OnboardTime t);
-  void take_answer(const PermissionAnswer& answer);
-  void expire(TimePoint now);
-  [[nodiscard]] nlohmann::json link_json() const;
-  [[nodiscard]] std::uint16_t next_count();
+  void tell_command(const StoredCommand& command);
   void broadcast(const nlohmann::json& message);
 
   Parts parts_;
   Model model_;
-  std::vector<std::byte> stream_;
+  Downlink downlink_;
+  Commands commands_;
   bool connected_{false};
-  bool fresh_link_{false};
   TimePoint newest_received_{};
-  std::uint64_t received_{0}, sent_{0}, lost_{0}, damaged_{0};
-  std::map<std::uint16_t, std::pair<std::uint16_t, OnboardTime>> expected_;  ///< by APID: next count, last time
-  std::optional<OnboardTime> last_known_;  ///< end of what the archive has before this link
-
-  std::map<std::pair<std::uint16_t, std::uint32_t>, Open> open_commands_;  ///< by destination and request id
-  struct Question {
-    std::string octets;
-    std::function<void(Answered<nlohmann::json>)> done;
-    TimePoint since{};
-  };
-  std::multimap<std::uint32_t, Question> questions_;
-  std::uint16_t count_;
+  std::optional<OnboardTime> archived_until_;  ///< by those before this process
   std::vector<std::unique_ptr<Client>> clients_;
   std::uint64_t next_client_{1};
   TimePoint next_housekeeping_{};

@@ -17,20 +17,20 @@ REQUIREMENTS = HERE / "requirements.txt"
 NEEDED = "import spacepackets, fastcrc"
 
 
-def works(python):
-    return subprocess.run([python, "-c", NEEDED], capture_output=True, check=False).returncode == 0
+def works(python, needed):
+    return subprocess.run([python, "-c", needed], capture_output=True, check=False).returncode == 0
 
 
-def interpreter(folder):
+def interpreter(folder, needed=NEEDED, requirements=REQUIREMENTS):
     """(path of an interpreter that has the library, "") or (None, why there is none)."""
-    if works(sys.executable):
+    if works(sys.executable, needed):
         return sys.executable, ""
     folder = pathlib.Path(folder)
     python = folder / "bin" / "python"
-    if python.exists() and works(str(python)):
+    if python.exists() and works(str(python), needed):
         return str(python), ""
     steps = ([sys.executable, "-m", "venv", "--clear", str(folder)],
-             [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", str(REQUIREMENTS)])
+             [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", str(requirements)])
     for step in steps:
         try:
             done = subprocess.run(step, capture_output=True, text=True, timeout=120, check=False)
@@ -42,14 +42,19 @@ def interpreter(folder):
     return str(python), ""
 
 
+def interpreter_or_skip(*arguments):
+    python, reason = interpreter(*arguments)
+    if python is None:
+        reasons = HERE.parents[1] / "tools/skip_reason"
+        sys.exit(subprocess.run([reasons, "no-package-index-of-python", reason], check=False).returncode)
+    return python
+
+
 def main():
     if len(sys.argv) < 3:
         print(__doc__, file=sys.stderr)
         sys.exit(2)
-    python, reason = interpreter(sys.argv[1])
-    if python is None:
-        reasons = HERE.parents[1] / "tools/skip_reason"
-        sys.exit(subprocess.run([reasons, "no-package-index-of-python", reason], check=False).returncode)
+    python = interpreter_or_skip(sys.argv[1])
     script = HERE / sys.argv[2]
     os.execv(python, [python, "-B", str(script), *sys.argv[3:]])
 

@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <algorithm>
 
+#include "ground/api/routes.hpp"
 #include "tests/ground/station.hpp"
 
 /// The API as such: its document, who may ask, and input that means ill.
@@ -110,36 +111,68 @@ TEST_F(GroundStation, WhatIsNoNumberOrSeverityIsNamedInsteadOfIgnored) {
   return part.contains("$ref") ? document.at(json::json_pointer{part["$ref"].get<std::string>().substr(1)}) : part;
 }
 
-/// Whatever is answered stands in the document, to the last field.
+[[nodiscard]] bool is_of(const json& schema, const json& value) {
+  const std::string type = schema.value("type", "");
+  const bool listed = !schema.contains("enum") || std::ranges::find(schema["enum"], value) != schema["enum"].end();
+  return listed &&
+         (type.empty() || (type == "string" && value.is_string()) || (type == "integer" && value.is_number_integer()) ||
+          (type == "number" && value.is_number()) || (type == "boolean" && value.is_boolean()) ||
+          (type == "array" && value.is_array()) || (type == "object" && value.is_object()));
+}
+
+/// What is answered is as the document says: of its types, whole, and nothing that does not stand there.
 void expect_described(const json& document, const json& part, const json& answer, const std::string& where) {
   const json schema = resolved(document, part);
-  if (answer.is_array() && schema.contains("items"))
+  if (schema.empty() || (answer.is_null() && schema.value("nullable", false))) return;
+  const bool fits = schema.contains("oneOf")
+                        ? std::ranges::any_of(schema["oneOf"], [&](const json& one) { return is_of(one, answer); })
+                        : is_of(schema, answer);
+  EXPECT_TRUE(fits) << where << ": " << answer.dump().substr(0, 100);
+  if (answer.is_array())
     for (const json& one : answer) expect_described(document, schema["items"], one, where + "[]");
-  if (!answer.is_object() || schema.value("additionalProperties", json{}) == json(true)) return;
+  if (!answer.is_object()) return;
+  for (const json& name : schema.value("required", json::array()))
+    EXPECT_TRUE(answer.contains(name.get<std::string>())) << where << " lacks " << name;
+  const json known = schema.value("properties", json::object());
   for (const auto& [name, value] : answer.items()) {
-    const json known = schema.value("properties", json::object());
-    const bool described = known.contains(name) || schema.contains("additionalProperties");
-    EXPECT_TRUE(described) << where << "." << name;
-    if (described)
-      expect_described(document, known.contains(name) ? known[name] : schema["additionalProperties"], value,
-                       where + "." + name);
+    const bool named = known.contains(name);
+    EXPECT_TRUE(named || schema.contains("additionalProperties")) << where << "." << name;
+    if (named || schema.contains("additionalProperties"))
+      expect_described(document, named ? known[name] : schema["additionalProperties"], value, where + "." + name);
   }
 }
 
-/// Every operation of openapi.json is asked: it is there, wants the token, and answers as the document says.
+/// The address of an operation with its required parameters, or with all, each with a value of its kind.
+[[nodiscard]] std::string address_of(const std::string& path, const json& operation, bool all) {
+  std::string address = path;
+  for (const json& parameter : operation["parameters"]) {
+    if (parameter["in"] != "query" || (!all && parameter["required"] != true)) continue;
+    const json& schema = parameter["schema"];
+    const std::string type = schema["type"];
+    const std::string value = parameter["name"] == "parameter" ? first_joint
+                              : schema.contains("enum")        ? schema["enum"][0].get<std::string>()
+                              : type == "string"               ? "a"
+                                                               : "10";
+    address += (address == path ? "?" : "&") + parameter["name"].get<std::string>() + "=" + value;
+  }
+  return address;
+}
+
+/// Every operation of the station's own document is asked: it is there, wants the token, and answers as the document says.
 TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
   commission();
-  std::ifstream file{std::filesystem::path{HIROSCO_SOURCE_DIR} / "ground/api/openapi.json"};
-  const json document = json::parse(file);
-  const std::string span = "?parameter=" + std::string{first_joint};
+  const json document = station.get("/api/openapi.json");
   const json command{{"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"}};
+  std::size_t asked = 0;
   for (const auto& [path, methods] : document["paths"].items())
     for (const auto& [method, operation] : methods.items()) {
       SCOPED_TRACE(method + " " + path);
+      ++asked;
       const bool posts = method == "post";
       const json& responses = operation["responses"];
-      const auto ask = [&](std::map<std::string, std::string> headers, const json& body) {
-        const auto answer = station.ask(posts ? "POST" : "GET", path + span, body, std::move(headers));
+      const auto ask = [&](std::map<std::string, std::string> headers, const json& body, bool all = false) {
+        const auto answer =
+            station.ask(posts ? "POST" : "GET", address_of(path, operation, all), body, std::move(headers));
         EXPECT_TRUE(responses.contains(std::to_string(answer.status))) << answer.status << answer.body.substr(0, 100);
         return answer;
       };
@@ -148,13 +181,16 @@ TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
       if (posts) {
         EXPECT_EQ(ask({}, json::array()).status, 400U);
       }
-      const auto answer = ask({}, posts ? command : json{});
-      EXPECT_EQ(answer.status / 100, 2U) << answer.body;
-      const json content = resolved(document, responses[std::to_string(answer.status)])["content"];
-      ASSERT_TRUE(content.contains(answer.type.substr(0, answer.type.find(';')))) << answer.type;
-      if (answer.type != "application/json") continue;
-      expect_described(document, content["application/json"]["schema"], json::parse(answer.body), path);
+      for (const bool all : {false, true}) {
+        const auto answer = ask({}, posts ? command : json{}, all);
+        EXPECT_EQ(answer.status / 100, 2U) << answer.body;
+        const json content = resolved(document, responses[std::to_string(answer.status)])["content"];
+        ASSERT_TRUE(content.contains(answer.type.substr(0, answer.type.find(';')))) << answer.type;
+        if (answer.type != "application/json") continue;
+        expect_described(document, content["application/json"]["schema"], json::parse(answer.body), path);
+      }
     }
+  EXPECT_EQ(asked, ground::routes().size());
 }
 
 TEST_F(GroundStation, OnlyWhoKnowsTheTokenFromThisComputerMayAskAndObserversMayNotCommand) {

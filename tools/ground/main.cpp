@@ -15,6 +15,7 @@
 #include <string>
 
 #include "ground/api/api.hpp"
+#include "ground/api/openapi.hpp"
 #include "ground/shell/http_server.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/os/clock.hpp"
@@ -173,11 +174,15 @@ constexpr std::uint16_t tried_ports = 20;
 int main(int argc, char** argv) {
   hirosco::say_last_words("hirosco-ground");
   Options options;
-  const std::set<std::string> flags{"--child", "--json", "--quiet", "--why", "--tour"};
+  const std::set<std::string> flags{"--child", "--json", "--quiet", "--why", "--tour", "--openapi"};
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
     if (flags.contains(name)) options[name] = "";
     else if (i + 1 < argc) options[name] = argv[++i];
+  }
+  if (options.contains("--openapi")) {
+    fmt::print("{}\n", openapi_document().dump(1));
+    return tools::exit_ok;
   }
   auto mission = tools::load_mission(option(options, "--mission"));
   if (!mission) return tools::exit_finding;

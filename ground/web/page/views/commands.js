@@ -61,5 +61,6 @@ function History() {
         <small class="sender">${command.sender ?? ''}${command.mine ? ' (this page)' : ''}</small></div>
       ${arguments_text(command) ? html`<div class="words">${arguments_text(command)}</div>` : null}
       <${VerdictChain} command=${command} /></li>`;
-  })}</ol>${list.length ? null : html`<p class="empty">No telecommand has been sent.</p>`}`;
+  })}</ol>${list.length ? null : html`<p class="empty">No telecommand has been sent.</p>`}
+    ${commands.value.length > list.length ? html`<p class="about">The newest ${list.length}; all are in the log.</p>` : null}`;
 }

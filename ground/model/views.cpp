@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "ground/api/views.hpp"
+#include "ground/model/views.hpp"
 
 #include <array>
 #include <string>
