@@ -162,4 +162,12 @@ std::optional<std::size_t> Catalogue::supervisor_column(std::string_view name) c
   return find_column(whole + "[0]");
 }
 
+std::size_t Catalogue::supervisor_rows(std::string_view name) const {
+  const std::string whole = mission_.supervisor.name + "." + std::string{name};
+  if (find_column(whole)) return 1;
+  std::size_t rows = 0;
+  while (find_column(whole + "[" + std::to_string(rows) + "]")) ++rows;
+  return rows;
+}
+
 }  // namespace hirosco::ground

@@ -78,6 +78,8 @@ class Catalogue {
   /// Names under which the supervisor tells about everybody; positions of the first element, empty when its descriptor
   /// has no such parameter.
   [[nodiscard]] std::optional<std::size_t> supervisor_column(std::string_view name) const;
+  /// How many elements such a parameter has.
+  [[nodiscard]] std::size_t supervisor_rows(std::string_view name) const;
 
  private:
   void add_columns(const descriptor::Subsystem& subsystem);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "ground/model/json.hpp"
 #include "hirosco/parameter/number.hpp"
@@ -13,8 +14,8 @@
 namespace hirosco::ground {
 namespace {
 
-/// As the supervisor's descriptor has them: places in its housekeeping of everybody.
-constexpr std::size_t told_places = 16;
+/// Of a link, when its consumer cannot tell (supervisor.xml).
+constexpr double not_told = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t longest_text = 2000;
 /// Packets of one flight come nearly in order of time. Further back, the on-board clock has been set or began again.
 constexpr Duration latest_packet = 5s;
@@ -55,6 +56,8 @@ Model::Model(const Catalogue& catalogue)
       subsystems_(catalogue.subsystems().size()),
       links_(catalogue.mission().links.size()) {
   const auto column = [&](const char* name) { return catalogue_.supervisor_column(name); };
+  subsystem_rows_ = catalogue_.supervisor_rows("SUBSYSTEMS.APID");
+  link_rows_ = catalogue_.supervisor_rows("LINK_STATUS.LINK");
   overview_.mode = column("MODE");
   overview_.apid = column("SUBSYSTEMS.APID");
   overview_.state = column("SUBSYSTEMS.STATE");
@@ -145,7 +148,7 @@ double Model::told(const std::optional<std::size_t>& column, std::size_t i) cons
 }
 
 void Model::take_overview(OnboardTime t, Heard& heard) {
-  for (std::size_t i = 0; i < told_places; ++i) {
+  for (std::size_t i = 0; i < subsystem_rows_; ++i) {
     const auto apid = static_cast<std::uint16_t>(told(overview_.apid, i));
     const auto found = std::ranges::find(catalogue_.subsystems(), apid, &descriptor::Subsystem::id);
     if (apid == 0 || found == catalogue_.subsystems().end()) continue;
@@ -173,7 +176,7 @@ void Model::take_overview(OnboardTime t, Heard& heard) {
 
 void Model::take_links(OnboardTime t, Duration since, Heard& heard) {
   const auto& links = catalogue_.mission().links;
-  for (std::size_t i = 0; i < told_places; ++i) {
+  for (std::size_t i = 0; i < link_rows_; ++i) {
     const auto id = static_cast<std::uint8_t>(told(overview_.link, i));
     const auto found = std::ranges::find(links, id, &descriptor::MissionLink::id);
     if (id == 0 || found == links.end()) continue;
@@ -192,9 +195,13 @@ void Model::take_links(OnboardTime t, Duration since, Heard& heard) {
                             : nullptr;
     if (up && samples != 0 && configuration != nullptr && configuration->sampling > Duration{0})
       view.age_cycles = told(overview_.age, i) * 1e-6 / seconds(configuration->sampling);
-    view.lost = static_cast<std::uint32_t>(told(overview_.lost, i));
-    view.latency_mean_ns = told(overview_.link_latency_mean, i);
-    view.latency_max_ns = told(overview_.link_latency_max, i);
+    const auto by_consumer = [&](const auto& column) {
+      const double number = told(column, i);
+      return number == not_told ? std::nullopt : std::optional{number};
+    };
+    view.lost = by_consumer(overview_.lost);
+    view.latency_mean_ns = by_consumer(overview_.link_latency_mean);
+    view.latency_max_ns = by_consumer(overview_.link_latency_max);
     view.known = true;
     view.up = up;
     view.samples = samples;

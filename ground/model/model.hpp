@@ -23,6 +23,7 @@ struct Value {
   std::uint64_t revision{0};         ///< 0 = never heard
 };
 
+/// All that is told of one subsystem: a row of the supervisor's SUBSYSTEMS, and its own events.
 struct SubsystemView {
   bool known{false};                 ///< the supervisor has told of it
   std::optional<descriptor::State> state;  ///< empty = does not run, or not known
@@ -34,15 +35,16 @@ struct SubsystemView {
   std::uint32_t memory_kb{0};        ///< 0 = not told
 };
 
+/// All that is told of one link: a row of the supervisor's LINK_STATUS.
 struct LinkView {
   bool known{false};
   bool up{false};
   std::optional<double> rate_hz;
   std::optional<double> age_cycles;  ///< in cycles of the consumer
   std::uint32_t samples{0};
-  // As the consumer tells while the link is up.
-  std::uint32_t lost{0};             ///< samples that it never saw
-  double latency_mean_ns{0}, latency_max_ns{0};  ///< from the instant of a sample to its first use
+  // As the consumer tells while the link is up; empty = it cannot.
+  std::optional<double> lost;        ///< samples that it never saw
+  std::optional<double> latency_mean_ns, latency_max_ns;  ///< from the instant of a sample to its first use
 };
 
 /// A report of ST[01] in words.
@@ -120,6 +122,7 @@ class Model {
     std::optional<std::size_t> link, up, samples, age, lost, link_latency_mean, link_latency_max;
   };
   OverviewColumns overview_;
+  std::size_t subsystem_rows_{0}, link_rows_{0};
 };
 
 }  // namespace hirosco::ground

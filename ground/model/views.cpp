@@ -69,14 +69,15 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
   for (std::size_t i = 0; i < model.links().size(); ++i) {
     const auto& view = model.links()[i];
     const auto number = [](const std::optional<double>& value) { return value ? json_number(*value) : json(nullptr); };
+    const auto while_up = [&](const std::optional<double>& value) { return view.up ? number(value) : json(nullptr); };
     links.push_back({{"id", catalogue.mission().links[i].id},
                      {"up", view.known ? json(view.up) : json(nullptr)},
                      {"age_cycles", number(view.age_cycles)},
                      {"rate_hz", number(view.rate_hz)},
                      {"samples", view.known ? json(view.samples) : json(nullptr)},
-                     {"lost", view.up ? json(view.lost) : json(nullptr)},
-                     {"latency_mean_ns", view.up ? json(view.latency_mean_ns) : json(nullptr)},
-                     {"latency_max_ns", view.up ? json(view.latency_max_ns) : json(nullptr)}});
+                     {"lost", while_up(view.lost)},
+                     {"latency_mean_ns", while_up(view.latency_mean_ns)},
+                     {"latency_max_ns", while_up(view.latency_max_ns)}});
   }
   return {{"t", json_time(now)},
           {"mode", model.mode().empty() ? json(nullptr) : json(model.mode())},

@@ -6,6 +6,7 @@
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/descriptor/detail/mission_reader.hpp"
+#include "hirosco/descriptor/status_rows.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::descriptor {
@@ -78,6 +79,11 @@ Mission MissionReader::read(const xml::Element& root) {
   for (const auto* element : modes) read_modes(*element);
   for (const auto* element : recoveries) read_recovery(*element);
   for (const auto* element : consoles) read_console(*element);
+  if (const std::string wrong = give_everybody_a_row(mission_); !wrong.empty())
+    problems_.add(root, "E0328",
+                  fmt::format("the supervisor cannot tell of {} subsystems and {} links in one report",
+                              mission_.subsystems.size(), mission_.links.size()),
+                  wrong);
   return std::move(mission_);
 }
 

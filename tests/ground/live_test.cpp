@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/read.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "tests/ground/station.hpp"
 
@@ -60,6 +61,45 @@ TEST(GroundStationOfALinkOverGround, TellsApartTheLinksIntoOneConsumer) {
   EXPECT_LE(links[4]["latency_max_ns"], 500'000);
   EXPECT_EQ(links[3]["lost"], 0);
   EXPECT_EQ(links[5]["lost"], 0);
+}
+
+/// `hello` with twenty of its subsystem, of whom the first and the last are used.
+[[nodiscard]] simulation::Plan crowd() {
+  simulation::Plan plan;
+  plan.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/hello/mission.xml";
+  std::string mission = descriptor::file_system()(plan.mission).value();
+  const auto replace = [&mission](const std::string& from, const std::string& to) {
+    const std::size_t at = mission.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    mission.replace(at, from.size(), to);
+  };
+  const std::string one = R"(<Subsystem executable="hirosco-hello" descriptor="../../subsystems/hello/hello.xml")";
+  std::string many;
+  for (int i = 1; i <= 20; ++i)
+    many += one + " name=\"HELLO_" + std::to_string(i) + "\" id=\"" + std::to_string(100 + i) + "\"/>";
+  replace(one + "/>", many);
+  const std::string step = R"(configuration="STAND_ALONE" state="Operational"/>)";
+  replace(R"(<Commission subsystem="HELLO" )" + step,
+          R"(<Commission subsystem="HELLO_1" )" + step + R"(<Commission subsystem="HELLO_20" )" + step);
+  replace(R"(<Permit subsystem="HELLO" )", R"(<Permit subsystem="HELLO_20" )");
+  plan.files["mission.xml"] = mission;
+  return plan;
+}
+
+TEST(GroundStationOfACrowd, ShowsEachOfMoreThanSixteenSubsystems) {
+  simulation::Flight flight{crowd()};
+  Station station{flight};
+  ASSERT_TRUE(station.run_until([&] { return flight.craft().supervisor().commissioned(); }));
+  station.run(1s);
+  const json status = station.get("/api/status");
+  ASSERT_EQ(status["subsystems"].size(), 22U);  // with the supervisor and the ground link
+  for (const json& one : status["subsystems"]) {
+    const std::string name = one["name"];
+    const bool used = name == "SUPERVISOR" || name == "COMMUNICATION" || name == "HELLO_1" || name == "HELLO_20";
+    EXPECT_EQ(one["state"], used ? "Operational" : "Offline") << name;
+    EXPECT_TRUE(one["age_s"].is_number()) << name;
+    EXPECT_EQ(one["cycles"].get<int>() > 0, used) << name;
+  }
 }
 
 TEST_F(GroundStation, SaysWhatASubsystemWaitsForAndNothingWhenItIsReady) {

@@ -8,8 +8,6 @@
 namespace hirosco::supervisor {
 namespace {
 
-constexpr std::uint8_t not_running = 255;
-
 /// Counters on the wire are of 32 bits and start again from 0.
 [[nodiscard]] std::uint32_t wrapped(std::uint64_t count) noexcept { return static_cast<std::uint32_t>(count); }
 
@@ -20,8 +18,8 @@ void Housekeeping::provide() {
   parts_.own.publish("LINKS", links_);
   parts_.own.publish("REJECTIONS", rejections_);
   parts_.own.publish("COUNTS", counts_);
-  parts_.own.publish("SUBSYSTEMS", subsystems_);
-  parts_.own.publish("LINK_STATUS", link_status_);
+  parts_.own.publish(descriptor::subsystem_rows, members_);
+  parts_.own.publish(descriptor::link_rows, link_rows_);
   parts_.own.publish("POWER", power_);
 }
 
@@ -38,32 +36,38 @@ void Housekeeping::show() noexcept {
   show_links();
 }
 
+MemberStatus Housekeeping::status_of(std::uint16_t apid, std::optional<State> state,
+                                     const VitalPage* vital) const noexcept {
+  MemberStatus status;
+  status.apid = apid;
+  if (state) status.state = static_cast<std::uint8_t>(*state);
+  if (vital == nullptr) return status;
+  const auto read = [](const auto& word) { return word.load(std::memory_order_relaxed); };
+  status.configuration = static_cast<std::uint8_t>(read(vital->configuration));
+  status.inhibited = static_cast<std::uint8_t>(read(vital->inhibited));
+  status.cycles = wrapped(read(vital->cycles));
+  status.overruns = wrapped(read(vital->overruns));
+  status.missed = wrapped(read(vital->missed));
+  status.latency_max_ns = read(vital->latency_max_ns);
+  status.execution_mean_ns = read(vital->execution_mean_ns);
+  return status;
+}
+
 void Housekeeping::show_members() noexcept {
-  SubsystemsStatus status;
+  MemberRows rows;
   std::size_t place = 0;
-  const auto tell_of = [&](std::uint16_t apid, std::optional<State> state, const VitalPage* vital) {
-    if (place == told_members) return;
-    const std::size_t i = place++;
-    status.memory_kb[i] = memory_kb_[i];
-    status.apid[i] = apid;
-    status.state[i] = state ? static_cast<std::uint8_t>(*state) : not_running;
-    if (vital == nullptr) return;
-    const auto read = [](const auto& word) { return word.load(std::memory_order_relaxed); };
-    status.configuration[i] = static_cast<std::uint8_t>(read(vital->configuration));
-    status.inhibited[i] = static_cast<std::uint8_t>(read(vital->inhibited));
-    status.cycles[i] = wrapped(read(vital->cycles));
-    status.overruns[i] = wrapped(read(vital->overruns));
-    status.missed[i] = wrapped(read(vital->missed));
-    status.latency_max_ns[i] = read(vital->latency_max_ns);
-    status.execution_mean_ns[i] = read(vital->execution_mean_ns);
+  const auto tell = [&](MemberStatus status) {
+    if (place == rows.apid.size()) return;  // of a mission that no reader has seen
+    status.memory_kb = memory_kb_[place];
+    put(rows, place++, status);
   };
-  tell_of(craft_.mission.supervisor.id, parts_.own.state(), &parts_.own.vital());
-  for (const Member& member : craft_.members) tell_of(member.apid(), member.state(), member.vital());
-  subsystems_.store(status);
+  tell(status_of(craft_.mission.supervisor.id, parts_.own.state(), &parts_.own.vital()));
+  for (const Member& member : craft_.members) tell(status_of(member.apid(), member.state(), member.vital()));
+  members_.store(rows);
 }
 
 void Housekeeping::watch(TimePoint) {
-  memory_turn_ = (memory_turn_ + 1) % std::min(told_members, craft_.members.size() + 1);
+  memory_turn_ = (memory_turn_ + 1) % std::min(memory_kb_.size(), craft_.members.size() + 1);
   std::uint32_t& memory_kb = memory_kb_[memory_turn_];
   if (memory_turn_ == 0) {
     memory_kb = craft_.launcher.resident_kb(0);
@@ -73,40 +77,51 @@ void Housekeeping::watch(TimePoint) {
   memory_kb = subject.alive() ? craft_.launcher.resident_kb(subject.process()) : 0;
 }
 
-/// What the consumer of a link tells of it; nullptr when it has no such link.
-const IncomingLink* Housekeeping::consumer_of(const descriptor::MissionLink& link) const noexcept {
+void Housekeeping::add_consumer(const descriptor::MissionLink& link, LinkStatus& status) const noexcept {
   for (const Member& member : craft_.members) {
     if (member.descriptor().name != link.to) continue;
     const VitalPage* vital = member.vital();
-    if (vital == nullptr) return nullptr;
+    if (vital == nullptr) return;
     const auto found = std::ranges::find_if(vital->incoming, [&](const IncomingLink& incoming) {
       return incoming.link.load(std::memory_order_relaxed) == link.id;
     });
-    return found != vital->incoming.end() ? &*found : nullptr;
+    if (found != vital->incoming.end()) {
+      status.lost = found->lost.load(std::memory_order_relaxed);
+      status.latency_mean_ns = found->latency_mean_ns.load(std::memory_order_relaxed);
+      status.latency_max_ns = found->latency_max_ns.load(std::memory_order_relaxed);
+      return;
+    }
+    const auto* configuration =
+        member.descriptor().find_configuration(static_cast<std::uint8_t>(vital->configuration.load()));
+    if (configuration == nullptr || configuration->requires_.size() <= vital->incoming.size()) return;
+    const auto beyond = configuration->requires_.begin() + static_cast<std::ptrdiff_t>(vital->incoming.size());
+    if (std::none_of(beyond, configuration->requires_.end(),
+                     [&](const auto& wanted) { return wanted.name == link.requires_; }))
+      return;
+    status.lost = status.latency_mean_ns = status.latency_max_ns = LinkStatus::not_told;
+    return;
   }
-  return nullptr;
+}
+
+LinkStatus Housekeeping::status_of(const descriptor::MissionLink& link) const noexcept {
+  LinkStatus status;
+  status.link = link.id;
+  status.up = parts_.links.graph().is_up(link.id) ? 1 : 0;
+  add_consumer(link, status);
+  const auto glance = parts_.links.glance(link.id);
+  if (!glance) return status;
+  const auto age_us = std::chrono::duration_cast<std::chrono::microseconds>(craft_.now - glance->sampled_at).count();
+  status.samples = wrapped(glance->count);
+  status.age_us =
+      static_cast<std::uint32_t>(std::clamp<std::int64_t>(age_us, 0, std::numeric_limits<std::uint32_t>::max()));
+  return status;
 }
 
 void Housekeeping::show_links() noexcept {
-  LinksStatus status;
-  const std::size_t told = std::min(craft_.mission.links.size(), told_members);
-  for (std::size_t i = 0; i < told; ++i) {
-    const std::uint8_t link = craft_.mission.links[i].id;
-    status.link[i] = link;
-    status.up[i] = parts_.links.graph().is_up(link) ? 1 : 0;
-    if (const IncomingLink* seen = consumer_of(craft_.mission.links[i])) {
-      status.lost[i] = seen->lost.load(std::memory_order_relaxed);
-      status.latency_mean_ns[i] = seen->latency_mean_ns.load(std::memory_order_relaxed);
-      status.latency_max_ns[i] = seen->latency_max_ns.load(std::memory_order_relaxed);
-    }
-    const auto glance = parts_.links.glance(link);
-    if (!glance) continue;
-    const auto age_us = std::chrono::duration_cast<std::chrono::microseconds>(craft_.now - glance->sampled_at).count();
-    status.samples[i] = wrapped(glance->count);
-    status.age_us[i] =
-        static_cast<std::uint32_t>(std::clamp<std::int64_t>(age_us, 0, std::numeric_limits<std::uint32_t>::max()));
-  }
-  link_status_.store(status);
+  LinkRows rows;
+  const std::size_t told = std::min(craft_.mission.links.size(), rows.link.size());
+  for (std::size_t i = 0; i < told; ++i) put(rows, i, status_of(craft_.mission.links[i]));
+  link_rows_.store(rows);
 }
 
 }  // namespace hirosco::supervisor

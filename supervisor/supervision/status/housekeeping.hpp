@@ -12,6 +12,7 @@
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/realtime_links/links.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
+#include "supervisor/supervision/status/rows.hpp"
 
 namespace hirosco::supervisor {
 
@@ -37,7 +38,11 @@ class Housekeeping final : public Watch {
  private:
   void show_members() noexcept;
   void show_links() noexcept;
-  [[nodiscard]] const IncomingLink* consumer_of(const descriptor::MissionLink& link) const noexcept;
+  [[nodiscard]] MemberStatus status_of(std::uint16_t apid, std::optional<State> state,
+                                       const VitalPage* vital) const noexcept;
+  [[nodiscard]] LinkStatus status_of(const descriptor::MissionLink& link) const noexcept;
+  /// What the consumer of a link tells of it.
+  void add_consumer(const descriptor::MissionLink& link, LinkStatus& status) const noexcept;
 
   Parts parts_;
   Craft& craft_;
@@ -54,33 +59,10 @@ class Housekeeping final : public Watch {
     float reserved_w{0};
   };
   Parameter<Power> power_;
-  /// What ground is told of everybody (housekeeping 4702); where a mission has more, only the first.
-  static constexpr std::size_t told_members = 16;
-  struct SubsystemsStatus {
-    std::array<std::uint16_t, told_members> apid{};
-    std::array<std::uint8_t, told_members> state{};  ///< 255 = not running
-    std::array<std::uint8_t, told_members> configuration{};
-    std::array<std::uint8_t, told_members> inhibited{};  ///< bits of Inhibition
-    std::array<std::uint32_t, told_members> cycles{};
-    std::array<std::uint32_t, told_members> overruns{};
-    std::array<std::uint32_t, told_members> missed{};
-    std::array<std::uint32_t, told_members> latency_max_ns{};
-    std::array<std::uint32_t, told_members> execution_mean_ns{};
-    std::array<std::uint32_t, told_members> memory_kb{};
-  };
-  std::array<std::uint32_t, told_members> memory_kb_{};  ///< in the order of subsystems_
+  std::array<std::uint32_t, descriptor::most_status_rows> memory_kb_{};  ///< of each row of members_
   std::size_t memory_turn_{0};
-  Parameter<SubsystemsStatus> subsystems_;
-  struct LinksStatus {
-    std::array<std::uint8_t, told_members> link{};
-    std::array<std::uint8_t, told_members> up{};
-    std::array<std::uint32_t, told_members> samples{};
-    std::array<std::uint32_t, told_members> age_us{};
-    std::array<std::uint32_t, told_members> lost{};
-    std::array<std::uint32_t, told_members> latency_mean_ns{};
-    std::array<std::uint32_t, told_members> latency_max_ns{};
-  };
-  Parameter<LinksStatus> link_status_;
+  Parameter<MemberRows> members_;
+  Parameter<LinkRows> link_rows_;
 };
 
 }  // namespace hirosco::supervisor
