@@ -15,12 +15,13 @@ constexpr std::int64_t tai_minus_utc_s = 37;
 template <class Texts>
 [[nodiscard]] json texts_json(const Texts& texts) {
   json list = json::array();
-  for (const auto& entry : texts) list.push_back({{"value", entry.value}, {"name", entry.text}});
+  for (const auto& entry : texts) list.push_back({{"value", json_number(Number{entry.value})}, {"name", entry.text}});
   return list;
 }
 
 [[nodiscard]] json field_json(const descriptor::Field& field) {
   json result{{"name", field.name}, {"type", to_text(field.type)}, {"count", field.count}, {"unit", field.unit}};
+  if (field.type == Type::Text) result["octets"] = field.text_octets;
   if (field.minimum) result["min"] = json_number(*field.minimum);
   if (field.maximum) result["max"] = json_number(*field.maximum);
   return result;
@@ -32,8 +33,8 @@ template <class Texts>
     json arguments = json::array();
     for (const auto& argument : function.arguments) {
       json one = field_json(argument.field);
-      if (argument.fallback) one["default"] = json_number(*argument.fallback);
-      const auto texts = catalogue.texts_of(subsystem, function, argument.field);
+      if (argument.fallback) one["default"] = json_value(*argument.fallback);
+      const auto texts = catalogue.texts_of(subsystem, function, argument);
       if (!texts.empty()) one["enumeration"] = texts_json(texts);
       arguments.push_back(std::move(one));
     }

@@ -80,20 +80,23 @@ struct Basic {
   json time = described(primitive("number"), "seconds of on-board time");
   /// As json_number() writes it.
   json number = {{"oneOf", json::array({primitive("number"), one_of({"NaN", "Infinity", "-Infinity"})})}};
+  /// As json_value() writes it: whole numbers beyond 2^53 are a text of all their digits.
+  json exact = {{"oneOf", json::array({primitive("number"), primitive("string")})}};
   json severity = one_of({"info", "low", "medium", "high"});
   json stage = one_of({"sent", "accepted", "started", "progress", "completed", "failed"});
   json texts = list_of(text);
-  json texts_of_values = list_of(object({{"value", whole}, {"name", text}}));
+  json texts_of_values = list_of(object({{"value", exact}, {"name", text}}));
 };
 
 void add_mission(const Basic& is, json& into) {
   into["Field"] = object({{"name", is.text},
                           {"type", is.text},
                           {"count", is.whole, May::BeAbsent},
+                          {"octets", described(is.whole, "of TEXT: most of them in UTF-8"), May::BeAbsent},
                           {"unit", is.text},
-                          {"min", is.number, May::BeAbsent},
-                          {"max", is.number, May::BeAbsent},
-                          {"default", is.number, May::BeAbsent},
+                          {"min", is.exact, May::BeAbsent},
+                          {"max", is.exact, May::BeAbsent},
+                          {"default", is.exact, May::BeAbsent},
                           {"enumeration", is.texts_of_values, May::BeAbsent}});
   const json fields = list_of(refers("Field"));
   into["Function"] = object({{"name", is.text},
@@ -262,7 +265,10 @@ void add_requests(const Basic& is, json& into) {
   into["CommandRequest"] =
       object({{"subsystem", is.text},
               {"function", is.text},
-              {"arguments", described(map_of(is.anything), "name: number, name of an enumeration entry, or a list"),
+              {"arguments",
+               described(map_of(is.anything),
+                         "name: number (of UINT64 and INT64 also a text of its digits), name of an enumeration entry, "
+                         "true or false of BOOL, words of TEXT, or a list of these"),
                May::BeAbsent},
               {"sender", is.text, May::BeAbsent}});
   into["Sent"] = object({{"id", is.whole},

@@ -32,10 +32,10 @@ constexpr std::array senders{Senders{0x2000, 0x3FFF, "another ground station"}, 
   return name.empty() ? "?" : name;
 }
 
-[[nodiscard]] json argument_json(double value, const std::vector<descriptor::EnumerationText>& texts) {
+[[nodiscard]] json argument_json(const hirosco::Value& value, const std::vector<descriptor::EnumerationText>& texts) {
   const auto named =
-      std::ranges::find_if(texts, [value](const auto& entry) { return static_cast<double>(entry.value) == value; });
-  return named != texts.end() ? json(named->text) : json_number(value);
+      std::ranges::find_if(texts, [&](const auto& entry) { return value == hirosco::Value{Number{entry.value}}; });
+  return named != texts.end() ? json(named->text) : json_value(value);
 }
 
 [[nodiscard]] json arguments_json(const Catalogue& catalogue, const descriptor::Subsystem& subsystem,
@@ -45,9 +45,9 @@ constexpr std::array senders{Senders{0x2000, 0x3FFF, "another ground station"}, 
   if (!values_of) return arguments;
   std::size_t next = 0;
   for (const auto& argument : function.arguments) {
-    const auto texts = catalogue.texts_of(subsystem, function, argument.field);
+    const auto texts = catalogue.texts_of(subsystem, function, argument);
     json values = json::array();
-    for (std::uint16_t i = 0; i < argument.field.count; ++i)
+    for (std::size_t i = 0; i < pus::value_count(argument); ++i)
       values.push_back(argument_json((*values_of)[next++], texts));
     arguments[argument.field.name] = values.size() == 1 ? values.front() : values;
   }

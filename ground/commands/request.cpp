@@ -3,6 +3,7 @@
 #include "ground/commands/request.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ground/model/json.hpp"
 #include "hirosco/pus/requests.hpp"
@@ -13,33 +14,55 @@ namespace {
 
 using nlohmann::json;
 
-[[nodiscard]] std::string number_text(double number) { return to_string(json_number(number)); }
-
-/// One value of an argument: a number, or the name of an entry of its enumeration.
-[[nodiscard]] Answered<double> value_of(const json& given, const std::vector<descriptor::EnumerationText>& texts,
-                                        const std::string& argument) {
-  // A whole number that a double does not hold would be sent as its neighbour.
-  constexpr std::uint64_t largest_exact = std::uint64_t{1} << 53;
-  const bool inexact = (given.is_number_unsigned() && given.get<std::uint64_t>() > largest_exact) ||
-                       (!given.is_number_unsigned() && given.is_number_integer() &&
-                        given.get<std::int64_t>() < -static_cast<std::int64_t>(largest_exact));
-  if (inexact) return refuse(400, argument + ": whole numbers are sent exactly up to 2^53 only");
-  if (given.is_number()) return given.get<double>();
-  if (given.is_string())
-    for (const auto& entry : texts)
-      if (lower_case(entry.text) == lower_case(given.get<std::string>())) return static_cast<double>(entry.value);
-  return refuse(400, argument + ": neither a number nor a name that it knows");
+[[nodiscard]] std::string number_text(const Number& number) {
+  return number.is_whole() ? hirosco::to_string(number) : to_string(json_number(number.real()));
 }
 
-[[nodiscard]] Answered<void> check_range(double value, const descriptor::Field& field) {
+/// A number of JSON, which has 64-bit integers; a client that would round them gives all digits as a text.
+[[nodiscard]] std::optional<Number> number_of(const json& given, Type type) {
+  if (given.is_number_unsigned()) return given.get<std::uint64_t>();
+  if (given.is_number_integer()) return given.get<std::int64_t>();
+  constexpr double exact = 9007199254740992.0;  // 2^53: what is written beyond as a fraction or power was rounded
+  if (given.is_number() && is_integer(type) && std::abs(given.get<double>()) > exact) return std::nullopt;
+  if (given.is_number()) return given.get<double>();
+  if (given.is_boolean() && type == Type::Bool) return given.get<bool>();
+  if (!given.is_string() || (type != Type::Uint64 && type != Type::Int64)) return std::nullopt;
+  const auto number = parse_number(given.get<std::string>());
+  return number && number->is_whole() ? number : std::nullopt;
+}
+
+/// One value of an argument: words, a number, or the name of an entry of its enumeration.
+[[nodiscard]] Answered<hirosco::Value> value_of(const json& given,
+                                                const std::vector<descriptor::EnumerationText>& texts,
+                                                const descriptor::Field& field) {
+  if (field.type == Type::Text) {
+    if (!given.is_string()) return refuse(400, field.name + ": a text is wanted");
+    return given.get<std::string>();
+  }
+  if (given.is_string())
+    for (const auto& entry : texts)
+      if (lower_case(entry.text) == lower_case(given.get<std::string>())) return Number{entry.value};
+  if (const auto number = number_of(given, field.type)) return *number;
+  return refuse(400, field.name + ": neither a number nor a name that it knows");
+}
+
+[[nodiscard]] Answered<void> check_range(const hirosco::Value& value, const pus::Argument& argument) {
+  const descriptor::Field& field = argument.field;
   const std::string unit = field.unit.empty() ? "" : " " + field.unit;
-  if (!std::isfinite(value)) return refuse(400, field.name + ": not a finite number");
-  if (field.minimum && value < *field.minimum)
+  if (const auto* words = std::get_if<std::string>(&value)) {
+    if (pus::permits(argument, *words)) return {};
+    return refuse(400, field.name + ": at most " + std::to_string(field.text_octets) + " octets of text are wanted");
+  }
+  const Number& number = std::get<Number>(value);
+  if (!number.is_finite()) return refuse(400, field.name + ": not a finite number");
+  if (field.minimum && number < *field.minimum)
     return refuse(
-        400, field.name + ": " + number_text(value) + " is below its minimum " + number_text(*field.minimum) + unit);
-  if (field.maximum && value > *field.maximum)
+        400, field.name + ": " + number_text(number) + " is below its minimum " + number_text(*field.minimum) + unit);
+  if (field.maximum && number > *field.maximum)
     return refuse(
-        400, field.name + ": " + number_text(value) + " is above its maximum " + number_text(*field.maximum) + unit);
+        400, field.name + ": " + number_text(number) + " is above its maximum " + number_text(*field.maximum) + unit);
+  if (!pus::permits(argument, number))
+    return refuse(400, field.name + ": " + number_text(number) + " is none of " + pus::range_text(argument));
   return {};
 }
 
@@ -62,27 +85,28 @@ Answered<Request> request_of(const Catalogue& catalogue, const json& body) {
       return refuse(400, wanted + " has no argument '" + argument + "'");
 
   json sent = json::object();
-  std::vector<std::optional<double>> values;
+  std::vector<std::optional<hirosco::Value>> values;
   for (const auto& argument : function->arguments) {
     const auto& field = argument.field;
     const auto found = given.find(field.name);
     if (found == given.end() || found->is_null()) {
       if (!argument.fallback) return refuse(400, field.name + ": a value is wanted");
-      values.insert(values.end(), field.count, std::nullopt);
-      sent[field.name] = json_number(*argument.fallback);
+      values.insert(values.end(), pus::value_count(argument), std::nullopt);
+      sent[field.name] = json_value(*argument.fallback);
       continue;
     }
-    const json list = found->is_array() ? *found : json::array({*found});
-    if (list.size() != field.count)
+    json list = found->is_array() ? *found : json::array({*found});
+    if (list.size() != pus::value_count(argument))
       return refuse(400, field.name + ": " + std::to_string(field.count) + " values are wanted");
-    const auto texts = catalogue.texts_of(*subsystem, *function, field);
-    for (const json& entry : list) {
-      const auto value = value_of(entry, texts, field.name);
+    const auto texts = catalogue.texts_of(*subsystem, *function, argument);
+    for (json& entry : list) {
+      const auto value = value_of(entry, texts, field);
       if (!value) return std::unexpected{value.error()};
-      if (const auto fits = check_range(*value, field); !fits) return std::unexpected{fits.error()};
+      if (const auto fits = check_range(*value, argument); !fits) return std::unexpected{fits.error()};
+      if (entry.is_number()) entry = json_value(*value);
       values.push_back(*value);
     }
-    sent[field.name] = *found;
+    sent[field.name] = found->is_array() ? list : list.front();
   }
   Request request;
   request.subsystem = subsystem;
@@ -90,7 +114,7 @@ Answered<Request> request_of(const Catalogue& catalogue, const json& body) {
   request.arguments = to_string(sent);
   request.service = function->service;
   request.subtype = function->subtype;
-  auto data = pus::encode_request(*function, std::span<const std::optional<double>>{values});
+  auto data = pus::encode_request(*function, values);
   if (!data) return refuse(400, wanted + ": " + data.error().text);
   request.data = std::move(*data);
   if (pus::goes_alone(*function)) request.way = Way::Alone;

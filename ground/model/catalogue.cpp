@@ -38,7 +38,10 @@ void Catalogue::add_columns(const descriptor::Subsystem& subsystem) {
     for (std::uint16_t i = 0; i < field.count; ++i) {
       const std::string element = element_name(name, field, i);
       column_index_.emplace(element, columns_.size());
-      columns_.push_back({element, subsystem.id, field.type, field.unit, field.minimum, field.maximum,
+      const auto real = [](const std::optional<Number>& limit) {
+        return limit ? std::optional{limit->real()} : std::nullopt;
+      };
+      columns_.push_back({element, subsystem.id, field.type, field.unit, real(field.minimum), real(field.maximum),
                           enumeration_of(subsystem, field)});
     }
   };

@@ -71,6 +71,11 @@ class Catalogue {
   /// Requests by name: SET_STATE, CONFIGURE, PING, functions of the descriptor, requests of its own services.
   [[nodiscard]] std::vector<descriptor::Function> functions_of(const descriptor::Subsystem& subsystem) const;
   /// What the values of an argument are called: by its enumeration, or states, configurations, modes, links.
+  [[nodiscard]] std::vector<descriptor::EnumerationText> texts_of(
+      const descriptor::Subsystem& subsystem, const descriptor::Function& function,
+      const descriptor::Function::Argument& argument) const {
+    return argument.texts.empty() ? texts_of(subsystem, function, argument.field) : argument.texts;
+  }
   [[nodiscard]] std::vector<descriptor::EnumerationText> texts_of(const descriptor::Subsystem& subsystem,
                                                                   const descriptor::Function& function,
                                                                   const descriptor::Field& argument) const;

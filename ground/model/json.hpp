@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/parameter/exact_number.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// How numbers, times and hostile texts stand in the ground station's JSON (ground/api/README.md).
@@ -24,6 +25,19 @@ namespace hirosco::ground {
   constexpr double exact = 9.0e15;
   if (number == std::floor(number) && std::abs(number) < exact) return static_cast<std::int64_t>(number);
   return number;
+}
+
+/// The same exactly: a whole number that JavaScript would round is a text of all its digits.
+[[nodiscard]] inline nlohmann::json json_number(const Number& number) {
+  constexpr std::int64_t exact = std::int64_t{1} << 53;
+  if (!number.is_whole()) return json_number(number.real());
+  if (number > Number{exact} || number < Number{-exact}) return hirosco::to_string(number);
+  return number.as<std::int64_t>().value_or(0);
+}
+
+[[nodiscard]] inline nlohmann::json json_value(const hirosco::Value& value) {
+  if (const auto* words = std::get_if<std::string>(&value)) return *words;
+  return json_number(std::get<Number>(value));
 }
 
 [[nodiscard]] inline double json_time(OnboardTime t) { return seconds(t.time_since_epoch()); }

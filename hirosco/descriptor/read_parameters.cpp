@@ -13,34 +13,6 @@ namespace {
 
 constexpr std::int64_t max_count = 4096;
 
-struct Range {
-  double low;
-  double high;
-};
-
-/// What the type holds, as far as a double names it exactly.
-Range range_of(Type type) noexcept {
-  constexpr auto exact = static_cast<double>(max_exact_integer);
-  switch (type) {
-    case Type::Uint8: return {0, 255};
-    case Type::Int8: return {-128, 127};
-    case Type::Uint16: return {0, 65'535};
-    case Type::Int16: return {-32'768, 32'767};
-    case Type::Uint32: return {0, 4'294'967'295.0};
-    case Type::Int32: return {-2'147'483'648.0, 2'147'483'647.0};
-    case Type::Uint64: return {0, exact};
-    case Type::Int64: return {-exact, exact};
-    case Type::Float: return {-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
-    case Type::Double:
-    case Type::Struct: return {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-  }
-  return {0, 0};
-}
-
-constexpr bool is_integer(Type type) noexcept {
-  return type != Type::Float && type != Type::Double && type != Type::Struct;
-}
-
 std::string range_text(const Field& field) {
   return fmt::format("{} to {}", field.minimum ? to_string(*field.minimum) : "-inf",
                      field.maximum ? to_string(*field.maximum) : "inf");
@@ -48,25 +20,34 @@ std::string range_text(const Field& field) {
 
 }  // namespace
 
-bool check_values(Problems& problems, const xml::Attribute& at, const Field& field, const std::vector<double>& values) {
-  const Range range = range_of(field.type);
-  for (const double value : values) {
-    if (is_integer(field.type) && std::trunc(value) != value) {
-      problems.add(at, "E0208",
-                   fmt::format("{} is not a whole number, '{}' is {}", value, field.name, to_text(field.type)));
-      return false;
-    }
-    if (value < range.low || value > range.high) {
-      problems.add(at, "E0208", fmt::format("{} does not fit {}", value, to_text(field.type)),
-                   fmt::format("{} to {}", range.low, range.high));
-      return false;
-    }
-    if ((field.minimum && value < *field.minimum) || (field.maximum && value > *field.maximum)) {
-      problems.add(at, "E0207", fmt::format("{} is outside the range of '{}'", value, field.name), range_text(field));
-      return false;
-    }
+bool check_value(Problems& problems, const xml::Attribute& at, const Field& field, const Number& value) {
+  if (is_integer(field.type) && value.real() != std::trunc(value.real())) {
+    problems.add(
+        at, "E0208",
+        fmt::format("{} is not a whole number, '{}' is {}", to_string(value), field.name, to_text(field.type)));
+    return false;
+  }
+  const TypeRange range = range_of(field.type);
+  if (value < range.lowest || value > range.highest) {
+    problems.add(at, "E0208", fmt::format("{} does not fit {}", to_string(value), to_text(field.type)),
+                 fmt::format("{} to {}", to_string(range.lowest), to_string(range.highest)));
+    return false;
+  }
+  if ((field.minimum && value < *field.minimum) || (field.maximum && value > *field.maximum)) {
+    problems.add(at, "E0207", fmt::format("{} is outside the range of '{}'", to_string(value), field.name),
+                 range_text(field));
+    return false;
   }
   return true;
+}
+
+bool check_values(Problems& problems, const xml::Attribute& at, const Field& field, const std::vector<double>& values) {
+  return std::ranges::all_of(values, [&](double value) {
+    if (!is_integer(field.type) || std::abs(value) <= max_exact_integer) return check_value(problems, at, field, value);
+    problems.add(at, "E0208", fmt::format("{} does not fit {}", value, to_text(field.type)),
+                 fmt::format("whole numbers up to {}", max_exact_integer));
+    return false;
+  });
 }
 
 std::vector<double> read_values(Problems& problems, Attributes& attributes, std::string_view name, const Field& field) {
@@ -136,8 +117,8 @@ void SubsystemReader::read_enumeration(const xml::Element& element) {
   each_child(element, problems_,
              {{"Text", [&](const xml::Element& text) {
                  Attributes inner{text, problems_};
-                 const auto value =
-                     inner.required_integer<std::int64_t>("value", -max_exact_integer, max_exact_integer);
+                 const auto value = inner.required_integer<std::int64_t>(
+                     "value", std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
                  no_children(text, problems_, true);
                  if (inner.element().find("value") != nullptr)
                    values.add(std::to_string(value), place(text.at), problems_, text.name.size() + 1);
@@ -197,7 +178,9 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   claim_parameter_id(attributes, parameter.field.type, parameter.id);
   no_children(element, problems_);
   if (parameter.writable()) expect_range(element, "parameter");
-  const bool zero_outside = parameter.field.minimum.value_or(0) > 0 || parameter.field.maximum.value_or(0) < 0;
+  const Number zero{0};
+  const bool zero_outside =
+      parameter.field.minimum.value_or(zero) > zero || parameter.field.maximum.value_or(zero) < zero;
   if (zero_outside && element.find("init") == nullptr)
     problems_.add(
         element, "E0207",
@@ -249,17 +232,27 @@ Field SubsystemReader::read_field(Attributes& attributes, Says says) {
   field.name = attributes.name();
   if (const auto* type = attributes.required("type"); type != nullptr) {
     field.type = attributes.one_of("type", Type::Double);
-    if (field.type == Type::Struct) {
-      problems_.add(*type, "E0104", "'STRUCT' is the type of a <StructRef> only");
+    const bool of_arguments = field.type == Type::Bool || field.type == Type::Text;
+    if (field.type == Type::Struct || (of_arguments && says != Says::Argument)) {
+      problems_.add(*type, "E0104",
+                    fmt::format("'{}' is the type of a {} only", type->value,
+                                of_arguments ? "function's argument" : "<StructRef>"));
       field.type = Type::Double;
     }
   }
+  if (field.type == Type::Text) {
+    constexpr std::int64_t most = max_argument_octets - sizeof(std::uint16_t);
+    field.text_octets = attributes.required_integer<std::uint16_t>("octets", 1, most);
+    return field;
+  }
   field.count = attributes.integer_or<std::uint16_t>("count", 1, max_count, 1);
+  if (field.type == Type::Bool) return field;
   field.unit = attributes.text("unit");
   if (field.unit.size() > 32)
     problems_.add(*attributes.element().find("unit"), "E0114", "a unit has at most 32 octets");
-  if (says == Says::Words || says == Says::WordsAndRange) read_words(attributes, field);
-  if (says == Says::Range || says == Says::WordsAndRange) check_field_range(attributes, field);
+  const bool all = says == Says::WordsAndRange || says == Says::Argument;
+  if (all || says == Says::Words) read_words(attributes, field);
+  if (all || says == Says::Range) check_field_range(attributes, field);
   return field;
 }
 
@@ -272,9 +265,9 @@ void SubsystemReader::read_words(Attributes& attributes, Field& field) {
 
 void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
   const auto limit = [&](std::string_view name) {
-    const auto value = attributes.number(name);
+    const auto value = attributes.exact(name);
     if (!value) return value;
-    const bool fits = check_values(problems_, *attributes.element().find(name), field, {*value});
+    const bool fits = check_value(problems_, *attributes.element().find(name), field, *value);
     return fits ? value : std::nullopt;
   };
   const auto minimum = limit("minimum");
@@ -283,7 +276,7 @@ void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
   field.maximum = maximum;
   if (!minimum || !maximum || *minimum <= *maximum) return;
   problems_.add(*attributes.element().find("minimum"), "E0206",
-                fmt::format("minimum {} is above maximum {}", *minimum, *maximum));
+                fmt::format("minimum {} is above maximum {}", to_string(*minimum), to_string(*maximum)));
   field.minimum = field.maximum = std::nullopt;
 }
 
@@ -307,6 +300,30 @@ void SubsystemReader::check_enumerations() {
                     did_you_mean(use.name, known));
     else if (!is_integer(use.type))
       problems_.add(*use.at, "E0208", fmt::format("an enumeration needs an integer type, not {}", to_text(use.type)));
+  }
+  for (Function& function : subsystem_.functions) name_values(function);
+  for (CustomService& service : subsystem_.services)
+    for (Function& request : service.requests) name_values(request);
+}
+
+void SubsystemReader::name_values(Function& function) {
+  for (Function::Argument& argument : function.arguments) {
+    if (argument.field.type == Type::Bool) argument.texts = {{0, "off"}, {1, "on"}};
+    const auto found = std::ranges::find(subsystem_.enumerations, argument.field.enumeration, &Enumeration::name);
+    if (argument.field.enumeration.empty() || found == subsystem_.enumerations.end()) continue;
+    argument.texts = found->texts;
+    const TypeRange range = range_of(argument.field.type);
+    for (const EnumerationText& text : argument.texts)
+      if (Number{text.value} < range.lowest || Number{text.value} > range.highest)
+        problems_.add(argument.field.at, "E0208",
+                      fmt::format("{} of enumeration '{}' does not fit {}", text.value, found->name,
+                                  to_text(argument.field.type)));
+    if (argument.fallback && std::ranges::none_of(argument.texts, [&](const EnumerationText& text) {
+          return *argument.fallback == Value{Number{text.value}};
+        }))
+      problems_.add(
+          argument.field.at, "E0207",
+          fmt::format("the default of '{}' is no value of enumeration '{}'", argument.field.name, found->name));
   }
 }
 

@@ -158,15 +158,11 @@ void SubsystemReader::expect_for_all(const xml::Element& element, const Services
 }
 
 void SubsystemReader::check_arguments(const xml::Element& element, const Function& function) {
-  for (const Function::Argument& argument : function.arguments)
-    if (argument.field.count != 1)
-      problems_.add(argument.field.at, "E0225",
-                    fmt::format("argument '{}' is an array of {}", argument.field.name, argument.field.count),
-                    "a handler takes single numbers: one argument for each", 9);
-  if (function.arguments.size() > max_argument_values)
-    problems_.add(element, "E0225",
-                  fmt::format("function '{}' has {} arguments", function.name, function.arguments.size()),
-                  fmt::format("a handler takes at most {}", max_argument_values));
+  std::size_t octets = 0;
+  for (const Function::Argument& argument : function.arguments) octets += argument.field.octets();
+  if (octets > max_argument_octets)
+    problems_.add(element, "E0225", fmt::format("the arguments of function '{}' take {} octets", function.name, octets),
+                  fmt::format("at most {} in one call", max_argument_octets));
 }
 
 std::uint16_t SubsystemReader::read_states(Attributes& attributes, std::string_view name, std::vector<State> fallback) {
@@ -181,15 +177,31 @@ void SubsystemReader::read_argument(const xml::Element& element, Function& funct
   Function::Argument argument;
   if (element.find("of") != nullptr) read_range_of(attributes, argument, function.name);
   else {
-    argument.field = read_field(attributes, Says::WordsAndRange);
-    expect_range(element, "argument");
+    const bool of_function = function.service == Function{}.service;
+    argument.field = read_field(attributes, of_function ? Says::Argument : Says::WordsAndRange);
+    const bool named = argument.field.type == Type::Bool || !argument.field.enumeration.empty();
+    if (!named && argument.field.type != Type::Text) expect_range(element, "argument");
   }
-  if (const auto fallback = attributes.number("default"))
-    if (check_values(problems_, *element.find("default"), argument.field, {*fallback})) argument.fallback = fallback;
+  read_fallback(attributes, argument);
   no_children(element, problems_);
   if (!argument.field.name.empty())
     names.add(argument.field.name, place(element.at), problems_, element.name.size() + 1);
   function.arguments.push_back(std::move(argument));
+}
+
+void SubsystemReader::read_fallback(Attributes& attributes, Function::Argument& argument) {
+  if (argument.field.type != Type::Text) {
+    if (const auto value = attributes.exact("default"))
+      if (check_value(problems_, *attributes.element().find("default"), argument.field, *value))
+        argument.fallback = *value;
+    return;
+  }
+  const auto* words = attributes.optional("default");
+  if (words == nullptr) return;
+  if (words->value.size() <= argument.field.text_octets) argument.fallback = words->value;
+  else
+    problems_.add(*words, "E0207",
+                  fmt::format("{} is longer than {} octets", in_quotes(words->value), argument.field.text_octets));
 }
 
 /// One range for a number wherever it is set: the argument is one value of the parameter.

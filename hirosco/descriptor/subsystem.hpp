@@ -12,6 +12,7 @@
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/parameter/exact_number.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/enum_text.hpp"
 #include "hirosco/utilities/id.hpp"
@@ -59,12 +60,16 @@ struct Field {
   Type type{Type::Double};
   std::uint16_t count{1};            ///< array length; 1 = a single value
   std::string unit;                  ///< SI, as text; empty = none
-  std::optional<double> minimum;     ///< inclusive, in `unit`
-  std::optional<double> maximum;     ///< inclusive, in `unit`
+  std::optional<Number> minimum;     ///< inclusive, in `unit`
+  std::optional<Number> maximum;     ///< inclusive, in `unit`
   std::string enumeration;           ///< name of an Enumeration; empty = none
   Location at;
   bool text{false};                  ///< the octets are words up to the first zero; of the framework's events only
-  [[nodiscard]] std::size_t octets() const noexcept { return octets_of(type) * count; }
+  std::uint16_t text_octets{0};      ///< of TEXT: most octets that the words take
+  /// Most octets on the wire.
+  [[nodiscard]] std::size_t octets() const noexcept {
+    return type == Type::Text ? sizeof(std::uint16_t) + text_octets : octets_of(type) * count;
+  }
 };
 
 /// A parameter of the dictionary: a single value or array, or a structure of such.
@@ -132,7 +137,8 @@ struct Function {
   struct Argument {
     Field field;
     std::string of;                  ///< parameter that gave type, unit, enumeration and range; empty = its own
-    std::optional<double> fallback;  ///< value when the argument is absent from the request
+    std::optional<Value> fallback;  ///< value, of each element, when the argument is absent from the request
+    std::vector<EnumerationText> texts{};  ///< of an enumeration or BOOL: its values and their names; it has no others
   };
   std::vector<Argument> arguments;
   std::string description;
@@ -143,8 +149,8 @@ struct Function {
 /// A PUS service of the subsystem's own (paper 4.1: "a list of services").
 struct CustomService {
   std::string name;
-  std::uint8_t type{};               ///< 192 to 255
-  std::vector<Function> requests;    ///< their arguments stand in order, without ids
+  std::uint8_t type{};  ///< 192 to 255
+  std::vector<Function> requests;  ///< their arguments stand in order, without ids
   struct Report {
     std::string name;
     std::uint8_t subtype{};
@@ -183,9 +189,9 @@ struct CycleLimit {
 /// A set of fields that a configuration requires over a real-time link. Fields are matched by name.
 struct Requires {
   std::string name;
-  std::string from;                  ///< name of the producing subsystem, empty = any
+  std::string from;  ///< name of the producing subsystem, empty = any
   LinkTerms terms;
-  bool required{true};               ///< false: useful, but Safe-Operational does not wait for it
+  bool required{true};  ///< false: useful, but Safe-Operational does not wait for it
   CycleLimit age{3, 40};
   MissingPolicy missing{MissingPolicy::Inhibit};
   std::vector<Field> fields;
@@ -195,30 +201,30 @@ struct Requires {
 /// Address and means of transfer of a data flow (paper 4.1).
 struct Endnode {
   Transfer transfer{Transfer::SharedMemory};
-  std::string address;               ///< a name, or host:port
+  std::string address;  ///< a name, or host:port
   ByteOrder byte_order{ByteOrder::Little};
   Location at;
 };
 
 /// What a device does by itself when its command is taken away: the inhibit falls, or its frames stay out.
 enum class StopKind : std::uint8_t {
-  Drop,        ///< no force at once
+  Drop,  ///< no force at once
   Controlled,  ///< comes to rest within `stop_within`, then no force or brake
-  Hold,        ///< keeps its position
+  Hold,  ///< keeps its position
 };
 
 /// A hardware device: its identity and frames. Declared once under <Subsystem>.
 struct Device {
   std::string name;
-  bool actuator{false};              ///< output is gated by the framework (decision 22)
-  std::vector<Field> input;          ///< device -> subsystem
+  bool actuator{false};  ///< output is gated by the framework (decision 22)
+  std::vector<Field> input;  ///< device -> subsystem
   struct Output {
     Field field;
-    std::vector<double> safe;        ///< value in every state but Operational; `count` values
+    std::vector<double> safe;  ///< value in every state but Operational; `count` values
   };
-  std::vector<Output> output;        ///< subsystem -> device
+  std::vector<Output> output;  ///< subsystem -> device
   StopKind stop{StopKind::Drop};
-  Duration stop_within{};            ///< from the loss of the command to the stop; 0 = at once
+  Duration stop_within{};  ///< from the loss of the command to the stop; 0 = at once
   /// Second inhibit of an actuator, held by the supervisor's side and never handed to the subsystem; empty = none.
   std::optional<Endnode> enable;
   Location at;
@@ -229,9 +235,9 @@ inline constexpr std::size_t max_device_octets = 1002;
 
 /// Settings and endnode of a device in one configuration.
 struct DeviceUse {
-  std::uint16_t device{};            ///< index into Subsystem::devices
-  CycleLimit silence{3, 40};         ///< cycles without a valid frame until the device counts as lost
-  std::uint32_t watchdog_us{10'000}; ///< device watchdog with real-time scheduling
+  std::uint16_t device{};  ///< index into Subsystem::devices
+  CycleLimit silence{3, 40};  ///< cycles without a valid frame until the device counts as lost
+  std::uint32_t watchdog_us{10'000};  ///< device watchdog with real-time scheduling
   std::uint32_t watchdog_reduced_us{50'000};
   std::vector<std::pair<std::string, std::string>> settings;  ///< for its author: DevicePortBase::setting()
   Endnode endnode;
@@ -242,8 +248,8 @@ struct DeviceUse {
 inline constexpr Duration least_sampling = std::chrono::microseconds{50};
 /// Above every cycle run the simulated devices and the supervisor's guard, which takes priority from a cycle that hangs.
 inline constexpr int greatest_cycle_priority = 84;
-/// Most values that the arguments of a function have together (pus/st08_function.hpp).
-inline constexpr std::size_t max_argument_values = 8;
+/// Most octets that the arguments of a function take together on their way to the cycle.
+inline constexpr std::size_t max_argument_octets = 256;
 
 struct Configuration {
   std::string name;

@@ -171,7 +171,22 @@ constexpr Bad bad_meaning[] = {
     {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@udp"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)", "shared_memory is"},
     {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@shared_memory dds"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)"},
     {"E0224", R"(<RealTimeLinkService><Requires name="A" kind="@queued"><Field name="X" type="INT8"/></Requires></RealTimeLinkService>)", "latest is"},
-    {"E0225", R"(<FunctionService><Function name="X">@<Argument name="A" type="DOUBLE" count="2" minimum="0" maximum="1"/></Function></FunctionService>)", "one argument for each"},
+    {"E0225", R"(<FunctionService>@<Function name="X"><Argument name="A" type="DOUBLE" count="31" minimum="0" maximum="1"/><Argument name="B" type="TEXT" octets="7"/></Function></FunctionService>)", "at most 256"},
+    {"E0104", R"(<FunctionService><Function name="X"><Argument name="A" type="@STRUCT" minimum="0" maximum="1"/></Function></FunctionService>)"},
+    {"E0104", R"(<ParamRef name="X" id="2" type="@TEXT"/>)"},
+    {"E0104", R"(<EventService><Event name="E" id="1" severity="low"><Argument name="A" type="@BOOL"/></Event></EventService>)"},
+    {"E0104", R"(<CustomService name="A" type="200"><Request name="X" subtype="1"><Argument name="N" type="@BOOL" minimum="0" maximum="1"/></Request></CustomService>)"},
+    {"E0105", R"(<FunctionService><Function name="X">@<Argument name="A" type="TEXT"/></Function></FunctionService>)"},
+    {"E0112", R"(<FunctionService><Function name="X"><Argument name="A" type="TEXT" octets="@255"/></Function></FunctionService>)"},
+    {"E0103", R"(<FunctionService><Function name="X"><Argument name="A" type="TEXT" octets="9" @count="2"/></Function></FunctionService>)"},
+    {"E0103", R"(<FunctionService><Function name="X"><Argument name="A" type="BOOL" @minimum="0"/></Function></FunctionService>)"},
+    {"E0103", R"(<FunctionService><Function name="X"><Argument name="A" type="INT8" minimum="0" maximum="1" @octets="2"/></Function></FunctionService>)"},
+    {"E0207", R"(<FunctionService><Function name="X"><Argument name="A" type="TEXT" octets="2" default="@abc"/></Function></FunctionService>)"},
+    {"E0207", "<Enumeration name=\"C\"><Text value=\"3\">c</Text></Enumeration>\n<FunctionService><Function name=\"X\">@<Argument name=\"A\" type=\"UINT8\" enumeration=\"C\" default=\"2\"/></Function></FunctionService>"},
+    {"E0208", "<Enumeration name=\"C\"><Text value=\"256\">c</Text></Enumeration>\n<FunctionService><Function name=\"X\">@<Argument name=\"A\" type=\"UINT8\" enumeration=\"C\"/></Function></FunctionService>"},
+    {"E0208", R"(<FunctionService><Function name="X"><Argument name="A" type="UINT64" minimum="0" maximum="@18446744073709551616"/></Function></FunctionService>)", "0 to 18446744073709551615"},
+    {"E0208", R"(<FunctionService><Function name="X"><Argument name="A" type="INT64" minimum="@-9223372036854775809" maximum="0"/></Function></FunctionService>)"},
+    {"E0206", R"(<FunctionService><Function name="X"><Argument name="A" type="UINT64" minimum="@9007199254740993" maximum="9007199254740992"/></Function></FunctionService>)"},
     {"E0226", R"(<ParamRef name="A" id="2" type="DOUBLE"/>@<ParamRef name="a" id="3" type="DOUBLE"/>)", "one"},
     {"E0226", R"(<ParamRef name="A" id="2" type="DOUBLE"/>@<StructRef name="a" id="3"><ParamRef name="X" id="9" type="INT8"/></StructRef>)"},
     {"E0226", R"(<EventService><Event name="A" id="2" severity="low"/>@<Event name="a" id="3" severity="low"/></EventService>)"},
@@ -258,12 +273,12 @@ TEST(SubsystemErrors, AFunctionHasNoMoreArgumentsThanAHandlerTakes) {
   const auto with = [](int count) {
     std::string arguments;
     for (int i = 0; i < count; ++i)
-      arguments += "<Argument name=\"A" + std::to_string(i) + "\" type=\"INT8\" minimum=\"0\" maximum=\"1\"/>";
+      arguments += "<Argument name=\"A" + std::to_string(i) + "\" type=\"INT64\" minimum=\"0\" maximum=\"1\"/>";
     return "<FunctionService>@<Function name=\"X\">" + arguments + "</Function></FunctionService>";
   };
-  expect_problem({"E0225", "", "at most 8"}, whole(with(9)));
-  const std::string eight = marked(whole(with(8))).text;
-  EXPECT_TRUE(read_text(eight).value) << rendered(read_text(eight).problems, text_source(eight));
+  expect_problem({"E0225", "", "at most 256"}, whole(with(33)));
+  const std::string most = marked(whole(with(32))).text;
+  EXPECT_TRUE(read_text(most).value) << rendered(read_text(most).problems, text_source(most));
 }
 
 TEST(SubsystemErrors, AUsedIdNamesBothPlaces) {

@@ -93,7 +93,7 @@ TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
   const Function* move = robot.find_function("MOVE_TO");
   EXPECT_TRUE(move->permitted_in(State::Operational));
   EXPECT_FALSE(move->permitted_in(State::SafeOperational));
-  EXPECT_EQ(move->arguments.at(1).fallback, 5.0);
+  EXPECT_EQ(move->arguments.at(1).fallback, Value{5.0});
   EXPECT_EQ(move->arguments.at(0).fallback, std::nullopt);
   EXPECT_EQ(move->description, "Moves on a straight line in joint space");
   EXPECT_TRUE(robot.find_function("HOLD")->permitted_in(State::SafeOperational));
@@ -122,7 +122,7 @@ TEST(SubsystemDescriptor, AnArgumentOfAParameterHasItsRange) {
   EXPECT_EQ(limit.field.unit, "N m");
   EXPECT_EQ(limit.field.minimum, 0);
   EXPECT_EQ(limit.field.maximum, 15);
-  EXPECT_EQ(limit.fallback, 12);
+  EXPECT_EQ(limit.fallback, Value{12});
   const auto reading = read_text(
       "<Subsystem name=\"S\" id=\"10\"><FunctionService><Function name=\"SET\"><Argument name=\"COLD\" "
       "of=\"LIMITS\"/></Function></FunctionService><ParamRef name=\"LIMITS\" id=\"1\" type=\"FLOAT\" count=\"3\" "
@@ -132,6 +132,33 @@ TEST(SubsystemDescriptor, AnArgumentOfAParameterHasItsRange) {
   EXPECT_EQ(cold.count, 1) << "one value of the array";
   EXPECT_EQ(cold.type, Type::Float);
   EXPECT_EQ(cold.maximum, 90);
+}
+
+TEST(SubsystemDescriptor, ArgumentsOfFunctionsHaveEveryTypeAndExactRanges) {
+  const std::string text = R"(<Subsystem name="S" id="10">
+    <Enumeration name="COLOURS"><Text value="-1">red</Text><Text value="7">green</Text></Enumeration>
+    <FunctionService><Function name="PROGRAM">
+      <Argument name="SERIAL" type="UINT64" minimum="1" maximum="18446744073709551615"/>
+      <Argument name="OFFSET" type="INT64" minimum="-9223372036854775808" maximum="9007199254740993"
+                default="9007199254740993"/>
+      <Argument name="COLOUR" type="INT8" enumeration="COLOURS" default="7"/>
+      <Argument name="NOTE" type="TEXT" octets="200" default="so"/>
+      <Argument name="ON" type="BOOL" count="3"/>
+    </Function></FunctionService></Subsystem>)";
+  const auto reading = read_text(text);
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(text));
+  const auto& arguments = reading.value->find_function("PROGRAM")->arguments;
+  ASSERT_EQ(arguments.size(), 5U);
+  EXPECT_EQ(arguments[0].field.maximum, Number{UINT64_MAX});
+  EXPECT_EQ(arguments[1].field.minimum, Number{INT64_MIN});
+  EXPECT_EQ(arguments[1].fallback, Value{std::int64_t{9007199254740993}});
+  ASSERT_EQ(arguments[2].texts.size(), 2U);
+  EXPECT_EQ(arguments[2].texts[1].text, "green");
+  EXPECT_EQ(arguments[3].fallback, Value{"so"});
+  EXPECT_EQ(arguments[3].field.octets(), 202U);
+  EXPECT_EQ(arguments[4].field.type, Type::Bool);
+  EXPECT_EQ(arguments[4].field.count, 3);
+  ASSERT_EQ(arguments[4].texts.size(), 2U);
 }
 
 TEST(SubsystemDescriptor, AnActuatorDeclaresItsStopAndItsSecondInhibit) {

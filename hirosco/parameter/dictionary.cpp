@@ -70,7 +70,9 @@ template <WireNumber T>
     case Type::Int64: return put_number<std::int64_t>(number, to);
     case Type::Float: return put_number<float>(number, to);
     case Type::Double: return put_number<double>(number, to);
-    case Type::Struct: return false;
+    case Type::Struct:
+    case Type::Bool:
+    case Type::Text: return false;
   }
   return false;
 }

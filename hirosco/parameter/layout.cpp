@@ -22,6 +22,8 @@ namespace {
     case Type::Float: return "float";
     case Type::Double: return "double";
     case Type::Struct: return "struct";
+    case Type::Bool: return "bool";
+    case Type::Text: return "std::string_view";
   }
   return "?";
 }

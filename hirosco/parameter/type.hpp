@@ -23,6 +23,8 @@ enum class Type : std::uint8_t {
   Float = 9,
   Double = 10,
   Struct = 32,
+  Bool = 33,  ///< one octet, 0 or 1; of a function's argument only
+  Text = 34,  ///< UTF-8 up to a declared length; of a function's argument only
 };
 
 template <>
@@ -39,14 +41,17 @@ struct EnumTexts<Type> {
       {Type::Float, "FLOAT"},
       {Type::Double, "DOUBLE"},
       {Type::Struct, "STRUCT"},
+      {Type::Bool, "BOOL"},
+      {Type::Text, "TEXT"},
   });
 };
 
-/// Octets of one value of a type; 0 for a structure, whose size is that of its members.
+/// Octets of one value of a type; 0 for a structure, whose size is that of its members, and for text.
 [[nodiscard]] constexpr std::size_t octets_of(Type type) noexcept {
   switch (type) {
     case Type::Uint8:
-    case Type::Int8: return 1;
+    case Type::Int8:
+    case Type::Bool: return 1;
     case Type::Uint16:
     case Type::Int16: return 2;
     case Type::Uint32:
@@ -55,9 +60,14 @@ struct EnumTexts<Type> {
     case Type::Uint64:
     case Type::Int64:
     case Type::Double: return 8;
-    case Type::Struct: return 0;
+    case Type::Struct:
+    case Type::Text: return 0;
   }
   return 0;
+}
+
+[[nodiscard]] constexpr bool is_integer(Type type) noexcept {
+  return (type >= Type::Uint8 && type <= Type::Int64) || type == Type::Bool;
 }
 
 /// A parameter's identity: subsystem, layout and id (paper 4.1). On the wire one u32 in this order.

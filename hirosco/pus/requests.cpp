@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/requests.hpp"
 
-#include "hirosco/parameter/number.hpp"
-#include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st17_test/test_service.hpp"
 
 namespace hirosco::pus {
@@ -29,24 +27,21 @@ bool goes_alone(const Function& request) noexcept {
   return request.essential && request.service != TestService::service_type;
 }
 
-Result<std::vector<std::byte>> encode_request(const Function& request, std::span<const std::optional<double>> values) {
+Result<std::vector<std::byte>> encode_request(const Function& request, GivenValues values) {
   if (request.service == FunctionService::service_type) return encode_call(request, values);
   return encode_arguments_in_order(request, values);
 }
 
-std::optional<std::vector<double>> decode_request(const Function& request, Octets data) {
-  std::vector<double> values;
+std::optional<std::vector<Value>> decode_request(const Function& request, Octets data) {
   if (request.service == FunctionService::service_type) {
     const auto call = decode_call({&request, 1}, data);
     if (!call) return std::nullopt;
-    for (const auto& argument : request.arguments)
-      for (std::uint16_t i = 0; i < argument.field.count; ++i) values.push_back(call->arguments[values.size()]);
-    return values;
+    return ArgumentReader{request.arguments, call->arguments}.rest();
   }
-  OctetReader reader{data};
-  for (const auto& argument : request.arguments)
-    for (std::uint16_t i = 0; i < argument.field.count; ++i) values.push_back(get_number(reader, argument.field.type));
-  return reader.exhausted() ? std::optional{std::move(values)} : std::nullopt;
+  std::size_t octets = 0;
+  for (const Argument& argument : request.arguments) octets += argument.field.octets();
+  if (data.size() != octets) return std::nullopt;
+  return ArgumentReader{request.arguments, data}.rest();
 }
 
 }  // namespace hirosco::pus

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 
@@ -19,13 +19,10 @@ namespace hirosco::pus {
 /// Whether it takes the way of what is essential, past what waits; a ping asks about the ordinary one.
 [[nodiscard]] bool goes_alone(const descriptor::Function& request) noexcept;
 
-/// Application data of such a request: values in declared order; where they end or are empty, the declared value is sent.
-/// InvalidArgument: an argument without value, too many values, a fraction for an integer, not a number;
-/// OutOfRange: against the declared range or type.
-[[nodiscard]] Result<std::vector<std::byte>> encode_request(const descriptor::Function& request,
-                                                            std::span<const std::optional<double>> values);
+/// Application data of such a request, as encode_call() makes it.
+[[nodiscard]] Result<std::vector<std::byte>> encode_request(const descriptor::Function& request, GivenValues values);
 
 /// The arguments in the application data of such a request, element by element; empty when they are not of its form.
-[[nodiscard]] std::optional<std::vector<double>> decode_request(const descriptor::Function& request, Octets data);
+[[nodiscard]] std::optional<std::vector<Value>> decode_request(const descriptor::Function& request, Octets data);
 
 }  // namespace hirosco::pus

@@ -65,13 +65,13 @@ TEST(Requests, OfAnOwnServiceCarryTheirArgumentsInOrderAndNothingElse) {
   const auto mission = one_with_a_service();
   const auto requests = requests_of(mission.subsystems[0].subsystem);
   const descriptor::Function& blink = *named(requests, "BLINK");
-  const std::vector<std::optional<double>> given{300.0, 0.25};
+  const std::vector<std::optional<Value>> given{300.0, 0.25};
   const auto data = encode_request(blink, given);
   ASSERT_TRUE(data);
   EXPECT_EQ(data->size(), 2 + 8 + 8);
-  EXPECT_EQ(decode_request(blink, *data), (std::vector<double>{300.0, 0.25, 0.5})) << "the last by its default";
+  EXPECT_EQ(decode_request(blink, *data), (std::vector<Value>{300.0, 0.25, 0.5})) << "the last by its default";
   EXPECT_FALSE(decode_request(blink, Octets{*data}.first(17)));
-  const std::vector<std::optional<double>> too_large{501.0}, none{};
+  const std::vector<std::optional<Value>> too_large{501.0}, none{};
   EXPECT_EQ(encode_request(blink, too_large).error().code, ErrorCode::OutOfRange);
   EXPECT_EQ(encode_request(blink, none).error().code, ErrorCode::InvalidArgument);
   EXPECT_EQ(encode_request(*named(requests, "PING"), none)->size(), 0);
@@ -80,10 +80,10 @@ TEST(Requests, OfAnOwnServiceCarryTheirArgumentsInOrderAndNothingElse) {
 TEST(Requests, AreReadBackAsCallsOfFunctionsToo) {
   const auto mission = one_with_a_service();
   const auto requests = requests_of(mission.subsystems[0].subsystem);
-  const std::vector<std::optional<double>> operational{5.0};
+  const std::vector<std::optional<Value>> operational{5.0};
   const auto data = encode_request(*named(requests, "SET_STATE"), operational);
   ASSERT_TRUE(data);
-  EXPECT_EQ(decode_request(*named(requests, "SET_STATE"), *data), std::vector<double>{5.0});
+  EXPECT_EQ(decode_request(*named(requests, "SET_STATE"), *data), std::vector<Value>{5.0});
 }
 
 TEST(Requests, WhatIsEssentialGoesAloneAndAPingDoesNot) {

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "hirosco/parameter/number.hpp"
 #include "hirosco/pus/st01_verification/instructions.hpp"
 
 namespace hirosco {
@@ -56,15 +54,11 @@ void copy_number(Octets from, MutableOctets to) noexcept {
 }
 
 /// The first argument whose value the descriptor does not permit, from 1.
-[[nodiscard]] std::optional<std::size_t> bad_argument(std::span<const descriptor::Field> fields, Octets data) {
+[[nodiscard]] std::optional<std::size_t> bad_argument(const descriptor::Function& declared, Octets data) {
   OctetReader reader{data};
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    for (std::uint16_t element = 0; element < fields[i].count; ++element) {
-      const double value = get_number(reader, fields[i].type);
-      if (!std::isfinite(value) || (fields[i].minimum && value < *fields[i].minimum) ||
-          (fields[i].maximum && value > *fields[i].maximum))
-        return i + 1;
-    }
+  for (std::size_t i = 0; i < declared.arguments.size(); ++i)
+    for (std::uint16_t element = 0; element < declared.arguments[i].field.count; ++element)
+      if (!pus::permits(declared.arguments[i], read_number(reader, declared.arguments[i].field.type))) return i + 1;
   return std::nullopt;
 }
 
@@ -122,7 +116,7 @@ void CustomService::handle(const pus::TelecommandView& telecommand, const pus::R
         request, FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(home_->state())));
   if (open_.size() >= most_running) return verification.rejected(request, FailureNotice{FailureCode::QueueFull});
   verification.accepted(request);
-  if (const auto bad = bad_argument(fields, data))
+  if (const auto bad = bad_argument(*declared, data))
     return verification.start_failed(
         request,
         FailureNotice{FailureCode::ValueNotAcceptable}.with(std::uint8_t{0}).with(static_cast<std::uint32_t>(*bad)));

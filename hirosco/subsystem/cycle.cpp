@@ -143,7 +143,8 @@ void CycleLoop::take_commands() noexcept {
 }
 
 void CycleLoop::run_function(const CycleCommand& command) noexcept {
-  const Outcome outcome = functions_[command.index].handler(command.arguments, Call{command.request});
+  pus::ArgumentReader reader{parts_.descriptor.functions[command.index].arguments, command.arguments};
+  const Outcome outcome = functions_[command.index].handler(reader, Call{command.request});
   switch (outcome.kind) {
     case Outcome::Kind::Refused: fail_call(ReportKind::Refused, outcome.code, command.request, outcome.reason); return;
     case Outcome::Kind::Running: report(ReportKind::Started, 0, command.request); return;

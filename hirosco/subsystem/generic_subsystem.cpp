@@ -168,16 +168,16 @@ void GenericSubsystem::watch_supervisor(TimePoint now) {
 
 std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::FunctionCall& call,
                                                                  const pus::Request& request) {
-  if (call.function == pus::set_state_function) return command_state(static_cast<State>(call.arguments[0]), request);
-  if (call.function == pus::configure_function)
-    return command_configuration(static_cast<std::uint8_t>(call.arguments[0]), request);
+  const auto first = std::to_integer<std::uint8_t>(call.arguments.front());
+  if (call.function == pus::set_state_function) return command_state(static_cast<State>(first), request);
+  if (call.function == pus::configure_function) return command_configuration(first, request);
   const descriptor::Function& function = descriptor_.functions[call.function];
   if (!function.permitted_in(state_) || !wanted_.load(std::memory_order_relaxed) || way_)
     return std::unexpected{wrong_state()};
   if (!cycle_.functions()[call.function].handler)
     return std::unexpected{pus::FailureNotice{pus::FailureCode::ExecutionError}};
   CycleCommand command{.kind = CommandKind::Function, .index = call.function, .request = request};
-  std::ranges::copy(call.arguments, command.arguments.begin());
+  command.arguments = call.arguments;
   if (!push(command)) return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
   return {};
 }
@@ -233,7 +233,7 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
   OctetReader reader{value};
   const auto in_range = [&](const descriptor::Field& field) {
     for (std::uint16_t i = 0; i < field.count; ++i) {
-      const double number = get_number(reader, field.type);
+      const Number number = read_number(reader, field.type);
       if (!(number == number)) return false;
       if (field.minimum && number < *field.minimum) return false;
       if (field.maximum && number > *field.maximum) return false;

@@ -107,7 +107,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void raise_named(std::string_view event, Octets auxiliary);
   /// For one that announces its events by name: each that it declares counts as used.
   void uses_all_events() noexcept { uses_all_events_ = true; }
-  void bind_function(std::string_view name, std::span<const ArgumentRange> arguments, FunctionHandler handler);
+  void bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes, FunctionHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
   [[nodiscard]] pus::Verification& verification() noexcept override { return verification_; }

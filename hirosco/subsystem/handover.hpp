@@ -31,7 +31,7 @@ struct CycleCommand {
   std::uint16_t index{0};
   pus::Request request{};
   AttachedLink* link{nullptr};
-  std::array<double, max_function_arguments> arguments{};
+  pus::ArgumentData arguments{};
 };
 
 enum class ReportKind : std::uint8_t {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <limits>
 
 #include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
@@ -10,46 +11,49 @@
 namespace hirosco {
 namespace {
 
-struct TypeRange {
-  bool integer{true};
-  double lowest{0.0};
-  double highest{0.0};
-  int digits{0};
-};
-
-[[nodiscard]] TypeRange range_of(Type type) {
-  const auto of = []<class T>(T) {
-    const ArgumentRange range = detail::range_of<T>();
-    return TypeRange{range.integer, range.lowest, range.highest, range.digits};
-  };
-  switch (type) {
-    case Type::Uint8: return of(std::uint8_t{});
-    case Type::Int8: return of(std::int8_t{});
-    case Type::Uint16: return of(std::uint16_t{});
-    case Type::Int16: return of(std::int16_t{});
-    case Type::Uint32: return of(std::uint32_t{});
-    case Type::Int32: return of(std::int32_t{});
-    case Type::Uint64: return of(std::uint64_t{});
-    case Type::Int64: return of(std::int64_t{});
-    case Type::Float: return of(float{});
-    case Type::Double:
-    case Type::Struct: break;
+/// Smallest and largest number that the descriptor permits.
+[[nodiscard]] TypeRange permitted(const pus::Argument& declared) {
+  TypeRange range = range_of(declared.field.type);
+  if (!declared.texts.empty()) {
+    const auto [lowest, highest] = std::ranges::minmax(declared.texts, {}, &descriptor::EnumerationText::value);
+    range = {lowest.value, highest.value};
   }
-  return of(double{});
+  return {std::max(range.lowest, declared.field.minimum.value_or(range.lowest)),
+          std::min(range.highest, declared.field.maximum.value_or(range.highest))};
 }
 
-/// Whether a C++ type takes every value that the descriptor permits, as it is.
-[[nodiscard]] bool holds(const ArgumentRange& handler, const descriptor::Field& declared) {
-  const TypeRange type = range_of(declared.type);
-  if (!handler.integer) {
-    // Calls carry doubles: whole numbers above 2^53 are refused before they come here.
-    constexpr int digits_of_a_call = std::numeric_limits<double>::digits;
-    return handler.digits >= std::min(type.digits, digits_of_a_call);
+/// Whether a C++ type takes every number that the descriptor permits, as it is.
+[[nodiscard]] bool holds_numbers(Type native, const pus::Argument& declared) {
+  const Type type = declared.field.type;
+  if (type == Type::Text) return false;
+  const TypeRange wanted = permitted(declared);
+  if (is_integer(native)) {
+    const TypeRange held = range_of(native);
+    return is_integer(type) && held.lowest <= wanted.lowest && wanted.highest <= held.highest;
   }
-  if (!type.integer) return false;
-  const double lowest = std::max(type.lowest, declared.minimum.value_or(type.lowest));
-  const double highest = std::min(type.highest, declared.maximum.value_or(type.highest));
-  return handler.lowest <= lowest && highest <= handler.highest;
+  if (!is_integer(type)) return native == Type::Double || type == Type::Float;
+  const Number exact = std::int64_t{1} << (native == Type::Double ? std::numeric_limits<double>::digits
+                                                                  : std::numeric_limits<float>::digits);
+  return Number{-exact.real()} <= wanted.lowest && wanted.highest <= exact;
+}
+
+[[nodiscard]] bool holds(const NativeField& native, const pus::Argument& declared) {
+  const descriptor::Field& field = declared.field;
+  if (native.type == Type::Text || field.type == Type::Text) return native.type == field.type;
+  return native.takes(native.type, field.count) && holds_numbers(native.type, declared);
+}
+
+[[nodiscard]] std::string text_of(const pus::Argument& declared) {
+  if (declared.field.type == Type::Text) return "TEXT of " + std::to_string(declared.field.text_octets) + " octets";
+  return descriptor_text(declared.field.type, declared.field.count);
+}
+
+/// "3 (double, bool, std::array<float, 2>)"
+template <class List>
+[[nodiscard]] std::string listed(const List& list, std::string (*text)(const typename List::value_type&)) {
+  std::string all;
+  for (const auto& one : list) all.append(all.empty() ? " (" : ", ").append(text(one));
+  return std::to_string(list.size()) + all + (all.empty() ? "" : ")");
 }
 
 }  // namespace
@@ -66,23 +70,29 @@ void GenericSubsystem::provide(CustomService& service) {
   services_.push_back(&service);
 }
 
-void GenericSubsystem::bind_function(std::string_view name, std::span<const ArgumentRange> arguments,
+void GenericSubsystem::bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes,
                                      FunctionHandler handler) {
   const auto& functions = descriptor_.functions;
   const auto found = std::ranges::find(functions, name, &descriptor::Function::name);
   const std::string who = "on_function " + std::string{name} + ": ";
   if (found == functions.end())
     return mistake("on_function: the descriptor declares no function '" + std::string{name} + "'");
-  // An array is handed over element by element.
-  std::vector<const descriptor::Field*> values;
-  for (const auto& argument : found->arguments) values.insert(values.end(), argument.field.count, &argument.field);
-  if (values.size() != arguments.size())
-    return mistake(who + "the handler takes " + std::to_string(arguments.size()) +
-                   " arguments, the descriptor declares " + std::to_string(values.size()));
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!holds(arguments[i], *values[i]))
-      mistake(who + "the C++ type of argument " + std::to_string(i + 1) + " does not hold every value of " +
-              values[i]->name + ", which is " + std::string{to_text(values[i]->type)});
+  const std::vector<pus::Argument>& declared = found->arguments;
+  std::vector<NativeField> natives;
+  if (takes) natives.assign(takes->begin(), takes->end());
+  else
+    for (const auto& argument : declared) natives.push_back({Type::Double, argument.field.count});
+  if (natives.size() != declared.size())
+    return mistake(who + "the handler takes " + listed(natives, cpp_text) + ", the descriptor declares " +
+                   listed(declared, text_of));
+  for (std::size_t i = 0; i < declared.size(); ++i)
+    if (!holds(natives[i], declared[i]))
+      mistake(who + "argument " + std::to_string(i + 1) + ", " + declared[i].field.name + ": the descriptor declares " +
+              text_of(declared[i]) + ", " + pus::range_text(declared[i]) + "; the handler takes " +
+              (takes ? "" : "FunctionValues, ") + cpp_text(natives[i]) + ", which does not hold every value");
+  if (!takes && pus::value_count(*found) > max_function_arguments)
+    mistake(who + "FunctionValues hold " + std::to_string(max_function_arguments) +
+            " numbers, the descriptor declares " + std::to_string(pus::value_count(*found)));
   cycle_.functions()[static_cast<std::size_t>(found - functions.begin())].handler = std::move(handler);
 }
 

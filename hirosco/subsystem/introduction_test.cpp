@@ -66,9 +66,10 @@ TEST(AuthorsMistakes, AHandlerWithAnotherNumberOfArgumentsIsNamed) {
       return done;
     }
   } wrong;
-  EXPECT_EQ(
-      explanation_of(wrong),
-      "PROBE: SoftwareInit failed: on_function SET_GOAL: the handler takes 2 arguments, the descriptor declares 1");
+  EXPECT_EQ(explanation_of(wrong),
+            "PROBE: SoftwareInit failed: on_function SET_GOAL: the handler takes 2 (double, double), the descriptor "
+            "declares 1 "
+            "(DOUBLE)");
 }
 
 std::string configuration_mistake(Subsystem& author, std::uint8_t id) {
@@ -133,7 +134,8 @@ TEST(AuthorsMistakes, AreToldAllAtOnce) {
           begin + "require_link: no configuration requires a set 'FOOT'",
           begin + "use_device: the descriptor declares no device 'LEG'",
           begin + "on_function: the descriptor declares no function 'JUMP'",
-          begin + "on_function SET_GOAL: the C++ type of argument 1 does not hold every value of GOAL, which is DOUBLE",
+          begin + "on_function SET_GOAL: argument 1, GOAL: the descriptor declares DOUBLE, -2..2; the handler takes "
+                  "float, which does not hold every value",
           begin + "parameters declared but not published: KD, SEEN",
           begin + "function declared but without a handler: MOVE", begin + "event declared but never used: OWN"));
 }

@@ -318,8 +318,8 @@ void DeviceSlot::keep_in_range(MutableOctets payload) noexcept {
       const double wanted = get_number(reader, field.type);
       double held = wanted;
       if (std::isnan(wanted)) held = i < output.safe.size() ? output.safe[i] : 0.0;
-      if (field.minimum) held = std::max(held, *field.minimum);
-      if (field.maximum) held = std::min(held, *field.maximum);
+      if (field.minimum) held = std::max(held, field.minimum->real());
+      if (field.maximum) held = std::min(held, field.maximum->real());
       if (held == wanted) continue;
       OctetWriter writer{place, order_};
       put_number(writer, field.type, held);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/subsystem/subsystem.hpp"
 
-#include <algorithm>
-
 #include "hirosco/subsystem/generic_subsystem.hpp"
 
 namespace hirosco {
@@ -36,16 +34,9 @@ void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framew
 void Subsystem::use_event(EventPort& event) { framework_->use_event(event); }
 void Subsystem::use_device(std::string_view name, DevicePortBase& port) { framework_->use_device(name, port); }
 
-std::size_t Subsystem::declared_values(std::string_view function) const noexcept {
-  std::size_t count = 0;
-  if (const descriptor::Function* found = own_descriptor().find_function(function))
-    for (const auto& argument : found->arguments) count += argument.field.count;
-  return std::min(count, max_function_arguments);
-}
-
-void Subsystem::bind_function(std::string_view name, std::span<const ArgumentRange> arguments,
+void Subsystem::bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes,
                               FunctionHandler handler) {
-  framework_->bind_function(name, arguments, std::move(handler));
+  framework_->bind_function(name, takes, std::move(handler));
 }
 
 void Subsystem::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {

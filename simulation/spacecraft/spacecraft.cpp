@@ -380,7 +380,7 @@ PermitPage* Spacecraft::permit(std::string_view name) noexcept {
 }
 
 CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view name,
-                                   const std::vector<double>& arguments, Duration limit) {
+                                   const std::vector<Value>& arguments, Duration limit) {
   CommandOutcome outcome;
   const auto* member = parts_.mission.find_subsystem(subsystem);
   const descriptor::Subsystem& target = member != nullptr ? member->subsystem : parts_.mission.supervisor;
@@ -388,7 +388,8 @@ CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view 
   const auto built_in = std::ranges::find(common, name, &descriptor::Function::name);
   const auto* function = built_in != common.end() ? &*built_in : target.find_function(name);
   if (function == nullptr) return outcome;
-  const auto data = pus::encode_call(*function, std::span<const double>{arguments});
+  const std::vector<std::optional<Value>> given(arguments.begin(), arguments.end());
+  const auto data = pus::encode_call(*function, pus::GivenValues{given});
   if (!data) return outcome;
   static constexpr std::uint16_t modulo = 16'384;
   std::array<std::byte, max_packet_octets> buffer;

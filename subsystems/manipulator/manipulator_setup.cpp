@@ -87,8 +87,8 @@ Result<> Manipulator::take_joints_of_the_descriptor() {
   for (const auto& argument : move_to->arguments)
     for (std::size_t i = 0; i < argument.field.count; ++i, ++numbers) {
       if (numbers >= joints()) continue;
-      lowest_rad_[numbers] = argument.field.minimum.value_or(-HUGE_VAL);
-      highest_rad_[numbers] = argument.field.maximum.value_or(HUGE_VAL);
+      lowest_rad_[numbers] = argument.field.minimum.value_or(-HUGE_VAL).real();
+      highest_rad_[numbers] = argument.field.maximum.value_or(HUGE_VAL).real();
     }
   if (numbers != joints() + 1)
     return fail(ErrorCode::Mismatch, "MOVE_TO takes a number for each element of DES_POSITION, and the duration",

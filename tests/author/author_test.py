@@ -27,6 +27,18 @@ with Spacecraft() as craft:
 """
 
 
+PROGRAM = """
+from hirosco_lamp import Spacecraft, ArgumentError
+with Spacecraft() as craft:
+    craft.lamp.program(2**64 - 3, "amber", "from Python", (0.25, 0.5, 1.0))
+    for wrong in ((2**64, "amber", "", (0, 0, 0)), (1, "blue", "", (0, 0, 0)), (1, 1, 25 * "x", (0, 0, 0)), (1, 1, "", (0, 0))):
+        try:
+            craft.lamp.program(*wrong)
+        except ArgumentError as error:
+            print(error)
+"""
+
+
 class Outside:
     """The installed tree, moved, and the author's folder built against it."""
 
@@ -120,6 +132,7 @@ class Flown(Outside, unittest.TestCase):
             self.assertEqual((code, reports[-1]), (0, "1,7"))
             self.assertAlmostEqual(self.brightness(lamp, 0.9), 0.9, 2)
             self.own_service(lamp, ask)
+            self.typed_arguments(lamp, ask, url)
             self.assertEqual(ask("/mission/index.json"), ["tour.js"])
             with urllib.request.urlopen(base + "/mission/tour.js", timeout=10) as answer:
                 self.assertEqual(answer.read(), (self.lamp / "page/tour.js").read_bytes())
@@ -156,6 +169,47 @@ class Flown(Outside, unittest.TestCase):
         told = self.said("python3", "-B", "-c", METER, environment={"PYTHONPATH": str(self.folder)})
         self.assertEqual(told.split(), ["METER", "1", "0.9"])
         self.assertIn("LAMP METER DIMMED=1 CURRENT=0.9 A", self.hirosco("log", "--service", "200"))
+
+    def typed_arguments(self, lamp, ask, url):
+        """A 64-bit integer, an enumeration, a text and an array, by terminal, API, form and Python: no digit and no octet is lost."""
+        self.assertEqual(lamp.tc("LAMP", "PROGRAM", 2**64 - 1, "Amber", "from a terminal", "0.25,0.5,1")[1][-1], "1,7")
+        for wrong in (("0", 1, "", "0,0,0"), (2**64, 1, "", "0,0,0"), (1, "blue", "", "0,0,0"), (1, 1, 25 * "x", "0,0,0"), (1, 1, "", "0,0")):
+            self.hirosco("tc", "LAMP", "PROGRAM", *wrong, "--mission", self.mission, code=2)
+        given = {"SERIAL": str(2**64 - 2), "COLOUR": "amber", "NOTE": "\u20ac from JSON", "STEPS": [0.25, 0.5, 1]}
+        ask("/api/commands", {"subsystem": "LAMP", "function": "PROGRAM", "arguments": given})
+        for name, value in (("SERIAL", 0), ("SERIAL", str(2**64)), ("SERIAL", "1e3x"), ("COLOUR", 3), ("COLOUR", "blue"), ("NOTE", 25 * "x"),
+                            ("NOTE", 5), ("STEPS", [0, 0]), ("STEPS", [0, 0, 1.5]), ("STEPS", 1)):
+            with self.assertRaises(urllib.error.HTTPError) as refused:
+                ask("/api/commands", {"subsystem": "LAMP", "function": "PROGRAM", "arguments": {**given, name: value}})
+            self.assertEqual(refused.exception.code, 400)
+            self.assertIn(name, refused.exception.read().decode())
+        told = self.said("python3", "-B", "-c", PROGRAM, environment={"PYTHONPATH": str(self.folder)}).splitlines()
+        self.assertEqual(len(told), 4, told)
+        numbers = [2**64 - 1, 2**64 - 2, 2**64 - 3]
+        if self.by_form(url):
+            numbers.append(2**64 - 4)
+        octets = {2**64 - 1: 15, 2**64 - 2: 13, 2**64 - 3: 11, 2**64 - 4: 11}
+        log = self.hirosco("log", "--service", "5")
+        for number in numbers:
+            self.assertIn(f"PROGRAMMED SERIAL={number} COLOUR=amber NOTE_OCTETS={octets[number]} STEPS=0.25,0.5,1", log)
+        sent = [one["arguments"] for one in ask("/api/commands?from=0&to=1e12&limit=200")["commands"] if one["function"] == "PROGRAM"]
+        self.assertEqual(sorted(one["SERIAL"] for one in sent), sorted(map(str, numbers)))
+        self.assertIn("\u20ac from JSON", [one["NOTE"] for one in sent])
+
+    def by_form(self, url):
+        """By the page's form in a browser; False where there is none."""
+        environment = {"HIROSCO_BROWSER_WORK": str(BUILD / "tests/browser"), "HIROSCO_PAGE": str(BUILD / "share/hirosco/page"),
+                       "HIROSCO_PAGE_WORK": str(BUILD / "ground/web")}
+        done = subprocess.run(["python3", "-B", HERE.parent / "browser/with_browser.py", "fill_form.mjs", url, "LAMP", "PROGRAM",
+                               f"SERIAL={2**64 - 4}", "COLOUR=2", "NOTE=by the page", "STEPS=0.25 0.5 1"],
+                              env={**os.environ, **environment}, capture_output=True, text=True, check=False)
+        told = done.stdout + done.stderr
+        if done.returncode == 77:
+            print(f"by_form: skipped: {told[-200:]}")
+            return False
+        self.assertEqual(done.returncode, 0, told[-3000:])
+        self.assertIn("COLOUR: a choice", told)
+        return True
 
     def brightness(self, lamp, wanted, device="lamp"):
         """Of the device's world, once it is about what is wanted."""

@@ -32,6 +32,8 @@ class Handlers(unittest.TestCase):
     def test_good_ones_compile(self):
         for handler in ('on_function("X", [](double, std::uint8_t) -> Result<> { return ok(); })',
                         'on_function("X", [](const FunctionValues&, Call) -> Outcome { return running; })',
+                        'on_function("X", [](std::int64_t, std::string_view, const std::array<bool, 3>&, Sized<float, 4>, Call)'
+                        ' -> Outcome { return running; })',
                         'book.on_request("X", [](const std::uint16_t&) -> Result<> { return ok(); })'):
             self.assertEqual(self.first_error(handler), "", handler)
 
@@ -42,6 +44,12 @@ class Handlers(unittest.TestCase):
     def test_one_with_arguments_that_no_call_brings_is_told_which_it_may_have(self):
         self.assertIn("a handler takes numbers or enumerations", self.first_error(
             'on_function("X", [](const char*) -> Result<> { return ok(); })'))
+        self.assertIn("or FunctionValues, and last a Call", self.first_error(
+            'on_function("X", [](const std::vector<double>&) -> Result<> { return ok(); })'))
+
+    def test_one_that_takes_a_string_is_told_that_text_does_not_allocate(self):
+        self.assertIn("text comes as std::string_view", self.first_error(
+            'on_function("X", [](const std::string&) -> Result<> { return ok(); })'))
 
     def test_one_that_changes_itself_or_takes_anything_is_told_what_a_handler_is(self):
         for handler in ('on_function("X", [n = 0](double) mutable -> Result<> { ++n; return ok(); })',

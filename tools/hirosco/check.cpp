@@ -27,8 +27,8 @@ namespace {
 void show_field(const char* direction, const descriptor::Field& field) {
   fmt::print("    {} {} {}{}{}", direction, field.name, to_text(field.type),
              field.count == 1 ? "" : fmt::format("[{}]", field.count), field.unit.empty() ? "" : " " + field.unit);
-  if (field.minimum) fmt::print(", at least {}", *field.minimum);
-  if (field.maximum) fmt::print(", at most {}", *field.maximum);
+  if (field.minimum) fmt::print(", at least {}", to_string(*field.minimum));
+  if (field.maximum) fmt::print(", at most {}", to_string(*field.maximum));
   fmt::print("\n");
 }
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
+#include <iterator>
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/requests.hpp"
@@ -18,17 +18,14 @@
 namespace hirosco::tools {
 namespace {
 
-/// A number, a state, mode or configuration by name, or an enumeration text.
-[[nodiscard]] std::optional<double> value_of(const std::string& text, const std::string& function,
-                                             const descriptor::Mission& mission,
-                                             const descriptor::Subsystem& subsystem) {
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc{} && end == text.data() + text.size()) return number;
+/// What the mission knows by name: a state, mode or configuration; on and off.
+[[nodiscard]] std::optional<Number> number_named(const std::string& text, const std::string& function,
+                                                 const descriptor::Mission& mission,
+                                                 const descriptor::Subsystem& subsystem) {
   const std::string wanted = lower_case(text);
   if (function == "SET_STATE")
     for (const auto& row : EnumTexts<descriptor::State>::table)
-      if (lower_case(std::string{row.text}) == wanted) return static_cast<double>(row.value);
+      if (lower_case(std::string{row.text}) == wanted) return static_cast<std::uint8_t>(row.value);
   if (function == "CONFIGURE")
     for (const auto& configuration : subsystem.configurations)
       if (lower_case(configuration.name) == wanted) return configuration.id;
@@ -36,10 +33,31 @@ namespace {
     for (const auto& mode : mission.modes)
       if (lower_case(mode.name) == wanted) return mode.id;
   if (function == "SET_DATABASE")
-    return wanted == "sqlite" ? std::optional{0.0} : wanted == "ascii" ? std::optional{1.0} : std::nullopt;
-  if (wanted == "on") return 1.0;
-  if (wanted == "off") return 0.0;
+    return wanted == "sqlite" ? std::optional{Number{0}} : wanted == "ascii" ? std::optional{Number{1}} : std::nullopt;
+  if (wanted == "on") return 1;
+  if (wanted == "off") return 0;
   return std::nullopt;
+}
+
+/// The values of one argument; those of an array with commas between them. Empty: they do not fit.
+[[nodiscard]] std::vector<std::optional<Value>> values_of(const std::string& word, const descriptor::Function& function,
+                                                          const pus::Argument& argument,
+                                                          const descriptor::Mission& mission,
+                                                          const descriptor::Subsystem& subsystem) {
+  std::vector<std::optional<Value>> values;
+  const bool list = pus::value_count(argument) != 1;
+  for (std::size_t begin = 0; begin <= word.size();) {
+    const std::size_t end = list ? std::min(word.find(',', begin), word.size()) : word.size();
+    const std::string text = word.substr(begin, end - begin);
+    auto value = pus::parse_value(argument, text);
+    if (!value)
+      if (const auto number = number_named(text, function.name, mission, subsystem)) value = *number;
+    if (!value) return {};
+    values.push_back(std::move(value));
+    begin = end + 1;
+  }
+  if (values.size() != pus::value_count(argument)) values.clear();
+  return values;
 }
 
 [[nodiscard]] const descriptor::Subsystem* find_subsystem(const descriptor::Mission& mission, const std::string& name) {
@@ -55,12 +73,8 @@ namespace {
 
 void print_usage(const descriptor::Function& function) {
   fmt::print(stderr, "  {}", function.name);
-  for (const auto& argument : function.arguments) {
-    const auto& field = argument.field;
-    fmt::print(stderr, " {}", field.name);
-    if (field.minimum && field.maximum)
-      fmt::print(stderr, "[{}..{}{}{}]", *field.minimum, *field.maximum, field.unit.empty() ? "" : " ", field.unit);
-  }
+  for (const auto& argument : function.arguments)
+    fmt::print(stderr, " {}[{}]", argument.field.name, pus::range_text(argument));
   fmt::print(stderr, "\n");
 }
 
@@ -79,29 +93,28 @@ struct Encoded {
     for (const auto& known : functions) print_usage(known);
     return std::nullopt;
   }
-  std::vector<std::optional<double>> values(function->arguments.size());
+  std::vector<std::vector<std::optional<Value>>> given;
+  for (const auto& argument : function->arguments) given.emplace_back(pus::value_count(argument), std::nullopt);
   std::size_t next = 0;
   for (const std::string& word : options.arguments) {
-    const auto equals = word.find('=');
-    std::size_t index = next;
-    if (equals != std::string::npos) {
-      const auto named = std::ranges::find_if(function->arguments, [&](const auto& a) {
-        return lower_case(a.field.name) == lower_case(word.substr(0, equals));
-      });
-      index = static_cast<std::size_t>(named - function->arguments.begin());
-    } else {
-      ++next;
-    }
-    const std::string text = equals == std::string::npos ? word : word.substr(equals + 1);
-    const auto value = value_of(text, function->name, mission, subsystem);
-    if (index >= values.size() || !value) {
+    const auto named = std::ranges::find_if(function->arguments, [&](const auto& argument) {
+      return lower_case(argument.field.name) == lower_case(word.substr(0, word.find('=')));
+    });
+    const bool by_name = word.find('=') != std::string::npos && named != function->arguments.end();
+    const std::size_t index = by_name ? static_cast<std::size_t>(named - function->arguments.begin()) : next++;
+    auto values = index < given.size() ? values_of(by_name ? word.substr(word.find('=') + 1) : word, *function,
+                                                   function->arguments[index], mission, subsystem)
+                                       : std::vector<std::optional<Value>>{};
+    if (values.empty()) {
       fmt::print(stderr, "hirosco tc: argument '{}' does not fit; usage:\n", word);
       print_usage(*function);
       return std::nullopt;
     }
-    values[index] = value;
+    given[index] = std::move(values);
   }
-  auto data = pus::encode_request(*function, std::span<const std::optional<double>>{values});
+  std::vector<std::optional<Value>> values;
+  for (auto& of_argument : given) std::ranges::move(of_argument, std::back_inserter(values));
+  auto data = pus::encode_request(*function, values);
   if (data) return Encoded{*function, std::move(*data)};
   fmt::print(stderr, "hirosco tc: {}; usage:\n", data.error().text);
   print_usage(*function);

@@ -12,9 +12,12 @@ from typing import Any, Optional, Sequence, Tuple, Union
 from .packets import ArgumentError
 
 FORMATS = {"UINT8": "B", "INT8": "b", "UINT16": "H", "INT16": "h", "UINT32": "I", "INT32": "i", "UINT64": "Q",
-           "INT64": "q", "FLOAT": "f", "DOUBLE": "d"}
+           "INT64": "q", "FLOAT": "f", "DOUBLE": "d", "BOOL": "?"}
 FUNCTION_NAME_OCTETS = 16
-EXACT_INTEGERS = 2**53            # on board an argument travels as a double
+
+
+def _shown(number: float) -> str:
+    return str(number) if isinstance(number, int) else f"{number:g}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,10 +29,11 @@ class Field:
     unit: str = ""
     minimum: Optional[float] = None
     maximum: Optional[float] = None
-    default: Optional[float] = None
+    default: Union[float, str, None] = None
     texts: Tuple[Tuple[int, str], ...] = ()
     offset: int = 0               # of a column: in the source data of its report
     words: bool = False           # the octets are text up to the first zero
+    most: int = 0                 # of TEXT: octets in UTF-8
 
     @property
     def octets(self) -> int:
@@ -37,6 +41,8 @@ class Field:
 
     def encode(self, value: Any) -> bytes:
         """ArgumentError says in words what does not fit."""
+        if self.type == "TEXT":
+            return self._text(value)
         values = [value] if self.count == 1 else value
         if isinstance(values, (str, bytes)) or not hasattr(values, "__len__") or len(values) != self.count:
             raise ArgumentError(f"{self.name}: {self.count} values are wanted, not {value!r}")
@@ -54,25 +60,32 @@ class Field:
     def _checked(self, value: Any) -> Union[int, float]:
         if isinstance(value, str):
             value = self._named(value)
-        if not isinstance(value, numbers.Real) or not math.isfinite(value):
+        if not isinstance(value, numbers.Real) or not (isinstance(value, int) or math.isfinite(value)):
             raise ArgumentError(f"{self.name}: a finite number is wanted, not {value!r}")
         unit = f" {self.unit}" if self.unit else ""
         if self.minimum is not None and value < self.minimum:
-            raise ArgumentError(f"{self.name}: {value:g}{unit} is below its minimum {self.minimum:g}{unit}")
+            raise ArgumentError(f"{self.name}: {_shown(value)}{unit} is below its minimum {_shown(self.minimum)}{unit}")
         if self.maximum is not None and value > self.maximum:
-            raise ArgumentError(f"{self.name}: {value:g}{unit} is above its maximum {self.maximum:g}{unit}")
-        if self.type == "DOUBLE":
-            return float(value)
-        if self.type != "FLOAT" and value != int(value):
+            raise ArgumentError(f"{self.name}: {_shown(value)}{unit} is above its maximum {_shown(self.maximum)}{unit}")
+        if self.type == "BOOL" and value in (0, 1):
+            return bool(value)
+        real = self.type in ("FLOAT", "DOUBLE")
+        if not real and value != int(value):
             raise ArgumentError(f"{self.name}: a whole number is wanted, not {value!r}")
         try:
-            number = float(value) if self.type == "FLOAT" else int(value)
+            if self.type == "BOOL":
+                raise OverflowError
+            number = float(value) if real else int(value)
             struct.pack(">" + FORMATS[self.type], number)
         except (struct.error, OverflowError):
             raise ArgumentError(f"{self.name}: {value!r} does not fit into {self.type}") from None
-        if self.type != "FLOAT" and abs(number) > EXACT_INTEGERS:
-            raise ArgumentError(f"{self.name}: {value!r} is above 2^53")
         return number
+
+    def _text(self, value: Any) -> bytes:
+        octets = value.encode() if isinstance(value, str) else b""
+        if not isinstance(value, str) or len(octets) > self.most or b"\0" in octets:
+            raise ArgumentError(f"{self.name}: a text of at most {self.most} octets is wanted, not {value!r}")
+        return struct.pack(">H", len(octets)) + octets
 
     def _named(self, text: str) -> int:
         for known, name in self.texts:

@@ -104,22 +104,28 @@ template <class List, class Text>
 /// A value as runtime.Field knows it, from a descriptor or from a column.
 struct Value {
   descriptor::Field field;
-  std::optional<double> fallback;
+  std::optional<hirosco::Value> fallback;
   Texts texts;
   std::size_t offset{0};
 };
 
+[[nodiscard]] std::string python_value(const hirosco::Value& value) {
+  const auto* words = std::get_if<std::string>(&value);
+  return words != nullptr ? python_string(*words) : to_string(std::get<Number>(value));
+}
+
 [[nodiscard]] std::string field_call(const Value& value) {
   const auto& field = value.field;
   std::string text = fmt::format("_r.Field({}, \"{}\"", python_string(field.name), to_text(field.type));
-  const auto add = [&](const char* name, const std::optional<double>& number) {
-    if (number && std::isfinite(*number)) text += fmt::format(", {}={}", name, *number);
+  const auto add = [&](const char* name, const std::optional<Number>& number) {
+    if (number && number->is_finite()) text += fmt::format(", {}={}", name, to_string(*number));
   };
   if (field.count != 1) text += fmt::format(", count={}", field.count);
   if (!field.unit.empty()) text += ", unit=" + python_string(field.unit);
   add("minimum", field.minimum);
   add("maximum", field.maximum);
-  add("default", value.fallback);
+  if (value.fallback) text += ", default=" + python_value(*value.fallback);
+  if (field.type == Type::Text) text += fmt::format(", most={}", field.text_octets);
   if (!value.texts.empty()) text += ", texts=" + pairs(value.texts);
   if (field.text) text += ", words=True";
   if (value.offset != 0) text += fmt::format(", offset={}", value.offset);
@@ -132,7 +138,9 @@ struct Value {
 
 [[nodiscard]] std::string annotation(const Value& value) {
   const bool real = value.field.type == Type::Float || value.field.type == Type::Double;
-  std::string one = real ? "float" : "int";
+  const Type type = value.field.type;
+  if (type == Type::Text) return "str";
+  std::string one = real ? "float" : type == Type::Bool ? "bool" : "int";
   if (!value.texts.empty() && value.texts.size() <= most_literals)
     one = "_t.Union[" + one + ", _t.Literal[" +
           joined(value.texts, ", ", [](const auto& entry) { return python_string(entry.text); }) + "]]";
@@ -145,10 +153,12 @@ struct Value {
   const auto& field = value.field;
   std::string text = (field.count == 1 ? "" : fmt::format("{} x ", field.count)) + std::string{to_text(field.type)};
   if (!field.unit.empty()) text += ", " + doc(field.unit);
-  if (field.minimum && field.maximum) text += fmt::format(", {} to {}", *field.minimum, *field.maximum);
-  else if (field.minimum) text += fmt::format(", from {}", *field.minimum);
-  else if (field.maximum) text += fmt::format(", up to {}", *field.maximum);
-  if (value.fallback) text += fmt::format(", {} if left out", *value.fallback);
+  if (field.type == Type::Text) text += fmt::format(", at most {} octets of UTF-8", field.text_octets);
+  if (field.minimum && field.maximum)
+    text += fmt::format(", {} to {}", to_string(*field.minimum), to_string(*field.maximum));
+  else if (field.minimum) text += fmt::format(", from {}", to_string(*field.minimum));
+  else if (field.maximum) text += fmt::format(", up to {}", to_string(*field.maximum));
+  if (value.fallback) text += fmt::format(", {} if left out", doc(python_value(*value.fallback)));
   if (!value.texts.empty())
     text += ": " + joined(value.texts, ", ",
                           [](const auto& entry) { return fmt::format("{} {}", entry.value, doc(entry.text)); });
@@ -202,7 +212,7 @@ class SubsystemClass {
     std::string parameters, given;
     bool optional = false;
     for (const auto& argument : function.arguments) {
-      Value value{argument.field, argument.fallback, catalogue_.texts_of(subsystem_, function, argument.field), 0};
+      Value value{argument.field, argument.fallback, catalogue_.texts_of(subsystem_, function, argument), 0};
       const std::string name = local.variable(argument.field.name);
       optional = optional || argument.fallback;
       parameters +=

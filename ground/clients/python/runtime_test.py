@@ -105,9 +105,27 @@ class Fields(unittest.TestCase):
         self.refused(Field("N", "UINT8"), -1, "does not fit into UINT8")
         self.refused(Field("N", "UINT8"), 1.5, "a whole number is wanted")
         self.refused(Field("N", "FLOAT"), 1e39, "does not fit into FLOAT")
-        self.refused(Field("N", "UINT64"), 2**53 + 1, "above 2^53")
+        self.refused(Field("N", "UINT64"), 2**64, "does not fit into UINT64")
+        self.refused(Field("N", "INT64"), -2**63 - 1, "does not fit into INT64")
+        self.refused(Field("N", "BOOL"), 2, "does not fit into BOOL")
+        self.refused(Field("N", "UINT64", maximum=2**63), 2**63 + 1, "9223372036854775809 is above its maximum 9223372036854775808")
         for value in (math.nan, math.inf, None, [1], object()):
             self.refused(Field("N", "DOUBLE"), value, "a finite number is wanted")
+
+    def test_integers_of_64_bits_and_both_words_of_a_bool_are_sent_exactly(self):
+        self.assertEqual(Field("N", "UINT64").encode(2**64 - 1), b"\xff" * 8)
+        self.assertEqual(Field("N", "INT64").encode(-2**63), b"\x80" + b"\0" * 7)
+        self.assertEqual(Field("N", "UINT64").encode(2**53 + 1), bytes.fromhex("0020000000000001"))
+        on = Field("ON", "BOOL", count=3, texts=((0, "off"), (1, "on")))
+        self.assertEqual(on.encode((True, 0, "on")), b"\1\0\1")
+
+    def test_a_text_is_sent_with_its_length(self):
+        note = Field("NOTE", "TEXT", most=4)
+        self.assertEqual(note.encode("€"), b"\0\3\xe2\x82\xac")
+        self.assertEqual(note.encode(""), b"\0\0")
+        self.assertEqual(note.encode("abcd"), b"\0\4abcd")
+        for value in ("abcde", "€€", "a\0", 5, None, b"ab"):
+            self.refused(note, value, "a text of at most 4 octets is wanted")
 
     def test_an_array_takes_as_many_values_as_it_has(self):
         pair = Field("P", "INT16", count=2)

@@ -221,6 +221,14 @@ std::optional<double> Attributes::number(std::string_view name) {
   return value;
 }
 
+std::optional<Number> Attributes::exact(std::string_view name) {
+  const auto* attribute = optional(name);
+  if (attribute == nullptr) return std::nullopt;
+  const auto value = parse_number(attribute->value);
+  if (!value) problems_.add(*attribute, "E0111", in_quotes(attribute->value) + " is not a finite number");
+  return value;
+}
+
 std::optional<double> Attributes::watts(std::string_view name) {
   constexpr double least_w = 1e-3, most_w = 1e6;
   const auto value = number(name);

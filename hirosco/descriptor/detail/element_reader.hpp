@@ -125,6 +125,8 @@ class Attributes {
     return required(name) == nullptr ? T{} : integer_or<T>(name, minimum, maximum, T{});
   }
   [[nodiscard]] std::optional<double> number(std::string_view name);
+  /// The same without rounding a 64-bit integer.
+  [[nodiscard]] std::optional<Number> exact(std::string_view name);
   /// Electrical power, 1 mW to 1 MW.
   [[nodiscard]] std::optional<double> watts(std::string_view name);
   /// Numbers between white space; empty when one of them is none.
@@ -210,7 +212,9 @@ class Unique {
 enum class Address { Loopback, Foreign, Malformed };
 [[nodiscard]] Address classify_address(std::string_view text) noexcept;
 
-/// True when every value fits the type and the range of `field`; reports the first that does not.
+/// True when the value fits the type and the range of `field`; else it is reported.
+bool check_value(Problems& problems, const xml::Attribute& at, const Field& field, const Number& value);
+/// The same of every value, which a double must hold exactly; reports the first that does not.
 bool check_values(Problems& problems, const xml::Attribute& at, const Field& field, const std::vector<double>& values);
 /// As many values as `field` has; empty when the attribute is absent or reported.
 [[nodiscard]] std::vector<double> read_values(Problems& problems, Attributes& attributes, std::string_view name,

@@ -74,8 +74,10 @@ class SubsystemReader {
   void read_access(Attributes& attributes, Parameter& parameter);
   void claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id);
   void check_enumerations();
+  /// An argument knows the names of its values.
+  void name_values(Function& function);
   /// What a field says besides name, type, count and unit.
-  enum class Says { Nothing, Words, Range, WordsAndRange };
+  enum class Says { Nothing, Words, Range, WordsAndRange, Argument };
   [[nodiscard]] Field read_field(Attributes& attributes, Says says);
   void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
                         Says says = Says::Nothing);
@@ -106,6 +108,7 @@ class SubsystemReader {
                                                  std::vector<State> fallback);
   void read_range_of(Attributes& attributes, Function::Argument& argument, const std::string& function);
   void check_arguments(const xml::Element& element, const Function& function);
+  void read_fallback(Attributes& attributes, Function::Argument& argument);
   void read_argument(const xml::Element& element, Function& function, Unique& names);
   void read_housekeeping(const xml::Element& element, Services& services);
   void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);

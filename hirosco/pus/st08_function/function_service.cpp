@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/st08_function/function_service.hpp"
 
+#include <algorithm>
 #include <bitset>
-#include <cmath>
 
-#include "hirosco/parameter/number.hpp"
 #include "hirosco/pus/st01_verification/instructions.hpp"
 
 namespace hirosco::pus {
 namespace {
 
-using descriptor::Field;
 using descriptor::Function;
 
 constexpr std::size_t max_arguments = 255;   ///< ids are one octet
@@ -23,27 +21,6 @@ constexpr std::size_t max_arguments = 255;   ///< ids are one octet
   for (std::size_t i = length; i < field.size(); ++i)
     if (field[i] != std::byte{}) return {};
   return {reinterpret_cast<const char*>(field.data()), length};
-}
-
-[[nodiscard]] std::size_t value_count(const Function& function) noexcept {
-  std::size_t count = 0;
-  for (const auto& argument : function.arguments) count += argument.field.count;
-  return count;
-}
-
-/// Doubles hold integers exactly up to 2^53 only.
-[[nodiscard]] bool exact_in_a_double(Octets value, Type type) noexcept {
-  constexpr std::int64_t limit = std::int64_t{1} << 53;
-  OctetReader reader{value};
-  if (type == Type::Uint64) return reader.get<std::uint64_t>() <= static_cast<std::uint64_t>(limit);
-  if (type != Type::Int64) return true;
-  const auto number = reader.get<std::int64_t>();
-  return number >= -limit && number <= limit;
-}
-
-[[nodiscard]] bool in_range(const Field& field, double value) noexcept {
-  return std::isfinite(value) && (!field.minimum || value >= *field.minimum) &&
-         (!field.maximum || value <= *field.maximum);
 }
 
 [[nodiscard]] CallFailure at_start(const FailureNotice& notice) noexcept { return {notice, Stage::Start}; }
@@ -66,15 +43,13 @@ struct Found {
   return {};
 }
 
-/// The arguments of one call while they are read.
-class ArgumentReader {
+/// The arguments of one call while they are taken from a telecommand.
+class ArgumentTaker {
  public:
-  ArgumentReader(const Function& function, FunctionCall& call) noexcept : function_{function}, call_{call} {
-    call.argument_count = static_cast<std::uint8_t>(value_count(function));
-  }
+  ArgumentTaker(const Function& function, FunctionCall& call) noexcept : function_{function}, call_{call} {}
 
   /// A wrong length shows behind wrong values and comes first in the checks, so reading goes on after those.
-  [[nodiscard]] std::optional<CallFailure> read(OctetReader& reader) noexcept {
+  [[nodiscard]] std::optional<CallFailure> take(OctetReader& reader) {
     std::optional<CallFailure> first;
     const auto count = reader.get<std::uint8_t>();
     for (std::size_t index = 0; index < count; ++index) {
@@ -82,7 +57,7 @@ class ArgumentReader {
       if (!reader.good()) return bad_length();
       // The width of an unknown argument is unknown too: nothing behind it can be read.
       if (id == 0 || id > function_.arguments.size()) return first ? first : bad_argument(index, id);
-      const bool good = read_values(reader, id);
+      const bool good = take_argument(reader, id);
       if (!reader.good()) return bad_length();
       if (!good && !first) first = bad_argument(index, id);
     }
@@ -91,33 +66,45 @@ class ArgumentReader {
   }
 
  private:
-  [[nodiscard]] bool read_values(OctetReader& reader, std::size_t id) noexcept {
-    const Field& field = function_.arguments[id - 1].field;
-    bool good = !seen_.test(id);
+  [[nodiscard]] bool take_argument(OctetReader& reader, std::size_t id) noexcept {
+    const Argument& argument = function_.arguments[id - 1];
+    const bool again = seen_.test(id);
     seen_.set(id);
-    for (std::size_t i = 0; i < field.count; ++i) {
-      const Octets raw = reader.rest();
-      const double value = get_number(reader, field.type);
-      good = good && reader.good() && exact_in_a_double(raw, field.type) && in_range(field, value);
-      if (good) call_.arguments[first_value(id) + i] = value;
-    }
-    return good;
+    const Octets begin = reader.rest();
+    const bool permitted =
+        argument.field.type == Type::Text ? permitted_text(reader, argument) : permitted_numbers(reader, argument);
+    if (again || !permitted || !reader.good()) return false;
+    put(id, begin.first(begin.size() - reader.remaining()));
+    return true;
   }
 
-  [[nodiscard]] std::optional<CallFailure> fill_in_missing(std::size_t count) noexcept {
+  [[nodiscard]] static bool permitted_numbers(OctetReader& reader, const Argument& argument) noexcept {
+    bool good = true;
+    for (std::size_t i = 0; i < argument.field.count; ++i)
+      good = permits(argument, read_number(reader, argument.field.type)) && good;
+    return good;
+  }
+  [[nodiscard]] static bool permitted_text(OctetReader& reader, const Argument& argument) noexcept {
+    const Octets words = reader.get(reader.get<std::uint16_t>());
+    return permits(argument, std::string_view{reinterpret_cast<const char*>(words.data()), words.size()});
+  }
+
+  [[nodiscard]] std::optional<CallFailure> fill_in_missing(std::size_t count) {
     for (std::size_t id = 1; id <= function_.arguments.size(); ++id) {
       if (seen_.test(id)) continue;
-      const auto& argument = function_.arguments[id - 1];
-      if (!argument.fallback) return bad_argument(count, id);
-      for (std::size_t i = 0; i < argument.field.count; ++i) call_.arguments[first_value(id) + i] = *argument.fallback;
+      const Argument& argument = function_.arguments[id - 1];
+      std::vector<std::byte> data;
+      for (std::size_t i = 0; i < value_count(argument); ++i)
+        if (!argument.fallback || !append_value(data, argument, *argument.fallback)) return bad_argument(count, id);
+      put(id, data);
     }
     return std::nullopt;
   }
 
-  [[nodiscard]] std::size_t first_value(std::size_t id) const noexcept {
+  void put(std::size_t id, Octets value) noexcept {
     std::size_t at = 0;
-    for (std::size_t before = 1; before < id; ++before) at += function_.arguments[before - 1].field.count;
-    return at;
+    for (std::size_t before = 1; before < id; ++before) at += function_.arguments[before - 1].field.octets();
+    std::ranges::copy(value, call_.arguments.begin() + static_cast<std::ptrdiff_t>(at));
   }
 
   const Function& function_;
@@ -125,41 +112,24 @@ class ArgumentReader {
   std::bitset<max_arguments + 1> seen_;
 };
 
-[[nodiscard]] Result<> check_value(const Field& field, double value) noexcept {
-  if (!std::isfinite(value)) return fail(ErrorCode::InvalidArgument, "argument is not a number");
-  if (!in_range(field, value)) return fail(ErrorCode::OutOfRange, "argument outside its range");
-  std::array<std::byte, 8> buffer;
-  OctetWriter writer{buffer};
-  put_number(writer, field.type, value);
-  if (field.type == Type::Double) return ok();
-  OctetReader reader{writer.written()};
-  const double back = get_number(reader, field.type);
-  if (field.type == Type::Float)
-    return std::isfinite(back) ? ok() : fail(ErrorCode::OutOfRange, "argument exceeds FLOAT");
-  if (!exact_in_a_double(writer.written(), field.type)) return fail(ErrorCode::OutOfRange, "argument above 2^53");
-  if (back == value) return ok();
-  if (std::trunc(value) != value) return fail(ErrorCode::InvalidArgument, "fraction for an integer argument");
-  return fail(ErrorCode::OutOfRange, "argument exceeds its type");
+[[nodiscard]] std::size_t octets_of(const Function& function) noexcept {
+  std::size_t octets = 0;
+  for (const Argument& argument : function.arguments) octets += argument.field.octets();
+  return octets;
 }
-
-void append(std::vector<std::byte>& data, Octets octets) { data.insert(data.end(), octets.begin(), octets.end()); }
 
 enum class WithIds : std::uint8_t { No, Yes };
 
-[[nodiscard]] Result<> append_arguments(std::vector<std::byte>& data, const Function& function,
-                                        std::span<const std::optional<double>> values, WithIds with_ids) {
+[[nodiscard]] Result<> append_arguments(std::vector<std::byte>& data, const Function& function, GivenValues values,
+                                        WithIds with_ids) {
   std::size_t next = 0;
   for (std::size_t id = 1; id <= function.arguments.size(); ++id) {
-    const auto& argument = function.arguments[id - 1];
+    const Argument& argument = function.arguments[id - 1];
     if (with_ids == WithIds::Yes) data.push_back(static_cast<std::byte>(id));
-    for (std::size_t i = 0; i < argument.field.count; ++i, ++next) {
-      const std::optional<double> value = next < values.size() && values[next] ? values[next] : argument.fallback;
+    for (std::size_t i = 0; i < value_count(argument); ++i, ++next) {
+      const std::optional<Value>& value = next < values.size() && values[next] ? values[next] : argument.fallback;
       if (!value) return fail(ErrorCode::InvalidArgument, "argument missing", static_cast<std::int64_t>(id));
-      HIROSCO_TRY(check_value(argument.field, *value));
-      std::array<std::byte, 8> buffer;
-      OctetWriter writer{buffer};
-      put_number(writer, argument.field.type, *value);
-      append(data, writer.written());
+      HIROSCO_TRY(append_value(data, argument, *value));
     }
   }
   return ok();
@@ -203,16 +173,16 @@ std::expected<FunctionCall, CallFailure> decode_call(std::span<const Function> f
   if (found.function == nullptr)
     return std::unexpected{at_start(FailureNotice{FailureCode::UnknownIdentifier}.with(std::uint8_t{0}).with(name))};
   const Function& function = *found.function;
-  if (value_count(function) > max_function_arguments || function.arguments.size() > max_arguments)
+  if (octets_of(function) > descriptor::max_argument_octets || function.arguments.size() > max_arguments)
     return std::unexpected{at_start(FailureNotice{FailureCode::CapacityExceeded}.with(std::uint8_t{0}))};
   FunctionCall call;
   call.function = found.index;
   OctetReader reader{application_data.subspan(function_name_octets)};
-  if (const auto failure = ArgumentReader{function, call}.read(reader)) return std::unexpected{*failure};
+  if (const auto failure = ArgumentTaker{function, call}.take(reader)) return std::unexpected{*failure};
   return call;
 }
 
-Result<std::vector<std::byte>> encode_call(const Function& function, std::span<const std::optional<double>> values) {
+Result<std::vector<std::byte>> encode_call(const Function& function, GivenValues values) {
   if (function.name.empty() || function.name.size() > function_name_octets)
     return fail(ErrorCode::InvalidArgument, "function name");
   if (values.size() > value_count(function)) return fail(ErrorCode::InvalidArgument, "too many arguments");
@@ -223,8 +193,7 @@ Result<std::vector<std::byte>> encode_call(const Function& function, std::span<c
   return data;
 }
 
-Result<std::vector<std::byte>> encode_arguments_in_order(const Function& request,
-                                                         std::span<const std::optional<double>> values) {
+Result<std::vector<std::byte>> encode_arguments_in_order(const Function& request, GivenValues values) {
   if (values.size() > value_count(request)) return fail(ErrorCode::InvalidArgument, "too many arguments");
   std::vector<std::byte> data;
   HIROSCO_TRY(append_arguments(data, request, values, WithIds::No));
@@ -232,19 +201,19 @@ Result<std::vector<std::byte>> encode_arguments_in_order(const Function& request
 }
 
 Result<std::vector<std::byte>> encode_call(const Function& function, std::span<const double> values) {
-  const std::vector<std::optional<double>> given(values.begin(), values.end());
-  return encode_call(function, std::span<const std::optional<double>>{given});
+  const std::vector<std::optional<Value>> given(values.begin(), values.end());
+  return encode_call(function, GivenValues{given});
 }
 
 Result<std::vector<std::byte>> encode_call(const Function& function,
-                                           std::span<const std::pair<std::string_view, double>> named_values) {
-  std::vector<std::optional<double>> given(value_count(function));
+                                           std::span<const std::pair<std::string_view, Value>> named_values) {
+  std::vector<std::optional<Value>> given(value_count(function));
   for (const auto& [name, value] : named_values) {
     std::size_t at = 0;
     std::size_t end = 0;
-    for (const auto& argument : function.arguments) {
+    for (const Argument& argument : function.arguments) {
       at = end;
-      end += argument.field.count;
+      end += value_count(argument);
       if (argument.field.name == name) break;
       at = end;
     }
@@ -253,7 +222,7 @@ Result<std::vector<std::byte>> encode_call(const Function& function,
     if (at == end) return fail(ErrorCode::InvalidArgument, "argument given too often");
     given[at] = value;
   }
-  return encode_call(function, std::span<const std::optional<double>>{given});
+  return encode_call(function, GivenValues{given});
 }
 
 void FunctionService::handle(const TelecommandView& telecommand, const Request& request) {

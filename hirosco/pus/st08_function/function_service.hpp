@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <expected>
 #include <optional>
@@ -13,20 +12,19 @@
 
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
+#include "hirosco/pus/st08_function/arguments.hpp"
 #include "hirosco/utilities/result.hpp"
 
 namespace hirosco::pus {
 
 inline constexpr std::size_t function_name_octets = 16;
-inline constexpr std::size_t max_function_arguments = 8;   ///< values, counting every element of an array
 inline constexpr std::uint16_t first_built_in_function = 0xFF00;
 
-/// A decoded and range-checked call: trivially copyable, travels to the cycle. Values stand in declared order whatever
-/// the order on the wire; integers travel as doubles.
+/// A decoded and checked call: trivially copyable, travels to the cycle. Values stand in declared order whatever the order
+/// on the wire; ArgumentReader reads them.
 struct FunctionCall {
-  std::uint16_t function{};          ///< index into Subsystem::functions, or first_built_in_function + index
-  std::uint8_t argument_count{};
-  std::array<double, max_function_arguments> arguments{};
+  std::uint16_t function{};  ///< index into Subsystem::functions, or first_built_in_function + index
+  ArgumentData arguments{};
 };
 
 /// Which stage of a request a failure belongs to.
@@ -40,29 +38,31 @@ struct CallFailure {
 enum BuiltInFunction : std::uint16_t { set_state_function = 0xFF00, configure_function = 0xFF01 };
 [[nodiscard]] std::vector<descriptor::Function> common_functions();
 
-/// Decodes the application data of TC[8,1] (pus-c 9.7): name of 16 octets, N x (argument id u8, value). Arguments come in
-/// any order, each at most once, ids from 1; absent ones take their declared value. Acceptance: code 8. Start: 0x0101
-/// with index 0 and the 16 octets of the name; 0x0105 with index and argument id for an argument that is unknown, doubled,
-/// missing, out of range or not a finite number (a missing one has the index N); 0x0104 for a function with more than
-/// 8 values. The functions of `built_in` count from first_built_in_function.  Pure, does not allocate.
+/// Decodes the application data of TC[8,1] (pus-c 9.7): name of 16 octets, N x (argument id u8, value). A value is its
+/// numbers in order, or length u16 and octets of text. Arguments come in any order, each at most once, ids from 1; absent
+/// ones take their declared value. Acceptance: code 8. Start: 0x0101 with index 0 and the 16 octets of the name; 0x0105
+/// with index and argument id for an argument that is unknown, doubled, missing, out of range, not a finite number, no value
+/// of its enumeration, longer than declared or no UTF-8 (a missing one has the index N); 0x0104 for a function whose
+/// arguments take more than max_argument_octets. The functions of `built_in` count from first_built_in_function.  Pure.
 [[nodiscard]] std::expected<FunctionCall, CallFailure> decode_call(std::span<const descriptor::Function> functions,
                                                                    Octets application_data,
                                                                    std::span<const descriptor::Function> built_in = {});
 
-/// Application data of TC[8,1] for clients: values in declared order; where they end or are empty, the declared value is
-/// sent. InvalidArgument: an argument without value, too many values, a fraction for an integer, not a number;
-/// OutOfRange: against the declared range or type.
-[[nodiscard]] Result<std::vector<std::byte>> encode_call(const descriptor::Function& function,
-                                                         std::span<const std::optional<double>> values);
+/// Values in declared order, arrays element by element; where they end or are empty, the declared value is sent.
+using GivenValues = std::span<const std::optional<Value>>;
+
+/// Application data of TC[8,1], for whoever calls a function. InvalidArgument: an argument without value, too many values,
+/// and what append_value() says; OutOfRange: against the declared range, length or type.
+[[nodiscard]] Result<std::vector<std::byte>> encode_call(const descriptor::Function& function, GivenValues values);
 [[nodiscard]] Result<std::vector<std::byte>> encode_call(const descriptor::Function& function,
                                                          std::span<const double> values);
 /// By name; an element of an array is named twice in order. NotFound: the function has no such argument.
 [[nodiscard]] Result<std::vector<std::byte>> encode_call(
-    const descriptor::Function& function, std::span<const std::pair<std::string_view, double>> named_values);
+    const descriptor::Function& function, std::span<const std::pair<std::string_view, Value>> named_values);
 
 /// The same values as a subsystem's own service takes them: in declared order, without name and ids.
 [[nodiscard]] Result<std::vector<std::byte>> encode_arguments_in_order(const descriptor::Function& request,
-                                                                       std::span<const std::optional<double>> values);
+                                                                       GivenValues values);
 
 /// Takes calls to where they are executed. Whoever implements it reports start, progress and completion of what it took.
 struct FunctionExecutor {

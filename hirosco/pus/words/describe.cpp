@@ -22,6 +22,9 @@ namespace {
   return text.data();
 }
 
+/// No double has all its numbers.
+[[nodiscard]] bool is_wide(Type type) noexcept { return type == Type::Uint64 || type == Type::Int64; }
+
 /// "NAME=value unit", an enumeration by its text.
 void append_field(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
                   OctetReader& reader) {
@@ -32,19 +35,19 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
     return;
   }
   for (std::uint16_t i = 0; i < field.count; ++i) {
-    const double value = get_number(reader, field.type);
+    const Number value = read_number(reader, field.type);
     if (i != 0) text.append(",");
     const auto enumeration =
         std::ranges::find(subsystem.enumerations, field.enumeration, &descriptor::Enumeration::name);
     if (!field.enumeration.empty() && enumeration != subsystem.enumerations.end()) {
-      const auto named = std::ranges::find_if(
-          enumeration->texts, [&](const auto& entry) { return static_cast<double>(entry.value) == value; });
+      const auto named =
+          std::ranges::find_if(enumeration->texts, [&](const auto& entry) { return Number{entry.value} == value; });
       if (named != enumeration->texts.end()) {
         text.append(named->text);
         continue;
       }
     }
-    text.append(number_text(value));
+    text.append(is_wide(field.type) ? to_string(value) : number_text(value.real()));
   }
   if (!field.unit.empty()) text.append(" ").append(field.unit);
 }
@@ -65,12 +68,16 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
   const auto& function =
       built_in ? common[call->function - first_built_in_function] : subsystem.functions[call->function];
   text.append(" ").append(function.name);
-  std::size_t next = 0;
-  for (const auto& argument : function.arguments) {
+  ArgumentReader reader{function.arguments, call->arguments};
+  const std::vector<Value> values = reader.rest();
+  auto value = values.begin();
+  for (const Argument& argument : function.arguments) {
     text.append(" ").append(argument.field.name).append("=");
-    if (function.name == "SET_STATE") text.append(to_text(static_cast<descriptor::State>(call->arguments[next])));
-    else text.append(number_text(call->arguments[next]));
-    next += argument.field.count;
+    for (std::size_t i = 0; i < value_count(argument); ++i, ++value)
+      text.append(i == 0 ? "" : ",")
+          .append(function.name == "SET_STATE"
+                      ? to_text(static_cast<descriptor::State>(std::get<Number>(*value).as<int>().value_or(0)))
+                      : value_text(argument, *value));
   }
   return text;
 }

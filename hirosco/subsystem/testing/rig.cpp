@@ -101,12 +101,16 @@ Sent Rig::send(std::uint8_t service, std::uint8_t subtype, Octets data, const Me
 }
 
 Sent Rig::call(std::string_view function, std::initializer_list<double> arguments) {
+  return call_with(function, {arguments.begin(), arguments.end()});
+}
+
+Sent Rig::call_with(std::string_view function, const std::vector<std::optional<Value>>& arguments) {
   const descriptor::Function* found = subsystem.descriptor().find_function(function);
   const auto common = pus::common_functions();
   for (const auto& candidate : common)
     if (candidate.name == function) found = &candidate;
   if (found == nullptr) throw std::runtime_error{"no function of this name"};
-  const auto data = pus::encode_call(*found, std::span{arguments.begin(), arguments.size()});
+  const auto data = pus::encode_call(*found, arguments);
   return send(8, 1, data.value());
 }
 

@@ -60,6 +60,8 @@ class Rig {
   Sent send(std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory = {},
             std::uint32_t mode_epoch = 0);
   Sent call(std::string_view function, std::initializer_list<double> arguments = {});
+  /// The same with arguments of any type, arrays element by element.
+  Sent call_with(std::string_view function, const std::vector<std::optional<Value>>& arguments);
   Sent set_state(State target) { return call("SET_STATE", {static_cast<double>(target)}); }
   Sent configure(std::uint8_t id) { return call("CONFIGURE", {static_cast<double>(id)}); }
   /// Sends, settles, and gives outcome().

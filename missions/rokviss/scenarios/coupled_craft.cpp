@@ -101,8 +101,7 @@ void CoupledCraft::hand(const std::string& line) {
 
 void CoupledCraft::run(double seconds) { craft().run(Duration{std::llround(seconds * 1e9)}); }
 
-void CoupledCraft::command(std::string_view subsystem, std::string_view function,
-                           const std::vector<double>& arguments) {
+void CoupledCraft::command(std::string_view subsystem, std::string_view function, const std::vector<Value>& arguments) {
   constexpr Duration limit = 60s;
   if (!craft().command(subsystem, function, arguments, limit).completed)
     throw std::runtime_error{"not completed: " + std::string{subsystem} + " " + std::string{function}};

@@ -53,7 +53,7 @@ class CoupledCraft {
   void hand(const std::string& line);
   void run(double seconds);
   /// A function from ground; throws std::runtime_error unless it is completed.
-  void command(std::string_view subsystem, std::string_view function, const std::vector<double>& arguments);
+  void command(std::string_view subsystem, std::string_view function, const std::vector<Value>& arguments);
   /// Since commissioning.
   [[nodiscard]] double time_s() { return seconds(craft().now() - start_); }
   /// Called once per control cycle, when both subsystems have done theirs.

@@ -40,11 +40,11 @@ class CornerFlight {
     static_cast<void>(craft_.craft().run_until(watch, Duration{std::llround(seconds * 1e9)}));
   }
   /// Sends and does not wait: what becomes of it shows in the world.
-  void send(std::string_view subsystem, std::string_view function, const std::vector<double>& arguments = {}) {
+  void send(std::string_view subsystem, std::string_view function, const std::vector<Value>& arguments = {}) {
     static_cast<void>(craft_.craft().command(subsystem, function, arguments, 1ms));
     look();
   }
-  void robot(std::string_view function, const std::vector<double>& arguments = {}) {
+  void robot(std::string_view function, const std::vector<Value>& arguments = {}) {
     send("MANIPULATOR", function, arguments);
   }
   void hand(const std::string& line) { craft_.hand(line); }
@@ -75,10 +75,11 @@ class CornerFlight {
 std::array<double, 2> range_of(const descriptor::Mission& mission, std::string_view subsystem, std::string_view name) {
   const auto* member = mission.find_subsystem(subsystem);
   for (const auto& parameter : member->subsystem.parameters) {
-    if (parameter.field.name == name) return {parameter.field.minimum.value_or(0), parameter.field.maximum.value_or(0)};
+    if (parameter.field.name == name)
+      return {parameter.field.minimum.value_or(0).real(), parameter.field.maximum.value_or(0).real()};
     for (const auto& part : parameter.members)
       if (fmt::format("{}.{}", parameter.field.name, part.field.name) == name)
-        return {part.field.minimum.value_or(0), part.field.maximum.value_or(0)};
+        return {part.field.minimum.value_or(0).real(), part.field.maximum.value_or(0).real()};
   }
   return {};
 }
@@ -250,7 +251,7 @@ constexpr std::string_view torque_limit_event = "TORQUE_LIMIT_EXCEEDED", hard_li
 constexpr double no_limit_n_m = 1000;
 
 double largest_of(const descriptor::Field& field) noexcept {
-  return std::max(std::abs(field.minimum.value_or(0)), std::abs(field.maximum.value_or(0)));
+  return std::max(std::abs(field.minimum.value_or(0).real()), std::abs(field.maximum.value_or(0).real()));
 }
 
 }  // namespace

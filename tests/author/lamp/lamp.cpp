@@ -28,6 +28,8 @@ class Lamp final : public Subsystem {
     double current_a;
   };
 
+  enum class Colour : std::uint8_t { White = 1, Amber = 2 };
+
   Result<> offline() override {
     meter_.on_request("READ_METER", [this](const Call& call) -> Result<> {
       CurrentValues now{};
@@ -45,6 +47,13 @@ class Lamp final : public Subsystem {
       ++dimmed_;
       return ok();
     });
+    use_event(programmed_);
+    on_function("PROGRAM",
+                [this](std::uint64_t serial, Colour colour, std::string_view note,
+                       const std::array<float, 3>& steps) -> Result<> {
+                  raise(programmed_, serial, colour, static_cast<std::uint8_t>(note.size()), steps);
+                  return ok();
+                });
     return done;
   }
 
@@ -59,6 +68,7 @@ class Lamp final : public Subsystem {
   static constexpr double fade_per_s = 1.0;
   Parameter<CurrentValues> current_;
   DevicePort<Light, Drive> lamp_;
+  Event<std::uint64_t, Colour, std::uint8_t, std::array<float, 3>> programmed_{"PROGRAMMED"};
   CustomService meter_{"METERING"};
   std::atomic<std::uint32_t> dimmed_{0};  // counted in the cycle, read in the service loop
   double goal_{0.2};

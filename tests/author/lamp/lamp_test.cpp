@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <hirosco/data_transfer/device/device_frame.hpp>
@@ -46,4 +47,10 @@ TEST(Lamp, FadesToWhatItIsToldAndNotBeyond) {
   EXPECT_NEAR(current_a, 0.4, 0.02);
   cycle(600);
   EXPECT_EQ(current_a, 0.8);
+  EXPECT_EQ(do_now(rig.call_with("PROGRAM", {UINT64_MAX, 2, "a note", 0.25, 0.5, 1.0})), "1 3 7");
+  EXPECT_THAT(rig.reports(5, 1), ::testing::Contains("12c1"
+                                                     "ffffffffffffffff"
+                                                     "02"
+                                                     "06"
+                                                     "3e8000003f0000003f800000"));
 }

@@ -9,24 +9,33 @@ import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} fr
 import {html} from '../html.js';
 import {commands, mission, mode_of, operator, outcome_of, replay, status_of, subsystem_of} from '../store.js';
 
-const integer_ranges = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 4294967295], UINT64: [0, Number.MAX_SAFE_INTEGER],
-  INT8: [-128, 127], INT16: [-32768, 32767], INT32: [-2147483648, 2147483647],
-  INT64: [Number.MIN_SAFE_INTEGER, Number.MAX_SAFE_INTEGER]};
+const integer_ranges = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 4294967295], INT8: [-128, 127], INT16: [-32768, 32767],
+  INT32: [-2147483648, 2147483647], UINT64: [0n, 2n ** 64n - 1n], INT64: [-(2n ** 63n), 2n ** 63n - 1n]};
+
+/// A Number does not hold them all: they are a BigInt here, and on their way to the station a text where a Number would round.
+const is_wide = (argument) => argument.type === 'UINT64' || argument.type === 'INT64';
+const sent_whole = (value) => value >= Number.MIN_SAFE_INTEGER && value <= Number.MAX_SAFE_INTEGER ? Number(value) : String(value);
 
 export function range_of(argument) {
   const [low, high] = integer_ranges[argument.type] ?? [-Infinity, Infinity];
-  return [Math.max(low, argument.min ?? -Infinity), Math.min(high, argument.max ?? Infinity)];
+  const limit = (given) => is_wide(argument) ? BigInt(given) : given;
+  const least = limit(argument.min ?? low), most = limit(argument.max ?? high);
+  return [least > low ? least : low, most < high ? most : high];
 }
 
 const range_text = (argument) => {
   const [low, high] = range_of(argument);
   if (low === -Infinity && high === Infinity) return '';
-  const brief = (value) => Math.abs(value) === Infinity ? '' : brief_text(value);
+  const brief = (value) => typeof value === 'bigint' ? String(value) : Math.abs(value) === Infinity ? '' : brief_text(value);
   return `${brief(low)} … ${brief(high)}`;
 };
 
-/// {value} or {error}: what was typed, by the argument's type and range; arrays as values with blanks between them.
+/// {value} or {error}: what was typed, by the argument's type and range; arrays as values with blanks between them, text as it is.
 export function judged(argument, text) {
+  if (argument.type === 'TEXT') {
+    const octets = new TextEncoder().encode(text ?? '').length;
+    return octets <= argument.octets ? {value: String(text ?? '')} : {error: `${octets} octets, at most ${argument.octets}`};
+  }
   if ((argument.count ?? 1) <= 1) return judged_one(argument, text);
   const words = String(text ?? '').trim().split(/[\s;]+/).filter(Boolean);
   if (words.length !== argument.count) return {error: `needs ${argument.count} values with blanks between them`};
@@ -37,13 +46,16 @@ export function judged(argument, text) {
 function judged_one(argument, text) {
   const words = String(text ?? '').trim().replace('−', '-').replace(',', '.');
   if (words === '') return {error: 'needs a value'};
-  if (/CHAR|STRING|TEXT/.test(argument.type)) return {value: String(text)};
+  const named = argument.enumeration?.find((one) => one.name.toLowerCase() === words.toLowerCase());
+  if (named) return {value: named.value};
   if (!/^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$/.test(words)) return {error: 'not a number'};
-  const value = Number(words);
-  if (argument.type in integer_ranges && !Number.isInteger(value)) return {error: 'a whole number'};
+  const digits = /^[+-]?\d+$/.test(words);
+  if (is_wide(argument) && !digits) return {error: 'a whole number'};
+  const value = is_wide(argument) ? BigInt(words.replace('+', '')) : Number(words);
+  if (argument.type in integer_ranges && !is_wide(argument) && !Number.isInteger(value)) return {error: 'a whole number'};
   const [low, high] = range_of(argument);
   if (!(value >= low && value <= high)) return {error: `outside ${range_text(argument)} ${unit_text(argument.unit)}`.trim()};
-  return {value};
+  return {value: is_wide(argument) ? sent_whole(value) : value};
 }
 
 /// The mission knows more names for values than a descriptor: modes, links, configurations.
@@ -62,7 +74,9 @@ function choices_of(subsystem, action, argument) {
 }
 
 const first_text = (argument, choices) => {
-  if (argument.default !== undefined && argument.default !== null) return [argument.default].flat().join(' ');
+  if (argument.default !== undefined && argument.default !== null) {
+    return new Array(argument.type === 'TEXT' ? 1 : argument.count ?? 1).fill(argument.default).join(' ');
+  }
   return choices?.length ? String(choices[0].value) : '';
 };
 
@@ -71,12 +85,13 @@ function Field({subsystem, action, argument, text, on_text, result, focus}) {
   const unit = unit_text(argument.unit);
   const field = `field-${argument.name}`;
   const error = result.error && text !== '' ? result.error : null;
+  const placeholder = argument.type === 'TEXT' ? `text, at most ${argument.octets} octets` : range_text(argument) || argument.type.toLowerCase();
   return html`<label class=${`field ${error ? 'wrong' : ''}`}><span>${argument.name}${unit ? html` <small>${unit}</small>` : null}</span>
     ${choices?.length ? html`<select data-test=${field} value=${text} onChange=${(event) => on_text(event.currentTarget.value)}>
         ${choices.map((one) => html`<option value=${String(one.value)}>${state_text(one.name)}${
           Number.isInteger(one.value) ? ` (${one.value})` : ''}</option>`)}</select>` :
-      html`<input data-test=${field} type="text" inputmode="decimal" autocomplete="off" spellcheck="false" value=${text}
-        aria-invalid=${Boolean(error)} placeholder=${range_text(argument) || argument.type.toLowerCase()}
+      html`<input data-test=${field} type="text" inputmode=${argument.type === 'TEXT' ? 'text' : 'decimal'} autocomplete="off" spellcheck="false" value=${text}
+        aria-invalid=${Boolean(error)} placeholder=${placeholder}
         autofocus=${focus} onInput=${(event) => on_text(event.currentTarget.value)} />`}
     <em>${error ?? ''}</em></label>`;
 }
