@@ -9,6 +9,7 @@
 #include "supervisor/supervision/data_handling/log_watch.hpp"
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
+#include "supervisor/supervision/data_handling/replies.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
@@ -60,7 +61,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Telecommands telecommands{{craft, own, graph, power, outstanding, traffic}};
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
-  Telemetry telemetry{craft, own, traffic, {&traffic, &reception, &power, &own_telecommands, &links}};
+  Replies replies{craft, outstanding};
+  Telemetry telemetry{craft, own, traffic, {&traffic, &replies, &reception, &power, &own_telecommands, &links}};
   Reception reception{{craft, own, telecommands, telemetry, reactions, outstanding, traffic}};
   // real-time links, resource management
   Links links{craft, own, own_telecommands, graph};
@@ -78,8 +80,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Processes processes{
       {craft, own, reception, reactions, stops, links, telecommands, own_telecommands, ground_link, restarts}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 8> watches{&processes, &ground_link, &housekeeping, &power,
-                                &links,     &log_watch,   &telecommands, &own_telecommands};
+  std::array<Watch*, 9> watches{&processes, &ground_link,  &housekeeping,     &power,  &links,
+                                &log_watch, &telecommands, &own_telecommands, &replies};
 };
 
 }  // namespace hirosco::supervisor

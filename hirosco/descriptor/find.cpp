@@ -36,6 +36,25 @@ const Function* Subsystem::find_request(std::uint8_t service, std::uint8_t subty
 const Function* Subsystem::find_function(std::string_view function) const noexcept {
   return find_in(functions, function, &Function::name);
 }
+const Function* Subsystem::find_named(std::string_view request) const noexcept {
+  if (const Function* function = find_function(request)) return function;
+  for (const CustomService& service : services)
+    if (const Function* found = find_in(service.requests, request, &Function::name)) return found;
+  return nullptr;
+}
+
+std::string_view resolve(Commands& commands, const Subsystem& commanded) {
+  commands.apid = commanded.id;
+  commands.file = commanded.file;
+  commands.requests.clear();
+  for (const std::string& name : commands.functions) {
+    const Function* found = commanded.find_named(name);
+    if (found == nullptr) return name;
+    commands.requests.push_back(*found);
+  }
+  return {};
+}
+
 const Configuration* Subsystem::find_configuration(std::string_view configuration) const noexcept {
   return find_in(configurations, configuration, &Configuration::name);
 }

@@ -33,19 +33,27 @@ struct Readdressed {
   std::string enable;                ///< of the second inhibit; empty = the descriptor's
 };
 
+/// Whom this instance commands, where it is not who has the name that its descriptor says.
+struct Redirected {
+  std::string subsystem;             ///< as the descriptor calls it
+  std::string to;                    ///< as the mission does
+};
+
 struct MissionSubsystem {
   std::string executable;            ///< name of the program, looked up beside the running one and then in PATH
   Subsystem subsystem;               ///< with what the mission changes applied: name, id, parameters, addresses
   std::vector<Override> overrides;
   std::vector<Readdressed> addresses;
+  std::vector<Redirected> redirected;
   Location at;
 };
 
 /// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs
-/// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address" "DEVICE=address", "--enable" "DEVICE=address".
+/// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address" "DEVICE=address", "--enable" "DEVICE=address",
+/// "--commands" "NAME=12:FILE".
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsystem& member);
 /// One of them, into `subsystem`. NotFound: no such parameter or device, or it has no second inhibit; OutOfRange: the
-/// values do not fit; InvalidArgument: not of this form.
+/// values do not fit; InvalidArgument: not of this form. All but "--commands", which needs the other's descriptor.
 [[nodiscard]] Result<> apply_change(Subsystem& subsystem, std::string_view word, std::string_view text);
 
 /// A simulated device process standing in for hardware.

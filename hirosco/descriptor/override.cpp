@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/read.hpp"
 
 namespace hirosco::descriptor {
 
@@ -41,6 +42,8 @@ std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsyst
     if (!device.address.empty()) changes.emplace_back("--address", device.device + "=" + device.address);
     if (!device.enable.empty()) changes.emplace_back("--enable", device.device + "=" + device.enable);
   }
+  for (const Commands& commands : member.subsystem.commands)
+    if (commands.apid != 0) changes.emplace_back("--commands", to_string(commands));
   return changes;
 }
 

@@ -48,6 +48,11 @@ struct Reading {
 /// Reads and checks a mission with every subsystem it names (paths relative to the mission file).  Realtime: allocates.
 [[nodiscard]] Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source);
 
+/// "NAME=12:FILE", as a launched subsystem is told whom it commands; and the reverse, into `subsystem`. NotFound: it commands
+/// none of that name, or who has the file has no such function; InvalidArgument: not of this form.
+[[nodiscard]] std::string to_string(const Commands& commands);
+[[nodiscard]] Result<> apply_commands(Subsystem& subsystem, std::string_view text, const FileSource& source);
+
 /// file:line:col: error: …, the source line, a caret and the hint (docs: ground habits). `source_line` may be empty.
 [[nodiscard]] std::string render(const Diagnostic& problem, const FileSource& source, bool colour);
 

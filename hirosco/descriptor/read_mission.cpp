@@ -71,6 +71,7 @@ Mission MissionReader::read(const xml::Element& root) {
     read_ground(*element);
     break;
   }
+  resolve_commands();
   for (const auto* element : devices) read_simulated_device(*element);
   for (const auto* element : links) {
     const Attributes none{*element, problems_};
@@ -172,9 +173,10 @@ void MissionReader::read_member(const xml::Element& element) {
   if (!subsystem) return;  // what is set in it cannot be judged
   member.subsystem = std::move(*subsystem);
   read_identity(attributes, member);
-  Unique names{"parameter", "E0201"}, devices{"device", "E0201"};
+  Unique names{"parameter", "E0201"}, devices{"device", "E0201"}, commanded{"commanded subsystem", "E0201"};
   each_child(element, problems_,
              {{"Set", [&](const xml::Element& child) { read_override(child, member, names); }, 255},
+              {"Commands", [&](const xml::Element& child) { read_redirected(child, member, commanded); }, 255},
               {"Device", [&](const xml::Element& child) { read_readdressed(child, member, devices); }, 255}});
   check_endnodes(member.subsystem);
   mission_.subsystems.push_back(std::move(member));

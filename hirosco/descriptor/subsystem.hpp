@@ -277,6 +277,16 @@ struct FailureName {
   std::string name;
 };
 
+/// Whom a subsystem may command, and what for; whatever else it sends is refused (adr 0062).
+struct Commands {
+  std::string subsystem;  ///< as this descriptor calls it
+  std::vector<std::string> functions;  ///< and requests of its own services, by name
+  Location at;
+  std::uint16_t apid{0};  ///< as the mission has it, like the next two; 0 = not known yet
+  std::filesystem::path file{};  ///< its descriptor
+  std::vector<Function> requests{};  ///< what it says of `functions`, in their order
+};
+
 struct Subsystem {
   std::string name;
   std::uint16_t id{};  ///< APID
@@ -288,6 +298,7 @@ struct Subsystem {
   std::vector<Function> functions;  ///< the author's; SET_STATE and CONFIGURE are built in
   std::vector<CustomService> services;  ///< of its own, beside the framework's
   std::vector<FailureName> failures;
+  std::vector<Commands> commands;  ///< no subsystem twice
   std::vector<HousekeepingStructure> housekeeping;  ///< valid in every configuration
   std::vector<Device> devices;
   std::vector<Configuration> configurations;
@@ -300,9 +311,14 @@ struct Subsystem {
   [[nodiscard]] const CustomService* find_service(std::uint8_t type) const noexcept;
   [[nodiscard]] const CustomService* find_service(std::string_view service) const noexcept;
   [[nodiscard]] const Function* find_request(std::uint8_t service, std::uint8_t subtype) const noexcept;
+  /// A function, or a request of a service of its own, by name: one set of names.
+  [[nodiscard]] const Function* find_named(std::string_view request) const noexcept;
   [[nodiscard]] const Configuration* find_configuration(std::string_view configuration) const noexcept;
   [[nodiscard]] const Configuration* find_configuration(std::uint8_t configuration) const noexcept;
 };
+
+/// Says who is commanded. The first of the functions that it does not have; empty when it has all.
+[[nodiscard]] std::string_view resolve(Commands& commands, const Subsystem& commanded);
 
 /// Names of the actuator devices that have no second inhibit: nothing but their subsystem keeps them from moving.
 [[nodiscard]] std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem);

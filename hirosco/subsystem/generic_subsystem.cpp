@@ -65,7 +65,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       parameter_service_{*this, verification_, *this},
       housekeeping_service_{descriptor_, verification_, *this},
       link_service_{verification_, *this, *this},
-      services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_} {
+      services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_},
+      requester_{descriptor_, channel_, world.clock.now()} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
     made_services_.push_back(kind->make(*this));
@@ -98,6 +99,7 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
   watch_supervisor(now);
   release_late();
   advance(now);
+  requester_.step(now);
   author_.service(now);
   backlog_.flush(channel_);
   tell_losses(now);
@@ -125,7 +127,13 @@ void GenericSubsystem::receive_messages() {
 void GenericSubsystem::dispatch(const Message& message) {
   const auto header = pus::read_primary_header(message.packet);
   if (!header) return;
-  if (!header->telecommand) return author_.telemetry(message.packet);
+  if (!header->telecommand) {
+    if (requester_.waits())
+      if (const auto report = pus::TelemetryView::parse(message.packet);
+          report && report->destination() == descriptor_.id)
+        requester_.hear(*report);
+    return author_.telemetry(message.packet);
+  }
   const auto telecommand = pus::TelecommandView::parse(message.packet);
   if (!telecommand) return verification_.rejected({header->request_id, 0, 0}, telecommand.error());
   const pus::Request request = pus::request_of(*telecommand);

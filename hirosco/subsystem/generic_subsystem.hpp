@@ -28,6 +28,7 @@
 #include "hirosco/subsystem/cycle.hpp"
 #include "hirosco/subsystem/link_service.hpp"
 #include "hirosco/subsystem/pages.hpp"
+#include "hirosco/subsystem/requester.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
 
 /// The active part of the component framework (paper 4.1 and 4.2): standard behaviour of every subsystem around one
@@ -103,6 +104,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void use_device(std::string_view name, DevicePortBase& port);
   void provide(CustomService& service);
   void use_event(EventPort& event);
+  void use_request(const RequestPort& request, RequestHandler handler, Duration patience);
+  Result<std::uint32_t> send_request(const RequestPort& asked, std::span<const std::optional<double>> values);
   /// An event with its auxiliary data, from the service loop in any state: before Software-Init it is not bound yet.
   void raise_named(std::string_view event, Octets auxiliary);
   /// For one that announces its events by name: each that it declares counts as used.
@@ -237,6 +240,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::atomic<std::uint32_t> parked_ticket_{0};
   std::uint32_t generation_{0};
   Backlog backlog_;
+  Requester requester_;
   std::array<std::uint64_t, 6> told_losses_{};
   TimePoint losses_told_at_{};
   std::uint64_t last_heartbeat_{0};

@@ -117,6 +117,11 @@ void GenericSubsystem::use_event(EventPort& event) {
           wanted + ")");
 }
 
+void GenericSubsystem::use_request(const RequestPort& request, RequestHandler handler, Duration patience) {
+  if (std::string problem = requester_.use(request, std::move(handler), patience); !problem.empty())
+    mistake(std::move(problem));
+}
+
 void GenericSubsystem::require_link(std::string_view set, LinkInputPort& port) {
   const auto sets = descriptor::required_sets(descriptor_);
   if (std::ranges::find(sets, set) == sets.end())
@@ -151,6 +156,7 @@ void GenericSubsystem::check_introduction() {
 }
 
 void GenericSubsystem::forget_introduction() {
+  requester_.forget();  // first: who waits may still end what it was asked itself
   dictionary_.unpublish_all();
   for (CustomService* service : own_services_) service->release();
   used_events_.clear();

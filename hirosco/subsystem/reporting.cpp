@@ -135,6 +135,13 @@ Result<> GenericSubsystem::submit_ground_telecommand(std::uint16_t client, Octet
   return channel_.send({.kind = MessageKind::GroundTelecommand, .link = client, .packet = packet});
 }
 
+Result<std::uint32_t> GenericSubsystem::send_request(const RequestPort& asked,
+                                                     std::span<const std::optional<double>> values) {
+  // As above: what is under way would never be heard to end.
+  if (!backlog_.empty()) return fail(ErrorCode::ResourceExhausted, "reports wait for the supervisor");
+  return requester_.send(asked, values, world_.clock.now());
+}
+
 /// The supervisor is told of every event; ST[05] is one that listens, and may be told to be silent (adr 0020).
 void GenericSubsystem::raise_event(std::uint16_t event, Octets auxiliary) {
   const auto found = std::ranges::find(descriptor_.events, event, &descriptor::Event::id);

@@ -32,6 +32,9 @@ void Subsystem::provide(CustomService& service) { framework_->provide(service); 
 void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
 void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
 void Subsystem::use_event(EventPort& event) { framework_->use_event(event); }
+void Subsystem::use_request(RequestPort& request, RequestHandler handler, Duration patience) {
+  framework_->use_request(request, std::move(handler), patience);
+}
 void Subsystem::use_device(std::string_view name, DevicePortBase& port) { framework_->use_device(name, port); }
 
 void Subsystem::bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes,
@@ -56,6 +59,9 @@ void Subsystem::abort_call(const Call& call, pus::FailureCode code, const Error&
   framework_->cycle().fail_call(ReportKind::Aborted, code, call.request, why);
 }
 
+Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, std::span<const std::optional<double>> values) {
+  return framework_->send_request(asked, values);
+}
 Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
   return framework_->submit_ground_telecommand(client, packet);
 }

@@ -17,6 +17,7 @@
 #include "hirosco/subsystem/event_port.hpp"
 #include "hirosco/subsystem/handler.hpp"
 #include "hirosco/subsystem/ports.hpp"
+#include "hirosco/subsystem/request_port.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -86,6 +87,12 @@ class Subsystem {
   void use_device(std::string_view name, DevicePortBase& port);
   /// Names an event that the author raises. Arguments that differ from the descriptor's fail Software-Init.
   void use_event(EventPort& event);
+  /// Longer than a slow disk may hold a telecommand back: what timed out is not carried out later.
+  static constexpr Duration request_patience = std::chrono::seconds{20};
+  /// Names what is asked of another subsystem. What <Commands> of the descriptor does not say, and arguments that differ
+  /// from the other's descriptor, fail Software-Init. The handler hears each stage of each such request, in the service
+  /// loop, and one end: completed, refused or failed with the reason, or not in `patience`.
+  void use_request(RequestPort& request, RequestHandler handler, Duration patience = request_patience);
   /// Gives a function of the descriptor its handler: a callable that takes its arguments in order (numbers, enumerations,
   /// bool, std::array or Sized of those, std::string_view for text, which lasts until the handler returns) and, last, a
   /// Call if it wants to report later. Returns Result<> or Outcome. Runs at a cycle boundary; must not throw. Each C++ type
@@ -143,6 +150,14 @@ class Subsystem {
   /// Sends a telecommand that came from the ground link client `client` to the supervisor. ResourceExhausted: the
   /// supervisor is behind; offer it again.
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
+  /// Asks another subsystem, through permission, log and route; what comes of it is heard by the handler under the number
+  /// that is returned. NotPermitted: it is not bound; ResourceExhausted: 16 are under way, 100 went in this second, or the
+  /// supervisor is behind: ask again later; InvalidArgument, OutOfRange: of the arguments.
+  template <class... Arguments>
+  Result<std::uint32_t> request(const Request<Arguments...>& asked,
+                                const std::type_identity_t<Arguments>&... arguments) {
+    return send_request(asked, asked.flatten(arguments...));
+  }
   /// Reports an event from the service loop, in any state.
   template <class... Arguments>
   void raise_in_service(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) {
@@ -158,6 +173,7 @@ class Subsystem {
   void bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes, FunctionHandler handler);
   void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
   void raise_encoded_in_service(const EventPort& event, Octets auxiliary);
+  Result<std::uint32_t> send_request(const RequestPort& asked, std::span<const std::optional<double>> values);
   void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
   GenericSubsystem* framework_{nullptr};
 };

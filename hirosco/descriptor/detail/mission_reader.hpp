@@ -45,6 +45,12 @@ class MissionReader {
   void check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems);
   [[nodiscard]] std::string executable(Attributes& attributes);
 
+  // read_commands.cpp
+  void read_redirected(const xml::Element& element, MissionSubsystem& member, Unique& names);
+  /// Whom the members command, once all are known.
+  void resolve_commands();
+  void resolve_one(const MissionSubsystem& member, Commands& commands);
+
   // read_console.cpp
   void read_console(const xml::Element& element);
   void read_shown(const xml::Element& element);
@@ -93,6 +99,7 @@ class MissionReader {
   Mission mission_;
   std::vector<std::vector<Diagnostic>> subsystem_problems_;
   std::vector<Diagnostic> warnings_;
+  std::vector<std::pair<const xml::Attribute*, std::string>> redirections_;  ///< where, and whose
   std::size_t doubtful_links_{0};    ///< that were reported: what a mode establishes cannot be judged then
   bool incomplete_{false};           ///< a subsystem could not be read: names may be missing for that reason only
   Unique subsystem_names_{"subsystem name", "E0301"};

@@ -96,6 +96,9 @@ class SubsystemReader {
   void read_request(const xml::Element& element, CustomService& service, Unique& subtypes);
   void read_report(const xml::Element& element, CustomService& service, Unique& subtypes, Unique& names);
 
+  // read_commands.cpp
+  void read_commands(const xml::Element& element);
+
   // read_services.cpp
   /// Rows for each_child(): the services, read into `services`.
   [[nodiscard]] std::vector<Child> service_children(Services& services);
@@ -134,6 +137,7 @@ class SubsystemReader {
   Unique event_ids_{"event id", "E0202"};
   Unique failure_names_{"name of a failure", "E0201"};
   Unique failure_codes_{"failure code", "E0202"};
+  Unique commanded_{"commanded subsystem", "E0201"};
   Unique function_names_{"function name", "E0201"};
   Unique service_names_{"service name", "E0201"};
   Unique service_types_{"service type", "E0202"};

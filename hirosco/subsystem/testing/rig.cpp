@@ -30,9 +30,24 @@ descriptor::Subsystem read_descriptor(const std::string& text) {
   return std::move(*reading.value);
 }
 
+descriptor::Subsystem read_descriptor(const std::string& text, const std::vector<std::string>& commanded) {
+  descriptor::Subsystem commanding = read_descriptor(text);
+  for (const std::string& other : commanded) {
+    const descriptor::Subsystem described = read_descriptor(other);
+    const auto named = std::ranges::find(commanding.commands, described.name, &descriptor::Commands::subsystem);
+    if (named == commanding.commands.end()) throw std::runtime_error{"it does not command " + described.name};
+    if (const auto missing = descriptor::resolve(*named, described); !missing.empty())
+      throw std::runtime_error{described.name + " has no function " + std::string{missing}};
+  }
+  return commanding;
+}
+
 Rig::Rig(Subsystem& author, const std::string& descriptor_text, bool realtime)
+    : Rig{author, read_descriptor(descriptor_text), realtime} {}
+
+Rig::Rig(Subsystem& author, descriptor::Subsystem described, bool realtime)
     : subsystem{author,
-                read_descriptor(descriptor_text),
+                std::move(described),
                 {.clock = clock,
                  .memory = memory,
                  .flows = flows,
@@ -56,6 +71,17 @@ void Rig::service() {
       if (!event) throw std::runtime_error{"the subsystem sent an event that is none"};
       raised.push_back(
           {event->severity, event->reported, event->id, {event->auxiliary.begin(), event->auxiliary.end()}});
+      continue;
+    }
+    if (const auto request = pus::TelecommandView::parse(found->message.packet)) {
+      const Octets data = request->application_data();
+      asked.push_back({request->request_id(),
+                       request->apid(),
+                       request->source(),
+                       request->ack(),
+                       request->service(),
+                       request->subtype(),
+                       {data.begin(), data.end()}});
       continue;
     }
     const auto view = pus::TelemetryView::parse(found->message.packet);
@@ -112,6 +138,19 @@ Sent Rig::call_with(std::string_view function, const std::vector<std::optional<V
   if (found == nullptr) throw std::runtime_error{"no function of this name"};
   const auto data = pus::encode_call(*found, arguments);
   return send(8, 1, data.value());
+}
+
+void Rig::answer(std::uint16_t from, std::uint8_t service, std::uint8_t subtype, Octets data,
+                 std::optional<std::uint16_t> destination) {
+  std::vector<std::byte> buffer(max_packet_octets);
+  const auto packet = pus::write_telemetry(buffer,
+                                           {.apid = from,
+                                            .service = service,
+                                            .subtype = subtype,
+                                            .destination = destination.value_or(subsystem.descriptor().id)},
+                                           data);
+  if (const auto sent = channels.supervisor_end().send({.packet = packet.value()}); !sent)
+    throw std::runtime_error{sent.error().text};
 }
 
 std::string Rig::set_state_now(State target) {

@@ -41,11 +41,23 @@ struct Raised {
   std::vector<std::byte> auxiliary;
 };
 
+/// A telecommand of the subsystem to another one, as the supervisor takes it.
+struct Asked {
+  std::uint32_t id{};
+  std::uint16_t apid{};
+  std::uint16_t source{};
+  std::uint8_t ack{};
+  std::uint8_t service{};
+  std::uint8_t subtype{};
+  std::vector<std::byte> data;
+};
+
 class Rig {
  public:
   static constexpr std::uint16_t source = 7;
 
   Rig(Subsystem& author, const std::string& descriptor_text, bool realtime = true);
+  Rig(Subsystem& author, descriptor::Subsystem described, bool realtime = true);
 
   // --- stepping -----------------------------------------------------------------------------------------------------
   /// One step of the service loop; collects what the subsystem sent. The supervisor's heart beats unless it is silent.
@@ -69,6 +81,16 @@ class Rig {
   std::string configure_now(std::uint8_t id);
   /// The orderly way up to a state in configuration `id`.
   void bring_to(State state, std::uint8_t id = 1);
+
+  /// What another subsystem, or the supervisor, reports to this one.
+  void answer(std::uint16_t from, std::uint8_t service, std::uint8_t subtype, Octets data,
+              std::optional<std::uint16_t> destination = std::nullopt);
+  /// TM[1,subtype] of whom it asked.
+  void verify(const Asked& request, std::uint8_t subtype, Octets more = {}) {
+    std::vector<std::byte> data(4 + more.size());
+    OctetWriter{data}.put(request.id).put(more);
+    answer(request.apid, 1, subtype, data);
+  }
 
   // --- looking ------------------------------------------------------------------------------------------------------
   /// The verification reports of a request: "1 3 7", "1 4:000a03" (subtype, colon, code and data of a failure).
@@ -110,6 +132,7 @@ class Rig {
   std::vector<std::string> explanations;
   std::vector<Telemetry> telemetry;
   std::vector<Raised> raised;  ///< told to the supervisor, whatever ST[05] is told
+  std::vector<Asked> asked;
   bool supervisor_silent{false};
   std::uint32_t link_epoch{5};  ///< of the next attach()
   GenericSubsystem subsystem;
@@ -120,5 +143,7 @@ class Rig {
 
 [[nodiscard]] std::string hex(Octets octets);
 [[nodiscard]] descriptor::Subsystem read_descriptor(const std::string& text);
+/// The same of one that commands those who have the other descriptors, under the names that these have.
+[[nodiscard]] descriptor::Subsystem read_descriptor(const std::string& text, const std::vector<std::string>& commanded);
 
 }  // namespace hirosco::testing

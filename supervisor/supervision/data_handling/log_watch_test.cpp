@@ -66,7 +66,7 @@ TEST_F(LogWatchTest, ATelecommandThatWaitsForTheDiskForASecondIsAFailure) {
   hold->tries = 1'000'000;
   log.switch_to(std::make_unique<HeldDatabase>(hold, open_database(DatabaseStrategy::Memory, {}).value()));
   const auto move = telecommand(arm, 8, 1, call_data("MOVE_TO"));
-  parts.telecommands.take({.packet = move, .sender = Sender::Ground, .source = 0, .memory = {}});
+  parts.telecommands.take({.packet = move, .origin = Origin::ground()});
   EXPECT_TRUE(parts.telecommands.waiting_since());
   EXPECT_THAT(texts(arm), IsEmpty());
   wait(1s);

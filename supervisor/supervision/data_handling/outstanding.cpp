@@ -8,10 +8,33 @@
 
 namespace hirosco::supervisor {
 
+namespace {
+[[nodiscard]] constexpr bool is_end(std::uint8_t subtype) noexcept {
+  const bool failed_progress = subtype == 6;  // the execution may go on
+  return (subtype % 2 == 0 && !failed_progress) || subtype == 7;
+}
+}  // namespace
+
 void Outstanding::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand) {
   const pus::Request request = pus::request_of(telecommand);
   if ((request.ack & (pus::ack_acceptance | pus::ack_completion)) == 0 || full()) return;
-  entries_.push_back({apid, request});
+  entries_.push_back({.apid = apid, .request = request});
+}
+
+bool Outstanding::answers(const pus::TelemetryView& report) {
+  const bool verification = report.service() == 1;
+  const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
+  const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {
+    return entry.apid == report.apid() && entry.request.source == report.destination() &&
+           (!verification || entry.request.id == id);
+  });
+  if (found == entries_.end()) return false;
+  return (verification && is_end(report.subtype())) || found->reports++ < most_reports;
+}
+
+std::size_t Outstanding::count_of(std::uint16_t source) const {
+  return static_cast<std::size_t>(
+      std::ranges::count(entries_, source, [](const Entry& entry) { return entry.request.source; }));
 }
 
 void Outstanding::reported(const pus::TelemetryView& report) {
@@ -19,8 +42,7 @@ void Outstanding::reported(const pus::TelemetryView& report) {
   OctetReader reader{report.source_data()};
   const auto id = reader.get<std::uint32_t>();
   if (!reader.good()) return;
-  const bool failed_progress = report.subtype() == 6;  // the execution may go on
-  const bool final = (report.subtype() % 2 == 0 && !failed_progress) || report.subtype() == 7;
+  const bool final = is_end(report.subtype());
   const bool accepted = report.subtype() == 1;
   if (!final && !accepted) return;
   const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {

@@ -21,6 +21,12 @@ class Outstanding {
   /// A telecommand leaves for `apid`. One that asks for no report on its completion is known until it was accepted, or
   /// until its acceptance would not be told either, for nobody waits for more.
   void forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand);
+  /// Whether a report that came by answers something that its destination has asked of its sender. Besides the end of a
+  /// telecommand a number of reports does, so that an addressee cannot flood who asks.
+  static constexpr std::uint16_t most_reports = 64;
+  [[nodiscard]] bool answers(const pus::TelemetryView& report);
+  /// How many of `source` are under way.
+  [[nodiscard]] std::size_t count_of(std::uint16_t source) const;
   /// A report of service 1 came by: what it ends is forgotten.
   void reported(const pus::TelemetryView& report);
   /// All that `apid` was given and did not end; they are forgotten.
@@ -32,6 +38,7 @@ class Outstanding {
   struct Entry {
     std::uint16_t apid{0};
     pus::Request request;
+    std::uint16_t reports{0};  ///< that answered it
   };
   std::deque<Entry> entries_;  ///< in the order of forwarding; the oldest end first as a rule
 };

@@ -55,7 +55,7 @@ void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_
   const auto telecommand = pus::TelecommandView::parse(*packet);
   sent_[telecommand->request_id()] = {std::move(done), craft_.now + answer_limit,
                                       craft_.name_of(apid) + " " + telecommand_text(*telecommand), apid};
-  telecommands_.take({.packet = *packet, .sender = Sender::Supervisor, .source = supervisor_apid, .memory = memory});
+  telecommands_.take({.packet = *packet, .origin = Origin::supervisor(), .memory = memory});
 }
 
 void OwnTelecommands::hear(std::uint16_t, const pus::TelemetryView& report) {

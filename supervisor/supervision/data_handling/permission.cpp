@@ -32,7 +32,7 @@ constexpr std::size_t name_octets = 16;
 /// A telecommand with what is known of it before any rule is asked.
 struct Asked {
   const pus::TelecommandView& telecommand;
-  Sender sender;
+  const Origin& origin;
   const Situation& situation;
   const descriptor::Subsystem& subsystem;
   std::optional<CalledFunction> call;
@@ -59,7 +59,7 @@ using Notice = std::optional<FailureNotice>;
 /// Why a parameter write may not pass (findings SF20): each parameter must be writable in this state by its descriptor,
 /// and opened by this mode. Whether the values fit is the addressee's matter.
 [[nodiscard]] Notice write_refused(const Asked& asked) {
-  const auto& [telecommand, sender, situation, subsystem, call, request] = asked;
+  const auto& [telecommand, origin, situation, subsystem, call, request] = asked;
   OctetReader reader{telecommand.application_data()};
   const auto count = reader.get<std::uint8_t>();
   for (unsigned i = 0; i < count && reader.good(); ++i) {
@@ -109,7 +109,7 @@ using Notice = std::optional<FailureNotice>;
   if (kind != nullptr && (kind->needs == pus::Needs::Essential || kind->needs == pus::Needs::SupervisorAnswers))
     return true;
   // The supervisor commands Offline at the end of a recovery or of the flight: no disk may hold that up (decision 24).
-  const bool goes_down = asked.sender == Sender::Supervisor && asked.asks_for(State::Offline);
+  const bool goes_down = asked.origin.is_supervisor() && asked.asks_for(State::Offline);
   return goes_down || towards_safety(asked) || (asked.request != nullptr && asked.request->essential);
 }
 
@@ -136,16 +136,30 @@ using Notice = std::optional<FailureNotice>;
   return std::nullopt;
 }
 
+/// What the supervisor does for the whole craft is the ground's to ask for; a subsystem may stop it, nothing else.
+[[nodiscard]] bool stops_the_craft(const Asked& asked) { return asked.to_supervisor() && asked.calls("SAFE_ALL"); }
+
+/// Does the descriptor of who sends it say that it commands the addressee, and for this?
+[[nodiscard]] bool is_declared(const Asked& asked) {
+  const auto* sender = asked.situation.mission.find_subsystem(asked.origin.apid());
+  if (sender == nullptr) return false;
+  return std::ranges::any_of(sender->subsystem.commands, [&](const descriptor::Commands& commands) {
+    return commands.apid == asked.telecommand.apid() &&
+           std::ranges::find(commands.functions, asked.name()) != commands.functions.end();
+  });
+}
+
 /// May this sender ask for it?
 [[nodiscard]] Notice is_the_senders(const Asked& asked) {
-  if (asked.sender == Sender::Supervisor) return std::nullopt;
+  if (asked.origin.is_supervisor()) return std::nullopt;
   const auto* kind = pus::standard_service(asked.telecommand.service());
   if (kind != nullptr && kind->needs == pus::Needs::SupervisorAsks) return wrong_mode(asked);
-  if (!asked.call || !asked.to_supervisor()) return std::nullopt;
-  // Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (findings SF1).
-  if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode(asked);
-  // What the supervisor does for the whole craft is the ground's to ask for; a subsystem may stop it, nothing else.
-  if (asked.sender == Sender::Subsystem && !asked.calls("SAFE_ALL")) return wrong_mode(asked);
+  if (asked.to_supervisor()) {
+    // Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (findings SF1).
+    if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode(asked);
+  }
+  if (asked.origin.is_subsystem() && !stops_the_craft(asked) && !is_declared(asked))
+    return FailureNotice{FailureCode::NotDeclared};
   return std::nullopt;
 }
 
@@ -165,7 +179,7 @@ using Notice = std::optional<FailureNotice>;
 
 /// What is neither essential nor the supervisor's own is bound to mode and state.
 [[nodiscard]] bool is_bound(const Asked& asked) {
-  if (essential(asked) || asked.sender == Sender::Supervisor) return false;
+  if (essential(asked) || asked.origin.is_supervisor()) return false;
   // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].
   const bool unknown_function =
       asked.call && asked.request == nullptr && !asked.calls("SET_STATE") && !asked.calls("CONFIGURE");
@@ -215,11 +229,11 @@ std::optional<CalledFunction> called_function(const pus::TelecommandView& teleco
   return call;
 }
 
-std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telecommand, Sender sender,
+std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telecommand, const Origin& origin,
                                                const Situation& situation) {
   const descriptor::Subsystem* subsystem = addressee(situation.mission, telecommand.apid());
   if (subsystem == nullptr || !situation.state) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
-  Asked asked{telecommand, sender, situation, *subsystem, called_function(telecommand)};
+  Asked asked{telecommand, origin, situation, *subsystem, called_function(telecommand)};
   asked.request = asked.call ? subsystem->find_function(asked.call->name)
                              : subsystem->find_request(telecommand.service(), telecommand.subtype());
   for (const auto rule : rules)

@@ -10,6 +10,7 @@
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/pus/packet/failure.hpp"
 #include "hirosco/pus/packet/packet.hpp"
+#include "supervisor/supervision/data_handling/origin.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
@@ -17,8 +18,6 @@
 /// The one decision whether a telecommand may be executed (paper 4.3: by state and mode). Pure: what is asked before
 /// sending and what is decided on sending are the same function.
 namespace hirosco::supervisor {
-
-enum class Sender : std::uint8_t { Ground, Subsystem, Supervisor };
 
 /// What the decision looks at besides the telecommand.
 struct Situation {
@@ -39,10 +38,10 @@ struct Permitted {
   double reserves_w{0};              ///< SET_STATE(SafeOperational): what the addressee may draw from now on
 };
 
-/// Acceptance checks 6, 8, 9 and 12 (pus-c tailoring 5.3) plus codes 13, 14 and 16. A notice with code UnknownApid belongs
+/// Acceptance checks 6, 8, 9 and 12 (pus-c tailoring 5.3) plus codes 13, 14, 16 and 18. A notice with code UnknownApid belongs
 /// into TM[1,10], every other into TM[1,2].
 [[nodiscard]] std::expected<Permitted, pus::FailureNotice> decide(const pus::TelecommandView& telecommand,
-                                                                  Sender sender, const Situation& situation);
+                                                                  const Origin& origin, const Situation& situation);
 
 /// The function of TC[8,1] and its first argument, as far as they can be read; for logs and decisions.
 struct CalledFunction {

@@ -28,7 +28,7 @@ struct Case {
   std::uint8_t subtype;
   std::vector<std::byte> data;
   const char* outcome;               ///< "ok", "essential", "ok, lifts stop", or code and data of the refusal
-  Sender sender{Sender::Ground};
+  Origin origin{Origin::ground()};
   std::size_t mode{open_mode};
   std::optional<State> state{State::Operational};
   std::uint8_t configuration{0};
@@ -56,82 +56,101 @@ std::vector<std::byte> call(const char* name) { return testing::call_data(name);
 const std::vector<Case> cases{
     // --- addressee, service, subtype ------------------------------------------------------------------------------
     {"an APID that nobody has", 99, 17, 1, {}, "1"},
-    {"a subsystem that does not run", arm, 17, 1, {}, "1", Sender::Ground, open_mode, std::nullopt},
+    {"a subsystem that does not run", arm, 17, 1, {}, "1", Origin::ground(), open_mode, std::nullopt},
     {"the supervisor itself", 1, 17, 1, {}, "essential"},
     {"an unknown service", arm, 99, 1, {}, "6 99"},
     {"verification is no request", arm, 1, 1, {}, "6 1"},
     {"an unknown subtype", arm, 17, 9, {}, "7 17 9"},
-    {"the question what is permitted", 1, 129, 1, {}, "essential", Sender::Ground, narrow_mode},
+    {"the question what is permitted", 1, 129, 1, {}, "essential", Origin::ground(), narrow_mode},
     {"that question to another", arm, 129, 1, {}, "6 129"},
     {"its answer sent as a request", 1, 129, 2, {}, "7 129 2"},
     {"a report sent as a request", arm, 3, 25, {}, "7 3 25"},
     {"another unknown subtype", arm, 8, 2, {}, "7 8 2"},
-    {"an unknown subtype of links", arm, 128, 5, {}, "7 128 5", Sender::Supervisor},
+    {"an unknown subtype of links", arm, 128, 5, {}, "7 128 5", Origin::supervisor()},
     // --- modes ----------------------------------------------------------------------------------------------------
     {"a service that the mode permits", arm, 3, 5, {}, "ok"},
-    {"a service that the mode does not permit", arm, 3, 5, {}, "13 2", Sender::Ground, narrow_mode},
-    {"a ping is permitted in every mode", arm, 17, 1, {}, "essential", Sender::Ground, narrow_mode},
-    {"a function that the mode permits", arm, 8, 1, call("MOVE_TO"), "ok", Sender::Ground, narrow_mode},
-    {"the same function of another subsystem", hand, 8, 1, call("MOVE_TO"), "13 2", Sender::Ground, narrow_mode},
-    {"a subsystem is bound to the mode like ground", hand, 8, 1, call("MOVE_TO"), "13 2", Sender::Subsystem,
+    {"a service that the mode does not permit", arm, 3, 5, {}, "13 2", Origin::ground(), narrow_mode},
+    {"a ping is permitted in every mode", arm, 17, 1, {}, "essential", Origin::ground(), narrow_mode},
+    {"a function that the mode permits", arm, 8, 1, call("MOVE_TO"), "ok", Origin::ground(), narrow_mode},
+    {"the same function of another subsystem", hand, 8, 1, call("MOVE_TO"), "13 2", Origin::ground(), narrow_mode},
+    {"a subsystem is bound to the mode like ground", hand, 8, 1, call("MOVE_TO"), "13 2", Origin::subsystem(camera),
      narrow_mode},
-    {"the supervisor is not bound to the mode", hand, 8, 1, call("MOVE_TO"), "ok", Sender::Supervisor, narrow_mode},
-    {"a mode permits functions, not their service", arm, 8, 1, call("MOVE_TO"), "ok", Sender::Ground, open_mode},
-    {"SET_STATE upwards needs the mode", arm, 8, 1, set_state(State::PreOperational), "13 2", Sender::Ground,
+    // --- of a subsystem: CAMERA's descriptor declares MOVE_TO of HAND, and MOVE_TO and BRAKE of ARM ------------------
+    {"what its descriptor declares", hand, 8, 1, call("MOVE_TO"), "ok", Origin::subsystem(camera)},
+    {"what it declares of another one", hand, 8, 1, call("BRAKE"), "18", Origin::subsystem(camera)},
+    {"essential or not, it declares it", arm, 8, 1, call("BRAKE"), "essential", Origin::subsystem(camera), narrow_mode},
+    {"declared, but outside its states", arm, 8, 1, call("MOVE_TO"), "10 4", Origin::subsystem(camera), open_mode,
+     State::SafeOperational},
+    {"who declares nothing", arm, 8, 1, call("MOVE_TO"), "18", Origin::subsystem(hand)},
+    {"who is not in the mission", arm, 8, 1, call("MOVE_TO"), "18", Origin::subsystem(99)},
+    {"its own functions are another's to call", camera, 8, 1, call("MOVE_TO"), "18", Origin::subsystem(camera)},
+    {"an unknown function is declared by nobody", arm, 8, 1, call("DANCE"), "18", Origin::subsystem(camera)},
+    {"a function without a name", arm, 8, 1, std::vector<std::byte>(5), "18", Origin::subsystem(camera)},
+    {"the state of another one", arm, 8, 1, set_state(State::ErrorOperational), "18", Origin::subsystem(camera)},
+    {"its configuration", arm, 8, 1, testing::call_data("CONFIGURE", 2), "18", Origin::subsystem(camera)},
+    {"its parameters", arm, 20, 1, {}, "18", Origin::subsystem(camera)},
+    {"a ping", arm, 17, 1, {}, "18", Origin::subsystem(camera)},
+    {"what the supervisor permits", 1, 129, 1, {}, "18", Origin::subsystem(camera)},
+    {"the supervisor is not bound to the mode", hand, 8, 1, call("MOVE_TO"), "ok", Origin::supervisor(), narrow_mode},
+    {"a mode permits functions, not their service", arm, 8, 1, call("MOVE_TO"), "ok", Origin::ground(), open_mode},
+    {"SET_STATE upwards needs the mode", arm, 8, 1, set_state(State::PreOperational), "13 2", Origin::ground(),
      narrow_mode, State::Offline},
-    {"CONFIGURE needs the mode", arm, 8, 1, testing::call_data("CONFIGURE", 2), "13 2", Sender::Ground, narrow_mode,
+    {"CONFIGURE needs the mode", arm, 8, 1, testing::call_data("CONFIGURE", 2), "13 2", Origin::ground(), narrow_mode,
      State::PreOperational},
     // --- states ---------------------------------------------------------------------------------------------------
-    {"a function outside its states", arm, 8, 1, call("MOVE_TO"), "10 4", Sender::Ground, open_mode,
+    {"a function outside its states", arm, 8, 1, call("MOVE_TO"), "10 4", Origin::ground(), open_mode,
      State::SafeOperational},
     {"an unknown function is its addressee's to refuse", arm, 8, 1, call("DANCE"), "ok"},
-    {"so it is in a narrow mode", arm, 8, 1, call("DANCE"), "ok", Sender::Ground, narrow_mode},
+    {"so it is in a narrow mode", arm, 8, 1, call("DANCE"), "ok", Origin::ground(), narrow_mode},
     {"too short for a function's name: the addressee says so", arm, 8, 1, std::vector<std::byte>(5), "13 2",
-     Sender::Ground, narrow_mode},
+     Origin::ground(), narrow_mode},
     // --- essential ------------------------------------------------------------------------------------------------
-    {"an essential function in a narrow mode", arm, 8, 1, call("BRAKE"), "essential", Sender::Ground, narrow_mode},
-    {"an essential function outside its states", arm, 8, 1, call("BRAKE"), "essential", Sender::Ground, narrow_mode,
+    {"an essential function in a narrow mode", arm, 8, 1, call("BRAKE"), "essential", Origin::ground(), narrow_mode},
+    {"an essential function outside its states", arm, 8, 1, call("BRAKE"), "essential", Origin::ground(), narrow_mode,
      State::SafeOperational},
-    {"SAFE_ALL", 1, 8, 1, call("SAFE_ALL"), "essential", Sender::Ground, narrow_mode},
-    {"to Error-Operational", arm, 8, 1, set_state(State::ErrorOperational), "essential", Sender::Ground, narrow_mode},
-    {"to Post-Operational", arm, 8, 1, set_state(State::PostOperational), "essential", Sender::Ground, narrow_mode},
-    {"from Operational to Safe-Operational", arm, 8, 1, set_state(State::SafeOperational), "essential", Sender::Ground,
-     narrow_mode},
-    {"up to Safe-Operational is not essential", arm, 8, 1, set_state(State::SafeOperational), "13 2", Sender::Ground,
+    {"SAFE_ALL", 1, 8, 1, call("SAFE_ALL"), "essential", Origin::ground(), narrow_mode},
+    {"to Error-Operational", arm, 8, 1, set_state(State::ErrorOperational), "essential", Origin::ground(), narrow_mode},
+    {"to Post-Operational", arm, 8, 1, set_state(State::PostOperational), "essential", Origin::ground(), narrow_mode},
+    {"from Operational to Safe-Operational", arm, 8, 1, set_state(State::SafeOperational), "essential",
+     Origin::ground(), narrow_mode},
+    {"up to Safe-Operational is not essential", arm, 8, 1, set_state(State::SafeOperational), "13 2", Origin::ground(),
      narrow_mode, State::PreOperational},
-    {"to Offline by the supervisor", arm, 8, 1, set_state(State::Offline), "essential", Sender::Supervisor},
+    {"to Offline by the supervisor", arm, 8, 1, set_state(State::Offline), "essential", Origin::supervisor()},
     {"to Offline by ground", arm, 8, 1, set_state(State::Offline), "ok"},
     // --- links ----------------------------------------------------------------------------------------------------
     {"up to Safe-Operational without the required link", arm, 8, 1, set_state(State::SafeOperational), "14 2",
-     Sender::Ground, open_mode, State::PreOperational, 2, false},
-    {"the supervisor waits for it, too", arm, 8, 1, set_state(State::SafeOperational), "14 2", Sender::Supervisor,
+     Origin::ground(), open_mode, State::PreOperational, 2, false},
+    {"the supervisor waits for it, too", arm, 8, 1, set_state(State::SafeOperational), "14 2", Origin::supervisor(),
      open_mode, State::PreOperational, 2, false},
-    {"up to Safe-Operational with it", arm, 8, 1, set_state(State::SafeOperational), "ok, 60 W", Sender::Ground,
+    {"up to Safe-Operational with it", arm, 8, 1, set_state(State::SafeOperational), "ok, 60 W", Origin::ground(),
      open_mode, State::PreOperational, 2, true},
     {"down to Safe-Operational needs no link", arm, 8, 1, set_state(State::SafeOperational), "essential",
-     Sender::Ground, open_mode, State::Operational, 2, false},
-    {"to Operational after the link went", arm, 8, 1, set_state(State::Operational), "14 2", Sender::Ground, open_mode,
-     State::SafeOperational, 2, false},
-    {"to Operational", arm, 8, 1, set_state(State::Operational), "ok, lifts stop", Sender::Ground, open_mode,
+     Origin::ground(), open_mode, State::Operational, 2, false},
+    {"to Operational after the link went", arm, 8, 1, set_state(State::Operational), "14 2", Origin::ground(),
+     open_mode, State::SafeOperational, 2, false},
+    {"to Operational", arm, 8, 1, set_state(State::Operational), "ok, lifts stop", Origin::ground(), open_mode,
      State::SafeOperational, 2, true},
-    {"to Operational from elsewhere lifts nothing", arm, 8, 1, set_state(State::Operational), "ok", Sender::Ground,
+    {"to Operational from elsewhere lifts nothing", arm, 8, 1, set_state(State::Operational), "ok", Origin::ground(),
      open_mode, State::PreOperational},
     // --- power: budget, reserved by others and requested, in mW ---------------------------------------------------
     {"what the budget does not carry", arm, 8, 1, set_state(State::SafeOperational), "16 0 0 234 95 0 0 0 0 0 0 234 96",
-     Sender::Ground, open_mode, State::PreOperational, 2, true, 59.999},
+     Origin::ground(), open_mode, State::PreOperational, 2, true, 59.999},
     {"the supervisor's own start list, too", arm, 8, 1, set_state(State::SafeOperational),
-     "16 0 0 234 95 0 0 0 0 0 0 234 96", Sender::Supervisor, open_mode, State::PreOperational, 2, true, 59.999},
+     "16 0 0 234 95 0 0 0 0 0 0 234 96", Origin::supervisor(), open_mode, State::PreOperational, 2, true, 59.999},
     {"whoever stops acting is not asked for power", arm, 8, 1, set_state(State::SafeOperational), "essential",
-     Sender::Ground, open_mode, State::Operational, 2, true, 1},
+     Origin::ground(), open_mode, State::Operational, 2, true, 1},
     {"without a configuration there is nothing to draw", arm, 8, 1, set_state(State::SafeOperational), "ok",
-     Sender::Ground, open_mode, State::PreOperational, 0, true, 1},
-    {"the handshake is the supervisor's", arm, 128, 1, {}, "ok", Sender::Supervisor},
-    {"the handshake is not ground's", arm, 128, 1, {}, "13 1", Sender::Ground},
-    {"the handshake is no subsystem's", arm, 128, 3, {}, "13 1", Sender::Subsystem},
+     Origin::ground(), open_mode, State::PreOperational, 0, true, 1},
+    {"the handshake is the supervisor's", arm, 128, 1, {}, "ok", Origin::supervisor()},
+    {"the handshake is not ground's", arm, 128, 1, {}, "13 1", Origin::ground()},
+    {"the handshake is no subsystem's", arm, 128, 3, {}, "13 1", Origin::subsystem(hand)},
 };
 
 TEST(Permission, IsDecidedAsTheTableSays) {
-  const auto mission = testing::small_mission();
+  auto mission = testing::small_mission();
+  mission.subsystems[2].subsystem.commands = {
+      {.subsystem = "HAND", .functions = {"MOVE_TO"}, .at = {}, .apid = hand},
+      {.subsystem = "ARM", .functions = {"MOVE_TO", "BRAKE"}, .at = {}, .apid = arm}};
   for (const Case& c : cases) {
     LinkGraph links{mission};
     links.set_up(2, c.link_up);
@@ -139,7 +158,7 @@ TEST(Permission, IsDecidedAsTheTableSays) {
     const auto view = pus::TelecommandView::parse(packet);
     const PowerLedger power{c.budget_w};
     const Situation situation{mission, mission.modes[c.mode], links, c.state, c.configuration, &power};
-    EXPECT_EQ(text_of(decide(view.value(), c.sender, situation)), c.outcome) << c.says;
+    EXPECT_EQ(text_of(decide(view.value(), c.origin, situation)), c.outcome) << c.says;
   }
 }
 
@@ -152,8 +171,8 @@ TEST(Permission, TheGroundLinkComesUpWhateverTheBudgetAndItsPowerIsReserved) {
   const auto view = pus::TelecommandView::parse(packet);
   for (const double budget_w : {0.0, 0.001, 59.999, 60.0}) {
     const PowerLedger power{budget_w};
-    for (const Sender sender : {Sender::Ground, Sender::Supervisor})
-      EXPECT_EQ(text_of(decide(view.value(), sender,
+    for (const Origin& origin : {Origin::ground(), Origin::supervisor()})
+      EXPECT_EQ(text_of(decide(view.value(), origin,
                                {mission, mission.modes[open_mode], links, State::PreOperational, 2, &power})),
                 "ok, 60 W")
           << budget_w;
@@ -169,7 +188,7 @@ TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
     for (int subtype = 0; subtype < 256; ++subtype) {
       const auto packet =
           testing::telecommand(arm, static_cast<std::uint8_t>(service), static_cast<std::uint8_t>(subtype), {});
-      const auto decision = decide(pus::TelecommandView::parse(packet).value(), Sender::Supervisor,
+      const auto decision = decide(pus::TelecommandView::parse(packet).value(), Origin::supervisor(),
                                    {mission, mission.modes[0], links, State::Operational, 0});
       const auto known = requests.find(service);
       const bool good = known != requests.end() && std::ranges::find(known->second, subtype) != known->second.end();
@@ -181,23 +200,23 @@ TEST(Permission, InEveryStateOfTheSupervisorAndFromEveryOriginSafeAllPassesAndNo
   const auto mission = testing::small_mission();
   const LinkGraph links{mission};
   for (int number = 0; number < 10; ++number)
-    for (const Sender sender : {Sender::Ground, Sender::Subsystem, Sender::Supervisor})
+    for (const Origin& origin : {Origin::ground(), Origin::subsystem(hand), Origin::supervisor()})
       for (const auto& mode : mission.modes) {
         const Situation situation{mission, mode, links, static_cast<State>(number), 0};
         const auto decided = [&](const std::vector<std::byte>& data) {
           const auto packet = testing::telecommand(1, 8, 1, data);
-          return decide(pus::TelecommandView::parse(packet).value(), sender, situation);
+          return decide(pus::TelecommandView::parse(packet).value(), origin, situation);
         };
         const auto safe_all = decided(call("SAFE_ALL"));
         EXPECT_TRUE(safe_all && safe_all->essential) << number;
         for (int target = 0; target < 10; ++target) {
           const auto decision = decided(set_state(static_cast<State>(target)));
-          EXPECT_EQ(decision.has_value(), sender == Sender::Supervisor) << number << " to " << target;
+          EXPECT_EQ(decision.has_value(), origin.is_supervisor()) << number << " to " << target;
           if (!decision) {
             EXPECT_EQ(decision.error().code(), pus::FailureCode::WrongMode);
           }
         }
-        EXPECT_EQ(decided(testing::call_data("CONFIGURE", 1)).has_value(), sender == Sender::Supervisor);
+        EXPECT_EQ(decided(testing::call_data("CONFIGURE", 1)).has_value(), origin.is_supervisor());
       }
 }
 
@@ -215,7 +234,7 @@ TEST(Permission, AParameterIsWrittenOnlyInItsStatesAndOnlyWhereTheModeOpensIt) {
                                                 parameter("LIMIT", 5, 0)};
   mission.modes[open_mode].permits.front().parameters = {"GAIN"};
   const LinkGraph links{mission};
-  const auto write = [&](std::initializer_list<std::uint8_t> ids, State state, std::size_t mode, Sender sender) {
+  const auto write = [&](std::initializer_list<std::uint8_t> ids, State state, std::size_t mode, const Origin& origin) {
     std::vector<std::byte> data(1 + ids.size() * (4 + sizeof(double)));
     OctetWriter writer{data};
     writer.put(static_cast<std::uint8_t>(ids.size()));
@@ -225,37 +244,38 @@ TEST(Permission, AParameterIsWrittenOnlyInItsStatesAndOnlyWhereTheModeOpensIt) {
     }
     const auto packet = testing::telecommand(arm, 20, 3, data);
     const auto decision =
-        decide(pus::TelecommandView::parse(packet).value(), sender, {mission, mission.modes[mode], links, state, 0});
+        decide(pus::TelecommandView::parse(packet).value(), origin, {mission, mission.modes[mode], links, state, 0});
     return decision ? 0 : static_cast<int>(decision.error().code());
   };
   constexpr int not_now = static_cast<int>(pus::FailureCode::NotPermittedNow);
   constexpr int wrong_mode = static_cast<int>(pus::FailureCode::WrongMode);
-  for (const Sender sender : {Sender::Ground, Sender::Subsystem}) {
-    EXPECT_EQ(write({3}, State::SafeOperational, open_mode, sender), 0);
-    EXPECT_EQ(write({3}, State::Operational, open_mode, sender), not_now);
-    EXPECT_EQ(write({5}, State::SafeOperational, open_mode, sender), not_now);
-    EXPECT_EQ(write({3, 5}, State::SafeOperational, open_mode, sender), not_now);
-    mission.modes[narrow_mode].permits.front().services = {20};
-    EXPECT_EQ(write({3}, State::SafeOperational, narrow_mode, sender), wrong_mode);
-  }
-  EXPECT_EQ(write({5}, State::Operational, open_mode, Sender::Supervisor), 0) << "begin values are its own";
+  const Origin ground = Origin::ground();
+  EXPECT_EQ(write({3}, State::SafeOperational, open_mode, ground), 0);
+  EXPECT_EQ(write({3}, State::Operational, open_mode, ground), not_now);
+  EXPECT_EQ(write({5}, State::SafeOperational, open_mode, ground), not_now);
+  EXPECT_EQ(write({3, 5}, State::SafeOperational, open_mode, ground), not_now);
+  mission.modes[narrow_mode].permits.front().services = {20};
+  EXPECT_EQ(write({3}, State::SafeOperational, narrow_mode, ground), wrong_mode);
+  EXPECT_EQ(write({3}, State::SafeOperational, open_mode, Origin::subsystem(hand)),
+            static_cast<int>(pus::FailureCode::NotDeclared));
+  EXPECT_EQ(write({5}, State::Operational, open_mode, Origin::supervisor()), 0) << "begin values are its own";
 }
 
 TEST(Permission, ASubsystemMayStopTheCraftAndAsksTheSupervisorForNothingElse) {
   auto mission = testing::small_mission();
   mission.supervisor.functions.push_back(testing::function("SHUTDOWN", testing::in_states({State::Operational}), true));
   const LinkGraph links{mission};
-  const auto permitted = [&](const char* name, Sender sender) {
+  const auto permitted = [&](const char* name, const Origin& origin) {
     const auto packet = testing::telecommand(1, 8, 1, call(name));
-    return decide(pus::TelecommandView::parse(packet).value(), sender,
+    return decide(pus::TelecommandView::parse(packet).value(), origin,
                   {mission, mission.modes[open_mode], links, State::Operational, 0})
         .has_value();
   };
   for (const char* name : {"SET_MODE", "SHUTDOWN"}) {
-    EXPECT_FALSE(permitted(name, Sender::Subsystem)) << name;
-    EXPECT_TRUE(permitted(name, Sender::Ground)) << name;
+    EXPECT_FALSE(permitted(name, Origin::subsystem(hand))) << name;
+    EXPECT_TRUE(permitted(name, Origin::ground())) << name;
   }
-  EXPECT_TRUE(permitted("SAFE_ALL", Sender::Subsystem));
+  EXPECT_TRUE(permitted("SAFE_ALL", Origin::subsystem(hand)));
 }
 
 /// Two writes of eight octets, of which `octets` of application data arrive; the first names `id`.
@@ -274,7 +294,7 @@ TEST(Permission, AParameterWriteThatCannotBeReadToItsEndIsItsAddresseesToRefuse)
     writer.put(std::uint8_t{2});
     for (int i = 0; i < 2; ++i) writer.put(ParameterId{arm, Type::Double, id}.wire()).put(1.0);
     const auto packet = testing::telecommand(arm, 20, 3, Octets{data}.first(octets));
-    return !decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+    return !decide(pus::TelecommandView::parse(packet).value(), Origin::ground(),
                    {mission, mission.modes[open_mode], links, State::Operational, 0});
   };
   EXPECT_FALSE(refused(3, 25));
@@ -297,7 +317,7 @@ TEST(Permission, APermitOfOneSubsystemOpensNoParameterOfAnother) {
     std::vector<std::byte> data(1 + 4 + sizeof(double));
     OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{apid, Type::Double, 3}.wire()).put(1.0);
     const auto packet = testing::telecommand(apid, 20, subtype, data);
-    return decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+    return decide(pus::TelecommandView::parse(packet).value(), Origin::ground(),
                   {mission, mission.modes[narrow_mode], links, State::Operational, 0})
         .has_value();
   };
@@ -311,7 +331,7 @@ TEST(Permission, ALinkThatIsUsefulButNotRequiredIsNotWaitedFor) {
   mission.subsystems[0].subsystem.configurations[0].requires_[0].required = false;
   const LinkGraph links{mission};
   const auto packet = testing::telecommand(arm, 8, 1, set_state(State::SafeOperational));
-  const auto decision = decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+  const auto decision = decide(pus::TelecommandView::parse(packet).value(), Origin::ground(),
                                {mission, mission.modes[open_mode], links, State::PreOperational, 2});
   EXPECT_TRUE(decision);
 }
@@ -320,7 +340,7 @@ TEST(Permission, ASetStateWithoutItsStateIsNotTowardsSafety) {
   const auto mission = testing::small_mission();
   const LinkGraph links{mission};
   const auto packet = testing::telecommand(arm, 8, 1, call("SET_STATE"));
-  const auto decision = decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+  const auto decision = decide(pus::TelecommandView::parse(packet).value(), Origin::ground(),
                                {mission, mission.modes[open_mode], links, State::Operational, 0});
   ASSERT_TRUE(decision) << "its addressee says what is missing";
   EXPECT_FALSE(decision->essential);
@@ -339,7 +359,7 @@ TEST(Permission, ARequestOfASubsystemsOwnServiceIsPermittedByServiceOrNameInItsS
   const LinkGraph links{mission};
   const auto decided = [&](std::uint16_t apid, std::uint8_t subtype, State state) {
     const auto packet = testing::telecommand(apid, 200, subtype, {});
-    return text_of(decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+    return text_of(decide(pus::TelecommandView::parse(packet).value(), Origin::ground(),
                           {mission, mission.modes[narrow_mode], links, state, 0}));
   };
   EXPECT_EQ(decided(arm, 1, State::SafeOperational), "13 2") << "the mode opens neither service nor name";
@@ -360,14 +380,14 @@ TEST(Permission, TheHandshakeOfLinksStaysTheSupervisorsInAModeThatOpensItsServic
   mission.modes[open_mode].permits.front().services.push_back(128);
   const LinkGraph links{mission};
   const auto packet = testing::telecommand(arm, 128, 1, {});
-  const auto permitted = [&](Sender sender) {
-    return decide(pus::TelecommandView::parse(packet).value(), sender,
+  const auto permitted = [&](const Origin& origin) {
+    return decide(pus::TelecommandView::parse(packet).value(), origin,
                   {mission, mission.modes[open_mode], links, State::PreOperational, 0})
         .has_value();
   };
-  EXPECT_FALSE(permitted(Sender::Ground));
-  EXPECT_FALSE(permitted(Sender::Subsystem));
-  EXPECT_TRUE(permitted(Sender::Supervisor));
+  EXPECT_FALSE(permitted(Origin::ground()));
+  EXPECT_FALSE(permitted(Origin::subsystem(hand)));
+  EXPECT_TRUE(permitted(Origin::supervisor()));
 }
 
 TEST(Permission, APermitOfOneSubsystemOpensNoFunctionOfAnotherWhicheverComesFirst) {
@@ -378,7 +398,7 @@ TEST(Permission, APermitOfOneSubsystemOpensNoFunctionOfAnotherWhicheverComesFirs
         {.subsystem = name, .functions = {"MOVE_TO"}, .services = {}, .parameters = {}, .at = {}}};
     for (const std::uint16_t to : {arm, hand, camera}) {
       const auto packet = testing::telecommand(to, 8, 1, call("MOVE_TO"));
-      const auto decision = decide(pus::TelecommandView::parse(packet).value(), Sender::Ground,
+      const auto decision = decide(pus::TelecommandView::parse(packet).value(), Origin::ground(),
                                    {mission, mission.modes[narrow_mode], links, State::Operational, 0});
       EXPECT_EQ(decision.has_value(), to == apid) << name << " " << to;
       if (decision) {

@@ -70,10 +70,11 @@ void Reception::take(Member& member, const Message& message) {
     read_own();
     if (!parts_.telemetry.take(from, message.packet)) count_unreadable(from);
   } else if (from_ground) {
-    parts_.telecommands.take({.packet = message.packet, .sender = Sender::Ground, .source = 0, .memory = {}});
+    parts_.telecommands.take({.packet = message.packet, .origin = Origin::ground(message.link)});
     read_own();  // what it said about that: its own backlog must not overflow in a flood
   } else {
-    parts_.telecommands.take({.packet = message.packet, .sender = Sender::Subsystem, .source = from, .memory = {}});
+    parts_.telecommands.take({.packet = message.packet, .origin = Origin::subsystem(from)});
+    read_own();
   }
 }
 

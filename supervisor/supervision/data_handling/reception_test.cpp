@@ -103,10 +103,10 @@ TEST_F(ReceptionTest, TheGroundWaitsWhileItsTelecommandsAreNotAnswered) {
   const Member& ground = *craft.member(camera);
   for (std::uint16_t count = 0; count < 128; ++count) {
     EXPECT_TRUE(parts.reception.reads(ground)) << count;
-    parts.telecommands.take({.packet = ping, .sender = Sender::Ground, .source = 0, .memory = {}});
+    parts.telecommands.take({.packet = ping, .origin = Origin::ground()});
     if (count == 0) verify(arm, pus::TelecommandView::parse(ping)->request_id(), 7, {}, 7);
   }
-  parts.telecommands.take({.packet = ping, .sender = Sender::Ground, .source = 0, .memory = {}});
+  parts.telecommands.take({.packet = ping, .origin = Origin::ground()});
   EXPECT_FALSE(parts.reception.reads(ground));
   EXPECT_TRUE(parts.reception.reads(*craft.member(hand))) << "what members say is read";
   wait(1ms);

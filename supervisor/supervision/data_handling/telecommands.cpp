@@ -8,6 +8,7 @@
 #include <array>
 
 #include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/subsystem/requester.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 
@@ -20,11 +21,6 @@ using pus::FailureNotice;
 /// Reports on damaged packets in one second (pus-c tailoring 5.3).
 constexpr int damaged_reports_per_second = 10;
 constexpr std::size_t most_waiting = 1024;
-
-/// The supervisor's own source id is nobody else's: reports to a forged one would end its own requests.
-[[nodiscard]] bool forged(const pus::Request& request, Sender sender) {
-  return sender != Sender::Supervisor && request.source == supervisor_apid;
-}
 
 }  // namespace
 
@@ -41,14 +37,17 @@ void Telecommands::take(const Incoming& incoming) {
   const auto telecommand = pus::TelecommandView::parse(incoming.packet);
   if (!telecommand) return take_damaged(incoming, telecommand.error());
   pus::Request request = pus::request_of(*telecommand);
-  if (forged(request, incoming.sender)) request = {request.id, 0, 0};
+  // Reports to a claimed id would end somebody else's requests.
+  if (!incoming.origin.owns(request.source, craft_.mission)) request = {request.id, incoming.origin.apid(), 0};
   const std::uint16_t apid = telecommand->apid();
   const bool asks_only = apid == supervisor_apid && telecommand->service() == pus::st129::service_type;
   const auto copy_to_ground = [&] {
-    if (incoming.sender == Sender::Ground && !asks_only) send_telecommand_copy(parts_.own.telemetry(), incoming.packet);
+    if (incoming.origin.is_ground() && !asks_only) send_telecommand_copy(parts_.own.telemetry(), incoming.packet);
   };
   parts_.power.observe();
-  const auto decision = judge(*telecommand, incoming.sender);
+  auto decision = judge(*telecommand, incoming.origin);
+  if (decision)
+    if (const auto flood = refuse_flood(*telecommand, incoming.origin)) decision = std::unexpected{*flood};
   if (!decision) {
     copy_to_ground();
     if (decision.error().code() == FailureCode::PowerShort) parts_.power.tell_shortage(apid, decision.error());
@@ -59,21 +58,22 @@ void Telecommands::take(const Incoming& incoming) {
   if (asks_only) return answer_question(incoming, *telecommand);
   const std::string text = telecommand_text(*telecommand);
   const LogEntry received{.kind = LogKind::TelecommandReceived,
-                          .source = incoming.source,
+                          .source = incoming.origin.apid(),
                           .peer = apid,
                           .packet = incoming.packet,
                           .note = std::string_view{text}};
   const std::uint64_t fences = craft_.guard.fences(apid);
   // Nobody could command anything until the ground link is back: its own restoration waits for no disk either.
   const Member* addressee = craft_.member(apid);
-  const bool restores = incoming.sender == Sender::Supervisor && craft_.restoring_ground_link && addressee != nullptr &&
+  const bool restores = incoming.origin.is_supervisor() && craft_.restoring_ground_link && addressee != nullptr &&
                         craft_.is_ground_link(*addressee);
   if (decision->essential || restores) {
     const auto call = called_function(*telecommand);
     const auto own = apid == supervisor_apid && call ? at_once_.find(call->name) : at_once_.end();
     if (own != at_once_.end()) own->second(request);
     else
-      forward({apid, incoming.packet, incoming.memory, request, 0, true, restores && decision->releases_stop, fences});
+      forward({apid, incoming.origin, incoming.packet, incoming.memory, request, 0, true,
+               restores && decision->releases_stop, fences});
     copy_to_ground();
     static_cast<void>(craft_.log.append(received));
     return;
@@ -83,9 +83,10 @@ void Telecommands::take(const Incoming& incoming) {
   if (number == 0 || waiting_.size() == most_waiting)
     return reject(incoming, request, FailureNotice{FailureCode::QueueFull});
   // Its own telecommands were not permitted by the mode, so a change of mode does not void them.
-  const std::uint32_t mode_epoch = incoming.sender == Sender::Supervisor ? 0 : craft_.mode_epoch;
+  const std::uint32_t mode_epoch = incoming.origin.is_supervisor() ? 0 : craft_.mode_epoch;
   waiting_.push_back({number,
                       apid,
+                      incoming.origin,
                       {incoming.packet.begin(), incoming.packet.end()},
                       incoming.memory,
                       request,
@@ -105,21 +106,49 @@ void Telecommands::take_damaged(const Incoming& incoming, const FailureNotice& n
     reports_in_window_ = 0;
   }
   ++reports_in_window_;
-  reject(incoming, {request_id, 0, 0}, notice);
+  reject(incoming, {request_id, incoming.origin.apid(), 0}, notice);
 }
 
 /// All that may refuse a well-formed telecommand, without doing anything about it: what is asked before sending and what
 /// is decided on sending are this one function.
 std::expected<Permitted, FailureNotice> Telecommands::judge(const pus::TelecommandView& telecommand,
-                                                            Sender sender) const {
-  if (forged(pus::request_of(telecommand), sender)) return std::unexpected{FailureNotice{FailureCode::IllegalField}};
-  const auto decision = decide(telecommand, sender, situation_of(telecommand.apid()));
+                                                            const Origin& origin) const {
+  if (const std::uint16_t source = telecommand.source(); !origin.owns(source, craft_.mission))
+    return std::unexpected{FailureNotice{FailureCode::ForeignSource}.with(source)};
+  const auto decision = decide(telecommand, origin, situation_of(telecommand.apid()));
+  // Who has failed, is stopped or on its way down commands nobody; towards safety it may.
+  if (decision && !decision->essential && origin.is_subsystem() && !is_sound(origin.apid()))
+    return std::unexpected{FailureNotice{FailureCode::WrongState}};
   if (!decision || !decision->releases_stop) return decision;
   // What a recovery has stopped is not released by a command that crosses it.
   if (const Member* addressee = std::as_const(craft_).member(telecommand.apid());
       addressee != nullptr && addressee->recovering)
     return std::unexpected{FailureNotice{FailureCode::WrongState}};
   return decision;
+}
+
+bool Telecommands::is_sound(std::uint16_t apid) const {
+  const Member* member = std::as_const(craft_).member(apid);
+  if (member == nullptr || member->recovering || member->going_down) return false;
+  const auto state = member->state();
+  using enum descriptor::State;
+  return state == PreOperational || state == SafeOperational || state == Operational;
+}
+
+/// Stopping the craft is no request of another one, and never too much.
+std::optional<FailureNotice> Telecommands::refuse_flood(const pus::TelecommandView& telecommand, const Origin& origin) {
+  if (!origin.is_subsystem() || telecommand.apid() == supervisor_apid) return std::nullopt;
+  // What nobody waits for would not be known to be under way.
+  if ((telecommand.ack() & pus::ack_completion) == 0) return FailureNotice{FailureCode::IllegalField};
+  const auto waiting =
+      std::ranges::count(waiting_, origin.apid(), [](const Waiting& each) { return each.origin.apid(); });
+  const std::size_t under_way = parts_.outstanding.count_of(origin.apid()) + static_cast<std::size_t>(waiting);
+  Window& window = asked_[origin.apid()];
+  if (craft_.now - window.begin >= 1s) window = {.begin = craft_.now};
+  if (under_way >= Requester::most_open || window.taken == Requester::most_a_second)
+    return FailureNotice{FailureCode::QueueFull};
+  ++window.taken;
+  return std::nullopt;
 }
 
 Situation Telecommands::situation_of(std::uint16_t apid) const {
@@ -147,14 +176,14 @@ void Telecommands::answer_question(const Incoming& incoming, const pus::Telecomm
   const auto header = pus::read_primary_header(asked);
   if (!header) return reject(incoming, request, FailureNotice{FailureCode::DataLength});
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandReceived,
-                                       .source = incoming.source,
+                                       .source = incoming.origin.apid(),
                                        .peer = supervisor_apid,
                                        .packet = incoming.packet,
                                        .note = "is it permitted?"}));
   parts_.own.verification().accepted(request);
   parts_.own.verification().started(request);
   const auto telecommand = pus::TelecommandView::parse(asked);
-  const auto decision = telecommand ? judge(*telecommand, incoming.sender) : std::unexpected{telecommand.error()};
+  const auto decision = telecommand ? judge(*telecommand, incoming.origin) : std::unexpected{telecommand.error()};
   std::array<std::byte, 7> data;
   OctetWriter writer{data};
   writer.put(header->request_id);
@@ -170,11 +199,11 @@ void Telecommands::forward_durable() {
     waiting_.pop_front();
     // What was permitted before a fence is void after it: it was permitted for another situation (findings SF4).
     if (craft_.guard.fences(next.apid) != next.fences) {
-      reject({.packet = next.packet, .memory = {}}, next.request, FailureNotice{FailureCode::NotPermittedNow});
+      reject({.packet = next.packet, .origin = next.origin}, next.request, FailureNotice{FailureCode::NotPermittedNow});
       continue;
     }
-    forward(
-        {next.apid, next.packet, next.memory, next.request, next.mode_epoch, false, next.releases_stop, next.fences});
+    forward({next.apid, next.origin, next.packet, next.memory, next.request, next.mode_epoch, false, next.releases_stop,
+             next.fences});
   }
 }
 
@@ -199,22 +228,22 @@ void Telecommands::outcome_unknown(std::uint16_t apid) {
 void Telecommands::refuse_oldest(FailureCode why) {
   const Waiting oldest = std::move(waiting_.front());
   waiting_.pop_front();
-  reject({.packet = oldest.packet, .memory = {}}, oldest.request, FailureNotice{why});
+  reject({.packet = oldest.packet, .origin = oldest.origin}, oldest.request, FailureNotice{why});
 }
 
 void Telecommands::forward(const Outgoing& outgoing) {
-  const auto& [apid, packet, memory, request, mode_epoch, essential, releases_stop, fences] = outgoing;
+  const auto& [apid, origin, packet, memory, request, mode_epoch, essential, releases_stop, fences] = outgoing;
   const bool to_itself = apid == supervisor_apid;
   // The stop is lifted by exactly this telecommand, when it leaves.
   if (releases_stop && !to_itself && !craft_.guard.release(apid, fences))
-    return reject({.packet = packet, .memory = {}}, request, FailureNotice{FailureCode::NotPermittedNow});
+    return reject({.packet = packet, .origin = origin}, request, FailureNotice{FailureCode::NotPermittedNow});
   Member* addressee = craft_.member(apid);
   Channel* channel = to_itself ? &parts_.own.channel() : addressee != nullptr ? addressee->channel() : nullptr;
   const Message message{.kind = MessageKind::Packet, .mode_epoch = mode_epoch, .packet = packet, .memory = memory};
   const bool sent = channel != nullptr && channel->send(message).has_value();
   if (!sent) {
     const auto code = channel == nullptr ? FailureCode::UnknownApid : FailureCode::QueueFull;
-    return reject({.packet = packet, .memory = {}}, request, FailureNotice{code});
+    return reject({.packet = packet, .origin = origin}, request, FailureNotice{code});
   }
   if (const auto telecommand = pus::TelecommandView::parse(packet); !to_itself && telecommand)
     parts_.outstanding.forwarded(apid, *telecommand);
@@ -232,11 +261,15 @@ void Telecommands::reject(const Incoming& incoming, const pus::Request& request,
   // Beyond the cap they are counted only: a flood of them must not fill the log's queue before honest telecommands.
   if (damaged && reports_in_window_ > damaged_reports_per_second) return parts_.traffic.count_rejection(notice.code());
   const auto header = pus::read_primary_header(incoming.packet);
+  std::string note{to_text(notice.code())};
+  // Nobody else says which client of the ground link it was.
+  if (notice.code() == FailureCode::ForeignSource && incoming.origin.is_ground())
+    note += fmt::format(", client {}", incoming.origin.client());
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandRefused,
-                                       .source = incoming.source,
+                                       .source = incoming.origin.apid(),
                                        .peer = header ? header->apid : std::uint16_t{0},
                                        .packet = incoming.packet,
-                                       .note = to_text(notice.code())}));
+                                       .note = std::string_view{note}}));
   if (notice.code() == FailureCode::UnknownApid) parts_.own.verification().routing_failed(request, notice);
   else parts_.own.verification().rejected(request, notice);
 }

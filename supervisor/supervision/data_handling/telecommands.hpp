@@ -25,9 +25,8 @@ class PowerHandling;
 /// A telecommand as it came in.
 struct Incoming {
   Octets packet;
-  Sender sender{Sender::Ground};
-  std::uint16_t source{0};  ///< APID of the sender, 0 = ground
-  MemoryHandle memory;
+  Origin origin;
+  MemoryHandle memory{};
 };
 
 /// Permits or refuses, logs and forwards every telecommand (paper 4.3). One that is not essential leaves when it is on the
@@ -67,6 +66,7 @@ class Telecommands final : public Watch, public Accounts {
   struct Waiting {
     std::uint64_t number{};
     std::uint16_t apid{};
+    Origin origin;
     std::vector<std::byte> packet;
     MemoryHandle memory;
     pus::Request request;
@@ -78,6 +78,7 @@ class Telecommands final : public Watch, public Accounts {
   /// A permitted telecommand on its way to the addressee.
   struct Outgoing {
     std::uint16_t apid{};
+    Origin origin;
     Octets packet;
     MemoryHandle memory;
     pus::Request request;
@@ -87,7 +88,11 @@ class Telecommands final : public Watch, public Accounts {
     std::uint64_t fences{0};  ///< of the addressee at permission
   };
   [[nodiscard]] std::expected<Permitted, pus::FailureNotice> judge(const pus::TelecommandView& telecommand,
-                                                                   Sender sender) const;
+                                                                   const Origin& origin) const;
+  [[nodiscard]] bool is_sound(std::uint16_t apid) const;
+  /// A subsystem that asks more than it may at once: the others' telecommands have their place.
+  [[nodiscard]] std::optional<pus::FailureNotice> refuse_flood(const pus::TelecommandView& telecommand,
+                                                               const Origin& origin);
   [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
   void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
   void answer_question(const Incoming& incoming, const pus::TelecommandView& question);
@@ -101,6 +106,11 @@ class Telecommands final : public Watch, public Accounts {
   std::deque<Waiting> waiting_;
   TimePoint report_window_{};
   int reports_in_window_{0};
+  struct Window {
+    TimePoint begin{};
+    std::size_t taken{0};
+  };
+  std::map<std::uint16_t, Window> asked_;  ///< of subsystems
 };
 
 /// For logs: the function with its first number, or the numbers of service and subtype.

@@ -49,7 +49,7 @@ TEST_F(StopsTest, ItWaitsForNoStateOfTheSupervisorItself) {
   ASSERT_EQ(parts.own.state(), Offline);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
   const auto safe_all = telecommand(supervisor_apid, 8, 1, call_data("SAFE_ALL"));
-  parts.telecommands.take({.packet = safe_all, .sender = Sender::Ground, .source = 0, .memory = {}});
+  parts.telecommands.take({.packet = safe_all, .origin = Origin::ground()});
   EXPECT_TRUE(guard.fenced(arm));
   EXPECT_TRUE(was_told("SAFE_ALL: every actuator inhibited"));
 }

@@ -65,7 +65,7 @@ TEST_F(ShutdownTest, WhoDoesNotAnswerIsEndedAfterFiveSecondsAndTheFlightIsNotOrd
 TEST_F(ShutdownTest, WhatWasAskedOfWhoIsEndedHasAnUnknownOutcome) {
   start_all(Offline);
   const auto asked = telecommand(arm, 17, 1, {});
-  parts.telecommands.take({.packet = asked, .sender = Sender::Ground, .source = 0, .memory = {}});
+  parts.telecommands.take({.packet = asked, .origin = Origin::ground()});
   parts.shutdown.request();
   EXPECT_THAT(own_failures(), ElementsAre(static_cast<std::uint16_t>(pus::FailureCode::OutcomeUnknown)));
 }

@@ -36,7 +36,7 @@ TEST_F(ProcessesTest, ADeathIsToldWithItsKindAndItsNetworkGoesDown) {
 TEST_F(ProcessesTest, WhatTheDeadHadBegunHasAnUnknownOutcome) {
   start_all(Operational);
   const auto asked = telecommand(arm, 17, 1, {});
-  parts.telecommands.take({.packet = asked, .sender = Sender::Ground, .source = 0, .memory = {}});
+  parts.telecommands.take({.packet = asked, .origin = Origin::ground()});
   dies(arm);
   EXPECT_THAT(own_failures(), ElementsAre(static_cast<std::uint16_t>(pus::FailureCode::OutcomeUnknown)));
 }

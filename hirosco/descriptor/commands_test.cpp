@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "hirosco/descriptor/testing.hpp"
+
+/// Whom a subsystem may command, from its descriptor to its process.
+namespace hirosco::descriptor {
+namespace {
+
+using testing::changed;
+using testing::data;
+using testing::overlay;
+using testing::read_text;
+using testing::rendered;
+
+std::string commanding(const std::string& commands) {
+  return R"(<Subsystem name="PORTER" id="40">)" + commands +
+         R"(<Configuration name="ONE" id="1" sampling_us="1000"/></Subsystem>)";
+}
+constexpr const char* bell = R"(<Subsystem name="BELL" id="41">
+  <CustomService name="RINGING" type="200"><Request name="COUNT_RINGS" subtype="1"/></CustomService>
+  <Configuration name="ONE" id="1" sampling_us="1000"><FunctionService><Function name="RING"/></FunctionService></Configuration>
+</Subsystem>)";
+
+/// The good mission with a porter and two bells more.
+FileSource with_porter(const std::string& commands, const std::string& inside = "") {
+  const std::string first = R"(<Subsystem executable="hirosco-flywheel" descriptor="flywheel.xml"/>)";
+  return overlay({{"mission.xml", changed(first, first + R"(
+    <Subsystem executable="porter" descriptor="porter.xml">)" +
+                                                     inside + R"(</Subsystem>
+    <Subsystem executable="bell" descriptor="bell.xml"/>
+    <Subsystem executable="bell" descriptor="bell.xml" name="BIG_BELL" id="42"/>)")},
+                  {"porter.xml", commanding(commands)},
+                  {"bell.xml", bell}});
+}
+constexpr const char* rings = R"(<Commands subsystem="BELL" functions="RING COUNT_RINGS"/>)";
+
+std::string first_problem(const FileSource& source) {
+  const auto reading = read_mission(data / "mission.xml", source);
+  return reading.problems.empty() ? std::string{} : reading.problems.front().code;
+}
+
+TEST(Commands, NameWhoIsCommandedAndForWhat) {
+  const auto reading = read_text(commanding(rings));
+  ASSERT_TRUE(reading.value);
+  ASSERT_EQ(reading.value->commands.size(), 1U);
+  EXPECT_EQ(reading.value->commands[0].subsystem, "BELL");
+  EXPECT_EQ(reading.value->commands[0].functions, (std::vector<std::string>{"RING", "COUNT_RINGS"}));
+  EXPECT_EQ(reading.value->commands[0].apid, 0) << "no mission has said who that is";
+}
+
+TEST(Commands, OfAnotherFormAreRefused) {
+  const auto problem = [](const std::string& commands) {
+    const auto reading = read_text(commanding(commands));
+    return reading.problems.empty() ? std::string{} : reading.problems.front().code;
+  };
+  EXPECT_EQ(problem(std::string{rings} + rings), "E0201");
+  EXPECT_EQ(problem(R"(<Commands subsystem="BELL" functions="RING RING"/>)"), "E0201");
+  EXPECT_EQ(problem(R"(<Commands subsystem="BELL" functions=" "/>)"), "E0109");
+  EXPECT_EQ(problem(R"(<Commands subsystem="BELL"/>)"), "E0105");
+  EXPECT_EQ(problem(R"(<Commands functions="RING"/>)"), "E0105");
+}
+
+TEST(Commands, AMissionSaysWhoThatIsAndItsProcessIsToldTheSame) {
+  for (const bool redirected : {false, true}) {
+    const auto source = with_porter(rings, redirected ? R"(<Commands subsystem="BELL" to="BIG_BELL"/>)" : "");
+    const auto reading = read_mission(data / "mission.xml", source);
+    ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
+    const MissionSubsystem* porter = reading.value->find_subsystem("PORTER");
+    ASSERT_NE(porter, nullptr);
+    const Commands& commands = porter->subsystem.commands.at(0);
+    EXPECT_EQ(commands.apid, redirected ? 42 : 41);
+    ASSERT_EQ(commands.requests.size(), 2U);
+    EXPECT_EQ(commands.requests[0].service, 8);
+    EXPECT_EQ(commands.requests[1].service, 200);
+
+    Subsystem launched = read_subsystem(data / "porter.xml", source).value.value();
+    const auto changes = changes_of(*porter);
+    const auto told = std::ranges::find(changes, "--commands", &std::pair<std::string, std::string>::first);
+    ASSERT_NE(told, changes.end());
+    ASSERT_TRUE(apply_commands(launched, told->second, source)) << told->second;
+    EXPECT_EQ(launched.commands[0].apid, commands.apid);
+    ASSERT_EQ(launched.commands[0].requests.size(), 2U);
+    EXPECT_EQ(launched.commands[0].requests[1].name, "COUNT_RINGS");
+  }
+}
+
+TEST(Commands, OfSomebodyWhoIsNotThereOrForWhatThatDoesNotHaveAreRefused) {
+  EXPECT_EQ(first_problem(with_porter(R"(<Commands subsystem="GONG" functions="RING"/>)")), "E0304");
+  EXPECT_EQ(first_problem(with_porter(R"(<Commands subsystem="PORTER" functions="RING"/>)")), "E0304") << "itself";
+  EXPECT_EQ(first_problem(with_porter(R"(<Commands subsystem="BELL" functions="MELT"/>)")), "E0310");
+  EXPECT_EQ(first_problem(with_porter(R"(<Commands subsystem="BELL" functions="SET_STATE"/>)")), "E0310")
+      << "states are nobody's to declare";
+  EXPECT_EQ(first_problem(with_porter(rings, R"(<Commands subsystem="GONG" to="BELL"/>)")), "E0304");
+  EXPECT_EQ(first_problem(with_porter(rings, R"(<Commands subsystem="BELL" to="GONG"/>)")), "E0304");
+  EXPECT_EQ(first_problem(with_porter(rings, R"(<Commands subsystem="BELL" to="PORTER"/>)")), "E0304");
+  EXPECT_EQ(first_problem(with_porter(rings, R"(<Commands subsystem="BELL"/>)")), "E0105");
+  const std::string twice = R"(<Commands subsystem="BELL" to="BIG_BELL"/>)";
+  EXPECT_EQ(first_problem(with_porter(rings, twice + twice)), "E0201");
+}
+
+TEST(Commands, WordsOfAnotherFormForAProcessAreRefused) {
+  const auto source = with_porter(rings);
+  Subsystem porter = read_subsystem(data / "porter.xml", source).value.value();
+  for (const char* text : {"", "BELL", "BELL=", "BELL=41", "BELL=x:bell.xml", "BELL=70000:bell.xml", ":41=bell.xml"})
+    EXPECT_EQ(apply_commands(porter, text, source).error().code, ErrorCode::InvalidArgument) << text;
+  for (const char* text : {"GONG=41:bell.xml", "BELL=41:none.xml", "BELL=41:porter.xml"})
+    EXPECT_EQ(apply_commands(porter, text, source).error().code, ErrorCode::NotFound) << text;
+}
+
+}  // namespace
+}  // namespace hirosco::descriptor
