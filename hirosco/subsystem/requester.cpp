@@ -84,7 +84,9 @@ Result<std::uint32_t> Requester::send(const RequestPort& port, std::span<const s
   if (sent_in_window_ == most_a_second)
     return fail(ErrorCode::ResourceExhausted, "requests in a second", static_cast<std::int64_t>(most_a_second));
   // The one place where what an author asks becomes octets.
-  HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_request(*bound->function, values));
+  std::vector<std::optional<Value>> given;
+  for (const auto& value : values) given.push_back(value ? std::optional<Value>{Number{*value}} : std::nullopt);
+  HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_request(*bound->function, given));
   std::array<std::byte, max_packet_octets> buffer;
   HIROSCO_TRY_LET(const Octets packet, pus::write_telecommand(buffer,
                                                               {.apid = bound->apid,

@@ -7,8 +7,11 @@ import json
 import os
 import pathlib
 import shutil
+import socket
+import struct
 import subprocess
 import tempfile
+import threading
 import unittest
 import urllib.error
 import urllib.request
@@ -62,7 +65,7 @@ class Outside:
         done = subprocess.run([*map(str, words)], capture_output=True, text=True, check=False, cwd=cls.folder,
                               env={**os.environ, "NO_COLOR": "1", **(environment or {})})
         told = done.stdout + done.stderr
-        if done.returncode != code:
+        if code is not None and done.returncode != code:
             raise AssertionError(f"{words} ended with {done.returncode}:\n{told[-4000:]}")
         return told
 
@@ -73,7 +76,7 @@ class Outside:
 class Built(Outside, unittest.TestCase):
     def test_its_tests_pass(self):
         told = self.said("ctest", "--test-dir", self.built, "--output-on-failure", environment=self.environment)
-        self.assertIn("100% tests passed, 0 tests failed out of 2", told)
+        self.assertIn("100% tests passed, 0 tests failed out of 3", told)
 
     def test_its_mission_is_checked_with_what_the_installed_tree_brings(self):
         self.assertIn("4 files, no problem", self.hirosco("check", "--fly", self.mission))
@@ -97,6 +100,35 @@ class Built(Outside, unittest.TestCase):
         self.assertIn("no problem", self.hirosco("check", "--fly", two))
         told = self.hirosco("simulate", two, "--for", "3s", "--at", "2 desk-lamp old 0.5", "--summary")
         self.assertIn("mode operation", told)
+
+    def test_one_subsystem_commands_another_and_hears_how_it_ended(self):
+        switched = self.lamp / "switched.xml"
+        self.assertIn("no problem", self.hirosco("check", "--fly", switched))
+        blinking = self.lamp / "blinking.xml"
+        commands = '<Commands subsystem="LAMP" to="DESK_LAMP"/>'
+        text = switched.read_text()
+        self.assertIn(commands, text)
+        blinking.write_text(text.replace(commands, commands + '<Set parameter="BLINK_S" value="1"/>'))
+        told = self.hirosco("simulate", blinking, "--for", "6s", "--at", "4 lamp unplug").split("\n")
+        of_lamp = [line for line in told if "DESK_LAMP -> SWITCH" in line]
+        self.assertGreaterEqual(sum("TM[1,7]" in line for line in of_lamp), 3)
+        refused = [line for line in told if "SUPERVISOR -> SWITCH" in line and "TM[1,2]" in line]
+        self.assertGreaterEqual(len(refused), 1)
+        self.assertTrue(any("not permitted in this state" in line for line in refused), refused)
+        # A bulb that never gets as bright, and a lamp that dies before it has ended what it had begun.
+        told = self.hirosco("simulate", blinking, "--for", "8s", "--at", "3 lamp old 0.1", "--at", "4.3 kill DESK_LAMP",
+                            code=None).split("\n")
+        unknown = [line for line in told if "SUPERVISOR -> SWITCH" in line and "TM[1,8]" in line]
+        self.assertEqual(len(unknown), 1, unknown)
+        self.assertIn("outcome unknown", unknown[0])
+        self.assertTrue(any("7." in line.split()[0] for line in told if "SWITCH -> ground" in line), "it flies on")
+
+    def test_whom_the_mission_does_not_have_nobody_commands(self):
+        wrong = self.lamp / "wrong.xml"
+        wrong.write_text((self.lamp / "switched.xml").read_text().replace(
+            '<Commands subsystem="LAMP" to="DESK_LAMP"/>', ""))
+        told = self.hirosco("check", wrong, code=1)
+        self.assertIn("'SWITCH' commands 'LAMP', which is not in the mission", told)
 
     def test_what_comes_with_the_installed_tree_is_simulated_from_anywhere(self):
         for mission in ("hello", "rokviss"):
@@ -156,6 +188,50 @@ class Flown(Outside, unittest.TestCase):
             lamps.wait_told("plan default: network {DESK_LAMP}", 5.0)
             self.assertAlmostEqual(self.brightness(lamps, 0.9), 0.9, 2)
             self.assertEqual(lamps.end(), 0)
+
+    def test_one_subsystem_commands_another(self):
+        with flight.Flight(self.lamp / "switched.xml", binaries=self.prefix / "bin", environment=self.environment,
+                           more=()) as craft:
+            craft.wait_told("commissioned: mode operation", 20.0)
+            self.assertEqual(craft.tc("SWITCH", "PRESS", 0.7), (0, ["1,1", "1,3", "1,7"]))
+            self.assertAlmostEqual(craft.truth("lamp")["brightness"], 0.7, 1)
+            self.forged(craft)
+            self.assertEqual(craft.tc("DESK_LAMP", "SET_STATE", 4)[1][-1], "1,7")
+            self.assertEqual(craft.tc("SWITCH", "PRESS", 0.5)[1], ["1,1", "1,3", "1,8"])
+            self.assertIn("not permitted in this state", str(craft.log("--service", "1")))
+            self.assertEqual(craft.tc("DESK_LAMP", "SET_STATE", 5)[1][-1], "1,7")
+            # It never gets as bright, and dies before it has ended what it had begun.
+            craft.fault("lamp", "old", "0.1")
+            ended = []
+            pressing = threading.Thread(target=lambda: ended.append(craft.tc("SWITCH", "PRESS", 0.9)))
+            pressing.start()
+            craft.wait_line(lambda line: False, 1.0)
+            self.assertEqual(ended, [], "nothing has ended it yet")
+            craft.kill("lamp")
+            pressing.join(30.0)
+            self.assertEqual(ended[0][1], ["1,1", "1,3", "1,8"])
+            self.assertIn("outcome unknown", str(craft.log("--service", "1")))
+            self.assertEqual(craft.tc("SWITCH", "PING")[1][-1], "1,7", "it flies on")
+            craft.end()
+
+    def forged(self, craft):
+        """The ground speaks under the id of the switch: refused, and reported to the ground."""
+        address = ("127.0.0.1", flight.PORT)
+        ping = struct.pack(">HHHBBBH", 0x1808, 0xC000, 6, 0x29, 17, 1, 9)
+        crc = 0xFFFF
+        for octet in ping:
+            crc ^= octet << 8
+            for _ in range(8):
+                crc = (crc << 1 ^ 0x1021 if crc & 0x8000 else crc << 1) & 0xFFFF
+        with socket.create_connection(address, 5.0) as ground:
+            ground.sendall(ping + struct.pack(">H", crc))
+            told = ""
+            for _ in range(100):
+                told = str(craft.log("--text", "source id of somebody else"))
+                if "client" in told:
+                    break
+                craft.wait_line(lambda line: False, 0.1)
+        self.assertIn("source id of somebody else, client", told)
 
     def own_service(self, lamp, ask):
         """What its descriptor says of its own PUS service is enough for terminal, page, Python and log."""

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <hirosco/subsystem/custom_service.hpp>
 #include <hirosco/subsystem/module.hpp>
+#include <optional>
 
 namespace {
 
@@ -54,6 +56,13 @@ class Lamp final : public Subsystem {
                   raise(programmed_, serial, colour, static_cast<std::uint8_t>(note.size()), steps);
                   return ok();
                 });
+    // As DIM, but ends when the light is there.
+    on_function("FADE", [this](double brightness, Call call) -> Outcome {
+      if (fading_) abort(*fading_, {ErrorCode::NotPermitted, "another fade took over"});
+      fading_ = call;
+      goal_ = brightness;
+      return running;
+    });
     return done;
   }
 
@@ -62,15 +71,21 @@ class Lamp final : public Subsystem {
     double& current_a = lamp_.output().current_a;
     current_a += std::clamp(goal_ - current_a, -step, step);
     current_.store({lamp_.input().brightness, current_a});
+    if (fading_ && std::abs(lamp_.input().brightness - goal_) < close) {
+      finish(*fading_);
+      fading_.reset();
+    }
     return ok();
   }
 
   static constexpr double fade_per_s = 1.0;
+  static constexpr double close = 0.005;
   Parameter<CurrentValues> current_;
   DevicePort<Light, Drive> lamp_;
   Event<std::uint64_t, Colour, std::uint8_t, std::array<float, 3>> programmed_{"PROGRAMMED"};
   CustomService meter_{"METERING"};
   std::atomic<std::uint32_t> dimmed_{0};  // counted in the cycle, read in the service loop
+  std::optional<Call> fading_;
   double goal_{0.2};
 };
 

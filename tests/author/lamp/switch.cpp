@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "switch.hpp"
+
+#include <atomic>
+#include <hirosco/subsystem/custom_service.hpp>
+#include <hirosco/subsystem/module.hpp>
+#include <map>
+#include <string>
+
+namespace {
+
+using namespace hirosco;
+
+class Switch final : public Subsystem {
+  struct Answers {  // ANSWERS in switch.xml
+    std::uint32_t completed;
+    std::uint32_t refused;
+    std::uint32_t failed;
+  };
+
+  Result<> offline() override {
+    panel_.on_request("PRESS", [this](double brightness, const Call& call) -> Outcome {
+      const auto asked = request(fade_, brightness);
+      if (!asked) return Result<>{std::unexpected{asked.error()}};
+      pressed_.emplace(*asked, call);
+      return running;
+    });
+    provide(panel_);
+    return ok();
+  }
+  Result<Step> software_init() override {
+    publish("BLINK_S", blink_s_);
+    publish("ANSWERS", answers_);
+    use_request(fade_, [this](const RequestReport& report) { hear(report); });
+    return done;
+  }
+
+  /// What comes of a request: in the service loop, where it was asked.
+  void hear(const RequestReport& report) {
+    if (!report.is_end()) return;
+    using Stage = RequestReport::Stage;
+    const bool completed = report.stage == Stage::Completed;
+    ++(completed ? completed_ : report.stage == Stage::Refused ? refused_ : failed_);
+    const auto pressed = pressed_.extract(report.request);
+    if (!pressed) return;
+    const std::string why{report.reason};
+    if (completed) panel_.finish(pressed.mapped());
+    else panel_.abort(pressed.mapped(), {ErrorCode::NotPermitted, why.c_str(), static_cast<std::int64_t>(report.code)});
+  }
+
+  void service(TimePoint now) override {
+    const double period_s = blink_s_.load();
+    if (state() != State::Operational || period_s == 0 || now < next_blink_) return;
+    next_blink_ = now + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(period_s));
+    bright_ = !bright_;
+    static_cast<void>(request(fade_, bright_ ? 0.6 : 0.4));
+  }
+
+  Result<> operational(const Cycle&) noexcept override {
+    answers_.store({completed_, refused_, failed_});
+    return ok();
+  }
+
+  Request<double> fade_{"LAMP", "FADE"};
+  Parameter<double> blink_s_;
+  Parameter<Answers> answers_;
+  CustomService panel_{"PANEL"};
+  std::map<std::uint32_t, Call> pressed_;  // who waits for which request
+  std::atomic<std::uint32_t> completed_{0}, refused_{0}, failed_{0};  // counted in the service loop, shown by the cycle
+  TimePoint next_blink_{};
+  bool bright_{false};
+};
+
+}  // namespace
+
+std::unique_ptr<Subsystem> make_switch() { return std::make_unique<Switch>(); }
+
+const hirosco::Module* hirosco_module() noexcept { return &hirosco::subsystem_module<make_switch>; }
