@@ -131,6 +131,31 @@ TEST_F(GuardTest, ACycleThatIsToldToRestWhileItHangsIsBack) {
   EXPECT_FALSE(lives[arm].process->killed);
 }
 
+TEST_F(GuardTest, TheTimeOfAHangBeginsAnewWithARestAndWithANewProcess) {
+  const auto hangs_after = [&] {
+    Duration span{};
+    for (; kinds(arm).empty() && span < 1s; span += Guard::observation_period)
+      run(Guard::observation_period, {hand, camera});
+    return span;
+  };
+  cycling(arm);
+  run(50ms);
+  const Duration after_moving = hangs_after();
+  EXPECT_LT(after_moving, 250ms);
+  run(50ms);
+  EXPECT_THAT(kinds(arm), ElementsAre(back));
+  run(100ms, {hand, camera});
+  lives[arm].vital->cycling = 0;
+  run(20ms, {hand, camera});
+  lives[arm].vital->cycling = 1;
+  EXPECT_EQ(hangs_after(), after_moving);
+  guard.forget(arm);
+  start(arm);
+  cycling(arm);
+  lives[arm].vital->seen_epoch = lives[arm].permit->epoch.load();
+  EXPECT_EQ(hangs_after(), after_moving);
+}
+
 TEST_F(GuardTest, WithoutRealtimeRightsTheSecondLimitHolds) {
   mission.subsystems[1].subsystem.hang = {20, 40};
   lives[hand].vital->realtime = 0;
@@ -345,6 +370,19 @@ TEST_F(GuardTest, ADeviceThatNeverSaidAnythingIsNoReasonToEndItsMember) {
   run(1s, {arm, hand, camera}, std::nullopt);
   EXPECT_TRUE(guard.stop_outcome(stop));
   EXPECT_FALSE(lives[arm].process->killed);
+}
+
+TEST_F(GuardTest, AStopEndsWhenTheTimeOfItsDevicesHasPassedAndNotLater) {
+  cycling(arm);
+  run(50ms);
+  const TimePoint begun = clock.now();
+  const auto stop = guard.stop_all();
+  lives[arm].vital->inhibited = inhibited_by_stop;
+  lives[arm].vital->seen_epoch = lives[arm].permit->epoch.load();
+  while (!guard.stop_outcome(stop) && clock.now() - begun < 2s) run(Guard::period, {arm, hand, camera}, std::nullopt);
+  const Duration stop_within = mission.subsystems[0].subsystem.devices[0].stop_within;
+  // The step that sees it is the one that begins then.
+  EXPECT_EQ(clock.now() - begun, stop_within + 250ms + Guard::period);
 }
 
 TEST_F(GuardTest, OneDeviceThatHasStoppedDoesNotStandForTheOther) {

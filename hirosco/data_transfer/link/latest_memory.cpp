@@ -127,7 +127,7 @@ void LatestWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status
   };
   const std::size_t end = link_memory::payload_at + payload_octets_;
   for (std::size_t at = link_memory::sequence_at; at < end && at < claimed_octets; at += line) claim(memory_ + at);
-  word(memory_, link_memory::sequence_at).store(sequence_ + 1, std::memory_order_relaxed);
+  word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_relaxed);
   publish(link_memory::status_at, coded(status));
   publish(link_memory::count_at, ++count_);
   publish(link_memory::stamp_at, std::bit_cast<Word>(std::int64_t{sampled_at.time_since_epoch().count()}));
@@ -142,16 +142,14 @@ void LatestWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status
     std::memcpy(&value, payload.data() + whole, payload_octets_ - whole);
     publish(link_memory::payload_at + whole, value);
   }
-  sequence_ += 2;
-  publish(link_memory::sequence_at, sequence_);
+  publish(link_memory::sequence_at, ++sequence_);
 }
 
 void LatestWriter::set_status(LinkStatus status) noexcept {
   assert(memory_ != nullptr);
-  word(memory_, link_memory::sequence_at).store(sequence_ + 1, std::memory_order_relaxed);
+  word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_relaxed);
   word(memory_, link_memory::status_at).store(coded(status), std::memory_order_release);
-  sequence_ += 2;
-  word(memory_, link_memory::sequence_at).store(sequence_, std::memory_order_release);
+  word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_release);
 }
 
 Result<LatestReader> LatestReader::make(Octets memory, const LinkLayout& layout) noexcept {
