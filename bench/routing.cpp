@@ -209,7 +209,7 @@ Round routed(const std::filesystem::path& repository, const SystemClock& clock) 
     supervisor::Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1, .on_finding = {}}};
     supervisor::Supervisor craft{
         {.mission = mission,
-         .world = {.clock = clock, .memory = memory, .flows = flows, .realtime = false, .explain = {}},
+         .platform = {.clock = clock, .memory = memory, .flows = flows, .realtime = false, .explain = {}},
          .launcher = launcher,
          .guard = guard,
          .log = log,

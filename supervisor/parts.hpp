@@ -32,7 +32,7 @@ namespace hirosco::supervisor {
 /// all are made.
 struct SupervisorParts final : OwnSubsystem::Author {
   explicit SupervisorParts(const Supervisor::Parts& outside)
-      : craft{outside.mission, outside.world, outside.launcher, outside.guard, outside.log, outside.observer},
+      : craft{outside.mission, outside.platform, outside.launcher, outside.guard, outside.log, outside.observer},
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count} {
     // No cycle, no queue and no state of the supervisor's own holds these up.
@@ -52,7 +52,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
   void show() noexcept override { housekeeping.show(); }
 
   Craft craft;
-  OwnSubsystem own{craft.mission.supervisor, craft.world, *this};
+  OwnSubsystem own{craft.mission.supervisor, craft.platform, *this};
   LinkGraph graph{craft.mission};
   Outstanding outstanding;
   Restarts restarts;

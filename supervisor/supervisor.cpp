@@ -19,7 +19,7 @@ Supervisor::~Supervisor() = default;
 
 void Supervisor::start() {
   Craft& craft = parts_->craft;
-  craft.now = craft.world.clock.now();
+  craft.now = craft.platform.clock.now();
   parts_->own.start(craft.mode_epoch);
   craft.guard.beat();
   parts_->processes.start_all();

@@ -26,7 +26,7 @@ class Supervisor final {
  public:
   struct Parts {
     const descriptor::Mission& mission;
-    World world;
+    Platform platform;
     ProcessLauncher& launcher;
     Guard& guard;  ///< stepped by its own thread, or by who steps the supervisor
     PacketLog& log;

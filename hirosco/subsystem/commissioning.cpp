@@ -191,10 +191,10 @@ void GenericSubsystem::arrive(State state) {
 }
 
 void GenericSubsystem::fail_transition(State at, const Failure& why) {
-  if (world_.explain) world_.explain(descriptor_.name + ": " + std::string{to_text(at)} + " failed: " + why.text);
+  if (platform_.explain) platform_.explain(descriptor_.name + ": " + std::string{to_text(at)} + " failed: " + why.text);
   // Ground hears the first mistake and how many there are; the author each, on a line of its own.
-  for (std::size_t i = 1; i < problems_.size() && at == State::SoftwareInit && world_.explain; ++i)
-    world_.explain(descriptor_.name + ": SoftwareInit failed: " + problems_[i]);
+  for (std::size_t i = 1; i < problems_.size() && at == State::SoftwareInit && platform_.explain; ++i)
+    platform_.explain(descriptor_.name + ": SoftwareInit failed: " + problems_[i]);
   raise_failure(descriptor::framework_event::state_failed, static_cast<std::uint8_t>(at), why);
   if (way_request_)
     verification_.completion_failed(
@@ -251,7 +251,8 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_configuration(
     return {};
   }
   if (const auto problem = apply_configuration(*wanted)) {
-    if (world_.explain) world_.explain(descriptor_.name + ": CONFIGURE " + wanted->name + " failed: " + problem->text);
+    if (platform_.explain)
+      platform_.explain(descriptor_.name + ": CONFIGURE " + wanted->name + " failed: " + problem->text);
     release_configuration();
     raise_failure(descriptor::framework_event::configuration_failed, id, *problem);
     verification_.completion_failed(request, pus::FailureNotice{pus::FailureCode::ExecutionError}.because(
@@ -281,7 +282,7 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     if (port == link_ports_.end()) return mismatch("no port for the required set " + wanted.name);
     if (const auto difference = layout_difference(port->second->layout(), wanted.fields); !difference.empty())
       return mismatch("required set " + wanted.name + ": " + difference);
-    plan.inputs.emplace_back(wanted, port->second, world_.realtime);
+    plan.inputs.emplace_back(wanted, port->second, platform_.realtime);
     const auto set = std::ranges::find(sets, wanted.name) - sets.begin();
     plan.input_stale_events.push_back(descriptor::framework_event::set_stale(static_cast<std::size_t>(set)));
   }
@@ -292,9 +293,9 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     if (port == device_ports_.end()) return mismatch("no port for the device " + device.name);
     if (const auto difference = DeviceSlot::difference(device, *port->second); !difference.empty())
       return mismatch("device " + device.name + ": " + difference);
-    auto flow = world_.flows.open({use.endnode.transfer, use.endnode.address}, FlowSide::Subsystem);
+    auto flow = platform_.flows.open({use.endnode.transfer, use.endnode.address}, FlowSide::Subsystem);
     if (!flow) return of("device " + device.name + ": ", flow.error());
-    plan.devices.emplace_back(device, use, *port->second, std::move(*flow), world_.realtime);
+    plan.devices.emplace_back(device, use, *port->second, std::move(*flow), platform_.realtime);
     plan.device_lost_events.push_back(descriptor::framework_event::device_lost(use.device));
   }
   for (pus::Service* service : services_)

@@ -47,17 +47,17 @@ constexpr int messages_per_step = 64;
 
 }  // namespace
 
-GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const World& world,
+GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const Platform& platform,
                                    Channel& channel, VitalPage& vital, const PermitPage& permit)
     : author_{author},
       descriptor_{with_framework_events(std::move(descriptor))},
-      world_{world},
+      platform_{platform},
       channel_{channel},
       vital_{vital},
       permit_{permit},
       dictionary_{make_dictionary(descriptor_, dictionary_problem_)},
       writes_{32, 2048},
-      cycle_{{author, descriptor_, world.clock, dictionary_, writes_, handover_, vital, permit, world.realtime}},
+      cycle_{{author, descriptor_, platform.clock, dictionary_, writes_, handover_, vital, permit, platform.realtime}},
       counters_{vital.counters},
       verification_{*this},
       event_service_{descriptor_.events, verification_, *this},
@@ -66,7 +66,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       housekeeping_service_{descriptor_, verification_, *this},
       link_service_{verification_, *this, *this},
       services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_},
-      requester_{descriptor_, channel_, world.clock.now()} {
+      requester_{descriptor_, channel_, platform.clock.now()} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
     made_services_.push_back(kind->make(*this));
@@ -74,8 +74,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
   }
   author_.framework_ = this;
   cycle_.functions().resize(descriptor_.functions.size());
-  vital_.realtime.store(world_.realtime ? 1 : 0, std::memory_order_relaxed);
-  heartbeat_seen_ = world_.clock.now();
+  vital_.realtime.store(platform_.realtime ? 1 : 0, std::memory_order_relaxed);
+  heartbeat_seen_ = platform_.clock.now();
   if (const auto started = author_.offline(); !started) mistake(started.error().text);
 }
 

@@ -36,7 +36,7 @@
 namespace hirosco {
 
 /// Everything a subsystem needs from outside (architecture, rule 3).
-struct World {
+struct Platform {
   const Clock& clock;
   MemoryProvider& memory;
   FlowFactory& flows;
@@ -60,7 +60,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
                                private pus::ServiceHome {
  public:
   /// `vital` and `permit` are the mapped pages, at least as large as VitalPage and PermitPage and initialised.
-  GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const World& world, Channel& channel,
+  GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const Platform& platform, Channel& channel,
                    VitalPage& vital, const PermitPage& permit);
   ~GenericSubsystem() override;
 
@@ -184,7 +184,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
 
   Subsystem& author_;
   descriptor::Subsystem descriptor_;
-  World world_;
+  Platform platform_;
   Channel& channel_;
   VitalPage& vital_;
   const PermitPage& permit_;

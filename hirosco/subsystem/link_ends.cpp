@@ -38,7 +38,7 @@ std::string GenericSubsystem::refuse_link(pus::st128::Role role, std::string_vie
 }
 
 bool GenericSubsystem::carries(LinkMethod method, LinkKind kind) {
-  return find_link_mechanism(world_.links, method, kind) != nullptr;
+  return find_link_mechanism(platform_.links, method, kind) != nullptr;
 }
 
 Duration GenericSubsystem::period() { return configuration_ != nullptr ? configuration_->sampling : Duration{}; }
@@ -58,7 +58,7 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
                           .payload_octets = agreement.payload_octets(),
                           .layout_hash = agreement.layout_hash(),
                           .period = agreement.producer_period};
-  const LinkMechanism* mechanism = find_link_mechanism(world_.links, agreement.method, agreement.kind);
+  const LinkMechanism* mechanism = find_link_mechanism(platform_.links, agreement.method, agreement.kind);
   if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
   auto link = std::make_unique<AttachedLink>();
   link->id = request.link;
@@ -71,12 +71,12 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
     if (slot == plan.outputs.end()) return fail(ErrorCode::NotFound, "no such provided set");
     // Another configuration may be in force than the one that negotiated; the cycle writes these fields unchecked.
     if (agreement.fields != slot->fields()) return fail(ErrorCode::Mismatch, "the agreement is not of this set");
-    HIROSCO_TRY_LET(link->writer, mechanism->produce(world_.memory, memory, layout));
+    HIROSCO_TRY_LET(link->writer, mechanism->produce(platform_.memory, memory, layout));
     end.slot = static_cast<std::uint16_t>(slot - plan.outputs.begin());
   } else {
     const auto slot = std::ranges::find_if(plan.inputs, [&](const auto& s) { return s.terms().name == request.set; });
     if (slot == plan.inputs.end()) return fail(ErrorCode::NotFound, "no such required set");
-    HIROSCO_TRY_LET(link->reader, mechanism->consume(world_.memory, memory, layout));
+    HIROSCO_TRY_LET(link->reader, mechanism->consume(platform_.memory, memory, layout));
     link->payload.resize(layout.payload_octets);
     HIROSCO_TRY(slot->plan(*link));
     const auto ratio = agreement.producer_period / std::max(agreement.consumer_period, Duration{1});

@@ -100,7 +100,7 @@ void GenericSubsystem::report(std::uint8_t service, std::uint8_t subtype, std::u
                               .service = service,
                               .subtype = subtype,
                               .destination = destination,
-                              .time = world_.clock.onboard()};
+                              .time = platform_.clock.onboard()};
   counters_.stamp(header);
   constexpr std::uint8_t housekeeping_report = 25;
   const bool event = service == pus::EventService::service_type && subtype <= 4;
@@ -139,7 +139,7 @@ Result<std::uint32_t> GenericSubsystem::send_request(const RequestPort& asked,
                                                      std::span<const std::optional<double>> values) {
   // As above: what is under way would never be heard to end.
   if (!backlog_.empty()) return fail(ErrorCode::ResourceExhausted, "reports wait for the supervisor");
-  return requester_.send(asked, values, world_.clock.now());
+  return requester_.send(asked, values, platform_.clock.now());
 }
 
 /// The supervisor is told of every event; ST[05] is one that listens, and may be told to be silent (adr 0020).

@@ -209,14 +209,14 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     static_cast<void>(lock_memory());
     static_cast<void>(set_fifo_priority(service_priority));
   }
-  const World world{
+  const Platform platform{
       .clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = [](std::string_view text) {
         std::fputs(fmt::format("{}\n", text).c_str(), stderr);
       }};
   const auto author = make();
   GenericSubsystem subsystem{*author,
                              std::move(*reading.value),
-                             world,
+                             platform,
                              channel,
                              *reinterpret_cast<VitalPage*>(vital.octets.data()),
                              *reinterpret_cast<const PermitPage*>(permit.octets.data())};

@@ -56,17 +56,17 @@ class MemberClock final : public Clock {
 
 /// One subsystem as an object: what a process would hold.
 struct Spacecraft::Member {
-  Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, World world)
+  Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, Platform platform)
       : described{&what},
         author{std::move(make)},
-        clock{world.clock},
+        clock{platform.clock},
         vital{std::make_shared<VitalPage>()},
         permit{std::make_shared<PermitPage>()} {
-    const World own{.clock = clock,
-                    .memory = world.memory,
-                    .flows = world.flows,
-                    .realtime = world.realtime,
-                    .explain = std::move(world.explain)};
+    const Platform own{.clock = clock,
+                       .memory = platform.memory,
+                       .flows = platform.flows,
+                       .realtime = platform.realtime,
+                       .explain = std::move(platform.explain)};
     engine.emplace(*author, what.subsystem, own, channels.subsystem_end(), *vital, *permit);
   }
 
@@ -159,14 +159,15 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
     for (const auto& [name, value] : described.settings) static_cast<void>(device->fault(name + " " + value));
     devices_.push_back({&described, std::move(device)});
   }
-  const World world{.clock = clock_, .memory = memory_, .flows = flows_, .realtime = parts.realtime, .explain = {}};
+  const Platform platform{
+      .clock = clock_, .memory = memory_, .flows = flows_, .realtime = parts.realtime, .explain = {}};
   guard_.emplace(supervisor::Guard::Parts{.clock = clock_, .flows = flows_, .first_epoch = 1, .on_finding = [this] {
                                             if (supervisor_wake_ != never) supervisor_wake_ = clock_.now();
                                           }});
   guard_wake_ = clock_.now();
   supervisor_ = std::make_unique<supervisor::Supervisor>(supervisor::Supervisor::Parts{
       .mission = parts.mission,
-      .world = world,
+      .platform = platform,
       .launcher = *this,
       .guard = *guard_,
       .log = *log_,
@@ -187,15 +188,15 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   else if (described.subsystem.name == parts_.mission.ground.subsystem)
     author = make_communication(ground_.transport());
   if (!author) return fail(ErrorCode::NotFound, "no such subsystem in this program");
-  const World world{.clock = clock_,
-                    .memory = memory_,
-                    .flows = flows_,
-                    .realtime = parts_.realtime,
-                    .explain = [this](std::string_view text) { parts_.observer.told(clock_.onboard(), text); }};
+  const Platform platform{.clock = clock_,
+                          .memory = memory_,
+                          .flows = flows_,
+                          .realtime = parts_.realtime,
+                          .explain = [this](std::string_view text) { parts_.observer.told(clock_.onboard(), text); }};
   const Member* before = nullptr;
   for (const auto& earlier : members_)
     if (earlier->described->subsystem.id == described.subsystem.id) before = earlier.get();
-  members_.push_back(std::make_unique<Member>(described, std::move(author), world));
+  members_.push_back(std::make_unique<Member>(described, std::move(author), platform));
   Member& member = *members_.back();
   // Counts outlive the process (decision 8b).
   if (before != nullptr) member.vital->counters = before->vital->counters;

@@ -6,10 +6,10 @@
 
 namespace hirosco::supervisor {
 
-Craft::Craft(const descriptor::Mission& described, const World& outside, ProcessLauncher& processes, Guard& watcher,
+Craft::Craft(const descriptor::Mission& described, const Platform& outside, ProcessLauncher& processes, Guard& watcher,
              PacketLog& packets, Observer& who)
     : mission{described},
-      world{outside},
+      platform{outside},
       launcher{processes},
       guard{watcher},
       log{packets},
@@ -46,7 +46,7 @@ std::string Craft::name_of(std::uint16_t apid) const {
 
 void Craft::tell(std::string_view line, std::uint16_t subject) {
   static_cast<void>(log.append({.kind = LogKind::Action, .source = 1, .peer = subject, .packet = {}, .note = line}));
-  observer.told(world.clock.onboard(), line);
+  observer.told(platform.clock.onboard(), line);
 }
 
 }  // namespace hirosco::supervisor

@@ -21,7 +21,7 @@ namespace hirosco::supervisor {
 /// What every part of the supervisor looks at: the mission, its members, the mode, the time, and whom to tell. It decides
 /// nothing. Thread: the supervisor's.
 struct Craft {
-  Craft(const descriptor::Mission& described, const World& outside, ProcessLauncher& processes, Guard& watcher,
+  Craft(const descriptor::Mission& described, const Platform& outside, ProcessLauncher& processes, Guard& watcher,
         PacketLog& packets, Observer& who);
   Craft(const Craft&) = delete;
   Craft& operator=(const Craft&) = delete;
@@ -37,7 +37,7 @@ struct Craft {
   void tell(std::string_view line, std::uint16_t subject = 0);
 
   descriptor::Mission mission;
-  World world;
+  Platform platform;
   ProcessLauncher& launcher;
   Guard& guard;  ///< stepped by its own thread, or by who steps the supervisor
   PacketLog& log;

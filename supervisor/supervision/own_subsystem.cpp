@@ -6,11 +6,11 @@
 
 namespace hirosco::supervisor {
 
-OwnSubsystem::OwnSubsystem(const descriptor::Subsystem& described, const World& world, Author& author)
+OwnSubsystem::OwnSubsystem(const descriptor::Subsystem& described, const Platform& platform, Author& author)
     : author_{author},
       vital_{std::make_unique<VitalPage>()},
       permit_{std::make_unique<PermitPage>()},
-      engine_{*this, described, world, channels_.subsystem_end(), *vital_, *permit_} {}
+      engine_{*this, described, platform, channels_.subsystem_end(), *vital_, *permit_} {}
 
 Result<Step> OwnSubsystem::software_init() {
   engine_.uses_all_events();

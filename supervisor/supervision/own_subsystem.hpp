@@ -24,7 +24,7 @@ class OwnSubsystem final : private Subsystem {
     virtual void provide(OwnSubsystem& own) = 0;
     virtual void show() noexcept = 0;
   };
-  OwnSubsystem(const descriptor::Subsystem& described, const World& world, Author& author);
+  OwnSubsystem(const descriptor::Subsystem& described, const Platform& platform, Author& author);
 
   using Subsystem::abort;
   using Subsystem::finish;

@@ -127,7 +127,7 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   findings.add(std::move(reading.problems));
   findings.add(std::move(reading.warnings));
   if (!reading.value) return;
-  auto missing = unready(*reading.value, Platform::Processes);
+  auto missing = unready(*reading.value, FlownAs::Processes);
   for (auto& problem : missing)
     if (problem.code == "E0401" && !options.fly) problem.grade = descriptor::Grade::Warning;
   findings.add(std::move(missing));

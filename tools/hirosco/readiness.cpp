@@ -19,15 +19,15 @@ using descriptor::Diagnostic;
 
 class Findings {
  public:
-  Findings(const descriptor::Mission& mission, Platform platform) : mission_{mission}, platform_{platform} {}
+  Findings(const descriptor::Mission& mission, FlownAs flown_as) : mission_{mission}, flown_as_{flown_as} {}
 
-  /// Why the program cannot be had on this platform; `missing`: what its module says.
+  /// Why the program cannot be had for such a flight; `missing`: what its module says.
   void program(const std::string& executable, const std::string& user, descriptor::Location at,
                const std::string& missing) {
-    if (platform_ == Platform::Processes && find_program(executable).empty())
+    if (flown_as_ == FlownAs::Processes && find_program(executable).empty())
       add(at, "E0401", fmt::format("no program {} for {}", executable, user),
           "it is neither beside this program nor in PATH");
-    if (platform_ == Platform::Simulation && !missing.empty())
+    if (flown_as_ == FlownAs::Simulation && !missing.empty())
       add(at, "E0404", fmt::format("no module {} for {}", executable, user), missing);
   }
 
@@ -38,7 +38,7 @@ class Findings {
     for (const auto& [name, value] : device.settings) {
       const auto taken = played->fault(name + " " + value);
       // What is not available in this world may be in the device's own.
-      if (taken || (platform_ == Platform::Processes && taken.error().code == ErrorCode::Unavailable)) continue;
+      if (taken || (flown_as_ == FlownAs::Processes && taken.error().code == ErrorCode::Unavailable)) continue;
       const auto place = device.setting_places.find(name);
       add(place == device.setting_places.end() ? device.at : place->second, "E0402",
           fmt::format("device {} does not take '{} {}'", device.name, name, value),
@@ -54,19 +54,19 @@ class Findings {
   }
 
   const descriptor::Mission& mission_;
-  Platform platform_;
+  FlownAs flown_as_;
   std::vector<Diagnostic> found_;
 };
 
 }  // namespace
 
-std::vector<Diagnostic> unready(const descriptor::Mission& mission, Platform platform) {
+std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flown_as) {
   const auto modules = simulation::load_modules(mission);
   const auto missing = [&](const std::string& executable) {
     const auto found = modules.missing.find(executable);
     return found != modules.missing.end() ? found->second : std::string{};
   };
-  Findings findings{mission, platform};
+  Findings findings{mission, flown_as};
   for (const auto& member : mission.subsystems)
     findings.program(member.executable, "subsystem " + member.subsystem.name, member.at, missing(member.executable));
   for (const auto& device : mission.devices) {
@@ -77,8 +77,8 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, Platform pla
   return findings.take();
 }
 
-bool ready(const descriptor::Mission& mission, Platform platform) {
-  const auto found = unready(mission, platform);
+bool ready(const descriptor::Mission& mission, FlownAs flown_as) {
+  const auto found = unready(mission, flown_as);
   const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   for (const auto& problem : found)
     fmt::print(stderr, "{}", descriptor::render(problem, descriptor::file_system(), colour));

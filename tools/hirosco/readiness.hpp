@@ -10,16 +10,16 @@
 namespace hirosco::tools {
 
 /// Where a mission is to fly.
-enum class Platform : std::uint8_t {
+enum class FlownAs : std::uint8_t {
   Processes,   ///< programs beside this one or in PATH
   Simulation,  ///< modules beside this program or in PATH, in this process
 };
 
 /// What a mission names and is not here (E0401, E0404), and the settings that a simulated device refuses (E0402). The devices
 /// that this program has are asked themselves, so that no descriptor library knows what a device is.
-[[nodiscard]] std::vector<descriptor::Diagnostic> unready(const descriptor::Mission& mission, Platform platform);
+[[nodiscard]] std::vector<descriptor::Diagnostic> unready(const descriptor::Mission& mission, FlownAs flown_as);
 
 /// Prints what keeps the mission from flying to standard error; true when nothing does.
-[[nodiscard]] bool ready(const descriptor::Mission& mission, Platform platform);
+[[nodiscard]] bool ready(const descriptor::Mission& mission, FlownAs flown_as);
 
 }  // namespace hirosco::tools

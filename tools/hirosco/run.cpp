@@ -161,7 +161,7 @@ int run(const RunOptions& options) {
   hold_back_signals();
   const auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
-  if (!ready(*mission, Platform::Processes)) return exit_environment;
+  if (!ready(*mission, FlownAs::Processes)) return exit_environment;
   FlightEntry flight = plan_flight(*mission, options.instance.empty() ? mission->name : options.instance);
   if (!good_instance(flight.instance)) {
     fmt::print(stderr, "hirosco run: '{}' is no name of a flight: letters, digits, '-' and '_', at most 64\n",

@@ -91,7 +91,7 @@ class Trace {
 int simulate(const SimulateOptions& options) {
   const auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
-  if (!ready(*mission, Platform::Simulation)) return exit_environment;
+  if (!ready(*mission, FlownAs::Simulation)) return exit_environment;
   std::vector<Injection> injections;
   for (const std::string& text : options.at) {
     const auto injection = read_injection(text);

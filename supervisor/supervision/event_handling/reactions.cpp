@@ -33,7 +33,7 @@ bool Reactions::take_event(std::uint16_t from, Octets message) {
   const std::string text = subsystem.name + " " + std::string{to_text(severity)} + " " +
                            describer_.describe_event(from, message.subspan(pus::event_message_id_at));
   // A report is in the log as the packet that it is.
-  if (event->reported == pus::Reported::Yes) craft_.observer.told(craft_.world.clock.onboard(), text);
+  if (event->reported == pus::Reported::Yes) craft_.observer.told(craft_.platform.clock.onboard(), text);
   else craft_.tell(text, from);
   if (from == supervisor_apid) react_to_own(name, severity);
   else if (Member* origin = craft_.member(from); origin != nullptr && origin->alive()) react(*origin, name, severity);

@@ -21,7 +21,7 @@ class Links final : public Watch, public Hearer, private LinkOperator {
       : craft_{craft},
         own_{own},
         desk_{desk},
-        handling_{craft.mission, graph, craft.world.memory, craft.world.links, *this} {}
+        handling_{craft.mission, graph, craft.platform.memory, craft.platform.links, *this} {}
 
   /// LINK and UNLINK.
   void provide();

@@ -70,7 +70,7 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   std::map<std::uint8_t, std::vector<std::byte>> last_routed;  ///< source data by service
   std::unique_ptr<Database> next_database;  ///< what SET_DATABASE finds
   SupervisorParts parts{{.mission = mission,
-                         .world = {clock, memory, flows},
+                         .platform = {clock, memory, flows},
                          .launcher = *this,
                          .guard = guard,
                          .log = log,
