@@ -18,7 +18,7 @@ using simulation::RobotDevice;
 
 struct Hands : ::testing::Test {
   void SetUp() override { ASSERT_TRUE(flight.commission()) << flight.story().text(); }
-  simulation::CommandOutcome command(std::string_view function, const std::vector<double>& arguments) {
+  simulation::CommandOutcome command(std::string_view function, const std::vector<Value>& arguments) {
     return flight.craft().command("JOYSTICK", function, arguments);
   }
   [[nodiscard]] simulation::JoystickHandle& handle() { return flight.device<JoystickDevice>("joystick").handle(); }

@@ -30,7 +30,7 @@ struct RokvissFlight : ::testing::Test {
     ASSERT_TRUE(flight->commission()) << flight->story().text();
     robot = &flight->device<RobotDevice>("robot");
   }
-  simulation::CommandOutcome command(std::string_view function, const std::vector<double>& arguments = {},
+  simulation::CommandOutcome command(std::string_view function, const std::vector<Value>& arguments = {},
                                      Duration limit = 30s) {
     return flight->craft().command("MANIPULATOR", function, arguments, limit);
   }

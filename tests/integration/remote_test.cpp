@@ -35,7 +35,7 @@ struct Remote : ::testing::Test {
     joystick = &flight->device<JoystickDevice>("joystick");
   }
   simulation::CommandOutcome command(std::string_view subsystem, std::string_view function,
-                                     const std::vector<double>& arguments) {
+                                     const std::vector<Value>& arguments) {
     return flight->craft().command(subsystem, function, arguments);
   }
   /// RO7: the hand intends 22.6 mm from home in 3 s; contact is judged from 4 s on, the force as the mean of the eighth

@@ -21,7 +21,9 @@ constexpr Duration unreadable_period = 1s;
 constexpr std::size_t most_outstanding = 128;
 constexpr Duration outstanding_patience = 1ms;
 
-/// Of one message; everything else is of the channel, and the next one would fare no better.
+/// Steps in a row in which the operating system refused to read a channel, before it counts as closed.
+constexpr std::uint32_t most_refused = 3;
+/// Of one message; everything else is of the channel.
 bool is_damage(ErrorCode code) noexcept { return code == ErrorCode::Malformed || code == ErrorCode::Mismatch; }
 
 }  // namespace
@@ -38,10 +40,13 @@ void Reception::read(Member& member) {
   const int most = craft_.is_ground_link(member) ? ground_messages_per_step : messages_per_step;
   for (int left = most; left > 0 && member.alive() && reads(member); --left) {
     const auto found = member.channel()->receive(buffer);
-    if (!found && is_damage(found.error().code)) {
+    if (found) member.refused = 0;
+    if (!found && found.error().code != ErrorCode::Unavailable) {
       // Damage is no loss: it is counted and told, and what follows is read.
       ++member.unreadable;
-      continue;
+      if (is_damage(found.error().code)) continue;
+      // The system refuses: the next step tries again, but not for ever.
+      if (++member.refused < most_refused) return;
     }
     if (!found && !member.closed_at) {
       // Whoever can be neither commanded nor heard moves nothing any more, whatever became of the channel.

@@ -86,17 +86,22 @@ struct LostChannel final : Channel {
   int& looked_;
 };
 
-TEST_F(ReceptionTest, AChannelThatTheSystemRefusesIsClosedAndNoDamageToBeReadPast) {
+TEST_F(ReceptionTest, AChannelThatTheSystemRefusesThriceInARowIsClosedAndTriedOnceAStep) {
   Member& member = *craft.member(hand);
   int looked = 0;
   auto launched = launch(member.described()).value();
   launched.channel = std::make_unique<LostChannel>(looked);
   member.started(std::move(launched));
+  ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  for (int step = 1; step <= 2; ++step) {
+    read(hand);
+    EXPECT_EQ(looked, step) << "more would take the time of all others";
+    EXPECT_FALSE(guard.fenced(hand));
+  }
   read(hand);
   EXPECT_TRUE(guard.fenced(hand));
   EXPECT_EQ(member.closed_at, clock.now());
-  EXPECT_EQ(unreadable(hand), 0U);
-  EXPECT_EQ(looked, 1) << "once a step, or it takes the time of all others";
+  EXPECT_EQ(unreadable(hand), 3U);
 }
 
 TEST_F(ReceptionTest, TheGroundWaitsWhileItsTelecommandsAreNotAnswered) {

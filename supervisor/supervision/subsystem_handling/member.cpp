@@ -9,7 +9,7 @@ void Member::started(LaunchedSubsystem launched) {
   recovering.reset();
   going_down = false;
   closed_at.reset();
-  unreadable = unreadable_told = 0;
+  refused = unreadable = unreadable_told = 0;
   next_unreadable_told = {};
 }
 
