@@ -12,7 +12,7 @@ namespace hirosco {
 namespace {
 
 /// A means is in force where it stands here: for descriptors, subsystems, the supervisor's inhibits and devices.
-constexpr std::array built_in{
+constexpr std::array built_in_means{
     FlowMeans{Transfer::SharedMemory, AddressForm::Name, SharedMemoryFlow::open},
     FlowMeans{Transfer::Unix, AddressForm::Name, open_unix_flow},
     FlowMeans{Transfer::Udp, AddressForm::HostPort, open_udp_flow},
@@ -20,11 +20,11 @@ constexpr std::array built_in{
 
 }  // namespace
 
-std::span<const FlowMeans> standard_flow_means() noexcept { return built_in; }
+std::span<const FlowMeans> standard_flow_means() noexcept { return built_in_means; }
 
 const FlowMeans* find_flow_means(Transfer transfer) noexcept {
-  const auto found = std::ranges::find(built_in, transfer, &FlowMeans::transfer);
-  return found != built_in.end() ? &*found : nullptr;
+  const auto found = std::ranges::find(built_in_means, transfer, &FlowMeans::transfer);
+  return found != built_in_means.end() ? &*found : nullptr;
 }
 
 }  // namespace hirosco

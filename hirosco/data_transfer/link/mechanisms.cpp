@@ -11,13 +11,13 @@ namespace {
 const LatestMemory latest_memory;
 
 /// A mechanism is in force where it stands here: for descriptors, handshake, both ends and the supervisor's view.
-constexpr const LinkMechanism* built_in[]{
+constexpr const LinkMechanism* built_in_mechanisms[]{
     &latest_memory,
 };
 
 }  // namespace
 
-LinkMechanisms standard_link_mechanisms() noexcept { return built_in; }
+LinkMechanisms standard_link_mechanisms() noexcept { return built_in_mechanisms; }
 
 const LinkMechanism* find_link_mechanism(LinkMechanisms mechanisms, LinkMethod method, LinkKind kind) noexcept {
   const auto found = std::ranges::find_if(mechanisms, [&](const LinkMechanism* mechanism) {

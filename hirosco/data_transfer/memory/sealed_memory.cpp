@@ -17,7 +17,7 @@ struct SealedBlock final : MemoryHandle::Block {
   FileDescriptor descriptor;
 };
 
-constexpr auto foreign = "memory handle is not of this provider";
+constexpr auto foreign_handle = "memory handle is not of this provider";
 
 Result<std::size_t> size_of(int descriptor) noexcept {
   struct stat status{};
@@ -35,7 +35,7 @@ Result<MemoryHandle> SealedMemory::create(const char* name, std::size_t octets) 
 
 Result<Mapping> SealedMemory::map(const MemoryHandle& handle, Access access) {
   const int number = descriptor(handle);
-  if (number < 0) return fail(ErrorCode::InvalidArgument, foreign);
+  if (number < 0) return fail(ErrorCode::InvalidArgument, foreign_handle);
   HIROSCO_TRY_LET(const std::size_t octets, size_of(number));
   HIROSCO_TRY(memfd::verify(number, octets, false));
   HIROSCO_TRY_LET(
@@ -48,13 +48,13 @@ Result<Mapping> SealedMemory::map(const MemoryHandle& handle, Access access) {
 
 Result<> SealedMemory::seal_writers(const MemoryHandle& handle) {
   const int number = descriptor(handle);
-  if (number < 0) return fail(ErrorCode::InvalidArgument, foreign);
+  if (number < 0) return fail(ErrorCode::InvalidArgument, foreign_handle);
   return memfd::seal_writers(number);
 }
 
 Result<> SealedMemory::verify(const MemoryHandle& handle, std::size_t octets, bool writers_sealed) {
   const int number = descriptor(handle);
-  if (number < 0) return fail(ErrorCode::Mismatch, foreign);
+  if (number < 0) return fail(ErrorCode::Mismatch, foreign_handle);
   return memfd::verify(number, octets, writers_sealed);
 }
 
