@@ -134,7 +134,7 @@ constexpr QueryParameter to{"to", Kind::Number, "seconds of on-board time"};
 constexpr QueryParameter last{"last", Kind::Number, "seconds before `to`, instead of `from`"};
 constexpr QueryParameter points{"points", Kind::Whole, "10 to 20,000; more samples come as min and max of buckets"};
 constexpr QueryParameter severity{"severity", Kind::Severity, "the lowest"};
-constexpr QueryParameter text{"text", Kind::Text, "anywhere in names and text, without regard to case"};
+constexpr QueryParameter any_text{"text", Kind::Text, "anywhere in names and text, without regard to case"};
 constexpr QueryParameter limit{"limit", Kind::Whole, "rows, 200 by default, 10,000 at most"};
 constexpr QueryParameter words{"text", Kind::Text, "words, each anywhere in the line, without regard to case"};
 constexpr QueryParameter before{"before", Kind::Whole, "number of a packet: where an earlier answer ended"};
@@ -143,8 +143,8 @@ constexpr QueryParameter lines{"limit", Kind::Whole, "lines, 200 by default, 200
 
 constexpr std::array of_history{parameter, from, to, last, points};
 constexpr std::array of_csv{parameters, from, to, last};
-constexpr std::array of_events{from, to, severity, text, limit};
-constexpr std::array of_commands{from, to, text, limit};
+constexpr std::array of_events{from, to, severity, any_text, limit};
+constexpr std::array of_commands{from, to, any_text, limit};
 constexpr std::array of_timeline{from, to, last};
 constexpr std::array of_why{to};
 constexpr std::array of_log{words, to, before, housekeeping, lines};

@@ -5,7 +5,7 @@
 namespace hirosco::ground {
 namespace {
 
-constexpr std::uint16_t count_modulo = 16'384;
+constexpr std::uint16_t counts_before_zero = 16'384;
 
 }  // namespace
 
@@ -46,13 +46,13 @@ void Downlink::take(Octets octets) {
 }
 
 void Downlink::count_lost(const pus::TelemetryView& packet) {
-  const auto next = static_cast<std::uint16_t>((packet.sequence_count() + 1) % count_modulo);
+  const auto next = static_cast<std::uint16_t>((packet.sequence_count() + 1) % counts_before_zero);
   const auto [known, first] = expected_.try_emplace(packet.apid(), next, packet.time());
   if (first) return;
   const auto missing =
-      static_cast<std::uint16_t>((packet.sequence_count() + count_modulo - known->second.first) % count_modulo);
+      static_cast<std::uint16_t>((packet.sequence_count() + counts_before_zero - known->second.first) % count_modulo);
   // Half of the numbers back is a process that began again, or an old packet: nothing was lost.
-  if (missing != 0 && missing < count_modulo / 2) {
+  if (missing != 0 && missing < counts_before_zero / 2) {
     lost_ += missing;
     if (packet.time() > known->second.second) hearers_.gap(known->second.second, packet.time());
   }
