@@ -49,8 +49,8 @@ void Downlink::count_lost(const pus::TelemetryView& packet) {
   const auto next = static_cast<std::uint16_t>((packet.sequence_count() + 1) % counts_before_zero);
   const auto [known, first] = expected_.try_emplace(packet.apid(), next, packet.time());
   if (first) return;
-  const auto missing =
-      static_cast<std::uint16_t>((packet.sequence_count() + counts_before_zero - known->second.first) % count_modulo);
+  const auto missing = static_cast<std::uint16_t>((packet.sequence_count() + counts_before_zero - known->second.first) %
+                                                  counts_before_zero);
   // Half of the numbers back is a process that began again, or an old packet: nothing was lost.
   if (missing != 0 && missing < counts_before_zero / 2) {
     lost_ += missing;
