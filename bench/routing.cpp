@@ -216,8 +216,9 @@ Round routed(const std::filesystem::path& repository, const SystemClock& clock) 
          .open_database = [](supervisor::DatabaseStrategy) -> std::unique_ptr<supervisor::Database> { return nullptr; },
          .observer = silent}};
     craft.start();
+    TimePoint guard_wakes{};  // in a flight it has a thread of its own
     while (!children.first_ended()) {
-      guard.step(clock.now());
+      if (clock.now() >= guard_wakes) guard_wakes = guard.step(clock.now());
       const TimePoint wake = craft.step(clock.now());
       std::array<pollfd, 2> waits{};
       std::size_t used = 0;
