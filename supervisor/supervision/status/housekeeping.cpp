@@ -36,9 +36,9 @@ void Housekeeping::show() noexcept {
   show_links();
 }
 
-MemberStatus Housekeeping::status_of(std::uint16_t apid, std::optional<State> state,
+MemberRow Housekeeping::status_of(std::uint16_t apid, std::optional<State> state,
                                      const VitalPage* vital) const noexcept {
-  MemberStatus status;
+  MemberRow status;
   status.apid = apid;
   if (state) status.state = static_cast<std::uint8_t>(*state);
   if (vital == nullptr) return status;
@@ -56,7 +56,7 @@ MemberStatus Housekeeping::status_of(std::uint16_t apid, std::optional<State> st
 void Housekeeping::show_members() noexcept {
   MemberRows rows;
   std::size_t place = 0;
-  const auto tell = [&](MemberStatus status) {
+  const auto tell = [&](MemberRow status) {
     if (place == rows.apid.size()) return;  // of a mission that no reader has seen
     status.memory_kb = memory_kb_[place];
     put(rows, place++, status);
@@ -77,7 +77,7 @@ void Housekeeping::watch(TimePoint) {
   memory_kb = subject.alive() ? craft_.launcher.resident_kb(subject.process()) : 0;
 }
 
-void Housekeeping::add_consumer(const descriptor::MissionLink& link, LinkStatus& status) const noexcept {
+void Housekeeping::add_consumer(const descriptor::MissionLink& link, LinkRow& status) const noexcept {
   for (const Member& member : craft_.members) {
     if (member.descriptor().name != link.to) continue;
     const VitalPage* vital = member.vital();
@@ -98,13 +98,13 @@ void Housekeeping::add_consumer(const descriptor::MissionLink& link, LinkStatus&
     if (std::none_of(beyond, configuration->requires_.end(),
                      [&](const auto& wanted) { return wanted.name == link.requires_; }))
       return;
-    status.lost = status.latency_mean_ns = status.latency_max_ns = LinkStatus::not_told;
+    status.lost = status.latency_mean_ns = status.latency_max_ns = LinkRow::not_told;
     return;
   }
 }
 
-LinkStatus Housekeeping::status_of(const descriptor::MissionLink& link) const noexcept {
-  LinkStatus status;
+LinkRow Housekeeping::status_of(const descriptor::MissionLink& link) const noexcept {
+  LinkRow status;
   status.link = link.id;
   status.up = parts_.links.graph().is_up(link.id) ? 1 : 0;
   add_consumer(link, status);

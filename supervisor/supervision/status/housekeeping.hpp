@@ -38,11 +38,11 @@ class Housekeeping final : public Watch {
  private:
   void show_members() noexcept;
   void show_links() noexcept;
-  [[nodiscard]] MemberStatus status_of(std::uint16_t apid, std::optional<State> state,
+  [[nodiscard]] MemberRow status_of(std::uint16_t apid, std::optional<State> state,
                                        const VitalPage* vital) const noexcept;
-  [[nodiscard]] LinkStatus status_of(const descriptor::MissionLink& link) const noexcept;
+  [[nodiscard]] LinkRow status_of(const descriptor::MissionLink& link) const noexcept;
   /// What the consumer of a link tells of it.
-  void add_consumer(const descriptor::MissionLink& link, LinkStatus& status) const noexcept;
+  void add_consumer(const descriptor::MissionLink& link, LinkRow& status) const noexcept;
 
   Parts parts_;
   Craft& craft_;

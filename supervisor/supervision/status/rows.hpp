@@ -11,7 +11,7 @@
 /// What ground is told of each of us and of each link: one structure, one row (housekeeping 4702).
 namespace hirosco::supervisor {
 
-struct MemberStatus {
+struct MemberRow {
   static constexpr std::uint8_t not_running = 255;
   std::uint16_t apid{0};
   std::uint8_t state{not_running};
@@ -25,7 +25,7 @@ struct MemberStatus {
   std::uint32_t memory_kb{0};
 };
 
-struct LinkStatus {
+struct LinkRow {
   /// What the consumer cannot tell: it has room for some of its links only.
   static constexpr std::uint32_t not_told = std::numeric_limits<std::uint32_t>::max();
   std::uint8_t link{0};
@@ -67,7 +67,7 @@ struct LinkRows {
 };
 
 /// Realtime: wait-free.
-inline void put(MemberRows& rows, std::size_t i, const MemberStatus& status) noexcept {
+inline void put(MemberRows& rows, std::size_t i, const MemberRow& status) noexcept {
   rows.apid[i] = status.apid;
   rows.state[i] = status.state;
   rows.configuration[i] = status.configuration;
@@ -81,7 +81,7 @@ inline void put(MemberRows& rows, std::size_t i, const MemberStatus& status) noe
 }
 
 /// Realtime: wait-free.
-inline void put(LinkRows& rows, std::size_t i, const LinkStatus& status) noexcept {
+inline void put(LinkRows& rows, std::size_t i, const LinkRow& status) noexcept {
   rows.link[i] = status.link;
   rows.up[i] = status.up;
   rows.samples[i] = status.samples;
