@@ -37,7 +37,7 @@ void Housekeeping::show() noexcept {
 }
 
 MemberRow Housekeeping::status_of(std::uint16_t apid, std::optional<State> state,
-                                     const VitalPage* vital) const noexcept {
+                                  const VitalPage* vital) const noexcept {
   MemberRow status;
   status.apid = apid;
   if (state) status.state = static_cast<std::uint8_t>(*state);
