@@ -150,7 +150,8 @@ class Prepared final : public supervisor::ProcessLauncher {
     vital->state.store(static_cast<std::uint32_t>(descriptor::State::PreOperational));
     FileDescriptor& end = ends_[subsystem.subsystem.id];
     if (!end) std::tie(end, silent_.emplace_back()) = SocketChannel::make_pair().value();
-    launched.channel = std::make_unique<SocketChannel>(std::move(end));
+    launched.port = std::make_unique<supervisor::LocalMemberPort>(std::make_unique<SocketChannel>(std::move(end)),
+                                                                  launched.vital, launched.permit);
     launched.process = subsystem.subsystem.id;
     return launched;
   }

@@ -91,14 +91,14 @@ std::string Console::status_text(const Supervisor& supervisor, Duration since_st
     const auto state = member.state();
     text += fmt::format(" | {} {}", printable(member.descriptor().name),
                         member.alive() && state ? to_text(*state) : std::string_view{"not running"});
-    const VitalPage* vital = member.vital();
-    if (vital == nullptr || vital->cycling.load() == 0) continue;
-    text += fmt::format(" {:.0f} Hz exec {:.1f} us late max {:.0f} us overruns {} missed {}",
-                        1e9 / static_cast<double>(std::max<std::uint64_t>(vital->period_ns.load(), 1)),
-                        vital->execution_mean_ns.load() * 1e-3, vital->latency_max_ns.load() * 1e-3,
-                        vital->overruns.load(), vital->missed.load());
-    if (vital->inhibited.load() != 0) text += " INHIBITED";
-    if (vital->realtime.load() == 0) text += " (reduced promise: no real-time scheduling)";
+    const auto counts = member.statistics();
+    if (!counts || !counts->cycling) continue;
+    text +=
+        fmt::format(" {:.0f} Hz exec {:.1f} us late max {:.0f} us overruns {} missed {}",
+                    1e9 / static_cast<double>(std::max<std::uint64_t>(counts->period_ns, 1)),
+                    counts->execution_mean_ns * 1e-3, counts->latency_max_ns * 1e-3, counts->overruns, counts->missed);
+    if (counts->inhibited != 0) text += " INHIBITED";
+    if (!counts->realtime) text += " (reduced promise: no real-time scheduling)";
   }
   text += fmt::format(" | links {}/{}", supervisor.links().up_count(), supervisor.links().defined_count());
   for (const auto& shown : mission_.console)
@@ -117,16 +117,15 @@ std::string Console::status_json(const Supervisor& supervisor, Duration since_st
   bool first = true;
   for (const Member& member : supervisor.members()) {
     const auto state = member.state();
-    const VitalPage* vital = member.vital();
+    const auto counts = member.statistics();
     text += fmt::format("{}{{\"name\":{},\"state\":{}", first ? "" : ",", json_string(member.descriptor().name),
                         json_string(member.alive() && state ? to_text(*state) : std::string_view{"not running"}));
-    if (vital != nullptr)
+    if (counts)
       text += fmt::format(
           ",\"cycles\":{},\"overruns\":{},\"missed\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{}"
           ",\"inhibited_at_cycle\":{},\"stopped_at_cycle\":{},\"realtime\":{}",
-          vital->cycles.load(), vital->overruns.load(), vital->missed.load(), vital->latency_max_ns.load(),
-          vital->execution_mean_ns.load(), vital->inhibited.load(), vital->inhibited_at_cycle.load(),
-          member.permit()->stopped_at_cycle.load(), vital->realtime.load());
+          counts->cycles, counts->overruns, counts->missed, counts->latency_max_ns, counts->execution_mean_ns,
+          counts->inhibited, counts->inhibited_at_cycle, member.stopped_at_cycle(), counts->realtime ? 1 : 0);
     text += "}";
     first = false;
   }

@@ -33,8 +33,7 @@ TimePoint Supervisor::step(TimePoint now) {
   parts_->processes.take_guard_findings();
   const std::uint64_t beat = parts_->own.beats() + 1;
   parts_->own.beat(beat);
-  for (Member& member : craft.members)
-    if (PermitPage* page = member.permit()) page->heartbeat.store(beat, std::memory_order_release);
+  for (Member& member : craft.members) member.beat(beat, now);
 
   for (Member& member : craft.members) parts_->reception.read(member);
   parts_->telemetry.serve_ground();
@@ -71,7 +70,7 @@ const std::vector<Member>& Supervisor::members() const noexcept { return parts_-
 const descriptor::Mode& Supervisor::mode() const noexcept { return *parts_->craft.mode; }
 const LinkGraph& Supervisor::links() const noexcept { return parts_->links.graph(); }
 descriptor::State Supervisor::own_state() const noexcept { return parts_->own.state(); }
-const VitalPage& Supervisor::own_vital() const noexcept { return parts_->own.vital(); }
+MemberStatistics Supervisor::own_statistics() const noexcept { return parts_->own.statistics(); }
 bool Supervisor::reads(const Member& member) const { return parts_->reception.reads(member); }
 
 }  // namespace hirosco::supervisor

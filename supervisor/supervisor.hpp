@@ -56,7 +56,7 @@ class Supervisor final {
   [[nodiscard]] const descriptor::Mode& mode() const noexcept;
   [[nodiscard]] const LinkGraph& links() const noexcept;
   [[nodiscard]] descriptor::State own_state() const noexcept;
-  [[nodiscard]] const VitalPage& own_vital() const noexcept;
+  [[nodiscard]] MemberStatistics own_statistics() const noexcept;
   /// False while what a member sends has to wait: its channel is not to wake anybody.
   [[nodiscard]] bool reads(const Member& member) const;
 

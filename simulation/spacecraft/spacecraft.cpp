@@ -202,11 +202,11 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   if (before != nullptr) member.vital->counters = before->vital->counters;
   member.service_wake = clock_.now();
   supervisor::LaunchedSubsystem launched;
-  launched.channel = std::make_unique<ChannelEnd>(member.channels);
-  if (parts_.wrap_channel)
-    launched.channel = parts_.wrap_channel(described.subsystem.name, std::move(launched.channel));
+  std::unique_ptr<Channel> channel = std::make_unique<ChannelEnd>(member.channels);
+  if (parts_.wrap_channel) channel = parts_.wrap_channel(described.subsystem.name, std::move(channel));
   launched.vital = mapping_of(member.vital);
   launched.permit = mapping_of(member.permit);
+  launched.port = std::make_unique<supervisor::LocalMemberPort>(std::move(channel), launched.vital, launched.permit);
   launched.process = static_cast<std::uint32_t>(members_.size());
   launched.grip = std::make_shared<Grip>(*this, members_.size() - 1);
   return launched;

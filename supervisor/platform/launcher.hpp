@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 
-#include "hirosco/data_transfer/control/channel.hpp"
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/mission.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
+#include "supervisor/platform/member_port.hpp"
 
 /// How subsystems come to life (architecture, rule 3). Real: one process each; simulated: objects of one process.
 namespace hirosco::supervisor {
@@ -29,9 +29,9 @@ class ProcessGrip {
 
 /// What the supervisor holds of a started subsystem.
 struct LaunchedSubsystem {
-  std::unique_ptr<Channel> channel;
-  Mapping vital;                     ///< read
-  Mapping permit;                    ///< written; nobody else can map it so any more
+  std::unique_ptr<MemberPort> port;  ///< for the boxes of the supervisor
+  Mapping vital;                     ///< for the guard, which needs nothing of the port; read
+  Mapping permit;                    ///< the same; written
   std::uint32_t process{0};          ///< names it to the launcher
   std::shared_ptr<ProcessGrip> grip; ///< null where a process cannot be gripped
 };

@@ -106,9 +106,10 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
   HIROSCO_TRY_LET(Process process, Process::spawn(start));
   LaunchedSubsystem launched;
-  launched.channel = std::make_unique<SocketChannel>(std::move(ends.first));
   launched.vital = std::move(vital.second);
   launched.permit = std::move(permit.second);
+  launched.port = std::make_unique<LocalMemberPort>(std::make_unique<SocketChannel>(std::move(ends.first)),
+                                                    launched.vital, launched.permit);
   launched.process = next_++;
   launched.grip = grip_of(process);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));

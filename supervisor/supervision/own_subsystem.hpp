@@ -10,6 +10,7 @@
 #include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
+#include "supervisor/platform/member_port.hpp"
 
 namespace hirosco::supervisor {
 
@@ -51,7 +52,7 @@ class OwnSubsystem final : private Subsystem {
   [[nodiscard]] std::uint8_t configuration() const noexcept {
     return static_cast<std::uint8_t>(vital_->configuration.load(std::memory_order_relaxed));
   }
-  [[nodiscard]] const VitalPage& vital() const noexcept { return *vital_; }
+  [[nodiscard]] MemberStatistics statistics() const noexcept { return statistics_of(*vital_); }
 
  private:
   using Subsystem::telemetry;  // of the ground link only

@@ -132,7 +132,7 @@ Asked ask_for_the_robot(CoupledCraft& craft, Random& random) {
   const double budget_w = std::round(random.uniform(demand.others_w, demand.others_w + demand.robot_w) * 10) / 10 - 0.1;
   craft.command("SUPERVISOR", "SET_POWER_BUDGET", {std::max(budget_w, demand.others_w)});
   const double told_w = std::max(budget_w, demand.others_w);
-  const auto cycles = [&] { return craft.craft().supervisor().own_vital().cycles.load(); };
+  const auto cycles = [&] { return craft.craft().supervisor().own_statistics().cycles; };
   std::uint64_t refused_at = 0;
   Asked asked;
   const std::string numbers =

@@ -90,7 +90,8 @@ TEST_F(ReceptionTest, AChannelThatTheSystemRefusesThriceInARowIsClosedAndTriedOn
   Member& member = *craft.member(hand);
   int looked = 0;
   auto launched = launch(member.described()).value();
-  launched.channel = std::make_unique<LostChannel>(looked);
+  launched.port =
+      std::make_unique<LocalMemberPort>(std::make_unique<LostChannel>(looked), launched.vital, launched.permit);
   member.started(std::move(launched));
   ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
   for (int step = 1; step <= 2; ++step) {

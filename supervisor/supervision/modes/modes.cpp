@@ -29,8 +29,7 @@ void Modes::enter(const descriptor::Mode& mode) {
   craft_.mode = &mode;
   ++craft_.mode_epoch;
   own_.enter_mode(craft_.mode_epoch);
-  for (Member& member : craft_.members)
-    if (PermitPage* page = member.permit()) page->mode_epoch.store(craft_.mode_epoch, std::memory_order_release);
+  for (Member& member : craft_.members) member.enter_mode(craft_.mode_epoch);
   craft_.tell("mode " + mode.name, supervisor_apid);
 }
 

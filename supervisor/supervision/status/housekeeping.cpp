@@ -37,19 +37,19 @@ void Housekeeping::show() noexcept {
 }
 
 MemberRow Housekeeping::status_of(std::uint16_t apid, std::optional<State> state,
-                                  const VitalPage* vital) const noexcept {
+                                  const std::optional<MemberStatistics>& statistics,
+                                  std::uint8_t configuration) const noexcept {
   MemberRow status;
   status.apid = apid;
   if (state) status.state = static_cast<std::uint8_t>(*state);
-  if (vital == nullptr) return status;
-  const auto read = [](const auto& word) { return word.load(std::memory_order_relaxed); };
-  status.configuration = static_cast<std::uint8_t>(read(vital->configuration));
-  status.inhibited = static_cast<std::uint8_t>(read(vital->inhibited));
-  status.cycles = wrapped(read(vital->cycles));
-  status.overruns = wrapped(read(vital->overruns));
-  status.missed = wrapped(read(vital->missed));
-  status.latency_max_ns = read(vital->latency_max_ns);
-  status.execution_mean_ns = read(vital->execution_mean_ns);
+  if (!statistics) return status;
+  status.configuration = configuration;
+  status.inhibited = static_cast<std::uint8_t>(statistics->inhibited);
+  status.cycles = wrapped(statistics->cycles);
+  status.overruns = wrapped(statistics->overruns);
+  status.missed = wrapped(statistics->missed);
+  status.latency_max_ns = statistics->latency_max_ns;
+  status.execution_mean_ns = statistics->execution_mean_ns;
   return status;
 }
 
@@ -61,8 +61,10 @@ void Housekeeping::show_members() noexcept {
     status.memory_kb = memory_kb_[place];
     put(rows, place++, status);
   };
-  tell(status_of(craft_.mission.supervisor.id, parts_.own.state(), &parts_.own.vital()));
-  for (const Member& member : craft_.members) tell(status_of(member.apid(), member.state(), member.vital()));
+  tell(
+      status_of(craft_.mission.supervisor.id, parts_.own.state(), parts_.own.statistics(), parts_.own.configuration()));
+  for (const Member& member : craft_.members)
+    tell(status_of(member.apid(), member.state(), member.statistics(), member.configuration()));
   members_.store(rows);
 }
 
@@ -80,21 +82,19 @@ void Housekeeping::watch(TimePoint) {
 void Housekeeping::add_consumer(const descriptor::MissionLink& link, LinkRow& status) const noexcept {
   for (const Member& member : craft_.members) {
     if (member.descriptor().name != link.to) continue;
-    const VitalPage* vital = member.vital();
-    if (vital == nullptr) return;
-    const auto found = std::ranges::find_if(vital->incoming, [&](const IncomingLink& incoming) {
-      return incoming.link.load(std::memory_order_relaxed) == link.id;
-    });
-    if (found != vital->incoming.end()) {
-      status.lost = found->lost.load(std::memory_order_relaxed);
-      status.latency_mean_ns = found->latency_mean_ns.load(std::memory_order_relaxed);
-      status.latency_max_ns = found->latency_max_ns.load(std::memory_order_relaxed);
+    const auto statistics = member.statistics();
+    if (!statistics) return;
+    const auto& incoming = statistics->incoming;
+    const auto found = std::ranges::find(incoming, link.id, &MemberStatistics::Incoming::link);
+    if (found != incoming.end()) {
+      status.lost = found->lost;
+      status.latency_mean_ns = found->latency_mean_ns;
+      status.latency_max_ns = found->latency_max_ns;
       return;
     }
-    const auto* configuration =
-        member.descriptor().find_configuration(static_cast<std::uint8_t>(vital->configuration.load()));
-    if (configuration == nullptr || configuration->requires_.size() <= vital->incoming.size()) return;
-    const auto beyond = configuration->requires_.begin() + static_cast<std::ptrdiff_t>(vital->incoming.size());
+    const auto* configuration = member.descriptor().find_configuration(member.configuration());
+    if (configuration == nullptr || configuration->requires_.size() <= incoming.size()) return;
+    const auto beyond = configuration->requires_.begin() + static_cast<std::ptrdiff_t>(incoming.size());
     if (std::none_of(beyond, configuration->requires_.end(),
                      [&](const auto& wanted) { return wanted.name == link.requires_; }))
       return;

@@ -39,7 +39,8 @@ class Housekeeping final : public Watch {
   void show_members() noexcept;
   void show_links() noexcept;
   [[nodiscard]] MemberRow status_of(std::uint16_t apid, std::optional<State> state,
-                                    const VitalPage* vital) const noexcept;
+                                    const std::optional<MemberStatistics>& statistics,
+                                    std::uint8_t configuration) const noexcept;
   [[nodiscard]] LinkRow status_of(const descriptor::MissionLink& link) const noexcept;
   /// What the consumer of a link tells of it.
   void add_consumer(const descriptor::MissionLink& link, LinkRow& status) const noexcept;

@@ -15,28 +15,18 @@ void Member::started(LaunchedSubsystem launched) {
 
 void Member::died() { launched_ = {}; }
 
-const VitalPage* Member::vital() const noexcept {
-  if (launched_.vital.octets.size() < sizeof(VitalPage)) return nullptr;
-  const auto* page = reinterpret_cast<const VitalPage*>(launched_.vital.octets.data());
-  return page->magic == page_magic && page->version == page_version ? page : nullptr;
+std::optional<MemberStatistics> Member::statistics() const noexcept {
+  return alive() ? launched_.port->statistics() : std::nullopt;
 }
 
-PermitPage* Member::permit() const noexcept {
-  if (launched_.permit.octets.size() < sizeof(PermitPage)) return nullptr;
-  return reinterpret_cast<PermitPage*>(launched_.permit.octets.data());
+std::uint64_t Member::stopped_at_cycle() const noexcept { return alive() ? launched_.port->stopped_at_cycle() : 0; }
+
+void Member::enter_mode(std::uint32_t epoch) noexcept {
+  if (alive()) launched_.port->enter_mode(epoch);
 }
 
-std::optional<State> Member::state() const noexcept {
-  const VitalPage* page = vital();
-  if (page == nullptr) return std::nullopt;
-  const std::uint32_t state = page->state.load(std::memory_order_acquire);
-  if (state > static_cast<std::uint32_t>(State::SoftwareDeinit)) return std::nullopt;
-  return static_cast<State>(state);
-}
-
-std::uint8_t Member::configuration() const noexcept {
-  const VitalPage* page = vital();
-  return page != nullptr ? static_cast<std::uint8_t>(page->configuration.load(std::memory_order_relaxed)) : 0;
+void Member::beat(std::uint64_t heartbeat, TimePoint now) {
+  if (alive()) launched_.port->beat(heartbeat, now);
 }
 
 }  // namespace hirosco::supervisor

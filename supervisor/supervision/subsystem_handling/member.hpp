@@ -8,11 +8,10 @@
 #include <string>
 
 #include "hirosco/descriptor/mission.hpp"
-#include "hirosco/subsystem/pages.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "supervisor/platform/launcher.hpp"
 
-/// One started subsystem as the supervisor sees it: its channel, its two pages, whether it lives. Whether it moves, and
+/// One started subsystem as the supervisor sees it: its port, whether it lives. Whether it moves, and
 /// whether it may move anything, is the guard's.
 namespace hirosco::supervisor {
 
@@ -26,14 +25,18 @@ class Member {
   [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept { return described_->subsystem; }
   [[nodiscard]] const descriptor::MissionSubsystem& described() const noexcept { return *described_; }
   [[nodiscard]] std::uint16_t apid() const noexcept { return described_->subsystem.id; }
-  [[nodiscard]] bool alive() const noexcept { return launched_.channel != nullptr; }
-  [[nodiscard]] Channel* channel() const noexcept { return launched_.channel.get(); }
+  [[nodiscard]] bool alive() const noexcept { return launched_.port != nullptr; }
+  [[nodiscard]] Channel* channel() const noexcept { return alive() ? &launched_.port->channel() : nullptr; }
   [[nodiscard]] std::uint32_t process() const noexcept { return launched_.process; }
-  [[nodiscard]] const VitalPage* vital() const noexcept;
-  [[nodiscard]] PermitPage* permit() const noexcept;
-  /// As the vital page says; empty when it does not run or the page holds no state.
-  [[nodiscard]] std::optional<State> state() const noexcept;
-  [[nodiscard]] std::uint8_t configuration() const noexcept;
+  /// As it says itself; empty when it does not run or what it says holds no state.
+  [[nodiscard]] std::optional<State> state() const noexcept { return alive() ? launched_.port->state() : std::nullopt; }
+  [[nodiscard]] std::uint8_t configuration() const noexcept { return alive() ? launched_.port->configuration() : 0; }
+  /// Empty when it does not run or what it says is damaged.
+  [[nodiscard]] std::optional<MemberStatistics> statistics() const noexcept;
+  [[nodiscard]] std::uint64_t stopped_at_cycle() const noexcept;
+  void enter_mode(std::uint32_t epoch) noexcept;
+  /// Once in each step of the supervisor.
+  void beat(std::uint64_t heartbeat, TimePoint now);
 
   /// A recovery that runs for it: a second event of the same or lower severity does not start another.
   std::optional<descriptor::Severity> recovering;

@@ -31,21 +31,25 @@ struct MemberTest : ::testing::Test {
       return memory.map(memory.create("page", octets).value(), Access::ReadWrite).value();
     };
     LaunchedSubsystem launched;
-    launched.channel = std::make_unique<OwnEnd>();
     launched.vital = page(sizeof(VitalPage));
     launched.permit = page(sizeof(PermitPage));
     launched.process = 7;
     vital = new (launched.vital.octets.data()) VitalPage{};
     permit = new (launched.permit.octets.data()) PermitPage{};
+    launched.port = std::make_unique<LocalMemberPort>(std::make_unique<OwnEnd>(), launched.vital, launched.permit);
     member.started(std::move(launched));
   }
 };
 
 TEST_F(MemberTest, OneThatNeverStartedHasNothingAndFearsNothing) {
   EXPECT_FALSE(member.alive());
-  EXPECT_EQ(member.vital(), nullptr);
+  EXPECT_EQ(member.channel(), nullptr);
+  EXPECT_FALSE(member.statistics());
   EXPECT_EQ(member.state(), std::nullopt);
   EXPECT_EQ(member.configuration(), 0);
+  EXPECT_EQ(member.stopped_at_cycle(), 0u);
+  member.enter_mode(5);
+  member.beat(6, {});
 }
 
 TEST_F(MemberTest, ItsStateIsThatOfTheVitalPage) {
@@ -64,11 +68,58 @@ TEST_F(MemberTest, APageThatIsNotOneIsNotBelieved) {
   vital->state = 10;
   EXPECT_EQ(member.state(), std::nullopt);
   vital->state = 3;
+  EXPECT_TRUE(member.statistics());
   vital->magic = 0;
   EXPECT_EQ(member.state(), std::nullopt);
+  EXPECT_FALSE(member.statistics());
+  EXPECT_EQ(member.configuration(), 0);
   vital->magic = page_magic;
   vital->version = page_version + 1;
   EXPECT_EQ(member.state(), std::nullopt);
+}
+
+TEST_F(MemberTest, HeartbeatAndModeStandInItsPermitPage) {
+  start();
+  member.enter_mode(5);
+  member.beat(6, {});
+  permit->stopped_at_cycle = 7;
+  EXPECT_EQ(permit->mode_epoch, 5u);
+  EXPECT_EQ(permit->heartbeat, 6u);
+  EXPECT_EQ(member.stopped_at_cycle(), 7u);
+}
+
+TEST_F(MemberTest, ItsStatisticsAreEachWordOfItsVitalPage) {
+  start();
+  vital->inhibited = 1;
+  vital->realtime = 1;
+  vital->cycling = 1;
+  vital->period_ns = 2;
+  vital->cycles = 3;
+  vital->overruns = 4;
+  vital->missed = 5;
+  vital->latency_max_ns = 6;
+  vital->execution_mean_ns = 7;
+  vital->inhibited_at_cycle = 8;
+  vital->incoming[1].link = 9;
+  vital->incoming[1].lost = 10;
+  vital->incoming[1].latency_mean_ns = 11;
+  vital->incoming[1].latency_max_ns = 12;
+  const auto seen = member.statistics().value();
+  EXPECT_EQ(seen.inhibited, 1u);
+  EXPECT_TRUE(seen.realtime);
+  EXPECT_TRUE(seen.cycling);
+  EXPECT_EQ(seen.period_ns, 2u);
+  EXPECT_EQ(seen.cycles, 3u);
+  EXPECT_EQ(seen.overruns, 4u);
+  EXPECT_EQ(seen.missed, 5u);
+  EXPECT_EQ(seen.latency_max_ns, 6u);
+  EXPECT_EQ(seen.execution_mean_ns, 7u);
+  EXPECT_EQ(seen.inhibited_at_cycle, 8u);
+  EXPECT_EQ(seen.incoming[0].link, 0u);
+  EXPECT_EQ(seen.incoming[1].link, 9u);
+  EXPECT_EQ(seen.incoming[1].lost, 10u);
+  EXPECT_EQ(seen.incoming[1].latency_mean_ns, 11u);
+  EXPECT_EQ(seen.incoming[1].latency_max_ns, 12u);
 }
 
 TEST_F(MemberTest, ADeadOneIsGoneWithItsPages) {

@@ -47,7 +47,7 @@ void Processes::launch(Member& member) {
   }
   craft_.guard.adopt(member.apid(), *launched);
   member.started(std::move(*launched));
-  member.permit()->mode_epoch.store(craft_.mode_epoch, std::memory_order_release);
+  member.enter_mode(craft_.mode_epoch);
   craft_.tell("started " + member.descriptor().name, member.apid());
 }
 

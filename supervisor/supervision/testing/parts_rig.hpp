@@ -94,12 +94,13 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
       return memory.map(memory.create("page", octets).value(), Access::ReadWrite).value();
     };
     LaunchedSubsystem launched;
-    launched.channel = std::make_unique<PlayedMember::End>(member.channel);
     launched.vital = page(sizeof(VitalPage));
     launched.permit = page(sizeof(PermitPage));
     launched.process = member.process = described.subsystem.id + 1000U;
     member.vital = new (launched.vital.octets.data()) VitalPage{};
     member.permit = new (launched.permit.octets.data()) PermitPage{};
+    launched.port = std::make_unique<LocalMemberPort>(std::make_unique<PlayedMember::End>(member.channel),
+                                                      launched.vital, launched.permit);
     return launched;
   }
   std::optional<ProcessEnd> ended(std::uint32_t process) override {
