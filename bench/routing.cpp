@@ -23,6 +23,7 @@
 #include "hirosco/descriptor/read.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::bench {
@@ -205,8 +206,13 @@ Round routed(const std::filesystem::path& repository, const SystemClock& clock) 
   {
     const descriptor::Mission mission = mission_of(repository);
     Silent silent;
+    // As in a flight, whoever waits for the disk is woken by the log.
+    auto log_progress = WakeEvent::create().value();
+    supervisor::ThreadedPacketLog::Options log_options;
+    log_options.on_progress = [&] { log_progress.notify(); };
     supervisor::ThreadedPacketLog log{
-        clock, supervisor::open_database(supervisor::DatabaseStrategy::Sqlite, folder / "log.db").value(), {}};
+        clock, supervisor::open_database(supervisor::DatabaseStrategy::Sqlite, folder / "log.db").value(),
+        std::move(log_options)};
     supervisor::Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1, .on_finding = {}}};
     supervisor::Supervisor craft{
         {.mission = mission,
@@ -221,13 +227,14 @@ Round routed(const std::filesystem::path& repository, const SystemClock& clock) 
     while (!children.first_ended()) {
       if (clock.now() >= guard_wakes) guard_wakes = guard.step(clock.now());
       const TimePoint wake = craft.step(clock.now());
-      std::array<pollfd, 2> waits{};
-      std::size_t used = 0;
+      std::array<pollfd, 3> waits{pollfd{.fd = log_progress.descriptor(), .events = POLLIN, .revents = 0}};
+      std::size_t used = 1;
       for (const auto& member : craft.members())
         if (member.alive() && (member.apid() == ground_apid || member.apid() == echo_apid) && craft.reads(member))
           waits[used++] = {.fd = member.channel()->wait_descriptor(), .events = POLLIN, .revents = 0};
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(wake - clock.now()).count();
       ::poll(waits.data(), used, static_cast<int>(std::clamp<std::int64_t>(left, 0, 10)));
+      if (waits[0].revents != 0) log_progress.clear();
     }
   }
   std::filesystem::remove_all(folder);

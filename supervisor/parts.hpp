@@ -57,12 +57,14 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Outstanding outstanding;
   Restarts restarts;
   Traffic traffic;
+  GroundRoute ground_route;
   // data handling
-  Telecommands telecommands{{craft, own, graph, power, outstanding, traffic}};
+  Telecommands telecommands{{craft, own, graph, power, outstanding, traffic, ground_route}};
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
   Replies replies{craft, outstanding};
-  Telemetry telemetry{craft, own, traffic, {&traffic, &replies, &reception, &power, &own_telecommands, &links}};
+  Telemetry telemetry{
+      craft, own, traffic, ground_route, {&traffic, &replies, &reception, &power, &own_telecommands, &links}};
   Reception reception{{craft, own, telecommands, telemetry, reactions, outstanding, traffic}};
   // real-time links, resource management
   Links links{craft, own, own_telecommands, graph};

@@ -36,7 +36,6 @@ TimePoint Supervisor::step(TimePoint now) {
   for (Member& member : craft.members) member.beat(beat, now);
 
   for (Member& member : craft.members) parts_->reception.read(member);
-  parts_->telemetry.serve_ground();
   parts_->processes.watch_closed();
   parts_->stops.follow();
   parts_->telecommands.forward_durable();
@@ -48,6 +47,7 @@ TimePoint Supervisor::step(TimePoint now) {
     for (Watch* watch : parts_->watches) watch->watch(now);
   }
   parts_->shutdown.enforce(now);
+  parts_->telemetry.serve_ground();  // all that this step had to say, together
   if (parts_->telemetry.ground().waiting()) wake = std::min(wake, now + ground_pace);
   return std::min(wake, next_watch_);
 }

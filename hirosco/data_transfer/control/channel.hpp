@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/utilities/octets.hpp"
@@ -42,6 +43,13 @@ class Channel {
   virtual ~Channel() = default;
   /// ResourceExhausted: the peer does not read; nothing was sent. Unavailable: the peer is gone.
   [[nodiscard]] virtual Result<> send(const Message& message) = 0;
+  /// Sends as many as the peer takes now, in order, and answers how many: for who has several at once. What stopped it is
+  /// what send() says of the next one.
+  [[nodiscard]] virtual std::size_t send_all(std::span<const Message> messages) {
+    std::size_t sent = 0;
+    while (sent < messages.size() && send(messages[sent])) ++sent;
+    return sent;
+  }
   /// Next message into `buffer`; Flow::None in `found` when there is none. Unavailable: the peer is gone and all is read.
   struct Found {
     Flow flow{Flow::None};

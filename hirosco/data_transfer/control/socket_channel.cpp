@@ -31,15 +31,44 @@ Error send_error(int number) noexcept {
   }
 }
 
-void attach(msghdr& header, std::span<std::byte> room, int descriptor) noexcept {
-  header.msg_control = room.data();
-  header.msg_controllen = room.size();
-  cmsghdr* const control = CMSG_FIRSTHDR(&header);
-  control->cmsg_level = SOL_SOCKET;
-  control->cmsg_type = SCM_RIGHTS;
-  control->cmsg_len = CMSG_LEN(sizeof descriptor);
-  std::memcpy(CMSG_DATA(control), &descriptor, sizeof descriptor);
-}
+/// A message as the system call wants it: it stays where it is until that has returned.
+class Datagram {
+ public:
+  [[nodiscard]] Result<> fill(const Message& message, msghdr& header) noexcept {
+    if (message.packet.size() > max_packet_octets)
+      return fail(ErrorCode::InvalidArgument, "octets of packet", static_cast<std::int64_t>(message.packet.size()));
+    OctetWriter{envelope_}
+        .put(static_cast<std::uint8_t>(message.kind))
+        .put(SocketChannel::version)
+        .put(message.link)
+        .put(message.mode_epoch);
+    parts_ = {iovec{envelope_.data(), envelope_.size()},
+              iovec{const_cast<std::byte*>(message.packet.data()), message.packet.size()}};
+    header = {};
+    header.msg_iov = parts_.data();
+    header.msg_iovlen = parts_.size();
+    if (!message.memory) return ok();
+    const int descriptor = SealedMemory::descriptor(message.memory);
+    if (descriptor < 0) return fail(ErrorCode::InvalidArgument, "memory handle cannot leave this process");
+    attach(header, descriptor);
+    return ok();
+  }
+
+ private:
+  void attach(msghdr& header, int descriptor) noexcept {
+    header.msg_control = control_.data();
+    header.msg_controllen = control_.size();
+    cmsghdr* const control = CMSG_FIRSTHDR(&header);
+    control->cmsg_level = SOL_SOCKET;
+    control->cmsg_type = SCM_RIGHTS;
+    control->cmsg_len = CMSG_LEN(sizeof descriptor);
+    std::memcpy(CMSG_DATA(control), &descriptor, sizeof descriptor);
+  }
+
+  std::array<std::byte, SocketChannel::envelope_octets> envelope_;
+  std::array<iovec, 2> parts_;
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(int))> control_;
+};
 
 struct Arrived {
   FileDescriptor first;
@@ -78,27 +107,29 @@ Result<std::pair<FileDescriptor, FileDescriptor>> SocketChannel::make_pair() {
 }
 
 Result<> SocketChannel::send(const Message& message) {
-  if (message.packet.size() > max_packet_octets)
-    return fail(ErrorCode::InvalidArgument, "octets of packet", static_cast<std::int64_t>(message.packet.size()));
-  std::array<std::byte, envelope_octets> envelope{};
-  OctetWriter{envelope}
-      .put(static_cast<std::uint8_t>(message.kind))
-      .put(version)
-      .put(message.link)
-      .put(message.mode_epoch);
-  std::array<iovec, 2> parts{iovec{envelope.data(), envelope.size()},
-                             iovec{const_cast<std::byte*>(message.packet.data()), message.packet.size()}};
-  msghdr header{};
-  header.msg_iov = parts.data();
-  header.msg_iovlen = parts.size();
-  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(int))> control{};
-  if (message.memory) {
-    const int descriptor = SealedMemory::descriptor(message.memory);
-    if (descriptor < 0) return fail(ErrorCode::InvalidArgument, "memory handle cannot leave this process");
-    attach(header, control, descriptor);
-  }
+  Datagram datagram;
+  msghdr header;
+  if (const auto filled = datagram.fill(message, header); !filled) return filled;
   if (::sendmsg(socket_.get(), &header, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) return fail(send_error(errno));
   return ok();
+}
+
+std::size_t SocketChannel::send_all(std::span<const Message> messages) {
+  std::array<Datagram, most_at_once> datagrams;
+  std::array<mmsghdr, most_at_once> headers;
+  std::size_t sent = 0;
+  while (sent < messages.size()) {
+    std::size_t ready = 0;
+    while (ready < most_at_once && sent + ready < messages.size() &&
+           datagrams[ready].fill(messages[sent + ready], headers[ready].msg_hdr))
+      ++ready;
+    const int taken = ready == 0 ? 0
+                                 : ::sendmmsg(socket_.get(), headers.data(), static_cast<unsigned>(ready),
+                                              MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (taken > 0) sent += static_cast<std::size_t>(taken);
+    if (taken < static_cast<int>(most_at_once)) return sent;
+  }
+  return sent;
 }
 
 Result<Channel::Found> SocketChannel::receive(MessageBuffer& buffer) {

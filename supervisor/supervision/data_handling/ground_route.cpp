@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/ground_route.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace hirosco::supervisor {
 
 void GroundRoute::send(Channel& link, Octets packet, Kind kind, TimePoint now) {
-  flush(link, now);
-  if (!waiting() && link.send({.packet = packet})) return;
+  if (!waiting()) moved_ = now;
+  // The link is asked before anything is dropped for want of room.
+  if (reports_.size() + housekeeping_.size() >= std::min(together, limits_.housekeeping)) flush(link, now);
   keep(packet, kind);
 }
 
@@ -27,14 +31,34 @@ void GroundRoute::keep(Octets packet, Kind kind) {
 
 void GroundRoute::flush(Channel& link, TimePoint now) {
   if (!waiting()) moved_ = now;
+  std::array<Message, together> messages;
   while (waiting()) {
+    const std::size_t ready = next(messages);
+    const std::size_t sent = link.send_all(std::span{messages}.first(ready));
+    if (sent != 0) moved_ = now;
+    drop_sent(sent);
+    if (sent < ready) return;
+  }
+}
+
+std::size_t GroundRoute::next(std::span<Message, together> messages) const {
+  auto report = reports_.begin();
+  auto sample = housekeeping_.begin();
+  std::size_t count = 0;
+  while (count < together && (report != reports_.end() || sample != housekeeping_.end())) {
+    const bool report_first =
+        sample == housekeeping_.end() || (report != reports_.end() && report->order < sample->order);
+    messages[count++] = {.packet = report_first ? (report++)->octets : (sample++)->octets};
+  }
+  return count;
+}
+
+void GroundRoute::drop_sent(std::size_t count) {
+  for (; count > 0; --count) {
     const bool report_first =
         housekeeping_.empty() || (!reports_.empty() && reports_.front().order < housekeeping_.front().order);
-    auto& queue = report_first ? reports_ : housekeeping_;
-    if (!link.send({.packet = queue.front().octets})) return;
-    moved_ = now;
-    if (report_first) reports_octets_ -= queue.front().octets.size();
-    queue.pop_front();
+    if (report_first) reports_octets_ -= reports_.front().octets.size();
+    (report_first ? reports_ : housekeeping_).pop_front();
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "hirosco/data_transfer/control/channel.hpp"
@@ -15,10 +16,12 @@ namespace hirosco::supervisor {
 /// What goes to the ground link, in order, however slowly that takes it (docs/adr/0029). Reports wait, and while many of
 /// them do, no further telecommand of the ground is to be read: each would bring more. Housekeeping is dropped first, the
 /// oldest first, for its next sample says more; what is dropped is counted.
-/// Thread: one. Realtime: allocates while the link is behind, never blocks.
+/// Thread: one. Realtime: allocates, never blocks.
 class GroundRoute {
  public:
   enum class Kind : std::uint8_t { Report, Housekeeping };
+  /// So many are handed to the link in one call; they wait for each other no longer than until the end of a step.
+  static constexpr std::size_t together = 32;
   struct Limits {
     std::size_t busy{512};  ///< reports that wait: no telecommand is read
     std::size_t reports_octets{4 << 20};  ///< of reports; more only comes from who talks without being asked
@@ -39,7 +42,7 @@ class GroundRoute {
   [[nodiscard]] static Kind kind_of(const pus::TelemetryView& packet) noexcept {
     return packet.service() == 3 && packet.subtype() == 25 ? Kind::Housekeeping : Kind::Report;
   }
-  /// Sends a packet behind those that wait.
+  /// Takes a packet behind those that wait. It is sent with them: by flush(), or when enough are together.
   void send(Channel& link, Octets packet, Kind kind, TimePoint now);
   /// Sends what waits, as much as the link takes.
   void flush(Channel& link, TimePoint now);
@@ -59,6 +62,9 @@ class GroundRoute {
     std::vector<std::byte> octets;
   };
   void keep(Octets packet, Kind kind);
+  /// Views of those that are next in order; how many.
+  std::size_t next(std::span<Message, together> messages) const;
+  void drop_sent(std::size_t count);
 
   Limits limits_;
   std::deque<Packet> reports_;

@@ -80,6 +80,7 @@ struct RepliesTest : PartsTest {
   std::vector<int> told_ground(std::uint16_t destination) {
     std::vector<int> found;
     MessageBuffer buffer;
+    parts.telemetry.serve_ground();
     for (;;) {
       const auto next = played[camera].channel.subsystem_end().receive(buffer);
       if (!next || next->flow == Flow::None) return found;

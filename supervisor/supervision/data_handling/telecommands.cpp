@@ -239,6 +239,9 @@ void Telecommands::forward(const Outgoing& outgoing) {
     return reject({.packet = packet, .origin = origin}, request, FailureNotice{FailureCode::NotPermittedNow});
   Member* addressee = craft_.member(apid);
   Channel* channel = to_itself ? &parts_.own.channel() : addressee != nullptr ? addressee->channel() : nullptr;
+  // The ground hears what was said before this telecommand in the state in which it was said.
+  if (addressee != nullptr && channel != nullptr && craft_.is_ground_link(*addressee))
+    parts_.ground_route.flush(*channel, craft_.now);
   const Message message{.kind = MessageKind::Packet, .mode_epoch = mode_epoch, .packet = packet, .memory = memory};
   const bool sent = channel != nullptr && channel->send(message).has_value();
   if (!sent) {

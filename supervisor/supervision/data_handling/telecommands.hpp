@@ -12,6 +12,7 @@
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/ground_route.hpp"
 #include "supervisor/supervision/data_handling/outstanding.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
@@ -40,6 +41,7 @@ class Telecommands final : public Watch, public Accounts {
     PowerHandling& power;
     Outstanding& outstanding;
     Traffic& traffic;
+    GroundRoute& ground_route;
   };
   /// A telecommand that is not durable after this time is refused: late execution surprises whoever gave it up.
   static constexpr Duration durable_limit = std::chrono::seconds{15};

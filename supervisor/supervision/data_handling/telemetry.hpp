@@ -17,8 +17,8 @@ namespace hirosco::supervisor {
 /// Thread: the supervisor's.
 class Telemetry {
  public:
-  Telemetry(Craft& craft, OwnSubsystem& own, Traffic& traffic, std::vector<Hearer*> hearers)
-      : craft_{craft}, own_{own}, traffic_{traffic}, hearers_{std::move(hearers)} {}
+  Telemetry(Craft& craft, OwnSubsystem& own, Traffic& traffic, GroundRoute& ground, std::vector<Hearer*> hearers)
+      : craft_{craft}, own_{own}, traffic_{traffic}, ground_{ground}, hearers_{std::move(hearers)} {}
 
   /// False: it cannot be read, or claims another sender than whose channel brought it (decision 2).
   [[nodiscard]] bool take(std::uint16_t from, Octets packet);
@@ -33,8 +33,8 @@ class Telemetry {
   Craft& craft_;
   OwnSubsystem& own_;
   Traffic& traffic_;
+  GroundRoute& ground_;
   std::vector<Hearer*> hearers_;
-  GroundRoute ground_;
   GroundRoute::Lost lost_told_{};
   TimePoint next_loss_told_{};
 };

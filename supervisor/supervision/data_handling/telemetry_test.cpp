@@ -15,6 +15,7 @@ using enum descriptor::State;
 struct TelemetryTest : PartsTest {
   /// Reports that the ground link was given to pass on.
   std::size_t passed_on() {
+    parts.telemetry.serve_ground();
     MessageBuffer buffer;
     for (std::size_t count = 0;; ++count) {
       const auto next = played[camera].channel.subsystem_end().receive(buffer);

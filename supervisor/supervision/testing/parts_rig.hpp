@@ -230,7 +230,7 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
       }
       std::vector<std::uint16_t>& codes;
     } ear{codes};
-    Telemetry listening{craft, parts.own, parts.traffic, {&ear}};
+    Telemetry listening{craft, parts.own, parts.traffic, parts.ground_route, {&ear}};
     MessageBuffer buffer;
     for (;;) {
       const auto next = parts.own.channel().receive(buffer);

@@ -86,6 +86,39 @@ TYPED_TEST_P(ChannelConformance, SaysSoWhenThePeerDoesNotRead) {
   EXPECT_TRUE(this->send(octets)) << "there is room again";
 }
 
+TYPED_TEST_P(ChannelConformance, TakesSeveralInOrderAndSaysHowMany) {
+  std::vector<std::vector<std::byte>> packets;
+  std::vector<Message> messages;
+  for (int i = 0; i < 100; ++i) packets.push_back(this->packet(static_cast<std::size_t>(i) * 3, i));
+  for (const auto& octets : packets) messages.push_back({.link = 7, .packet = octets});
+  messages[40].memory = this->ends_.memory();
+  EXPECT_EQ(this->ends_.first().send_all(messages), messages.size());
+  for (int i = 0; i < 100; ++i) {
+    const auto found = this->receive().value();
+    ASSERT_EQ(found.flow, Flow::New);
+    EXPECT_TRUE(std::ranges::equal(found.message.packet, packets[static_cast<std::size_t>(i)])) << i;
+    EXPECT_EQ(found.message.link, 7);
+    EXPECT_EQ(static_cast<bool>(found.message.memory), i == 40);
+  }
+  EXPECT_EQ(this->receive().value().flow, Flow::None);
+}
+
+TYPED_TEST_P(ChannelConformance, TakesOfSeveralWhatThereIsRoomForAndNothingBehindOneThatIsTooLong) {
+  const auto octets = this->packet(64, 1);
+  const auto too_long = this->packet(max_packet_octets + 1, 0);
+  const std::vector<Message> mixed{{.packet = octets}, {.packet = octets}, {.packet = too_long}, {.packet = octets}};
+  EXPECT_EQ(this->ends_.first().send_all(mixed), 2U);
+  const std::vector<Message> many(100'000, {.packet = octets});
+  const std::size_t sent = this->ends_.first().send_all(many);
+  EXPECT_GT(sent, 0U);
+  EXPECT_LT(sent, many.size());
+  std::size_t read = 0;
+  while (this->receive().value().flow == Flow::New) ++read;
+  EXPECT_EQ(read, 2 + sent) << "what was accepted arrives, nothing else";
+  this->ends_.close_first();
+  EXPECT_EQ(this->ends_.second().send_all(mixed), 0U);
+}
+
 TYPED_TEST_P(ChannelConformance, DeliversWhatWasSentBeforeThePeerWentAndThenSaysSo) {
   ASSERT_TRUE(this->send(this->packet(9, 1)));
   this->ends_.close_first();
@@ -96,7 +129,8 @@ TYPED_TEST_P(ChannelConformance, DeliversWhatWasSentBeforeThePeerWentAndThenSays
 
 REGISTER_TYPED_TEST_SUITE_P(ChannelConformance, FindsNothingWhereNothingWasSent, CarriesEveryFieldOfAMessage,
                             KeepsOrderAndBoundariesUpToTheLargestPacket, RefusesAPacketThatIsTooLong,
-                            CarriesTheHandleOfMemory, SaysSoWhenThePeerDoesNotRead,
+                            CarriesTheHandleOfMemory, SaysSoWhenThePeerDoesNotRead, TakesSeveralInOrderAndSaysHowMany,
+                            TakesOfSeveralWhatThereIsRoomForAndNothingBehindOneThatIsTooLong,
                             DeliversWhatWasSentBeforeThePeerWentAndThenSaysSo);
 
 }  // namespace hirosco::testing
