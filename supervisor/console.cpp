@@ -5,23 +5,17 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <utility>
 
 namespace hirosco::supervisor {
 namespace {
 
-constexpr std::size_t most_lines = 4096;
 constexpr Duration writer_patience = 500ms;
 
 /// Names and event texts come from descriptors: nothing but printable characters reaches the terminal or the JSON.
-[[nodiscard]] std::string printable(std::string_view text) {
-  std::string clean;
-  for (const char letter : text) clean += letter >= ' ' && letter != 127 ? letter : '?';
-  return clean;
-}
-
 [[nodiscard]] std::string json_string(std::string_view text) {
   std::string quoted = "\"";
-  for (const char letter : printable(text)) {
+  for (const char letter : shown(text)) {
     if (letter == '"' || letter == '\\') quoted += '\\';
     quoted += letter;
   }
@@ -37,7 +31,8 @@ constexpr Duration writer_patience = 500ms;
 
 }  // namespace
 
-Console::Console(const descriptor::Mission& mission, Style style) : mission_{mission}, style_{style} {
+Console::Console(const descriptor::Mission& mission, Style style, std::FILE* terminal)
+    : mission_{mission}, style_{style}, terminal_{terminal} {
   for (const auto& member : mission.subsystems)
     decoders_.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
   if (style != Style::Quiet) writer_ = std::thread{[this] { write_lines(); }};
@@ -58,7 +53,7 @@ void Console::told(OnboardTime when, std::string_view line) {
   if (!limit_.admit(line.substr(0, line.find(' ')))) return;  // it is in the log
   const double at_s = seconds(when - first_);
   if (style_ == Style::Json) print(fmt::format("{{\"at_s\":{:.4f},\"told\":{}}}\n", at_s, json_string(line)));
-  else print(fmt::format("{:9.4f} s  {}\n", at_s, printable(line)));
+  else print(fmt::format("{:9.4f} s  {}\n", at_s, shown(line)));
 }
 
 void Console::routed(const pus::TelemetryView& packet) {
@@ -74,10 +69,13 @@ void Console::routed(const pus::TelemetryView& packet) {
 /// A speaker is the first word of a line: a subsystem's name where it tells an event.
 void Console::tell_held() {
   for (const auto& [speaker, lines] : limit_.turn()) {
-    const std::string line = fmt::format("{}: {} more lines in this second are in the log only", speaker, lines);
-    print(style_ == Style::Json ? fmt::format("{{\"held\":{}}}\n", json_string(line))
-                                : fmt::format("{:>12}{}\n", "", printable(line)));
+    print(held_text(fmt::format("{}: {} more lines in this second are in the log only", speaker, lines)));
   }
+}
+
+std::string Console::held_text(const std::string& line) const {
+  return style_ == Style::Json ? fmt::format("{{\"held\":{}}}\n", json_string(line))
+                               : fmt::format("{:>12}{}\n", "", shown(line));
 }
 
 void Console::show(const Supervisor& supervisor, Duration since_start) {
@@ -89,7 +87,7 @@ std::string Console::status_text(const Supervisor& supervisor, Duration since_st
   std::string text = fmt::format("[{:6.1f} s] {}", seconds(since_start), supervisor.mode().name);
   for (const Member& member : supervisor.members()) {
     const auto state = member.state();
-    text += fmt::format(" | {} {}", printable(member.descriptor().name),
+    text += fmt::format(" | {} {}", shown(member.descriptor().name),
                         member.alive() && state ? to_text(*state) : std::string_view{"not running"});
     const auto counts = member.statistics();
     if (!counts || !counts->cycling) continue;
@@ -101,12 +99,11 @@ std::string Console::status_text(const Supervisor& supervisor, Duration since_st
     if (!counts->realtime) text += " (reduced promise: no real-time scheduling)";
   }
   text += fmt::format(" | links {}/{}", supervisor.links().up_count(), supervisor.links().defined_count());
-  for (const auto& shown : mission_.console)
-    if (const auto value = values_.find(shown.parameter); value != values_.end())
-      text += fmt::format(" | {} {}{}{}", printable(shown.label), vector_text(value->second, shown.decimals),
-                          shown.unit.empty() ? "" : " ", printable(shown.unit));
-  if (const std::string waiting = supervisor.waiting_for(); !waiting.empty())
-    text += " | waits for " + printable(waiting);
+  for (const auto& item : mission_.console)
+    if (const auto value = values_.find(item.parameter); value != values_.end())
+      text += fmt::format(" | {} {}{}{}", shown(item.label), vector_text(value->second, item.decimals),
+                          item.unit.empty() ? "" : " ", shown(item.unit));
+  if (const std::string waiting = supervisor.waiting_for(); !waiting.empty()) text += " | waits for " + shown(waiting);
   return text + "\n";
 }
 
@@ -145,7 +142,10 @@ void Console::print(std::string line) {
   if (style_ == Style::Quiet) return;
   {
     const std::lock_guard guard{mutex_};
-    if (lines_.size() == most_lines) lines_.pop_front();
+    if (lines_.size() == most_lines) {
+      lines_.pop_front();
+      ++dropped_;
+    }
     lines_.push_back(std::move(line));
   }
   wake_.notify_one();
@@ -158,9 +158,13 @@ void Console::write_lines() {
     if (lines_.empty() && ending_) return;
     std::deque<std::string> taken;
     taken.swap(lines_);
+    const std::size_t dropped = std::exchange(dropped_, 0);
     lock.unlock();
-    for (const std::string& line : taken) std::fputs(line.c_str(), stdout);
-    std::fflush(stdout);
+    if (dropped != 0)
+      std::fputs(held_text(fmt::format("{} lines are in the log only: the terminal stood still", dropped)).c_str(),
+                 terminal_);
+    for (const std::string& line : taken) std::fputs(line.c_str(), terminal_);
+    std::fflush(terminal_);
     lock.lock();
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdio>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -20,7 +21,10 @@ namespace hirosco::supervisor {
 class Console final : public Observer {
  public:
   enum class Style : std::uint8_t { Text, Json, Quiet };
-  Console(const descriptor::Mission& mission, Style style);
+  static constexpr std::size_t most_told = 200;    ///< lines of one speaker in a second; the others are counted
+  static constexpr std::size_t most_lines = 4096;  ///< that wait for a terminal that stands still
+  /// `terminal` outlives it.
+  Console(const descriptor::Mission& mission, Style style, std::FILE* terminal = stdout);
   ~Console() override;
 
   void told(OnboardTime when, std::string_view line) override;
@@ -29,15 +33,16 @@ class Console final : public Observer {
   void show(const Supervisor& supervisor, Duration since_start);
 
  private:
-  static constexpr std::size_t most_told = 200;
   void print(std::string line);
   void tell_held();
+  [[nodiscard]] std::string held_text(const std::string& line) const;
   void write_lines();
   [[nodiscard]] std::string status_text(const Supervisor& supervisor, Duration since_start) const;
   [[nodiscard]] std::string status_json(const Supervisor& supervisor, Duration since_start) const;
 
   const descriptor::Mission& mission_;
   Style style_;
+  std::FILE* terminal_;
   OnboardTime first_{};
   LineLimit limit_{most_told};       ///< of one speaker from status line to status line, once a second
   std::map<std::uint16_t, pus::HousekeepingDecoder> decoders_;
@@ -46,6 +51,7 @@ class Console final : public Observer {
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<std::string> lines_;
+  std::size_t dropped_{0};  ///< since the terminal took something last
   bool ending_{false};
   std::thread writer_;
 };

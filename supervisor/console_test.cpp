@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/console.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <memory>
+
+namespace hirosco::supervisor {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct ConsoleTest : ::testing::Test {
+  using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+  /// What a console writes of what it is told, to its end.
+  template <class Tell>
+  std::vector<std::string> shown(Console::Style style, Tell tell) {
+    const File file{std::tmpfile(), std::fclose};
+    {
+      Console console{mission, style, file.get()};
+      tell(console);
+    }
+    return lines_of(file.get());
+  }
+  static std::vector<std::string> lines_of(std::FILE* file) {
+    std::rewind(file);
+    std::vector<std::string> lines{""};
+    for (int letter = std::fgetc(file); letter != EOF; letter = std::fgetc(file)) {
+      if (letter == '\n') lines.emplace_back();
+      else lines.back() += static_cast<char>(letter);
+    }
+    EXPECT_EQ(lines.back(), "") << "each line is whole";
+    lines.pop_back();
+    return lines;
+  }
+
+  const OnboardTime when{std::chrono::hours{1}};
+  descriptor::Mission mission;
+};
+
+TEST_F(ConsoleTest, ShowsOneSpeakersLinesUpToALimitAndCountsTheOthersExactly) {
+  const auto lines = shown(Console::Style::Text, [&](Console& console) {
+    for (int i = 0; i < 357'100; ++i) console.told(when, "JOYSTICK info HELLO");
+    console.told(when, "MANIPULATOR low TEMPERATURE");
+  });
+  EXPECT_EQ(lines.size(), Console::most_told + 2);
+  EXPECT_THAT(lines, Contains(EndsWith("MANIPULATOR low TEMPERATURE"))) << "the others are heard";
+  EXPECT_THAT(lines.back(), EndsWith("JOYSTICK: 356900 more lines in this second are in the log only"));
+}
+
+TEST_F(ConsoleTest, GivesTheTerminalNothingButWhatCanBePrinted) {
+  for (const auto style : {Console::Style::Text, Console::Style::Json}) {
+    const auto lines = shown(style, [&](Console& console) { console.told(when, "ARM \x1b[2J\"said\"\n\x7f\xc3\xa4"); });
+    ASSERT_EQ(lines.size(), 1U);
+    for (const char letter : lines[0]) EXPECT_TRUE(letter >= ' ' && letter < 127) << lines[0];
+  }
+}
+
+TEST_F(ConsoleTest, IsQuietIfToldTo) {
+  EXPECT_TRUE(shown(Console::Style::Quiet, [&](Console& console) { console.told(when, "ARM info X"); }).empty());
+}
+
+TEST_F(ConsoleTest, ATerminalThatStandsStillHoldsUpNobodyAndIsToldWhatItMissed) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const File terminal{::fdopen(ends[1], "w"), std::fclose};
+  constexpr int told = 20'000;
+  std::vector<std::string> lines;
+  {
+    Console console{mission, Console::Style::Text, terminal.get()};
+    const std::string text(200, 'x');
+    // Each line has a speaker of its own; nobody reads yet, and the pipe holds far less than all of them.
+    for (int i = 0; i < told; ++i) console.told(when, "SPEAKER" + std::to_string(i) + " " + text);
+    std::thread reader{[&] {
+      const File pipe{::fdopen(ends[0], "r"), std::fclose};
+      std::string line;
+      for (int letter = std::fgetc(pipe.get()); letter != EOF && line != "the end"; letter = std::fgetc(pipe.get())) {
+        if (letter != '\n') line += static_cast<char>(letter);
+        else lines.push_back(std::exchange(line, {}));
+        if (lines.size() != 0 && lines.back().ends_with("LAST")) return;
+      }
+    }};
+    console.told(when, "SPEAKER LAST");
+    reader.join();
+  }
+  std::size_t shown_lines = 0;
+  std::size_t missed = 0;
+  for (const std::string& line : lines) {
+    if (!line.ends_with("are in the log only: the terminal stood still")) ++shown_lines;
+    else missed += std::stoul(line.substr(line.find_first_not_of(' ')));
+  }
+  EXPECT_GT(missed, 0U);
+  EXPECT_EQ(shown_lines + missed, told + 1U);
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
