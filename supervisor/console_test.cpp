@@ -49,12 +49,12 @@ struct ConsoleTest : ::testing::Test {
 
 TEST_F(ConsoleTest, ShowsOneSpeakersLinesUpToALimitAndCountsTheOthersExactly) {
   const auto lines = shown(Console::Style::Text, [&](Console& console) {
-    for (int i = 0; i < 357'100; ++i) console.told(when, "JOYSTICK info HELLO");
-    console.told(when, "MANIPULATOR low TEMPERATURE");
+    for (int i = 0; i < 357'100; ++i) console.told(when, "HAND info STRAY");
+    console.told(when, "ARM low TEMPERATURE");
   });
   EXPECT_EQ(lines.size(), Console::most_told + 2);
-  EXPECT_THAT(lines, Contains(EndsWith("MANIPULATOR low TEMPERATURE"))) << "the others are heard";
-  EXPECT_THAT(lines.back(), EndsWith("JOYSTICK: 356900 more lines in this second are in the log only"));
+  EXPECT_THAT(lines, Contains(EndsWith("ARM low TEMPERATURE"))) << "the others are heard";
+  EXPECT_THAT(lines.back(), EndsWith("HAND: 356900 more lines in this second are in the log only"));
 }
 
 TEST_F(ConsoleTest, GivesTheTerminalNothingButWhatCanBePrinted) {
