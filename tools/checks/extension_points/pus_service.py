@@ -84,9 +84,9 @@ TEST(NewService, IsAnsweredPermittedAndNamed) {
   const auto packet = supervisor::testing::telecommand(10, 30, 1, data);
   const auto view = pus::TelecommandView::parse(packet).value();
   const supervisor::Situation now{mission, mission.modes[0], links, State::Operational};
-  EXPECT_EQ(decide(view, supervisor::Sender::Ground, now).error().code(), pus::FailureCode::WrongMode);
+  EXPECT_EQ(decide(view, supervisor::Origin::ground(), now).error().code(), pus::FailureCode::WrongMode);
   mission.modes[0].permits.front().services.push_back(30);
-  EXPECT_TRUE(decide(view, supervisor::Sender::Ground, now));
+  EXPECT_TRUE(decide(view, supervisor::Origin::ground(), now));
   EXPECT_EQ(pus::PacketDescriber{mission}.describe(packet), "TC[30,1] ARM #0 ADD ONE=2 OTHER=3");
 }
 
