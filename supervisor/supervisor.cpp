@@ -9,7 +9,7 @@
 namespace hirosco::supervisor {
 
 namespace {
-/// How often processes, hangs and time limits are looked at: the supervisor's own cycle (decision 32).
+/// How often processes, hangs and time limits are looked at: the supervisor's own cycle.
 constexpr Duration watch_period = Guard::observation_period;
 constexpr Duration ground_pace = 1ms;
 }  // namespace

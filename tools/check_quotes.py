@@ -2,14 +2,18 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """A code block that follows `<!-- quote: PATH -->` in a Markdown file must be PATH or a contiguous part of it; and what
-the documents name in backquotes as a file or folder of the project must exist."""
+the documents name in backquotes as a file or folder of the project must exist; in a README also what it names by a part of its
+path. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist."""
 import pathlib
+import posixpath
 import re
 import subprocess
 import sys
 
 quote = re.compile(r"^<!-- quote: (\S+) -->\n+```[^\n]*\n(.*?)^```$", re.M | re.S)
-named = re.compile(r"`((?:cmake|docs|hirosco|missions|simulation|subsystems|supervisor|tests|tools)/[\w./-]*)`")
+named = re.compile(r"`((?:bench|cmake|docs|ground|hirosco|missions|simulation|subsystems|supervisor|tests|tools)/[\w./-]*)`")
+part = re.compile(r"`((?![A-Z]+_)[\w./-]*\w\.(?:hpp|cpp|py|m?js|xml|csv))`")
+cited = re.compile(r"\b(adr[ /]|decisions? |SF|findings? |LW(?=\d))(\d+)", re.I)
 mark = re.compile(r"^<!-- quote:", re.M)
 
 
@@ -29,6 +33,21 @@ def wrong(text, read, exists):
             yield f"names {path}, which does not exist"
 
 
+def lost(folder, text, files):
+    """Yields what a README names by its name or the end of its path, and neither its folder nor another place has."""
+    for path in part.findall(text):
+        if posixpath.normpath(f"{folder}/{path}") not in files and not any(f"/{file}".endswith(f"/{path}") for file in files):
+            yield f"names {path}, which does not exist"
+
+
+def undefined(text, known):
+    """Yields what is cited and stands nowhere; `known` has a set of numbers for each kind."""
+    for kind, number in cited.findall(text):
+        kind = kind.strip(" /").rstrip("s").lower()
+        if int(number) not in known.get(kind, set()):
+            yield f"cites {kind} {number}, which does not exist"
+
+
 def self_test():
     read = {"a.cpp": "one\ntwo\nthree\n"}.get
     exists = {"tools/a.cpp", "tools/"}.__contains__
@@ -39,6 +58,13 @@ def self_test():
     assert all(list(wrong(fence.format(*case), read, exists)) for case in bad)
     assert list(wrong("<!-- quote: a.cpp -->\nno block\n", read, exists))
     assert list(wrong("see `tools/b.cpp`", read, exists)) and not list(wrong("`tools/a.cpp` `tools/`", read, exists))
+
+    assert list(lost("ground", "`model/b.hpp`", {"ground/model/a.hpp"})) and list(lost("ground", "`b.hpp`", {"ground/ab.hpp"}))
+    assert not list(lost("ground", "`model/a.hpp` `a.hpp` `NAME_test.py` `STDERR`", {"ground/model/a.hpp"}))
+    known = {"adr": {7}, "decision": {3}, "sf": {1}}
+    assert not list(undefined("adr 0007, docs/adr/0007-one.md, Decision 3, decisions 3 and 4, hazard SF1", known))
+    for fault in ("adr 0008", "docs/adr/0008-one.md", "decision 4", "(hazard SF2)", "findings SF1, finding 3", "LW1"):
+        assert list(undefined(fault, known)), fault
 
 
 self_test()
@@ -53,9 +79,24 @@ def read(path):
 
 
 def exists(path):
-    return (root / path).exists() or any(root.glob(path + "-*.md"))
+    return (root / path).exists() or any(root.glob(path + "-*.md")) or any(root.glob(path + ".*pp"))
 
 
-found = [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
-         for what in wrong(file.read_text(), read, exists)]
+def numbers(pattern, text):
+    return {int(number) for row in re.findall(pattern, text, re.M) for number in re.findall(r"\d+", row)}
+
+
+files = set(subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True).stdout.split()) or {
+    str(file.relative_to(root)) for file in root.rglob("*") if "build" not in file.parts}
+known = {"adr": numbers(r"^docs/adr/(\d{4})", "\n".join(files)), "decision": numbers(r"^\| ([\d, ]+) \|", read("docs/decisions.md")),
+         "sf": numbers(r"^SF(\d+),", read("docs/safety/hazards.csv"))}
+index = {int(number) for number in re.findall(r"^\| \[(\d{4})\]", read("docs/adr/README.md"), re.M)}
+found = [f"docs/adr/README.md has no row of {number:04}" for number in sorted(known["adr"] - index)]
+found += [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
+          for what in wrong(file.read_text(), read, exists)]
+for name in sorted(files):
+    if name.endswith("README.md") and name != "docs/adr/README.md":
+        found += [f"{name}: {what}" for what in lost(str(pathlib.Path(name).parent), read(name) or "", files)]
+    if name.endswith((".md", ".hpp", ".cpp", ".py", ".xml", ".js", ".mjs", ".csv")) and name != "tools/check_quotes.py":
+        found += [f"{name}: {what}" for what in undefined(read(name) or "", known)]
 sys.exit("\n".join(found) or None)

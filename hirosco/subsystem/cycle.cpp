@@ -156,7 +156,7 @@ void CycleLoop::run_function(const CycleCommand& command) noexcept {
 }
 
 void CycleLoop::enter(State state) noexcept {
-  // A node that failed is not healed by an entry that was on its way already: the way down follows (SF10).
+  // A node that failed is not healed by an entry that was on its way already: the way down follows (hazard SF10).
   if (state == State::Operational && (inhibited_ & inhibited_by_failure) != 0)
     return report(ReportKind::EntryRefused, static_cast<std::uint16_t>(state), {});
   state_ = state;

@@ -23,8 +23,8 @@ const LinkOutputSlot* GenericSubsystem::find_provided(std::string_view set) {
 /// The same for the handshake, where it can be said in words, and for the attachment, where it counts.
 std::string GenericSubsystem::refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) {
   if (role == pus::st128::Role::Producer) return {};
-  // Decision 12: what a consumer acts on is settled before it acts. A link that it has, whose partner left and came back, is
-  // no new one; and a set whose absence is only held over comes and goes (adr 0021).
+  // What a consumer acts on is settled before it acts (adr 0021). A link that it has, whose partner left and came back, is
+  // no new one; and a set whose absence is only held over comes and goes.
   const descriptor::Requires* wanted = find_required(set);
   const bool settled = wanted != nullptr && wanted->required && !link_ends_.contains(link) &&
                        wanted->missing == descriptor::MissingPolicy::Inhibit;

@@ -16,7 +16,7 @@ MEMBER_FAULTS = ["kill", "stop", "spin", "stick", "strain"]
 LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
 # How long the craft is left alone with a fault that was aimed: what ends or stops a process takes longest.
 LEFT_ALONE_S = {**dict.fromkeys(DEVICE_FAULTS, 0.7), **dict.fromkeys(MEMBER_FAULTS, 1.6)}
-SILENCED_EVERY, SILENCED_AT = 5, 3   # flights that end with an unplug that ground silenced (finding SF6)
+SILENCED_EVERY, SILENCED_AT = 5, 3   # flights that end with an unplug that ground silenced (hazard SF6)
 SILENCED_S = 5.5        # of the end of such a flight, in which nothing else happens
 MOST_STRIKES = 2        # of a member in one flight by what may end it: who dies too often stays down
 # Of every subsystem, beside those of its descriptor: states, failures, lost devices and stale sets.

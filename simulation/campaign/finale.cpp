@@ -6,7 +6,7 @@
 #include "simulation/campaign/planned_flight.hpp"
 
 /// The same end for every flight: the faults stop, SAFE_ALL stops the craft, and two seconds later all that lives can be
-/// brought up by ground's telecommands and stays up (I10; SF14).
+/// brought up by ground's telecommands and stays up (I10; hazard SF14).
 namespace hirosco::campaign {
 
 using descriptor::State;

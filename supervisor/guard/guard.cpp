@@ -13,7 +13,7 @@ namespace {
 /// From the order to stop until the last answer of a device that has nothing to wind down: its own cycle, an enable
 /// command, and a busy computer.
 constexpr Duration answer_limit = std::chrono::milliseconds{250};
-/// From the end of a member to the answer of its devices (findings SF2).
+/// From the end of a member to the answer of its devices (hazard SF2).
 constexpr Duration killed_limit = std::chrono::milliseconds{400};
 /// Findings that nobody takes are those of a supervisor that stands still; the first tell the story.
 constexpr std::size_t most_findings = 1024;
@@ -299,7 +299,7 @@ void Guard::observe_cycle(Watched& member, TimePoint now) {
   }
   if (member.still++ == 0 && member.grip) member.processor_time = member.grip->processor_time();
   if (member.still < member.hang_limit()) return;
-  // A cycle that goes on and does not see what it is permitted looks somewhere else (findings SF13).
+  // A cycle that goes on and does not see what it is permitted looks somewhere else (hazard SF13).
   if (moves) return doom(member, GuardFinding::Kind::PageDamaged, now);
   Watched& culprit = spinner(member);
   for (Watched& other : members_) other.still = 0;  // who waited for the processor starts anew

@@ -52,7 +52,7 @@ class Guard {
  public:
   /// How often step() is to be called. Shorter than any enable limit by far.
   static constexpr Duration period = std::chrono::milliseconds{5};
-  /// How often cycles are counted (decision 32).
+  /// How often cycles are counted.
   static constexpr Duration observation_period = std::chrono::milliseconds{10};
   /// What a member may take to come back after it was found to hang.
   static constexpr Duration grace = std::chrono::seconds{1};

@@ -99,7 +99,7 @@ void end_orphans(const std::vector<Process>& devices, const sigset_t& set, const
   }
 }
 
-/// Nothing ends here without a word of what the system refused (findings LW24).
+/// Nothing ends here without a word of what the system refused.
 int refused(const char* what, std::int64_t number) {
   std::fprintf(stderr, "hirosco: %s: %s\n", what, std::strerror(static_cast<int>(number)));
   return exit_environment;

@@ -18,7 +18,7 @@ namespace hirosco::supervisor {
 inline constexpr int keeper_descriptor = 6;
 
 /// Memory in which keeper and supervisor see each other move: one that is alive and stands still is as lost as one that
-/// has died (findings SF18). The supervisor finds it here.
+/// has died (hazard SF18). The supervisor finds it here.
 inline constexpr int keeper_page_descriptor = 7;
 struct KeeperPage {
   std::atomic<std::uint64_t> keeper{0};

@@ -4,7 +4,7 @@
 
 #include "supervisor/keeper/keeper.hpp"
 
-/// Keeper and supervisor look at each other's counter on a page that both may write (findings SF18 and SF19).
+/// Keeper and supervisor look at each other's counter on a page that both may write (hazards SF18 and SF19).
 namespace hirosco::supervisor {
 namespace {
 

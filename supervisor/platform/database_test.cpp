@@ -195,7 +195,7 @@ TEST_F(Sqlite, RefusesALaterSchema) {
   EXPECT_EQ(database.error().value, 2);
 }
 
-/// Findings LW21: TORQUE missed TORQUE_LIMIT_EXCEEDED, which only the words of a packet have, and case mattered.
+/// TORQUE missed TORQUE_LIMIT_EXCEEDED, which only the words of a packet have, and case mattered.
 TEST(LogSearch, FindsWhatIsShownWhateverItsCase) {
   const LogRecord stored = record(7);
   const auto finds = [&](std::string_view text, bool in_words) {

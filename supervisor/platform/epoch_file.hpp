@@ -9,7 +9,7 @@
 #include "hirosco/utilities/time.hpp"
 
 /// Remembers beyond the flight which epochs devices may have seen, so that one that outlives the supervisor neither stays
-/// latched nor takes an old command for a new one (findings SF11).
+/// latched nor takes an old command for a new one (hazard SF11).
 namespace hirosco::supervisor {
 
 /// Thread: the supervisor's. Realtime: blocks; hardly ever after first().

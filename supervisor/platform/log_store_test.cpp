@@ -141,7 +141,7 @@ TEST(LogStore, LeavesASegmentAfterAFailedFsyncAndWritesWhatWasNotAcknowledgedToT
   EXPECT_EQ(disk.files[folder.path() / "log.2.txt"].size(), 3U);
 }
 
-/// Findings LW24: one error at the start left the craft uncommissioned, with exit code 0.
+/// One error at the start left the craft uncommissioned, with exit code 0.
 TEST(BeginLog, GetsOverErrorsOfTheDiskAndSaysWhyWhereTheyLast) {
   const SystemClock clock;
   for (const std::size_t errors : {0U, 1U, 3U}) {

@@ -89,7 +89,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     reinterpret_cast<VitalPage*>(vital.second.octets.data())->counters =
         reinterpret_cast<const VitalPage*>(before.octets.data())->counters;
   before = vital.second;
-  // The subsystem reads what gates its actuators; from now on nobody can map it otherwise (findings SF13).
+  // The subsystem reads what gates its actuators; from now on nobody can map it otherwise (hazard SF13).
   HIROSCO_TRY(memory_.seal_writers(permit.first));
   HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair());
   ProcessStart start;

@@ -35,7 +35,7 @@ class Accounts {
   virtual ~Accounts() = default;
   /// Nothing of what waits for the disk leaves any more.
   virtual void refuse_waiting() = 0;
-  /// Who is gone will never report what it had begun (findings LW1).
+  /// Who is gone will never report what it had begun.
   virtual void outcome_unknown(std::uint16_t apid) = 0;
 };
 

@@ -55,13 +55,13 @@ PLANTS = {
          '  if (planted("SF14")) {\n    member->permit->stop.store(0);\n    member->permit->go.store(permission_word(member->epoch));\n'
          "  } else {\n    member->permit->release();\n  }")]),
     # Nobody remembered what the dead had been asked.
-    "LW1": ("I2", [
+    "NO_OUTCOME": ("I2", [
         (TELECOMMANDS, "for (const pus::Request& request : parts_.outstanding.take(apid))",
-         'for (const pus::Request& request : planted("LW1") ? std::vector<pus::Request>{} : parts_.outstanding.take(apid))')]),
+         'for (const pus::Request& request : planted("NO_OUTCOME") ? std::vector<pus::Request>{} : parts_.outstanding.take(apid))')]),
     # An exchange moved a device's clock by at least one cycle, and the rest was forgotten.
-    "LW13": ("I13", [
+    "OWN_CLOCK": ("I13", [
         ("simulation/devices/simulated_device.cpp", "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;",
-         '  if (exchanged && planted("LW13")) {\n    by_own_clock_ = false;\n    world_time_ = now;\n'
+         '  if (exchanged && planted("OWN_CLOCK")) {\n    by_own_clock_ = false;\n    world_time_ = now;\n'
          "    return std::max<std::int64_t>(1, (behind + settings_.cycle / 2) / settings_.cycle);\n  }\n"
          "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;")]),
 }

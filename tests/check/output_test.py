@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """What `hirosco` cannot write is no success, and what it cannot make out of its arguments is named: with a code that says
-so, in words, and never by a crash (findings LW15)."""
+so, in words, and never by a crash."""
 
 import os
 import pathlib

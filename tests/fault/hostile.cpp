@@ -22,7 +22,7 @@
 
 #include "hirosco/subsystem/pages.hpp"
 
-/// A real subsystem that turns on its supervisor when it is sent SIGUSR2 (findings SF13). It tries to change every page that
+/// A real subsystem that turns on its supervisor when it is sent SIGUSR2 (hazard SF13). It tries to change every page that
 /// it may only read, by everything that the system offers for memory it was handed, and writes what came of each attempt to
 /// hostile.txt. Then it puts a page of its own making, which permits for ever, where the cycle looks for its permission, and
 /// hears and says nothing any more. Linked beside its main() for tests only.

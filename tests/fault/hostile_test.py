@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """A subsystem that turns on its supervisor while its robot pushes: it can change nothing that gates it, and where it looks
-away, makes a permission of its own and hears nothing any more, the robot is stopped without it (findings SF13)."""
+away, makes a permission of its own and hears nothing any more, the robot is stopped without it (hazard SF13)."""
 import pathlib
 import signal
 import time

@@ -5,7 +5,7 @@
 stop of everything by three ways; then the craft must be whole again by one bring-up.
 
 Judged from outside: only the victim dies (I1), the supervisor answers throughout (I6), what was taken is given back (I7),
-the robot in the world puts out nothing after a stop, everybody else cycles on (findings SF2, SF14, SF15, SF18).
+the robot in the world puts out nothing after a stop, everybody else cycles on (hazards SF2, SF14, SF15, SF18).
 
     real_campaign.py [--flights N] [--seed S] [--only K]
     real_campaign.py --hundreds [N]      each of spinning, stopped, unplugged, killed (each subsystem) N times (100), and what it took

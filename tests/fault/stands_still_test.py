@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Supervisor or keeper are killed, stopped or spin while the robot pushes: it stops, nobody is left behind, and who is left
-says so (findings SF18, reliability 5.1)."""
+says so (hazard SF18, reliability 5.1)."""
 import os
 import pathlib
 import signal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-// What the supervisor does with messages of a subsystem that nobody can read (findings SF9): it counts them, says so, and
+// What the supervisor does with messages of a subsystem that nobody can read (hazard SF9): it counts them, says so, and
 // goes on with the next. Only a channel that is closed is a loss, and who has lost it is fenced at once.
 #include <gtest/gtest.h>
 

@@ -74,7 +74,7 @@ TEST(Events, OfASubsystemThatDeclaresNoneStartItsRecovery) {
       << flight.story().text();
 }
 
-// --- plans for what the supervisor tells (findings LW3) ------------------------------------------------------------------
+// --- plans for what the supervisor tells -------------------------------------------------------------------------------
 
 /// Stores in memory until it is told to fail.
 struct FailingStore final : supervisor::Database {

@@ -169,7 +169,7 @@ TEST_F(Stops, WhatAnUnplugStoppedIsBroughtUpAgainByOneBringUpTenTimes) {
   EXPECT_TRUE(coupled());
 }
 
-// --- SF15, LW1 ---------------------------------------------------------------------------------------------------------
+// --- SF15 --------------------------------------------------------------------------------------------------------------
 
 TEST_F(Stops, WhoDiedIsBackOfflineInTwoSecondsAndOneBringUpCouplesAgain) {
   open_for_bring_up();
@@ -298,7 +298,7 @@ TEST_F(Stops, AMotionWhoseSubsystemDiesEndsWithOutcomeUnknown) {
   EXPECT_EQ(std::ranges::count(codes, static_cast<std::uint16_t>(FailureCode::OutcomeUnknown)), 1);
 }
 
-// --- LW2 ---------------------------------------------------------------------------------------------------------------
+// --- a way up -----------------------------------------------------------------------------------------------------------
 
 TEST(CommissioningThatIsCrossed, ByARecoveryIsNotToldAsDone) {
   Flight flight{{.edit = hand_rests}};

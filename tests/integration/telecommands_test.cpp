@@ -185,7 +185,7 @@ TEST_F(Telecommands, OfTwoThatAreAskedForAtOnceOnlyWhatFitsIsGranted) {
   EXPECT_TRUE(flight.run_until_state("MANIPULATOR", State::SafeOperational, 1s));
 }
 
-/// Findings LW12: what was granted and not yet carried out counts, and is taken back, when the budget falls.
+/// What was granted and not yet carried out counts, and is taken back, when the budget falls.
 TEST_F(Telecommands, ABudgetThatFallsInTheSameInstantTakesBackWhatWasJustGranted) {
   take_out("MANIPULATOR");
   std::vector<std::byte> up = call_data("SET_STATE", {});

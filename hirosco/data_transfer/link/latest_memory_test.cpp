@@ -216,7 +216,7 @@ TEST(RealtimeLinkHeader, HasTheFormThatIsWrittenDown) {
   EXPECT_EQ(link_memory_octets(1), 128u);
 }
 
-/// What may become of a word of shared memory: one flipped bit, and whole words that damage leaves behind (findings SF19).
+/// What may become of a word of shared memory: one flipped bit, and whole words that damage leaves behind (hazard SF19).
 std::vector<std::uint64_t> damages(std::uint64_t word) {
   std::vector<std::uint64_t> damaged{0,        ~std::uint64_t{0}, ~word, 0x5555'5555'5555'5555, 0xAAAA'AAAA'AAAA'AAAA,
                                      word + 1, word - 1};

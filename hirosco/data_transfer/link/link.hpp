@@ -27,7 +27,7 @@ enum class LinkKind : std::uint8_t { Latest = 1, Queued = 2 };
 inline constexpr std::uint32_t max_link_payload_octets = 65'536;
 
 /// Written by the producer beside each sample. What no producer wrote is read as Fault: no damage of the word turns a
-/// fault into something to rely on (findings SF19).
+/// fault into something to rely on (hazard SF19).
 enum class LinkStatus : std::uint32_t { None = 0, Valid = 1, Degraded = 2, Stopping = 3, Fault = 4 };
 
 /// What both sides agreed on and find again at the other end.

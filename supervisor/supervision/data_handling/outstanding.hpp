@@ -10,7 +10,7 @@
 #include "hirosco/pus/service/service.hpp"
 
 /// Telecommands that were handed to a subsystem and whose final report has not passed yet: when their addressee dies,
-/// somebody must say that their outcome is unknown (reliability 5.2; findings LW1).
+/// somebody must say that their outcome is unknown (reliability 5.2).
 namespace hirosco::supervisor {
 
 class Outstanding {

@@ -56,7 +56,7 @@ using Notice = std::optional<FailureNotice>;
   return FailureNotice{FailureCode::WrongMode}.with(asked.situation.mode.id);
 }
 
-/// Why a parameter write may not pass (findings SF20): each parameter must be writable in this state by its descriptor,
+/// Why a parameter write may not pass (hazard SF20): each parameter must be writable in this state by its descriptor,
 /// and opened by this mode. Whether the values fit is the addressee's matter.
 [[nodiscard]] Notice write_refused(const Asked& asked) {
   const auto& [telecommand, origin, situation, subsystem, call, request] = asked;
@@ -155,7 +155,7 @@ using Notice = std::optional<FailureNotice>;
   const auto* kind = pus::standard_service(asked.telecommand.service());
   if (kind != nullptr && kind->needs == pus::Needs::SupervisorAsks) return wrong_mode(asked);
   if (asked.to_supervisor()) {
-    // Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (findings SF1).
+    // Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (hazard SF1).
     if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode(asked);
   }
   if (asked.origin.is_subsystem() && !stops_the_craft(asked) && !is_declared(asked))

@@ -101,7 +101,7 @@ void Reception::hear(std::uint16_t, const pus::TelemetryView& report) {
   if (parts_.outstanding.size() < under_way) answered_ = craft_.now;
 }
 
-/// What is damaged or claims another sender is no loss: it is counted and told, and what follows is read (findings SF9).
+/// What is damaged or claims another sender is no loss: it is counted and told, and what follows is read (hazard SF9).
 void Reception::count_unreadable(std::uint16_t from) {
   ++parts_.traffic.counts.misdirected;
   if (Member* origin = craft_.member(from)) ++origin->unreadable;

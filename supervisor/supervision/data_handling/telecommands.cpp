@@ -197,7 +197,7 @@ void Telecommands::forward_durable() {
   while (!waiting_.empty() && waiting_.front().number <= craft_.log.durable()) {
     const Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
-    // What was permitted before a fence is void after it: it was permitted for another situation (findings SF4).
+    // What was permitted before a fence is void after it: it was permitted for another situation (hazard SF4).
     if (craft_.guard.fences(next.apid) != next.fences) {
       reject({.packet = next.packet, .origin = next.origin}, next.request, FailureNotice{FailureCode::NotPermittedNow});
       continue;

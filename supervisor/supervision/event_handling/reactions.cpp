@@ -15,7 +15,7 @@ using descriptor::Severity;
 
 namespace {
 
-/// What nothing overrides: whoever is gone must be stopped and taken down whatever else runs for it (findings SF5).
+/// What nothing overrides: whoever is gone must be stopped and taken down whatever else runs for it (hazard SF5).
 [[nodiscard]] bool is_loss(std::string_view event) { return event == descriptor::event_of_death || event == "HANG"; }
 
 }  // namespace
@@ -41,7 +41,7 @@ bool Reactions::take_event(std::uint16_t from, Octets message) {
 }
 
 /// What we tell of a subsystem is answered where it is told: by the plan that names it or us, or the event, as severe as our
-/// descriptor calls it (findings LW3).
+/// descriptor calls it.
 void Reactions::react(Member& origin, std::string_view event, Severity severity) {
   const descriptor::Subsystem& supervisor = craft_.mission.supervisor;
   const bool ours = descriptor::is_about_subsystem(event) && origin.descriptor().find_event(event) == nullptr;

@@ -37,7 +37,7 @@ void Commissioning::commission(const descriptor::Mode& start_mode) {
 
 void Commissioning::ended(const descriptor::Mode& start_mode, const std::string& failure) {
   std::string missing = failure;
-  // A plan may have taken one down after its own step was done (findings LW2).
+  // A plan may have taken one down after its own step was done.
   for (const auto& step : start_mode.commission) {
     const Member* subject = craft_.member(craft_.mission.find_subsystem(step.subsystem)->subsystem.id);
     if (missing.empty() && (subject == nullptr || subject->state() != step.state))

@@ -11,7 +11,7 @@ void Modes::provide() {
     const auto& modes = craft_.mission.modes;
     const auto found = std::ranges::find(modes, static_cast<std::uint8_t>(id), &descriptor::Mode::id);
     if (found == modes.end()) return refused(pus::FailureCode::UnknownIdentifier);
-    // A mode whose members are dead is not that mode, whatever it is called (findings SF15).
+    // A mode whose members are dead is not that mode, whatever it is called (hazard SF15).
     if (!std::ranges::all_of(found->commission, [&](const auto& step) { return lives(step); }))
       return refused(pus::FailureCode::WrongStatus);
     enter(*found);
