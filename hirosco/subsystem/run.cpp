@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hirosco/data_transfer/control/socket_channel.hpp"
@@ -141,14 +142,22 @@ class CycleThread {
   Thread thread_;
 };
 
-void serve(GenericSubsystem& subsystem, const Clock& clock, const Channel& channel, CycleThread& cycle) {
+/// `program` names itself where it has to say something.
+void serve(const char* program, GenericSubsystem& subsystem, const Clock& clock, const SocketChannel& channel,
+           CycleThread& cycle) {
   WaitSet waits;
   static_cast<void>(waits.add(channel.wait_descriptor()));
   bool reading = true;
   bool cycling = false;
+  bool told_version = false;
   std::uint32_t ticket = 0;
   while (!subsystem.finished()) {
     const TimePoint wake = subsystem.service_step(clock.now());
+    if (const auto theirs = channel.foreign_version(); theirs && !std::exchange(told_version, true))
+      fmt::print(stderr,
+                 "{}: the supervisor's control channel is of version {}, this program's of version {}: build both from "
+                 "one hirosco\n",
+                 program, *theirs, envelope::version);
     const auto demand = subsystem.cycle_demand();
     // A cycle may be wanted and called off within one step: its thread must answer that order to rest, too.
     if ((demand.wanted && !cycling) || demand.ticket != ticket) cycle.wake();
@@ -225,7 +234,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
     return exit_environment;
   }
-  serve(subsystem, clock, channel, cycle);
+  serve(argv[0], subsystem, clock, channel, cycle);
   cycle.end();
   cycle.tell_heap_uses(argv[0]);
   return 0;

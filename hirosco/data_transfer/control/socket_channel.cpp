@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <sys/uio.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -37,11 +38,8 @@ class Datagram {
   [[nodiscard]] Result<> fill(const Message& message, msghdr& header) noexcept {
     if (message.packet.size() > max_packet_octets)
       return fail(ErrorCode::InvalidArgument, "octets of packet", static_cast<std::int64_t>(message.packet.size()));
-    OctetWriter{envelope_}
-        .put(static_cast<std::uint8_t>(message.kind))
-        .put(SocketChannel::version)
-        .put(message.link)
-        .put(message.mode_epoch);
+    OctetWriter writer{envelope_};
+    envelope::write(writer, message);
     parts_ = {iovec{envelope_.data(), envelope_.size()},
               iovec{const_cast<std::byte*>(message.packet.data()), message.packet.size()}};
     header = {};
@@ -65,7 +63,7 @@ class Datagram {
     std::memcpy(CMSG_DATA(control), &descriptor, sizeof descriptor);
   }
 
-  std::array<std::byte, SocketChannel::envelope_octets> envelope_;
+  std::array<std::byte, envelope::octets> envelope_;
   std::array<iovec, 2> parts_;
   alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(int))> control_;
 };
@@ -133,9 +131,8 @@ std::size_t SocketChannel::send_all(std::span<const Message> messages) {
 }
 
 Result<Channel::Found> SocketChannel::receive(MessageBuffer& buffer) {
-  std::array<std::byte, envelope_octets> envelope{};
-  std::array<iovec, 2> parts{iovec{envelope.data(), envelope.size()},
-                             iovec{buffer.octets.data(), buffer.octets.size()}};
+  std::array<std::byte, envelope::octets> head;
+  std::array<iovec, 2> parts{iovec{head.data(), head.size()}, iovec{buffer.octets.data(), buffer.octets.size()}};
   alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(noticed_descriptors * sizeof(int))> control{};
   msghdr header{};
   header.msg_iov = parts.data();
@@ -153,23 +150,16 @@ Result<Channel::Found> SocketChannel::receive(MessageBuffer& buffer) {
   if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0)
     return fail(ErrorCode::Malformed, "message is too long", octets);
   if (arrived.count > 1) return fail(ErrorCode::Malformed, "message carries several descriptors");
-  if (static_cast<std::size_t>(octets) < envelope_octets)
-    return fail(ErrorCode::Malformed, "message is too short", octets);
-
-  OctetReader reader{envelope};
-  const auto kind = reader.get<std::uint8_t>();
-  const auto theirs = reader.get<std::uint8_t>();
-  if (theirs != version) return fail(ErrorCode::Mismatch, "version of the control channel", theirs);
-  if (kind < static_cast<std::uint8_t>(MessageKind::Packet) || kind > static_cast<std::uint8_t>(MessageKind::Event))
-    return fail(ErrorCode::Malformed, "kind of message", kind);
-  Found found;
-  found.flow = Flow::New;
-  found.message.kind = static_cast<MessageKind>(kind);
-  found.message.link = reader.get<std::uint16_t>();
-  found.message.mode_epoch = reader.get<std::uint32_t>();
-  found.message.packet = Octets{buffer.octets}.first(static_cast<std::size_t>(octets) - envelope_octets);
-  if (arrived.first) found.message.memory = SealedMemory::adopt(std::move(arrived.first));
-  return found;
+  OctetReader reader{Octets{head}.first(std::min(static_cast<std::size_t>(octets), head.size()))};
+  auto message = envelope::read(reader);
+  if (!message) {
+    if (message.error().code == ErrorCode::Mismatch)
+      foreign_version_ = static_cast<std::uint8_t>(message.error().value);
+    return fail(message.error());
+  }
+  message->packet = Octets{buffer.octets}.first(static_cast<std::size_t>(octets) - envelope::octets);
+  if (arrived.first) message->memory = SealedMemory::adopt(std::move(arrived.first));
+  return Found{Flow::New, std::move(*message)};
 }
 
 }  // namespace hirosco

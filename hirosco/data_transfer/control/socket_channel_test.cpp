@@ -98,7 +98,7 @@ class SocketChannelAbuse : public ::testing::Test {
   FileDescriptor peer_;
   std::optional<SocketChannel> channel_;
   MessageBuffer buffer_{};
-  static constexpr std::array good{std::byte{1},   std::byte{SocketChannel::version},
+  static constexpr std::array good{std::byte{1},   std::byte{envelope::version},
                                    std::byte{0},   std::byte{0},
                                    std::byte{0},   std::byte{0},
                                    std::byte{0},   std::byte{5},
@@ -119,18 +119,20 @@ TEST_F(SocketChannelAbuse, IsRefusedAndTheNextMessageIsRead) {
   auto kind = good;
   kind[0] = std::byte{0};
   send_raw(kind);
-  send_raw(std::vector<std::byte>(SocketChannel::envelope_octets + max_packet_octets + 1, std::byte{1}));
+  send_raw(std::vector<std::byte>(envelope::octets + max_packet_octets + 1, std::byte{1}));
   for (int i = 0; i < 4; ++i) EXPECT_EQ(refusal(), ErrorCode::Malformed) << i;
   send_raw(good);
   EXPECT_EQ(channel_->receive(buffer_).value().flow, Flow::New);
 }
 
 TEST_F(SocketChannelAbuse, OfAnotherVersionIsRefusedAndTheNextMessageIsRead) {
-  for (const std::uint8_t version : {std::uint8_t{0}, std::uint8_t{SocketChannel::version + 1}}) {
+  EXPECT_EQ(channel_->foreign_version(), std::nullopt);
+  for (const std::uint8_t version : {std::uint8_t{0}, std::uint8_t{envelope::version + 1}}) {
     auto other = good;
     other[1] = std::byte{version};
     send_raw(other);
     EXPECT_EQ(refusal(), ErrorCode::Mismatch) << int{version};
+    EXPECT_EQ(channel_->foreign_version(), version);
   }
   send_raw(good);
   EXPECT_EQ(channel_->receive(buffer_).value().flow, Flow::New);

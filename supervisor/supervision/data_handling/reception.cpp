@@ -44,6 +44,7 @@ void Reception::read(Member& member) {
     if (!found && found.error().code != ErrorCode::Unavailable) {
       // Damage is no loss: it is counted and told, and what follows is read.
       ++member.unreadable;
+      member.why_unreadable = found.error();
       if (is_damage(found.error().code)) continue;
       // The system refuses: the next step tries again, but not for ever.
       if (++member.refused < most_refused) return;
@@ -110,9 +111,12 @@ void Reception::count_unreadable(std::uint16_t from) {
 void Reception::tell_unreadable(Member& member) {
   if (member.unreadable == member.unreadable_told || craft_.now < member.next_unreadable_told) return;
   member.next_unreadable_told = craft_.now + unreadable_period;
-  craft_.tell(fmt::format("{}: {} messages could not be read", member.descriptor().name,
-                          member.unreadable - std::exchange(member.unreadable_told, member.unreadable)),
-              member.apid());
+  std::string line = fmt::format("{}: {} messages could not be read", member.descriptor().name,
+                                 member.unreadable - std::exchange(member.unreadable_told, member.unreadable));
+  // The count says enough of damage; who was built apart has to be told what to do.
+  if (const Error& why = member.why_unreadable; why.code == ErrorCode::Mismatch)
+    line += fmt::format(": {} ({})", why.text, why.value);
+  craft_.tell(line, member.apid());
 }
 
 void Reception::tell_last_unreadable(Member& member) {

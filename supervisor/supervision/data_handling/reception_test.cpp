@@ -64,6 +64,27 @@ TEST_F(ReceptionTest, WhatCouldNotBeReadIsToldOnceASecondWithItsCountTheLastOfAD
   EXPECT_EQ(story.back(), "HAND: 1 messages could not be read");
 }
 
+/// Its peer was built apart.
+struct ForeignChannel final : Channel {
+  Result<> send(const Message&) override { return ok(); }
+  Result<Found> receive(MessageBuffer&) override {
+    if (said++ > 0) return Found{};
+    return fail(ErrorCode::Mismatch, "another version; build both from one hirosco", 2);
+  }
+  int said{0};
+};
+
+TEST_F(ReceptionTest, WhoSpeaksAnotherVersionIsRefusedByNameAndItIsToldWhatToDo) {
+  Member& member = *craft.member(hand);
+  auto launched = launch(member.described()).value();
+  launched.port =
+      std::make_unique<LocalMemberPort>(std::make_unique<ForeignChannel>(), launched.vital, launched.permit);
+  member.started(std::move(launched));
+  read(hand);
+  parts.reception.tell_unreadable(member);
+  EXPECT_EQ(story.back(), "HAND: 1 messages could not be read: another version; build both from one hirosco (2)");
+}
+
 TEST_F(ReceptionTest, WhoCanBeNeitherCommandedNorHeardIsStoppedAtOnce) {
   ASSERT_FALSE(guard.fenced(hand));
   played[hand].channel.close_subsystem_end();

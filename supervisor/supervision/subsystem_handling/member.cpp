@@ -10,6 +10,7 @@ void Member::started(LaunchedSubsystem launched) {
   going_down = false;
   closed_at.reset();
   refused = unreadable = unreadable_told = 0;
+  why_unreadable = {};
   next_unreadable_told = {};
 }
 

@@ -56,6 +56,7 @@ class Member {
   /// Messages of it that could not be read or are not of a kind that it may send, those that were told, and when again.
   std::uint32_t unreadable{0};
   std::uint32_t unreadable_told{0};
+  Error why_unreadable{};  ///< of the newest that its channel refused to read
   TimePoint next_unreadable_told{};
 
  private:
