@@ -59,22 +59,10 @@ template <WireNumber T>
 }
 
 [[nodiscard]] bool put_number(Type type, double number, OctetWriter& to) noexcept {
-  switch (type) {
-    case Type::Uint8: return put_number<std::uint8_t>(number, to);
-    case Type::Int8: return put_number<std::int8_t>(number, to);
-    case Type::Uint16: return put_number<std::uint16_t>(number, to);
-    case Type::Int16: return put_number<std::int16_t>(number, to);
-    case Type::Uint32: return put_number<std::uint32_t>(number, to);
-    case Type::Int32: return put_number<std::int32_t>(number, to);
-    case Type::Uint64: return put_number<std::uint64_t>(number, to);
-    case Type::Int64: return put_number<std::int64_t>(number, to);
-    case Type::Float: return put_number<float>(number, to);
-    case Type::Double: return put_number<double>(number, to);
-    case Type::Struct:
-    case Type::Bool:
-    case Type::Text: return false;
-  }
-  return false;
+  return with_number_type(type, false, [&]<class T>(std::type_identity<T>) noexcept {
+    if constexpr (std::is_same_v<T, bool>) return false;  // no parameter is one
+    else return put_number<T>(number, to);
+  });
 }
 
 /// One element of a field, as a field of its own.

@@ -9,18 +9,6 @@ namespace hirosco {
 namespace {
 
 template <class T>
-[[nodiscard]] constexpr TypeRange limits_of() noexcept {
-  return {std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max()};
-}
-
-template <class T>
-[[nodiscard]] bool put_whole(OctetWriter& writer, const Number& number) noexcept {
-  const auto value = number.as<T>();
-  if (value) writer.put(*value);
-  return value.has_value();
-}
-
-template <class T>
 [[nodiscard]] std::optional<Number> parse_as(std::string_view text) noexcept {
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -31,67 +19,29 @@ template <class T>
 }  // namespace
 
 Number read_number(OctetReader& reader, Type type) noexcept {
-  switch (type) {
-    case Type::Bool:
-    case Type::Uint8: return reader.get<std::uint8_t>();
-    case Type::Int8: return reader.get<std::int8_t>();
-    case Type::Uint16: return reader.get<std::uint16_t>();
-    case Type::Int16: return reader.get<std::int16_t>();
-    case Type::Uint32: return reader.get<std::uint32_t>();
-    case Type::Int32: return reader.get<std::int32_t>();
-    case Type::Uint64: return reader.get<std::uint64_t>();
-    case Type::Int64: return reader.get<std::int64_t>();
-    case Type::Float: return reader.get<float>();
-    case Type::Double: return reader.get<double>();
-    case Type::Struct:
-    case Type::Text: break;
-  }
-  return {};
+  return with_number_type(type, Number{},
+                          [&]<class T>(std::type_identity<T>) noexcept { return Number{reader.get<OnWire<T>>()}; });
 }
 
 bool write_number(OctetWriter& writer, Type type, const Number& number) noexcept {
-  switch (type) {
-    case Type::Bool:
-      if (!number.as<bool>()) return false;
-      return put_whole<std::uint8_t>(writer, number);
-    case Type::Uint8: return put_whole<std::uint8_t>(writer, number);
-    case Type::Int8: return put_whole<std::int8_t>(writer, number);
-    case Type::Uint16: return put_whole<std::uint16_t>(writer, number);
-    case Type::Int16: return put_whole<std::int16_t>(writer, number);
-    case Type::Uint32: return put_whole<std::uint32_t>(writer, number);
-    case Type::Int32: return put_whole<std::int32_t>(writer, number);
-    case Type::Uint64: return put_whole<std::uint64_t>(writer, number);
-    case Type::Int64: return put_whole<std::int64_t>(writer, number);
-    case Type::Float: {
-      const auto rounded = static_cast<float>(number.real());
+  return with_number_type(type, false, [&]<class T>(std::type_identity<T>) noexcept {
+    if constexpr (std::is_floating_point_v<T>) {
+      const auto rounded = static_cast<T>(number.real());
       if (std::isfinite(number.real()) && !std::isfinite(rounded)) return false;
       writer.put(rounded);
       return true;
+    } else {
+      const auto value = number.as<T>();
+      if (value) writer.put(static_cast<OnWire<T>>(*value));
+      return value.has_value();
     }
-    case Type::Double: writer.put(number.real()); return true;
-    case Type::Struct:
-    case Type::Text: break;
-  }
-  return false;
+  });
 }
 
 TypeRange range_of(Type type) noexcept {
-  switch (type) {
-    case Type::Bool: return {0, 1};
-    case Type::Uint8: return limits_of<std::uint8_t>();
-    case Type::Int8: return limits_of<std::int8_t>();
-    case Type::Uint16: return limits_of<std::uint16_t>();
-    case Type::Int16: return limits_of<std::int16_t>();
-    case Type::Uint32: return limits_of<std::uint32_t>();
-    case Type::Int32: return limits_of<std::int32_t>();
-    case Type::Uint64: return limits_of<std::uint64_t>();
-    case Type::Int64: return limits_of<std::int64_t>();
-    case Type::Float: return limits_of<float>();
-    case Type::Double: return limits_of<double>();
-    case Type::Struct:
-    case Type::Text: break;
-  }
-  return {};
+  return with_number_type(type, TypeRange{}, []<class T>(std::type_identity<T>) noexcept {
+    return TypeRange{std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max()};
+  });
 }
 
 std::string to_string(const Number& number) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "hirosco/utilities/enum_text.hpp"
 
@@ -23,8 +24,8 @@ enum class Type : std::uint8_t {
   Float = 9,
   Double = 10,
   Struct = 32,
-  Bool = 33,  ///< one octet, 0 or 1; of a function's argument only
-  Text = 34,  ///< UTF-8 up to a declared length; of a function's argument only
+  Bool = 33,  ///< one octet, 0 or 1; of functions and of a subsystem's own services only, like the next
+  Text = 34,  ///< UTF-8 up to a declared length
 };
 
 template <>
@@ -46,24 +47,35 @@ struct EnumTexts<Type> {
   });
 };
 
+/// What `visit` returns for the std::type_identity of the C++ type of a number, which is bool for BOOL; `none` for a structure
+/// and for text. The one place that goes through all types.  Realtime: bounded, as `visit` is.
+template <class Result, class Visit>
+[[nodiscard]] constexpr Result with_number_type(Type type, Result none, Visit visit) noexcept {
+  switch (type) {
+    case Type::Bool: return visit(std::type_identity<bool>{});
+    case Type::Uint8: return visit(std::type_identity<std::uint8_t>{});
+    case Type::Int8: return visit(std::type_identity<std::int8_t>{});
+    case Type::Uint16: return visit(std::type_identity<std::uint16_t>{});
+    case Type::Int16: return visit(std::type_identity<std::int16_t>{});
+    case Type::Uint32: return visit(std::type_identity<std::uint32_t>{});
+    case Type::Int32: return visit(std::type_identity<std::int32_t>{});
+    case Type::Uint64: return visit(std::type_identity<std::uint64_t>{});
+    case Type::Int64: return visit(std::type_identity<std::int64_t>{});
+    case Type::Float: return visit(std::type_identity<float>{});
+    case Type::Double: return visit(std::type_identity<double>{});
+    case Type::Struct:
+    case Type::Text: break;
+  }
+  return none;
+}
+/// As which such a type stands on the wire.
+template <class T>
+using OnWire = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+
 /// Octets of one value of a type; 0 for a structure, whose size is that of its members, and for text.
 [[nodiscard]] constexpr std::size_t octets_of(Type type) noexcept {
-  switch (type) {
-    case Type::Uint8:
-    case Type::Int8:
-    case Type::Bool: return 1;
-    case Type::Uint16:
-    case Type::Int16: return 2;
-    case Type::Uint32:
-    case Type::Int32:
-    case Type::Float: return 4;
-    case Type::Uint64:
-    case Type::Int64:
-    case Type::Double: return 8;
-    case Type::Struct:
-    case Type::Text: return 0;
-  }
-  return 0;
+  return with_number_type(type, std::size_t{0},
+                          []<class T>(std::type_identity<T>) noexcept { return sizeof(OnWire<T>); });
 }
 
 [[nodiscard]] constexpr bool is_integer(Type type) noexcept {
