@@ -81,10 +81,15 @@ void SubsystemReader::read_report(const xml::Element& element, CustomService& se
   report.subtype = attributes.required_integer<std::uint8_t>("subtype", 1, 255);
   Unique fields{"field name", "E0201"};
   each_child(element, problems_,
-             {{"Field", [&](const xml::Element& child) { read_plain_field(child, report.fields, fields, Says::Words); },
+             {{"Field",
+               [&](const xml::Element& child) {
+                 std::vector<Field> one;
+                 read_plain_field(child, one, fields, Says::Report);
+                 report.fields.push_back({.field = std::move(one.front()), .of = {}, .fallback = {}, .texts = {}});
+               },
                max_fields}});
   std::size_t octets = 0;
-  for (const Field& field : report.fields) octets += field.octets();
+  for (const auto& field : report.fields) octets += field.field.octets();
   if (octets > max_report_octets)
     problems_.add(element, "E0215", fmt::format("report '{}' takes {} octets", report.name, octets),
                   fmt::format("at most {}", max_report_octets));

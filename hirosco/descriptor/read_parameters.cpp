@@ -232,11 +232,11 @@ Field SubsystemReader::read_field(Attributes& attributes, Says says) {
   field.name = attributes.name();
   if (const auto* type = attributes.required("type"); type != nullptr) {
     field.type = attributes.one_of("type", Type::Double);
-    const bool of_arguments = field.type == Type::Bool || field.type == Type::Text;
-    if (field.type == Type::Struct || (of_arguments && says != Says::Argument)) {
+    const bool of_requests = field.type == Type::Bool || field.type == Type::Text;
+    if (field.type == Type::Struct || (of_requests && says != Says::Argument && says != Says::Report)) {
       problems_.add(*type, "E0104",
-                    fmt::format("'{}' is the type of a {} only", type->value,
-                                of_arguments ? "function's argument" : "<StructRef>"));
+                    fmt::format("'{}' is a type of {} only", type->value,
+                                of_requests ? "a function's arguments and of an own service" : "<StructRef>"));
       field.type = Type::Double;
     }
   }
@@ -251,7 +251,7 @@ Field SubsystemReader::read_field(Attributes& attributes, Says says) {
   if (field.unit.size() > 32)
     problems_.add(*attributes.element().find("unit"), "E0114", "a unit has at most 32 octets");
   const bool all = says == Says::WordsAndRange || says == Says::Argument;
-  if (all || says == Says::Words) read_words(attributes, field);
+  if (all || says == Says::Words || says == Says::Report) read_words(attributes, field);
   if (all || says == Says::Range) check_field_range(attributes, field);
   return field;
 }
@@ -301,13 +301,15 @@ void SubsystemReader::check_enumerations() {
     else if (!is_integer(use.type))
       problems_.add(*use.at, "E0208", fmt::format("an enumeration needs an integer type, not {}", to_text(use.type)));
   }
-  for (Function& function : subsystem_.functions) name_values(function);
-  for (CustomService& service : subsystem_.services)
-    for (Function& request : service.requests) name_values(request);
+  for (Function& function : subsystem_.functions) name_values(function.arguments);
+  for (CustomService& service : subsystem_.services) {
+    for (Function& request : service.requests) name_values(request.arguments);
+    for (CustomService::Report& report : service.reports) name_values(report.fields);
+  }
 }
 
-void SubsystemReader::name_values(Function& function) {
-  for (Function::Argument& argument : function.arguments) {
+void SubsystemReader::name_values(std::vector<Function::Argument>& arguments) {
+  for (Function::Argument& argument : arguments) {
     if (argument.field.type == Type::Bool) argument.texts = {{0, "off"}, {1, "on"}};
     const auto found = std::ranges::find(subsystem_.enumerations, argument.field.enumeration, &Enumeration::name);
     if (argument.field.enumeration.empty() || found == subsystem_.enumerations.end()) continue;

@@ -177,8 +177,7 @@ void SubsystemReader::read_argument(const xml::Element& element, Function& funct
   Function::Argument argument;
   if (element.find("of") != nullptr) read_range_of(attributes, argument, function.name);
   else {
-    const bool of_function = function.service == Function{}.service;
-    argument.field = read_field(attributes, of_function ? Says::Argument : Says::WordsAndRange);
+    argument.field = read_field(attributes, Says::Argument);
     const bool named = argument.field.type == Type::Bool || !argument.field.enumeration.empty();
     if (!named && argument.field.type != Type::Text) expect_range(element, "argument");
   }

@@ -154,7 +154,7 @@ struct CustomService {
   struct Report {
     std::string name;
     std::uint8_t subtype{};
-    std::vector<Field> fields;
+    std::vector<Function::Argument> fields;  ///< without fallback, and no range
   };
   std::vector<Report> reports;
   Location at;

@@ -29,7 +29,9 @@ bool goes_alone(const Function& request) noexcept {
 
 Result<std::vector<std::byte>> encode_request(const Function& request, GivenValues values) {
   if (request.service == FunctionService::service_type) return encode_call(request, values);
-  return encode_arguments_in_order(request, values);
+  std::vector<std::byte> data;
+  HIROSCO_TRY(append_values(data, request.arguments, values, Ids::None));
+  return data;
 }
 
 std::optional<std::vector<Value>> decode_request(const Function& request, Octets data) {
@@ -38,9 +40,7 @@ std::optional<std::vector<Value>> decode_request(const Function& request, Octets
     if (!call) return std::nullopt;
     return ArgumentReader{request.arguments, call->arguments}.rest();
   }
-  std::size_t octets = 0;
-  for (const Argument& argument : request.arguments) octets += argument.field.octets();
-  if (data.size() != octets) return std::nullopt;
+  if (!first_not_permitted(request.arguments, data)) return std::nullopt;
   return ArgumentReader{request.arguments, data}.rest();
 }
 

@@ -34,9 +34,9 @@ descriptor::Mission one_with_a_service() {
   service.name = "SIGNAL";
   service.type = 200;
   service.requests = {blink};
-  descriptor::Field count;
-  count.name = "COUNT";
-  count.type = Type::Uint16;
+  descriptor::Function::Argument count;
+  count.field.name = "COUNT";
+  count.field.type = Type::Uint16;
   service.reports = {{"BLINKED", 4, {count}}};
   descriptor::Parameter gain;
   gain.field.name = "GAIN";
@@ -140,6 +140,8 @@ TEST(Requests, AndReportsOfAnOwnServiceHaveWords) {
   EXPECT_EQ(described(mission, 200, 3, blink.written()), "TC[200,3] LAMP #0 BLINK TIMES=7 LEVEL=0.25,0.5");
   const auto packet = write_telemetry(buffer, {.apid = 10, .service = 200, .subtype = 4}, Octets{data}.first(2));
   EXPECT_EQ(PacketDescriber{mission}.describe(*packet), "TM[200,4] LAMP BLINKED COUNT=7");
+  const auto cut = write_telemetry(buffer, {.apid = 10, .service = 200, .subtype = 4}, Octets{data}.first(1));
+  EXPECT_EQ(PacketDescriber{mission}.describe(*cut), "TM[200,4] LAMP BLINKED COUNT=?");
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include "hirosco/subsystem/custom_service.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 #include "hirosco/pus/st01_verification/instructions.hpp"
 
@@ -16,61 +16,15 @@ constexpr std::size_t most_running = 64;
 using pus::FailureCode;
 using pus::FailureNotice;
 
-/// Whether a C++ layout has these fields, in order.
-[[nodiscard]] bool same(std::span<const NativeField> native, std::span<const descriptor::Field> declared) {
-  return std::ranges::equal(native, declared, [](const NativeField& n, const descriptor::Field& d) {
-    return n.type == d.type && n.count == d.count;
-  });
-}
-
-[[nodiscard]] std::vector<descriptor::Field> fields_of(const descriptor::Function& request) {
-  std::vector<descriptor::Field> fields;
-  for (const auto& argument : request.arguments) fields.push_back(argument.field);
-  return fields;
-}
-
-[[nodiscard]] std::size_t octets_of(std::span<const descriptor::Field> fields) {
-  std::size_t octets = 0;
-  for (const auto& field : fields) octets += field.octets();
-  return octets;
-}
-
-[[nodiscard]] std::string text_of(std::span<const descriptor::Field> fields) {
-  std::string text;
-  for (const auto& field : fields)
-    text.append(text.empty() ? "" : ", ").append(descriptor_text(field.type, field.count));
-  return text.empty() ? "nothing" : text;
-}
-[[nodiscard]] std::string text_of(std::span<const NativeField> fields) {
-  std::string text;
-  for (const auto& field : fields) text.append(text.empty() ? "" : ", ").append(cpp_text(field));
-  return text.empty() ? "nothing" : text;
-}
-
-/// One number between the wire and memory: the octets in the other order where the machine's is little.
-void copy_number(Octets from, MutableOctets to) noexcept {
-  if constexpr (std::endian::native == std::endian::big) std::ranges::copy(from, to.begin());
-  else std::ranges::reverse_copy(from, to.begin());
-}
-
-/// The first argument whose value the descriptor does not permit, from 1.
-[[nodiscard]] std::optional<std::size_t> bad_argument(const descriptor::Function& declared, Octets data) {
-  OctetReader reader{data};
-  for (std::size_t i = 0; i < declared.arguments.size(); ++i)
-    for (std::uint16_t element = 0; element < declared.arguments[i].field.count; ++element)
-      if (!pus::permits(declared.arguments[i], read_number(reader, declared.arguments[i].field.type))) return i + 1;
-  return std::nullopt;
-}
-
 [[nodiscard]] bool same_request(const pus::Request& one, const pus::Request& other) {
   return one.id == other.id && one.source == other.source;
 }
 
 }  // namespace
 
-void CustomService::bind(std::string_view request, std::span<const NativeField> arguments, Handler handler) {
+void CustomService::bind(std::string_view request, BoundHandler handler) {
   std::erase_if(bound_, [&](const Bound& bound) { return bound.request == request; });
-  bound_.push_back({std::string{request}, arguments, std::move(handler)});
+  bound_.push_back({std::string{request}, std::move(handler)});
 }
 
 void CustomService::join(pus::ServiceHome& home) {
@@ -93,9 +47,8 @@ std::vector<std::string> CustomService::problems() const {
       problems.push_back("on_request: service '" + name_ + "' declares no request '" + bound.request + "'");
       continue;
     }
-    if (const auto fields = fields_of(*request); !same(bound.arguments, fields))
-      problems.push_back("on_request " + bound.request + ": the handler takes " + text_of(bound.arguments) +
-                         ", the descriptor declares " + text_of(fields));
+    std::ranges::move(handler_mistakes("on_request " + bound.request + ": ", bound.handler.takes, request->arguments),
+                      std::back_inserter(problems));
   }
   for (const auto& request : declared_->requests)
     if (std::ranges::find(bound_, request.name, &Bound::request) == bound_.end())
@@ -109,20 +62,21 @@ void CustomService::handle(const pus::TelecommandView& telecommand, const pus::R
   const auto bound = declared == nullptr ? bound_.end() : std::ranges::find(bound_, declared->name, &Bound::request);
   if (bound == bound_.end()) return verification.rejected(request, pus::unknown_subtype(telecommand));
   const Octets data = telecommand.application_data();
-  const auto fields = fields_of(*declared);
-  if (data.size() != octets_of(fields)) return verification.rejected(request, FailureNotice{FailureCode::DataLength});
+  const auto not_permitted = pus::first_not_permitted(declared->arguments, data);
+  if (!not_permitted) return verification.rejected(request, FailureNotice{FailureCode::DataLength});
   if (!declared->permitted_in(home_->state()))
     return verification.rejected(
         request, FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(home_->state())));
   if (open_.size() >= most_running) return verification.rejected(request, FailureNotice{FailureCode::QueueFull});
   verification.accepted(request);
-  if (const auto bad = bad_argument(*declared, data))
-    return verification.start_failed(
-        request,
-        FailureNotice{FailureCode::ValueNotAcceptable}.with(std::uint8_t{0}).with(static_cast<std::uint32_t>(*bad)));
+  if (*not_permitted != 0)
+    return verification.start_failed(request, FailureNotice{FailureCode::ValueNotAcceptable}
+                                                  .with(std::uint8_t{0})
+                                                  .with(static_cast<std::uint32_t>(*not_permitted)));
   // Open before it runs: whoever finishes at once is heard, too.
   open_.push_back(request);
-  const Outcome outcome = bound->handler(data, {request});
+  pus::ArgumentReader arguments{declared->arguments, data};
+  const Outcome outcome = bound->handler.call(arguments, {request});
   if (outcome.kind == Outcome::Kind::Running) {
     if (is_open({request})) verification.started(request);
     return;
@@ -157,27 +111,14 @@ void CustomService::release() noexcept {
     home_->verification().completion_failed(request, FailureNotice{FailureCode::Aborted});
 }
 
-void CustomService::from_wire(std::span<const NativeField> fields, Octets data, MutableOctets native) noexcept {
-  for (const NativeField& field : fields) {
-    const std::size_t each = hirosco::octets_of(field.type);
-    for (std::uint16_t i = 0; i < field.count; ++i, data = data.subspan(each))
-      copy_number(data.first(each), native.subspan(field.offset + i * each, each));
-  }
-}
-
-Result<> CustomService::send(std::string_view report, const Call& to, std::span<const NativeField> fields,
-                             Octets native) {
+Result<> CustomService::send(std::string_view report, const Call& to, std::span<const NativeField> types,
+                             pus::GivenValues values) {
   if (home_ == nullptr || declared_ == nullptr) return fail(ErrorCode::Unavailable, "the service is not provided");
   const auto declared = std::ranges::find(declared_->reports, report, &descriptor::CustomService::Report::name);
   if (declared == declared_->reports.end()) return fail(ErrorCode::NotFound, "the descriptor declares no such report");
-  if (!same(fields, declared->fields)) return fail(ErrorCode::Mismatch, "the descriptor's report has other fields");
-  std::vector<std::byte> data(octets_of(declared->fields));
-  MutableOctets rest{data};
-  for (const NativeField& field : fields) {
-    const std::size_t each = hirosco::octets_of(field.type);
-    for (std::uint16_t i = 0; i < field.count; ++i, rest = rest.subspan(each))
-      copy_number(native.subspan(field.offset + i * each, each), rest.first(each));
-  }
+  if (!same_types(types, declared->fields))
+    return fail(ErrorCode::Mismatch, "the descriptor's report has other fields");
+  HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_report(declared->fields, values));
   home_->telemetry().report(declared_->type, declared->subtype, to.request.source, data);
   return ok();
 }

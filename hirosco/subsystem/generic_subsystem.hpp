@@ -105,12 +105,12 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void provide(CustomService& service);
   void use_event(EventPort& event);
   void use_request(const RequestPort& request, RequestHandler handler, Duration patience);
-  Result<std::uint32_t> send_request(const RequestPort& asked, std::span<const std::optional<double>> values);
+  Result<std::uint32_t> send_request(const RequestPort& asked, pus::GivenValues values);
   /// An event with its auxiliary data, from the service loop in any state: before Software-Init it is not bound yet.
   void raise_named(std::string_view event, Octets auxiliary);
   /// For one that announces its events by name: each that it declares counts as used.
   void uses_all_events() noexcept { uses_all_events_ = true; }
-  void bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes, FunctionHandler handler);
+  void bind_function(std::string_view name, BoundHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
   [[nodiscard]] pus::Verification& verification() noexcept override { return verification_; }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -13,11 +15,12 @@
 
 #include "hirosco/parameter/layout.hpp"
 #include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/service/arguments.hpp"
 #include "hirosco/pus/service/service.hpp"
-#include "hirosco/pus/st08_function/arguments.hpp"
+#include "hirosco/subsystem/typed_values.hpp"
 #include "hirosco/utilities/result.hpp"
 
-/// What a function's handler takes and returns, and how its C++ types are known to the framework.
+/// What the handler of a function, or of a request to an own service, takes and returns.
 namespace hirosco {
 
 /// One running execution of a function: kept by an author to report progress and completion later.
@@ -55,53 +58,13 @@ using FunctionValues = Sized<double, max_function_arguments>;
 
 /// Reads the arguments as the descriptor types them and calls the author's handler.
 using FunctionHandler = std::function<Outcome(pus::ArgumentReader&, Call)>;
+/// A handler as it is bound: what it takes is compared with what is declared.
+struct BoundHandler {
+  std::optional<std::span<const NativeField>> takes;  ///< nothing: all numbers, whatever is declared
+  FunctionHandler call;
+};
 
 namespace detail {
-
-template <class T>
-struct IsSized : std::false_type {};
-template <class T, std::size_t N>
-struct IsSized<Sized<T, N>> : std::true_type {};
-
-template <class T>
-concept ArgumentNumber = std::is_same_v<T, bool> || layout_detail::Scalar<T>;
-template <class T>
-concept ArgumentType =
-    std::is_same_v<T, std::string_view> || ArgumentNumber<typename layout_detail::ArrayOf<T>::Element>;
-
-/// The C++ type of a handler's argument, as it is compared with the descriptor.
-template <ArgumentType T>
-[[nodiscard]] constexpr NativeField native_argument() noexcept {
-  using Element = typename layout_detail::ArrayOf<T>::Element;
-  NativeField native;
-  if constexpr (std::is_same_v<T, std::string_view>) native.type = Type::Text;
-  else if constexpr (std::is_same_v<Element, bool>) native.type = Type::Bool;
-  else native.type = layout_detail::type_of<Element>();
-  native.count = layout_detail::ArrayOf<T>::count;
-  if constexpr (IsSized<T>::value) native.most = layout_detail::ArrayOf<T>::most;
-  return native;
-}
-
-/// Exact: what `T` does not have was refused before.
-template <ArgumentNumber T>
-[[nodiscard]] constexpr T number_as(const Number& number) noexcept {
-  if constexpr (std::is_enum_v<T>) return static_cast<T>(number_as<std::underlying_type_t<T>>(number));
-  else if constexpr (std::is_floating_point_v<T>) return static_cast<T>(number.real());
-  else return number.as<T>().value_or(T{});
-}
-
-template <ArgumentType T>
-[[nodiscard]] T take(pus::ArgumentReader& reader) noexcept {
-  if constexpr (std::is_same_v<T, std::string_view>) return reader.text();
-  else if constexpr (layout_detail::ArrayOf<T>::value) {
-    T values{};
-    if constexpr (IsSized<T>::value) values = T::zeros(reader.count());
-    for (auto& value : values) value = number_as<typename layout_detail::ArrayOf<T>::Element>(reader.number());
-    return values;
-  } else {
-    return number_as<T>(reader.number());
-  }
-}
 
 template <class T>
 struct HandlerTraits;
@@ -138,6 +101,32 @@ template <class H>
 concept Handler = requires { typename HandlerTraits<decltype(&H::operator())>::Answer; };
 template <class R>
 concept Answers = std::is_same_v<R, Result<>> || std::is_same_v<R, Outcome>;
+
+template <class H>
+[[nodiscard]] BoundHandler bound(H handler) {
+  static_assert(Handler<H>, "a handler is a lambda with arguments of definite types, and not mutable");
+  using Traits = HandlerTraits<decltype(&H::operator())>;
+  static_assert(Answers<typename Traits::Answer>,
+                "a handler returns Result<> or Outcome: write '-> Result<>' and end with 'return ok();'");
+  static_assert(!Traits::takes_string, "text comes as std::string_view; a std::string would allocate");
+  static_assert(Traits::takes_what_a_call_brings,
+                "a handler takes numbers or enumerations, bool, std::array or Sized of those, std::string_view for "
+                "text, or FunctionValues, and last a Call if it reports later");
+  if constexpr (Traits::takes_values) {
+    static_assert(Traits::arguments == 1, "FunctionValues are all numbers of a call; beside them there is a Call only");
+    return {std::nullopt, [handler](pus::ArgumentReader& reader, Call call) -> Outcome {
+              auto values = FunctionValues::zeros(reader.remaining());
+              for (double& value : values) value = reader.number().real();
+              if constexpr (Traits::takes_call) return handler(values, call);
+              else return handler(values);
+            }};
+  } else {
+    static constexpr auto natives = Traits::natives();
+    return {natives, [handler](pus::ArgumentReader& reader, Call call) -> Outcome {
+              return Traits::invoke(handler, reader, call);
+            }};
+  }
+}
 
 }  // namespace detail
 }  // namespace hirosco

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 #include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
@@ -70,11 +70,9 @@ void GenericSubsystem::provide(CustomService& service) {
   services_.push_back(&service);
 }
 
-void GenericSubsystem::bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes,
-                                     FunctionHandler handler) {
+void GenericSubsystem::bind_function(std::string_view name, BoundHandler handler) {
   const auto& functions = descriptor_.functions;
   const auto found = std::ranges::find(functions, name, &descriptor::Function::name);
-  const std::string who = "on_function " + std::string{name} + ": ";
   if (found == functions.end())
     return mistake("on_function: the descriptor declares no function '" + std::string{name} + "'");
   const std::vector<pus::Argument>& declared = found->arguments;

@@ -135,8 +135,7 @@ Result<> GenericSubsystem::submit_ground_telecommand(std::uint16_t client, Octet
   return channel_.send({.kind = MessageKind::GroundTelecommand, .link = client, .packet = packet});
 }
 
-Result<std::uint32_t> GenericSubsystem::send_request(const RequestPort& asked,
-                                                     std::span<const std::optional<double>> values) {
+Result<std::uint32_t> GenericSubsystem::send_request(const RequestPort& asked, pus::GivenValues values) {
   // As above: what is under way would never be heard to end.
   if (!backlog_.empty()) return fail(ErrorCode::ResourceExhausted, "reports wait for the supervisor");
   return requester_.send(asked, values, platform_.clock.now());

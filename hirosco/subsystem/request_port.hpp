@@ -5,14 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
-#include <optional>
 #include <span>
 #include <string_view>
-#include <type_traits>
 
 #include "hirosco/parameter/layout.hpp"
 #include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/subsystem/typed_values.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 /// What a subsystem asks of another one (adr 0062).
@@ -64,44 +62,19 @@ class RequestPort {
 };
 
 /// `Request<double> dim_{"LAMP", "DIM"};` with one type for each <Argument> of the function, in their order: a number, an
-/// enumeration or a std::array of those. `use_request(dim_, handler)` in Software-Init, `request(dim_, 0.5)` in the service
-/// loop.
-template <layout_detail::FieldType... Arguments>
+/// enumeration, bool, std::string_view for text, or a std::array of all but text. `use_request(dim_, handler)` in
+/// Software-Init, `request(dim_, 0.5)` in the service loop.
+template <class... Arguments>
 class Request final : public RequestPort {
  public:
-  static_assert(((layout_detail::ArrayOf<Arguments>::count != 0) && ...),
-                "a request's arguments have a fixed length: no Sized");
+  static_assert((detail::SentType<Arguments> && ...),
+                "a request takes numbers or enumerations, bool, std::string_view for text, or a std::array of all but "
+                "text: no Sized, for its length is the other's descriptor's");
   /// Both are string literals: the subsystem as <Commands> of the descriptor calls it.
   Request(const char* subsystem, const char* function) noexcept : RequestPort{subsystem, function, fields} {}
 
-  static constexpr std::size_t values = (0 + ... + layout_detail::ArrayOf<Arguments>::count);
-  /// Element by element, as the encoder of ST[08] takes them.
-  [[nodiscard]] static std::array<std::optional<double>, values> flatten(const Arguments&... arguments) noexcept {
-    std::array<std::optional<double>, values> all;
-    [[maybe_unused]] std::size_t next = 0;
-    (put(all, next, arguments), ...);
-    return all;
-  }
-
  private:
-  template <class T>
-  static void put(std::array<std::optional<double>, values>& all, std::size_t& next, const T& value) noexcept {
-    if constexpr (layout_detail::ArrayOf<T>::value)
-      for (const auto& element : value) put(all, next, element);
-    else all[next++] = number(static_cast<typename layout_detail::NumberOf<T>::type>(value));
-  }
-  /// A number that a double would change is none: its encoder refuses it.
-  template <class T>
-  [[nodiscard]] static double number(T value) noexcept {
-    if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
-      constexpr auto exact = T{1} << std::numeric_limits<double>::digits;
-      if (value > exact) return std::numeric_limits<double>::quiet_NaN();
-      if constexpr (std::is_signed_v<T>)
-        if (value < -exact) return std::numeric_limits<double>::quiet_NaN();
-    }
-    return static_cast<double>(value);
-  }
-  static constexpr std::array<NativeField, sizeof...(Arguments)> fields{layout_detail::field_at<Arguments>(0)...};
+  static constexpr std::array<NativeField, sizeof...(Arguments)> fields{detail::native_argument<Arguments>()...};
 };
 
 }  // namespace hirosco

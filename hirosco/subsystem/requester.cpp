@@ -30,12 +30,6 @@ constexpr std::uint16_t counts = 16'384;
   }
 }
 
-[[nodiscard]] std::string in_words(std::span<const NativeField> native) {
-  std::string text;
-  for (const NativeField& field : native) text.append(text.empty() ? "" : ", ").append(cpp_text(field));
-  return text;
-}
-
 }  // namespace
 
 /// A subsystem that was started again must not take answers to its predecessor for its own: it goes on counting elsewhere.
@@ -54,25 +48,16 @@ std::string Requester::use(const RequestPort& port, RequestHandler handler, Dura
   if (commands->requests.size() != commands->functions.size()) return who + "no mission says who that is";
   const auto place = static_cast<std::size_t>(named - commands->functions.begin());
   const descriptor::Function& function = commands->requests[place];
-  const bool same =
-      std::ranges::equal(port.arguments(), function.arguments, [](const NativeField& native, const auto& argument) {
-        return native.type == argument.field.type && native.count == argument.field.count;
-      });
-  if (!same) {
-    std::string wanted;
-    for (const auto& argument : function.arguments)
-      wanted.append(wanted.empty() ? "" : ", ").append(descriptor_text(argument.field.type, argument.field.count));
-    return who + "its arguments are (" + in_words(port.arguments()) + "), the descriptor of " +
-           std::string{port.subsystem()} + " declares (" + wanted + ")";
-  }
+  if (!same_types(port.arguments(), function.arguments))
+    return who + "its arguments are (" + types_text(port.arguments()) + "), the descriptor of " +
+           std::string{port.subsystem()} + " declares (" + types_text(pus::ArgumentList{function.arguments}) + ")";
   const auto before = std::ranges::find(bound_, &port, &Bound::port);
   Bound& bound = before != bound_.end() ? *before : bound_.emplace_back();
   bound = {&port, commands->apid, &function, std::move(handler), patience};
   return {};
 }
 
-Result<std::uint32_t> Requester::send(const RequestPort& port, std::span<const std::optional<double>> values,
-                                      TimePoint now) {
+Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues values, TimePoint now) {
   const auto bound = std::ranges::find(bound_, &port, &Bound::port);
   if (bound == bound_.end()) return fail(ErrorCode::NotPermitted, "not bound: use_request() in software_init()");
   if (open_.size() == most_open)
@@ -83,10 +68,7 @@ Result<std::uint32_t> Requester::send(const RequestPort& port, std::span<const s
   }
   if (sent_in_window_ == most_a_second)
     return fail(ErrorCode::ResourceExhausted, "requests in a second", static_cast<std::int64_t>(most_a_second));
-  // The one place where what an author asks becomes octets.
-  std::vector<std::optional<Value>> given;
-  for (const auto& value : values) given.push_back(value ? std::optional<Value>{Number{*value}} : std::nullopt);
-  HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_request(*bound->function, given));
+  HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_request(*bound->function, values));
   std::array<std::byte, max_packet_octets> buffer;
   HIROSCO_TRY_LET(const Octets packet, pus::write_telecommand(buffer,
                                                               {.apid = bound->apid,

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <deque>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 #include "hirosco/data_transfer/control/channel.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/service/arguments.hpp"
 #include "hirosco/subsystem/request_port.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -33,8 +33,7 @@ class Requester {
   [[nodiscard]] std::string use(const RequestPort& port, RequestHandler handler, Duration patience);
   /// Sends one, and returns its number. NotPermitted: it is not bound; ResourceExhausted: too many are under way, or the
   /// supervisor is behind; of the values, what the encoder of ST[08] says.
-  [[nodiscard]] Result<std::uint32_t> send(const RequestPort& port, std::span<const std::optional<double>> values,
-                                           TimePoint now);
+  [[nodiscard]] Result<std::uint32_t> send(const RequestPort& port, pus::GivenValues values, TimePoint now);
   [[nodiscard]] bool waits() const noexcept { return !open_.empty(); }
   /// A report that came for this subsystem.
   void hear(const pus::TelemetryView& report);

@@ -228,13 +228,71 @@ TEST(Requests, OfAnotherLifeAreNumberedElsewhere) {
   EXPECT_NE(first_number(std::chrono::seconds{1}), first_number(std::chrono::seconds{2}));
 }
 
-TEST(Requests, A64BitNumberThatADoubleWouldChangeIsRefused) {
-  using Numbers = Request<std::uint64_t, std::array<std::int64_t, 2>>;
-  constexpr auto exact = std::uint64_t{1} << 53;
-  const auto flat = Numbers::flatten(exact, {-static_cast<std::int64_t>(exact), 5});
-  EXPECT_THAT(flat, ElementsAre(9007199254740992.0, -9007199254740992.0, 5.0));
-  EXPECT_TRUE(std::isnan(*Numbers::flatten(exact + 1, {0, 0})[0]));
-  EXPECT_TRUE(std::isnan(*Numbers::flatten(0, {0, -static_cast<std::int64_t>(exact) - 1})[2]));
+enum class Tune : std::uint8_t { Angelus = 3 };
+struct Composer final : Subsystem {
+  Request<std::uint64_t, std::array<std::int64_t, 2>, Tune, bool, std::string_view> compose{"BELL", "COMPOSE"};
+  Result<Step> software_init() override {
+    use_request(compose, {});
+    return done;
+  }
+  using Subsystem::request;
+};
+constexpr const char* carillon_descriptor = R"(<Subsystem name="BELL" id="11">
+  <Enumeration name="TUNES"><Text value="3">angelus</Text></Enumeration>
+  <FunctionService>
+    <Function name="COMPOSE">
+      <Argument name="SERIAL" type="UINT64" minimum="0" maximum="18446744073709551615"/>
+      <Argument name="PITCHES" type="INT64" count="2" minimum="-9223372036854775808" maximum="9223372036854775807"/>
+      <Argument name="TUNE" type="UINT8" enumeration="TUNES"/>
+      <Argument name="LOUD" type="BOOL"/>
+      <Argument name="TITLE" type="TEXT" octets="8"/>
+    </Function>
+  </FunctionService>
+  <Configuration name="ONE" id="1" sampling_us="1000"/>
+</Subsystem>)";
+constexpr const char* composer_descriptor = R"(<Subsystem name="COMPOSER" id="10">
+  <Commands subsystem="BELL" functions="COMPOSE"/>
+  <Configuration name="ONE" id="1" sampling_us="1000"/>
+</Subsystem>)";
+
+TEST(Requests, CarryEveryTypeOfTheOthersDescriptorWithoutLosingADigit) {
+  Composer composer;
+  Rig rig{composer, read_descriptor(composer_descriptor, {carillon_descriptor})};
+  rig.bring_to(State::PreOperational);
+  ASSERT_TRUE(composer.request(composer.compose, (std::uint64_t{1} << 53) + 1,
+                               {INT64_MIN, -(std::int64_t{1} << 53) - 1}, Tune::Angelus, true, "\u20ac"));
+  rig.service();
+  EXPECT_EQ(hex(rig.asked.back().data),
+            "434f4d504f5345000000000000000000"
+            "05"
+            "010020000000000001"
+            "028000000000000000ffdfffffffffffff"
+            "0303"
+            "0401"
+            "050003e282ac");
+  EXPECT_EQ(composer.request(composer.compose, 0, {0, 0}, Tune{4}, true, "").error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(composer.request(composer.compose, 0, {0, 0}, Tune::Angelus, true, "nine octets").error().code,
+            ErrorCode::OutOfRange);
+  EXPECT_EQ(composer.request(composer.compose, 0, {0, 0}, Tune::Angelus, true, "\xff").error().code,
+            ErrorCode::InvalidArgument);
+}
+
+struct Tuneless final : Subsystem {
+  Request<std::uint64_t, std::array<std::int64_t, 2>, std::uint8_t, std::uint8_t, double> compose{"BELL", "COMPOSE"};
+  Result<Step> software_init() override {
+    use_request(compose, {});
+    return done;
+  }
+};
+
+TEST(Requests, OfOtherTypesThanTheOthersDescriptorHasAreToldWithBothLists) {
+  Tuneless author;
+  Rig rig{author, read_descriptor(composer_descriptor, {carillon_descriptor})};
+  rig.set_state_now(State::PreOperational);
+  ASSERT_FALSE(rig.explanations.empty());
+  EXPECT_THAT(rig.explanations.front(),
+              HasSubstr("its arguments are (std::uint64_t, std::array<std::int64_t, 2>, std::uint8_t, std::uint8_t, "
+                        "double), the descriptor of BELL declares (UINT64, INT64[2], UINT8, BOOL, TEXT of 8 octets)"));
 }
 
 struct Forgetful final : Subsystem {

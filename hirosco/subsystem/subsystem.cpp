@@ -59,7 +59,7 @@ void Subsystem::abort_call(const Call& call, pus::FailureCode code, const Error&
   framework_->cycle().fail_call(ReportKind::Aborted, code, call.request, why);
 }
 
-Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, std::span<const std::optional<double>> values) {
+Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, pus::GivenValues values) {
   return framework_->send_request(asked, values);
 }
 Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {

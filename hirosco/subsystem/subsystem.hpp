@@ -100,32 +100,7 @@ class Subsystem {
   /// gets all numbers, as many as the descriptor declares.
   template <class Handler>
   void on_function(std::string_view name, Handler handler) {
-    static_assert(detail::Handler<Handler>,
-                  "on_function: a handler is a lambda with arguments of definite types, and not mutable");
-    using Traits = detail::HandlerTraits<decltype(&Handler::operator())>;
-    static_assert(
-        detail::Answers<typename Traits::Answer>,
-        "on_function: a handler returns Result<> or Outcome: write '-> Result<>' and end with 'return ok();'");
-    static_assert(!Traits::takes_string, "on_function: text comes as std::string_view; a std::string would allocate");
-    static_assert(Traits::takes_what_a_call_brings,
-                  "on_function: a handler takes numbers or enumerations, bool, std::array or Sized of those, "
-                  "std::string_view for "
-                  "text, or FunctionValues, and last a Call if it reports later");
-    if constexpr (Traits::takes_values) {
-      static_assert(Traits::arguments == 1,
-                    "FunctionValues are all numbers of a call; beside them there is a Call only");
-      bind_function(name, std::nullopt, [handler](pus::ArgumentReader& reader, Call call) -> Outcome {
-        auto values = FunctionValues::zeros(reader.remaining());
-        for (double& value : values) value = reader.number().real();
-        if constexpr (Traits::takes_call) return handler(values, call);
-        else return handler(values);
-      });
-    } else {
-      static constexpr auto natives = Traits::natives();
-      bind_function(name, natives, [handler](pus::ArgumentReader& reader, Call call) -> Outcome {
-        return Traits::invoke(handler, reader, call);
-      });
-    }
+    bind_function(name, detail::bound(std::move(handler)));
   }
 
   // --- in the cycle and in function handlers ----------------------------------------------------------------------
@@ -156,7 +131,7 @@ class Subsystem {
   template <class... Arguments>
   Result<std::uint32_t> request(const Request<Arguments...>& asked,
                                 const std::type_identity_t<Arguments>&... arguments) {
-    return send_request(asked, asked.flatten(arguments...));
+    return send_request(asked, detail::values_of<Arguments...>(arguments...));
   }
   /// Reports an event from the service loop, in any state.
   template <class... Arguments>
@@ -169,11 +144,10 @@ class Subsystem {
  private:
   friend class GenericSubsystem;
   friend class CycleLoop;
-  /// Nothing: it takes all numbers of a call, whatever the descriptor declares.
-  void bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes, FunctionHandler handler);
+  void bind_function(std::string_view name, BoundHandler handler);
   void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
   void raise_encoded_in_service(const EventPort& event, Octets auxiliary);
-  Result<std::uint32_t> send_request(const RequestPort& asked, std::span<const std::optional<double>> values);
+  Result<std::uint32_t> send_request(const RequestPort& asked, pus::GivenValues values);
   void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
   GenericSubsystem* framework_{nullptr};
 };

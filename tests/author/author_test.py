@@ -27,6 +27,8 @@ from hirosco_lamp import Spacecraft
 with Spacecraft() as craft:
     (report,) = craft.lamp.read_meter().reports
     print(report.name, report["DIMMED"], report["CURRENT"])
+    (report,) = craft.lamp.label("K. Tsiolkovsky \u20ac", 2**64 - 1, True).reports
+    print(report.name, ascii(report["OWNER"]), report["SERIAL"], report["LENT"])
 """
 
 
@@ -243,8 +245,18 @@ class Flown(Outside, unittest.TestCase):
         self.assertIn("id", asked)
         self.hirosco("export", "python", self.mission, "--to", self.folder)
         told = self.said("python3", "-B", "-c", METER, environment={"PYTHONPATH": str(self.folder)})
-        self.assertEqual(told.split(), ["METER", "1", "0.9"])
-        self.assertIn("LAMP METER DIMMED=1 CURRENT=0.9 A", self.hirosco("log", "--service", "200"))
+        self.assertEqual(told.splitlines(), ["METER 1 0.9", f"LABELLED 'K. Tsiolkovsky \\u20ac' {2**64 - 1} True"])
+        self.assertEqual(lamp.tc("LAMP", "LABEL", "Ada", 2**64 - 2)[1][-1], "1,7")
+        given = {"OWNER": "by JSON", "SERIAL": str(2**64 - 3), "LENT": "on"}
+        self.assertIn("id", ask("/api/commands", {"subsystem": "LAMP", "function": "LABEL", "arguments": given}))
+        for name, value in (("OWNER", 25 * "x"), ("SERIAL", str(2**64)), ("LENT", 2)):
+            with self.assertRaises(urllib.error.HTTPError) as refused:
+                ask("/api/commands", {"subsystem": "LAMP", "function": "LABEL", "arguments": {**given, name: value}})
+            self.assertEqual(refused.exception.code, 400)
+        log = self.hirosco("log", "--service", "200")
+        self.assertIn("LAMP METER DIMMED=1 CURRENT=0.9 A", log)
+        self.assertIn(f"LAMP LABELLED OWNER='Ada' SERIAL={2**64 - 2} LENT=off", log)
+        self.assertIn(f"LAMP LABELLED OWNER='by JSON' SERIAL={2**64 - 3} LENT=on", log)
 
     def typed_arguments(self, lamp, ask, url):
         """A 64-bit integer, an enumeration, a text and an array, by terminal, API, form and Python: no digit and no octet is lost."""

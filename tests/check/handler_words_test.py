@@ -34,7 +34,7 @@ class Handlers(unittest.TestCase):
                         'on_function("X", [](const FunctionValues&, Call) -> Outcome { return running; })',
                         'on_function("X", [](std::int64_t, std::string_view, const std::array<bool, 3>&, Sized<float, 4>, Call)'
                         ' -> Outcome { return running; })',
-                        'book.on_request("X", [](const std::uint16_t&) -> Result<> { return ok(); })'):
+                        'book.on_request("X", [](std::uint16_t, std::string_view, bool, const Call&) -> Outcome { return running; })'):
             self.assertEqual(self.first_error(handler), "", handler)
 
     def test_one_that_returns_nothing_is_told_what_to_return(self):

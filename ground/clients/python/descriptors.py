@@ -54,6 +54,16 @@ class Field:
         values = struct.unpack_from(f">{self.count}{FORMATS[self.type]}", data, offset)
         return values[0] if self.count == 1 else values
 
+    def take(self, data: bytes, offset: int) -> Tuple[Any, int]:
+        """A value of a subsystem's own report, and where the next one stands. struct.error: it is cut off."""
+        if self.type != "TEXT":
+            return self.decode(data, offset), offset + self.octets
+        begin = offset + 2
+        end = begin + struct.unpack_from(">H", data, offset)[0]
+        if end > len(data):
+            raise struct.error(f"{self.name} is cut off")
+        return data[begin:end].decode("utf-8", "replace"), end
+
     def text_of(self, value: float) -> Optional[str]:
         return next((text for known, text in self.texts if known == value), None)
 

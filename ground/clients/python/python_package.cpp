@@ -331,7 +331,7 @@ class SubsystemClass {
   void add_own_reports(const descriptor::CustomService& service) {
     for (const auto& report : service.reports) {
       std::vector<Value> values;
-      for (const auto& field : report.fields) values.push_back(value_of(field));
+      for (const auto& field : report.fields) values.push_back({field.field, std::nullopt, field.texts, 0});
       reports_ += fmt::format("            _r.ReportKind({}, {}, {}, fields={}),\n", service.type, report.subtype,
                               python_string(report.name), fields_tuple(values));
     }

@@ -359,12 +359,16 @@ class Craft:
         """Names no request: it goes to the oldest open one of this service."""
         kind = next((one for one in subsystem._about.reports
                      if (one.service, one.subtype) == (packet.service, packet.subtype)), None)
-        if kind is None or len(packet.data) != sum(field.octets for field in kind.fields):
+        if kind is None:
             return
         values, offset = {}, 0
-        for field in kind.fields:
-            values[field.name] = field.decode(packet.data, offset)
-            offset += field.octets
+        try:
+            for field in kind.fields:
+                values[field.name], offset = field.take(packet.data, offset)
+        except struct.error:
+            return
+        if offset != len(packet.data):
+            return
         for request in self._requests.values():
             function = subsystem._functions.get(request.name)
             if (request.subsystem == subsystem._about.name and function is not None and

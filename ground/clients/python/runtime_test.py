@@ -21,7 +21,7 @@ sys.path.insert(0, str(HERE.parent))            # the files of an exported packa
 
 from python import runtime  # noqa: E402
 from python.runtime import (ArgumentError, CommandFailed, Craft, EventKind, Field, Function, Layout, LinkLost, MissionAbout,
-                            NoAnswer, Parameter, Subsystem, SubsystemAbout, Telemetry)
+                            NoAnswer, Parameter, ReportKind, Subsystem, SubsystemAbout, Telemetry)
 
 VECTORS = json.loads((HERE.parents[2] / "hirosco/pus/testing/test_vectors.json").read_text())
 
@@ -142,7 +142,10 @@ class Fields(unittest.TestCase):
 
 
 class Arm(Subsystem):
-    _about = SubsystemAbout("ARM", 10, functions=(Function("MOVE", arguments=(Field("Q", "UINT8"),)),),
+    _about = SubsystemAbout("ARM", 10, functions=(Function("MOVE", arguments=(Field("Q", "UINT8"),)),
+                                                  Function("LABEL", 200, 1, (Field("OWNER", "TEXT", most=8), Field("LENT", "BOOL")))),
+                            reports=(ReportKind(200, 2, "LABELLED", (Field("OWNER", "TEXT", most=8), Field("SERIAL", "UINT64"),
+                                                                     Field("LENT", "BOOL", count=2))),),
                             parameters=(Parameter("KP", 0x0A0A03, (Field("KP", "DOUBLE"),)),),
                             layouts=(Layout(7, 4, (Field("A", "UINT8", offset=2), Field("B", "INT8", offset=3))),
                                      Layout(9, 8, (Field("SUBSYSTEMS.APID", "UINT16", count=2, offset=2),
@@ -297,6 +300,26 @@ class Client(unittest.TestCase):
         self.assertFalse(request.done)
         with self.assertRaises(NoAnswer):
             request.result(0.01)
+
+    def test_words_and_switches_of_an_own_service_are_asked_and_told(self):
+        asked = []
+        serial = struct.pack(">Q", 2**64 - 1)
+
+        def run():
+            request = self.peer.telecommand()
+            asked.append(request[11:-2])
+            for data in (b"\0\3\xe2\x82\xac" + serial + b"\1", b"\0\4\xe2\x82\xac" + serial + b"\1\0", b"\0",
+                         b"\0\3\xe2\x82\xac" + serial + b"\1\0"):
+                self.peer.tell(200, 2, data, self.craft.source)
+            self.peer.verify(request, 7)
+        thread = threading.Thread(target=run)
+        thread.start()
+        self.addCleanup(thread.join)
+        request = self.craft.arm._call("LABEL", ("\u20ac", True), 2.0)
+        self.assertEqual(asked, [b"\0\3\xe2\x82\xac\1"])
+        self.assertEqual([report.values for report in request.reports],
+                         [{"OWNER": "\u20ac", "SERIAL": 2**64 - 1, "LENT": (True, False)}], "what is cut off is none")
+        self.assertEqual(request.reports[0]["OWNER"], "\u20ac")
 
     def test_a_parameter_is_asked_for(self):
         def run():

@@ -75,9 +75,9 @@ class SubsystemReader {
   void claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id);
   void check_enumerations();
   /// An argument knows the names of its values.
-  void name_values(Function& function);
+  void name_values(std::vector<Function::Argument>& arguments);
   /// What a field says besides name, type, count and unit.
-  enum class Says { Nothing, Words, Range, WordsAndRange, Argument };
+  enum class Says { Nothing, Words, Range, WordsAndRange, Argument, Report };
   [[nodiscard]] Field read_field(Attributes& attributes, Says says);
   void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
                         Says says = Says::Nothing);

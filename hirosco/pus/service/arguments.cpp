@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/pus/st08_function/arguments.hpp"
+#include "hirosco/pus/service/arguments.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -11,10 +11,9 @@
 namespace hirosco::pus {
 namespace {
 
-[[nodiscard]] Result<> append_number(std::vector<std::byte>& data, const Argument& argument, const Number& number) {
-  const descriptor::Field& field = argument.field;
-  if (!number.is_finite()) return fail(ErrorCode::InvalidArgument, "argument is not a number");
-  if (!permits(argument, number)) return fail(ErrorCode::OutOfRange, "argument outside its range");
+/// Of a number of the type, whether it is permitted or not.
+[[nodiscard]] Result<> append_number(std::vector<std::byte>& data, const descriptor::Field& field,
+                                     const Number& number) {
   std::array<std::byte, 8> buffer;
   OctetWriter writer{buffer};
   if (!write_number(writer, field.type, number))
@@ -25,9 +24,10 @@ namespace {
   return ok();
 }
 
-[[nodiscard]] Result<> append_text(std::vector<std::byte>& data, const Argument& argument, std::string_view text) {
-  if (text.size() > argument.field.text_octets) return fail(ErrorCode::OutOfRange, "text longer than declared");
-  if (!permits(argument, text)) return fail(ErrorCode::InvalidArgument, "text is not UTF-8");
+[[nodiscard]] Result<> append_text(std::vector<std::byte>& data, const descriptor::Field& field,
+                                   std::string_view text) {
+  if (text.size() > field.text_octets) return fail(ErrorCode::OutOfRange, "text longer than declared");
+  if (!is_text(text)) return fail(ErrorCode::InvalidArgument, "text is not UTF-8");
   const std::size_t begin = data.size();
   data.resize(begin + sizeof(std::uint16_t) + text.size());
   OctetWriter{std::span{data}.subspan(begin)}
@@ -36,12 +36,28 @@ namespace {
   return ok();
 }
 
+/// One value that the type has.
+[[nodiscard]] Result<> append_any(std::vector<std::byte>& data, const descriptor::Field& field, const Value& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  const bool wants_text = field.type == Type::Text;
+  if (wants_text && text != nullptr) return append_text(data, field, *text);
+  if (wants_text) return fail(ErrorCode::InvalidArgument, "a number where text is wanted");
+  if (text != nullptr) return fail(ErrorCode::InvalidArgument, "text where a number is wanted");
+  return append_number(data, field, std::get<Number>(value));
+}
+
 }  // namespace
 
-std::size_t value_count(const descriptor::Function& function) noexcept {
+std::size_t value_count(ArgumentList declared) noexcept {
   std::size_t count = 0;
-  for (const Argument& argument : function.arguments) count += value_count(argument);
+  for (const Argument& argument : declared) count += value_count(argument);
   return count;
+}
+
+std::size_t octets_of(ArgumentList declared) noexcept {
+  std::size_t octets = 0;
+  for (const Argument& argument : declared) octets += argument.field.octets();
+  return octets;
 }
 
 bool permits(const Argument& argument, const Number& number) noexcept {
@@ -57,19 +73,61 @@ bool permits(const Argument& argument, std::string_view text) noexcept {
 }
 
 Result<> append_value(std::vector<std::byte>& data, const Argument& argument, const Value& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  const bool wants_text = argument.field.type == Type::Text;
-  if (wants_text && text != nullptr) return append_text(data, argument, *text);
-  if (wants_text) return fail(ErrorCode::InvalidArgument, "a number where text is wanted");
-  if (text != nullptr) return fail(ErrorCode::InvalidArgument, "text where a number is wanted");
-  return append_number(data, argument, std::get<Number>(value));
+  const auto* number = std::get_if<Number>(&value);
+  if (number == nullptr || argument.field.type == Type::Text) return append_any(data, argument.field, value);
+  if (!number->is_finite()) return fail(ErrorCode::InvalidArgument, "argument is not a number");
+  if (!permits(argument, *number)) return fail(ErrorCode::OutOfRange, "argument outside its range");
+  return append_any(data, argument.field, value);
 }
 
-std::size_t ArgumentReader::remaining() const noexcept {
-  std::size_t count = 0;
-  for (const Argument& argument : declared_.subspan(next_)) count += value_count(argument);
-  return count - element_;
+Result<> append_values(std::vector<std::byte>& data, ArgumentList declared, GivenValues values, Ids ids) {
+  if (values.size() > value_count(declared)) return fail(ErrorCode::InvalidArgument, "too many arguments");
+  std::size_t next = 0;
+  for (std::size_t id = 1; id <= declared.size(); ++id) {
+    const Argument& argument = declared[id - 1];
+    if (ids == Ids::One) data.push_back(static_cast<std::byte>(id));
+    for (std::size_t i = 0; i < value_count(argument); ++i, ++next) {
+      const std::optional<Value>& value = next < values.size() && values[next] ? values[next] : argument.fallback;
+      if (!value) return fail(ErrorCode::InvalidArgument, "argument missing", static_cast<std::int64_t>(id));
+      HIROSCO_TRY(append_value(data, argument, *value));
+    }
+  }
+  return ok();
 }
+
+Result<std::vector<std::byte>> encode_report(ArgumentList fields, GivenValues values) {
+  if (values.size() != value_count(fields)) return fail(ErrorCode::InvalidArgument, "another number of values");
+  std::vector<std::byte> data;
+  auto value = values.begin();
+  for (const Argument& field : fields)
+    for (std::size_t i = 0; i < value_count(field); ++i, ++value) {
+      if (!*value) return fail(ErrorCode::InvalidArgument, "a value missing");
+      HIROSCO_TRY(append_any(data, field.field, **value));
+    }
+  return data;
+}
+
+bool take_permitted(OctetReader& reader, const Argument& argument) noexcept {
+  if (argument.field.type == Type::Text) {
+    const Octets words = reader.get(reader.get<std::uint16_t>());
+    return permits(argument, std::string_view{reinterpret_cast<const char*>(words.data()), words.size()}) &&
+           reader.good();
+  }
+  bool good = true;
+  for (std::size_t i = 0; i < argument.field.count; ++i)
+    good = permits(argument, read_number(reader, argument.field.type)) && good;
+  return good && reader.good();
+}
+
+std::optional<std::size_t> first_not_permitted(ArgumentList declared, Octets data) noexcept {
+  OctetReader reader{data};
+  std::size_t first = 0;
+  for (std::size_t place = 1; place <= declared.size(); ++place)
+    if (!take_permitted(reader, declared[place - 1]) && first == 0) first = place;
+  return reader.good() && reader.exhausted() ? std::optional{first} : std::nullopt;
+}
+
+std::size_t ArgumentReader::remaining() const noexcept { return value_count(declared_.subspan(next_)) - element_; }
 
 Number ArgumentReader::number() noexcept {
   if (next_ >= declared_.size() || declared_[next_].field.type == Type::Text) return {};
@@ -85,10 +143,8 @@ Number ArgumentReader::number() noexcept {
 std::string_view ArgumentReader::text() noexcept {
   if (next_ >= declared_.size() || declared_[next_].field.type != Type::Text) return {};
   const std::size_t most = declared_[next_++].field.text_octets;
-  const std::size_t octets = std::min<std::size_t>(reader_.get<std::uint16_t>(), most);
-  const Octets words = reader_.get(octets);
-  static_cast<void>(reader_.get(most - octets));
-  return {reinterpret_cast<const char*>(words.data()), words.size()};
+  const Octets words = reader_.get(reader_.get<std::uint16_t>());
+  return {reinterpret_cast<const char*>(words.data()), std::min(words.size(), most)};
 }
 
 std::vector<Value> ArgumentReader::rest() {

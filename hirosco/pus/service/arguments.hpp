@@ -13,17 +13,25 @@
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 
-/// The arguments of a function as its descriptor types them (adr 0063): what is permitted, how a value stands on the wire,
-/// in a call on its way to the cycle, and in words. All who meet a function read it here.
+/// Typed values as a descriptor declares them, of functions and of a subsystem's own services (adr 0063): what is permitted,
+/// how they stand on the wire and on the way to a handler, and in words. All who meet them read it here.
 namespace hirosco::pus {
 
 using Argument = descriptor::Function::Argument;
+using ArgumentList = std::span<const Argument>;
+/// Values in declared order, arrays element by element; where they end or are empty, the declared value is sent.
+using GivenValues = std::span<const std::optional<Value>>;
 
 /// Values of an argument: the elements of an array, one for anything else.
 [[nodiscard]] inline std::size_t value_count(const Argument& argument) noexcept {
   return argument.field.type == Type::Text ? 1 : argument.field.count;
 }
-[[nodiscard]] std::size_t value_count(const descriptor::Function& function) noexcept;
+[[nodiscard]] std::size_t value_count(ArgumentList declared) noexcept;
+[[nodiscard]] inline std::size_t value_count(const descriptor::Function& function) noexcept {
+  return value_count(ArgumentList{function.arguments});
+}
+/// Most octets that they take on the wire, without ids.
+[[nodiscard]] std::size_t octets_of(ArgumentList declared) noexcept;
 
 /// Finite, in the declared range, a value of the enumeration.  Realtime: bounded.
 [[nodiscard]] bool permits(const Argument& argument, const Number& number) noexcept;
@@ -35,13 +43,31 @@ using Argument = descriptor::Function::Argument;
 /// UTF-8; OutOfRange: against the declared range, length or type.
 [[nodiscard]] Result<> append_value(std::vector<std::byte>& data, const Argument& argument, const Value& value);
 
-/// The arguments of one call, each at its place in declared order: trivially copyable.
+/// What stands before each of a list.
+enum class Ids : std::uint8_t {
+  None,  ///< of an own service
+  One,  ///< of a function: its place from 1, u8
+};
+/// Appends a whole list. InvalidArgument: too many values, one missing, and what append_value() says.
+[[nodiscard]] Result<> append_values(std::vector<std::byte>& data, ArgumentList declared, GivenValues values, Ids ids);
+/// The same of what a subsystem tells: no range binds it, for it is so. InvalidArgument, OutOfRange: its type does not have it.
+[[nodiscard]] Result<std::vector<std::byte>> encode_report(ArgumentList fields, GivenValues values);
+
+/// Takes one argument, whole; false when it is none that is permitted. A reader that is good no more had too few octets.
+/// Realtime: bounded.
+[[nodiscard]] bool take_permitted(OctetReader& reader, const Argument& argument) noexcept;
+/// The first of a list without ids that is not permitted, from 1; 0 when all are. Empty: it is no such list.
+[[nodiscard]] std::optional<std::size_t> first_not_permitted(ArgumentList declared, Octets data) noexcept;
+
+/// The arguments of one call in declared order, as a list without ids: trivially copyable.
 using ArgumentData = std::array<std::byte, descriptor::max_argument_octets>;
 
-/// Reads them one value after the other, as the function declares them.  Realtime: bounded, no allocation.
+/// Reads such a list one value after the other.  Realtime: bounded, no allocation.
 class ArgumentReader {
  public:
-  ArgumentReader(std::span<const Argument> declared, Octets data) noexcept : declared_{declared}, reader_{data} {}
+  ArgumentReader(ArgumentList declared, Octets data) noexcept : declared_{declared}, reader_{data} {}
+  /// False when values were read that the octets did not have.
+  [[nodiscard]] bool good() const noexcept { return reader_.good(); }
   /// Of the argument that is next.
   [[nodiscard]] std::uint16_t count() const noexcept {
     return next_ < declared_.size() ? declared_[next_].field.count : std::uint16_t{0};
@@ -56,7 +82,7 @@ class ArgumentReader {
   [[nodiscard]] std::vector<Value> rest();
 
  private:
-  std::span<const Argument> declared_;
+  ArgumentList declared_;
   OctetReader reader_;
   std::size_t next_{0};
   std::uint16_t element_{0};

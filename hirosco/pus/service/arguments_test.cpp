@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/pus/st08_function/arguments.hpp"
+#include "hirosco/pus/service/arguments.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

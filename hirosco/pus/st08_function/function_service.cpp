@@ -3,7 +3,7 @@
 #include "hirosco/pus/st08_function/function_service.hpp"
 
 #include <algorithm>
-#include <bitset>
+#include <array>
 
 #include "hirosco/pus/st01_verification/instructions.hpp"
 
@@ -50,90 +50,49 @@ class ArgumentTaker {
 
   /// A wrong length shows behind wrong values and comes first in the checks, so reading goes on after those.
   [[nodiscard]] std::optional<CallFailure> take(OctetReader& reader) {
+    const std::size_t declared = function_.arguments.size();
     std::optional<CallFailure> first;
     const auto count = reader.get<std::uint8_t>();
     for (std::size_t index = 0; index < count; ++index) {
       const auto id = reader.get<std::uint8_t>();
       if (!reader.good()) return bad_length();
       // The width of an unknown argument is unknown too: nothing behind it can be read.
-      if (id == 0 || id > function_.arguments.size()) return first ? first : bad_argument(index, id);
-      const bool good = take_argument(reader, id);
+      if (id == 0 || id > declared) return first ? first : bad_argument(index, id);
+      const Octets begin = reader.rest();
+      const bool good = take_permitted(reader, function_.arguments[id - 1]) && taken_[id - 1].empty();
+      taken_[id - 1] = begin.first(begin.size() - reader.remaining());
       if (!reader.good()) return bad_length();
       if (!good && !first) first = bad_argument(index, id);
     }
     if (!reader.exhausted()) return bad_length();
-    return first ? first : fill_in_missing(count);
+    return first ? first : put_in_order(count);
   }
 
  private:
-  [[nodiscard]] bool take_argument(OctetReader& reader, std::size_t id) noexcept {
-    const Argument& argument = function_.arguments[id - 1];
-    const bool again = seen_.test(id);
-    seen_.set(id);
-    const Octets begin = reader.rest();
-    const bool permitted =
-        argument.field.type == Type::Text ? permitted_text(reader, argument) : permitted_numbers(reader, argument);
-    if (again || !permitted || !reader.good()) return false;
-    put(id, begin.first(begin.size() - reader.remaining()));
-    return true;
-  }
-
-  [[nodiscard]] static bool permitted_numbers(OctetReader& reader, const Argument& argument) noexcept {
-    bool good = true;
-    for (std::size_t i = 0; i < argument.field.count; ++i)
-      good = permits(argument, read_number(reader, argument.field.type)) && good;
-    return good;
-  }
-  [[nodiscard]] static bool permitted_text(OctetReader& reader, const Argument& argument) noexcept {
-    const Octets words = reader.get(reader.get<std::uint16_t>());
-    return permits(argument, std::string_view{reinterpret_cast<const char*>(words.data()), words.size()});
-  }
-
-  [[nodiscard]] std::optional<CallFailure> fill_in_missing(std::size_t count) {
-    for (std::size_t id = 1; id <= function_.arguments.size(); ++id) {
-      if (seen_.test(id)) continue;
-      const Argument& argument = function_.arguments[id - 1];
+  /// In declared order, the declared value where there is none.
+  [[nodiscard]] std::optional<CallFailure> put_in_order(std::size_t count) {
+    std::size_t at = 0;
+    const auto put = [&](Octets value) {
+      std::ranges::copy(value, call_.arguments.begin() + static_cast<std::ptrdiff_t>(at));
+      at += value.size();
+    };
+    for (std::size_t i = 0; i < function_.arguments.size(); ++i) {
+      if (!taken_[i].empty()) {
+        put(taken_[i]);
+        continue;
+      }
       std::vector<std::byte> data;
-      for (std::size_t i = 0; i < value_count(argument); ++i)
-        if (!argument.fallback || !append_value(data, argument, *argument.fallback)) return bad_argument(count, id);
-      put(id, data);
+      if (!append_values(data, ArgumentList{function_.arguments}.subspan(i, 1), {}, Ids::None))
+        return bad_argument(count, i + 1);
+      put(data);
     }
     return std::nullopt;
   }
 
-  void put(std::size_t id, Octets value) noexcept {
-    std::size_t at = 0;
-    for (std::size_t before = 1; before < id; ++before) at += function_.arguments[before - 1].field.octets();
-    std::ranges::copy(value, call_.arguments.begin() + static_cast<std::ptrdiff_t>(at));
-  }
-
   const Function& function_;
   FunctionCall& call_;
-  std::bitset<max_arguments + 1> seen_;
+  std::array<Octets, max_arguments> taken_{};  ///< by place; none is empty
 };
-
-[[nodiscard]] std::size_t octets_of(const Function& function) noexcept {
-  std::size_t octets = 0;
-  for (const Argument& argument : function.arguments) octets += argument.field.octets();
-  return octets;
-}
-
-enum class WithIds : std::uint8_t { No, Yes };
-
-[[nodiscard]] Result<> append_arguments(std::vector<std::byte>& data, const Function& function, GivenValues values,
-                                        WithIds with_ids) {
-  std::size_t next = 0;
-  for (std::size_t id = 1; id <= function.arguments.size(); ++id) {
-    const Argument& argument = function.arguments[id - 1];
-    if (with_ids == WithIds::Yes) data.push_back(static_cast<std::byte>(id));
-    for (std::size_t i = 0; i < value_count(argument); ++i, ++next) {
-      const std::optional<Value>& value = next < values.size() && values[next] ? values[next] : argument.fallback;
-      if (!value) return fail(ErrorCode::InvalidArgument, "argument missing", static_cast<std::int64_t>(id));
-      HIROSCO_TRY(append_value(data, argument, *value));
-    }
-  }
-  return ok();
-}
 
 [[nodiscard]] Function built_in_with(const char* name, const char* argument, double maximum, const char* description) {
   Function function;
@@ -173,7 +132,7 @@ std::expected<FunctionCall, CallFailure> decode_call(std::span<const Function> f
   if (found.function == nullptr)
     return std::unexpected{at_start(FailureNotice{FailureCode::UnknownIdentifier}.with(std::uint8_t{0}).with(name))};
   const Function& function = *found.function;
-  if (octets_of(function) > descriptor::max_argument_octets || function.arguments.size() > max_arguments)
+  if (octets_of(function.arguments) > descriptor::max_argument_octets || function.arguments.size() > max_arguments)
     return std::unexpected{at_start(FailureNotice{FailureCode::CapacityExceeded}.with(std::uint8_t{0}))};
   FunctionCall call;
   call.function = found.index;
@@ -185,18 +144,10 @@ std::expected<FunctionCall, CallFailure> decode_call(std::span<const Function> f
 Result<std::vector<std::byte>> encode_call(const Function& function, GivenValues values) {
   if (function.name.empty() || function.name.size() > function_name_octets)
     return fail(ErrorCode::InvalidArgument, "function name");
-  if (values.size() > value_count(function)) return fail(ErrorCode::InvalidArgument, "too many arguments");
   std::vector<std::byte> data(function_name_octets + 1);
   OctetWriter{data}.put(std::as_bytes(std::span{function.name}));
   data.back() = static_cast<std::byte>(function.arguments.size());
-  HIROSCO_TRY(append_arguments(data, function, values, WithIds::Yes));
-  return data;
-}
-
-Result<std::vector<std::byte>> encode_arguments_in_order(const Function& request, GivenValues values) {
-  if (values.size() > value_count(request)) return fail(ErrorCode::InvalidArgument, "too many arguments");
-  std::vector<std::byte> data;
-  HIROSCO_TRY(append_arguments(data, request, values, WithIds::No));
+  HIROSCO_TRY(append_values(data, function.arguments, values, Ids::One));
   return data;
 }
 

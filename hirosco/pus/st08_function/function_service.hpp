@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/pus/service/arguments.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
-#include "hirosco/pus/st08_function/arguments.hpp"
 #include "hirosco/utilities/result.hpp"
 
 namespace hirosco::pus {
@@ -48,9 +48,6 @@ enum BuiltInFunction : std::uint16_t { set_state_function = 0xFF00, configure_fu
                                                                    Octets application_data,
                                                                    std::span<const descriptor::Function> built_in = {});
 
-/// Values in declared order, arrays element by element; where they end or are empty, the declared value is sent.
-using GivenValues = std::span<const std::optional<Value>>;
-
 /// Application data of TC[8,1], for whoever calls a function. InvalidArgument: an argument without value, too many values,
 /// and what append_value() says; OutOfRange: against the declared range, length or type.
 [[nodiscard]] Result<std::vector<std::byte>> encode_call(const descriptor::Function& function, GivenValues values);
@@ -59,10 +56,6 @@ using GivenValues = std::span<const std::optional<Value>>;
 /// By name; an element of an array is named twice in order. NotFound: the function has no such argument.
 [[nodiscard]] Result<std::vector<std::byte>> encode_call(
     const descriptor::Function& function, std::span<const std::pair<std::string_view, Value>> named_values);
-
-/// The same values as a subsystem's own service takes them: in declared order, without name and ids.
-[[nodiscard]] Result<std::vector<std::byte>> encode_arguments_in_order(const descriptor::Function& request,
-                                                                       GivenValues values);
 
 /// Takes calls to where they are executed. Whoever implements it reports start, progress and completion of what it took.
 struct FunctionExecutor {

@@ -58,6 +58,28 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
   return text.data();
 }
 
+enum class Units : std::uint8_t { No, Yes };
+/// " NAME=value,value unit NAME=value", as far as the octets go.
+[[nodiscard]] std::string values_text(ArgumentList declared, ArgumentReader& reader, Units units) {
+  std::string text;
+  for (const Argument& argument : declared) {
+    std::string values;
+    for (std::size_t i = 0; i < value_count(argument); ++i) {
+      const Value value =
+          argument.field.type == Type::Text ? Value{std::string{reader.text()}} : Value{reader.number()};
+      if (!reader.good()) return text.append(" ").append(argument.field.name).append("=?");
+      values.append(i == 0 ? "" : ",").append(value_text(argument, value));
+    }
+    text.append(" ").append(argument.field.name).append("=").append(values);
+    if (units == Units::Yes && !argument.field.unit.empty()) text.append(" ").append(argument.field.unit);
+  }
+  return text;
+}
+[[nodiscard]] std::string values_text(ArgumentList declared, Octets data) {
+  ArgumentReader reader{declared, data};
+  return values_text(declared, reader, Units::Yes);
+}
+
 /// " SET_STATE STATE=Operational" of the data of TC[8,1].
 [[nodiscard]] std::string call_text(const descriptor::Subsystem& subsystem, Octets data) {
   const auto common = common_functions();
@@ -69,17 +91,8 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
       built_in ? common[call->function - first_built_in_function] : subsystem.functions[call->function];
   text.append(" ").append(function.name);
   ArgumentReader reader{function.arguments, call->arguments};
-  const std::vector<Value> values = reader.rest();
-  auto value = values.begin();
-  for (const Argument& argument : function.arguments) {
-    text.append(" ").append(argument.field.name).append("=");
-    for (std::size_t i = 0; i < value_count(argument); ++i, ++value)
-      text.append(i == 0 ? "" : ",")
-          .append(function.name == "SET_STATE"
-                      ? to_text(static_cast<descriptor::State>(std::get<Number>(*value).as<int>().value_or(0)))
-                      : value_text(argument, *value));
-  }
-  return text;
+  if (function.name != "SET_STATE") return text.append(values_text(function.arguments, reader, Units::No));
+  return text.append(" STATE=").append(to_text(static_cast<descriptor::State>(reader.number().as<int>().value_or(0))));
 }
 
 /// A parameter by its id on the wire, a member by its structure's name and its own.
@@ -192,9 +205,7 @@ class ShapeWords {
   if (const auto* own = subsystem.find_service(service)) {
     const auto report = std::ranges::find(own->reports, subtype, &descriptor::CustomService::Report::subtype);
     if (report == own->reports.end()) return text;
-    text.append(" ").append(report->name);
-    for (const auto& field : report->fields) append_field(text, subsystem, field, reader);
-    return text;
+    return text.append(" ").append(report->name).append(values_text(report->fields, reader.rest()));
   }
   const ServiceKind* kind = standard_service(service);
   const ReportKind* report = kind != nullptr ? kind->report(subtype) : nullptr;
@@ -257,9 +268,7 @@ std::string PacketDescriber::describe_telecommand(const TelecommandView& telecom
     return text.append(call_text(*subsystem, telecommand.application_data()));
   OctetReader reader{telecommand.application_data()};
   if (const auto* request = subsystem->find_request(telecommand.service(), telecommand.subtype())) {
-    text.append(" ").append(request->name);
-    for (const auto& argument : request->arguments) append_field(text, *subsystem, argument.field, reader);
-    return text;
+    return text.append(" ").append(request->name).append(values_text(request->arguments, reader.rest()));
   }
   const ServiceKind* kind = standard_service(telecommand.service());
   const RequestKind* request = kind != nullptr ? kind->request(telecommand.subtype()) : nullptr;

@@ -25,18 +25,16 @@ class Lamp final : public Subsystem {
     double current_a;
   };
 
-  struct Reading {  // METER of the service
-    std::uint32_t dimmed;
-    double current_a;
-  };
-
   enum class Colour : std::uint8_t { White = 1, Amber = 2 };
 
   Result<> offline() override {
     meter_.on_request("READ_METER", [this](const Call& call) -> Result<> {
       CurrentValues now{};
       if (!current_.snapshot(now)) return fail(ErrorCode::Unavailable, "the lamp is being dimmed");
-      return meter_.report("METER", call, Reading{dimmed_.load(), now.current_a});
+      return meter_.report("METER", call, dimmed_.load(), now.current_a);
+    });
+    meter_.on_request("LABEL", [this](std::string_view owner, std::uint64_t serial, bool lent, Call call) -> Result<> {
+      return meter_.report("LABELLED", call, owner, serial, lent);
     });
     provide(meter_);
     return ok();

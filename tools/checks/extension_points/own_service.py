@@ -11,10 +11,9 @@ FILES = {"subsystems/diary/diary.hpp": """\
 #include "hirosco/subsystem/custom_service.hpp"
 
 class Diary final : public hirosco::Subsystem {
-  struct Page { std::uint16_t number; };
   hirosco::Result<> offline() override {
-    pages_.on_request("OPEN", [this](const std::uint16_t& number, const hirosco::Call& call) -> hirosco::Result<> {
-      return pages_.report("PAGE", call, Page{number});
+    pages_.on_request("OPEN", [this](std::uint16_t number, hirosco::Call call) -> hirosco::Result<> {
+      return pages_.report("PAGE", call, number);
     });
     provide(pages_);
     return hirosco::ok();
