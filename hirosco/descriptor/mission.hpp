@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -63,8 +62,7 @@ struct SimulatedDevice {
   std::string subsystem;             ///< whose device it plays
   std::string device;
   std::uint64_t seed{1};
-  std::vector<std::pair<std::string, std::string>> settings;
-  std::map<std::string, Location> setting_places;  ///< by name: for those who judge the values
+  std::vector<Setting> settings;
   Location at;
 };
 

@@ -42,7 +42,7 @@ TEST(MissionDescriptor, FillsTheWholeModel) {
   EXPECT_EQ(mission.find_subsystem(std::uint16_t{10})->executable, "hirosco-coronagraph");
   EXPECT_EQ(mission.find_subsystem("SUPERVISOR"), nullptr);
   EXPECT_EQ(mission.devices.at(0).seed, 7U);
-  EXPECT_EQ(mission.devices.at(0).settings.at(0).first, "NOISE");
+  EXPECT_EQ(mission.devices.at(0).settings.at(0).name, "NOISE");
   EXPECT_EQ(mission.find_link(2)->requires_, "FLYWHEEL_STATE");
   EXPECT_EQ(mission.initial_mode, "commissioning");
   EXPECT_EQ(mission.start_mode, "telepresence");

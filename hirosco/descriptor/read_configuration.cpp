@@ -111,14 +111,15 @@ void SubsystemReader::read_device_use(const xml::Element& element, Configuration
   check_watchdogs(element, use, configuration.sampling);
   Unique settings{"setting", "E0201"};
   bool connected = false;
-  each_child(element, problems_,
-             {{"Setting", [&](const xml::Element& child) { read_setting(child, use, settings); }, 256},
-              {"Endnode",
-               [&](const xml::Element& child) {
-                 use.endnode = read_endnode(child);
-                 connected = true;
-               },
-               1}});
+  each_child(
+      element, problems_,
+      {{"Setting", [&](const xml::Element& child) { read_setting(child, problems_, settings, use.settings); }, 256},
+       {"Endnode",
+        [&](const xml::Element& child) {
+          use.endnode = read_endnode(child);
+          connected = true;
+        },
+        1}});
   if (!connected) problems_.add(element, "E0106", "<Device> in a configuration needs an <Endnode>");
   configuration.devices.push_back(std::move(use));
 }
@@ -131,15 +132,15 @@ void SubsystemReader::check_watchdogs(const xml::Element& element, const DeviceU
                 "watchdog_ms and watchdog_reduced_ms are longer than the period; 10 and 50 ms unless they are given");
 }
 
-void SubsystemReader::read_setting(const xml::Element& element, DeviceUse& use, Unique& names) {
-  Attributes attributes{element, problems_};
+void read_setting(const xml::Element& element, Problems& problems, Unique& names, std::vector<Setting>& settings) {
+  Attributes attributes{element, problems};
   std::string name = attributes.name();
   const auto* value = attributes.required("value");
-  no_children(element, problems_);
+  no_children(element, problems);
   if (name.empty() || value == nullptr) return;
-  if (value->value.size() > 256) problems_.add(*value, "E0114", "the value of a setting has at most 256 octets");
-  names.add(name, place(element.at), problems_, element.name.size() + 1);
-  use.settings.emplace_back(std::move(name), value->value);
+  if (value->value.size() > 256) problems.add(*value, "E0114", "the value of a setting has at most 256 octets");
+  names.add(name, place(element.at), problems, element.name.size() + 1);
+  settings.push_back({std::move(name), value->value, place(value->value_at)});
 }
 
 Endnode SubsystemReader::read_endnode(const xml::Element& element) {

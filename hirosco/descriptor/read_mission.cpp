@@ -6,6 +6,7 @@
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/descriptor/detail/mission_reader.hpp"
+#include "hirosco/descriptor/detail/subsystem_reader.hpp"
 #include "hirosco/descriptor/status_rows.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
@@ -321,19 +322,7 @@ void MissionReader::read_simulated_device(const xml::Element& element) {
   }
   Unique settings{"setting", "E0201"};
   each_child(element, problems_,
-             {{"Setting",
-               [&](const xml::Element& child) {
-                 Attributes inner{child, problems_};
-                 no_children(child, problems_);
-                 std::string name = inner.name();
-                 const auto* value = inner.required("value");
-                 if (name.empty() || value == nullptr) return;
-                 if (value->value.size() > 256)
-                   problems_.add(*value, "E0114", "the value of a setting has at most 256 octets");
-                 settings.add(name, place(child.at), problems_, child.name.size() + 1);
-                 device.setting_places.emplace(name, place(value->value_at));
-                 device.settings.emplace_back(std::move(name), value->value);
-               },
+             {{"Setting", [&](const xml::Element& child) { read_setting(child, problems_, settings, device.settings); },
                256}});
   if (!device.name.empty()) device_names_.add(device.name, device.at, problems_, element.name.size() + 1);
   mission_.devices.push_back(std::move(device));

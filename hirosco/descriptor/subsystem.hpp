@@ -26,6 +26,7 @@ namespace hirosco::descriptor {
 struct Location {
   int line{0};
   int column{0};
+  friend bool operator==(const Location&, const Location&) = default;
 };
 
 /// The ten states (paper 4.2, figure 4). The transition table is in hirosco/subsystem/states.hpp.
@@ -233,13 +234,20 @@ struct Device {
 /// Most that the fields of a device take in each direction, as a frame is carried by every data flow.
 inline constexpr std::size_t max_device_octets = 1002;
 
+/// Words for the author of a device, or of its simulation.
+struct Setting {
+  std::string name;
+  std::string value;
+  Location at;
+};
+
 /// Settings and endnode of a device in one configuration.
 struct DeviceUse {
   std::uint16_t device{};  ///< index into Subsystem::devices
   CycleLimit silence{3, 40};  ///< cycles without a valid frame until the device counts as lost
   std::uint32_t watchdog_us{10'000};  ///< device watchdog with real-time scheduling
   std::uint32_t watchdog_reduced_us{50'000};
-  std::vector<std::pair<std::string, std::string>> settings;  ///< for its author: DevicePortBase::setting()
+  std::vector<Setting> settings;  ///< for its author: DevicePortBase::setting()
   Endnode endnode;
   Location at;
 };

@@ -205,7 +205,7 @@ TEST(SubsystemDescriptor, FillsTheConfiguration) {
   EXPECT_EQ(use.silence.reduced, 60U);
   EXPECT_EQ(use.watchdog_us, 7500U);
   EXPECT_EQ(use.watchdog_reduced_us, 40'000U);
-  EXPECT_EQ(use.settings.at(0).second, "4000");
+  EXPECT_EQ(use.settings.at(0).value, "4000");
   EXPECT_EQ(use.endnode.address, "orbiter-robot");
   EXPECT_EQ(coupled->initial.at(1).values, (std::vector<double>{-0.8, 1.6}));
 }

@@ -53,6 +53,13 @@ struct Failure {
   std::int64_t number{0};
 };
 
+/// What an author did not do as the descriptor says, in words.
+struct Mistake {
+  std::string text;
+  std::optional<descriptor::Location> at{};  ///< of a setting that nobody reads (E0405): in the descriptor
+  friend bool operator==(const Mistake& a, const Mistake& b) { return a.text == b.text && a.at == b.at; }
+};
+
 class GenericSubsystem final : private pus::TelemetrySink,
                                private pus::FunctionExecutor,
                                private pus::ParameterAccess,
@@ -101,7 +108,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   // --- for Subsystem ----------------------------------------------------------------------------------------------
   void publish(std::string_view name, ParameterCell& parameter);
   void require_link(std::string_view set, LinkInputPort& port);
-  void use_device(std::string_view name, DevicePortBase& port);
+  void use_device(std::string_view name, DevicePortBase& port, std::span<const std::string_view> settings);
   void provide(CustomService& service);
   void use_event(EventPort& event);
   void use_request(const RequestPort& request, RequestHandler handler, Duration patience);
@@ -112,6 +119,9 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void uses_all_events() noexcept { uses_all_events_ = true; }
   void bind_function(std::string_view name, BoundHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
+
+  /// All that Software-Init finds, tried in Offline before any flight. Nothing is kept of it.
+  [[nodiscard]] std::vector<Mistake> try_introduction();
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
   [[nodiscard]] pus::Verification& verification() noexcept override { return verification_; }
   [[nodiscard]] pus::TelemetrySink& telemetry() noexcept override { return *this; }
@@ -174,8 +184,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   /// The refusal of what the present state does not permit.
   [[nodiscard]] pus::FailureNotice wrong_state() const;
   [[nodiscard]] pus::FailureNotice notice_of(std::uint16_t code, const Failure& why) const;
-  void mistake(std::string problem);
+  void mistake(std::string problem, std::optional<descriptor::Location> at = {});
   void check_introduction();
+  void check_settings();
+  [[nodiscard]] std::string words_of(const Mistake& mistake) const;
   void forget_introduction();
   void raise_event(std::uint16_t event, Octets auxiliary);
   /// STATE_FAILED and CONFIGURATION_FAILED of `what`.
@@ -221,7 +233,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
 
   std::vector<std::uint16_t> used_events_;
   bool uses_all_events_{false};
-  std::vector<std::string> problems_;  ///< of publish() and its kin: all of them fail the same Software-Init
+  std::vector<Mistake> problems_;  ///< of publish() and its kin: all of them fail the same Software-Init
   std::string problems_text_;  ///< of an error, which does not own its words
 
   State state_{State::Offline};

@@ -9,58 +9,25 @@
 /// How an author introduces its parts in Software-Init, compared with the descriptor: every difference is collected, so
 /// that one look tells all of them.
 namespace hirosco {
-namespace {
-
-/// Smallest and largest number that the descriptor permits.
-[[nodiscard]] TypeRange permitted(const pus::Argument& declared) {
-  TypeRange range = range_of(declared.field.type);
-  if (!declared.texts.empty()) {
-    const auto [lowest, highest] = std::ranges::minmax(declared.texts, {}, &descriptor::EnumerationText::value);
-    range = {lowest.value, highest.value};
-  }
-  return {std::max(range.lowest, declared.field.minimum.value_or(range.lowest)),
-          std::min(range.highest, declared.field.maximum.value_or(range.highest))};
-}
-
-/// Whether a C++ type takes every number that the descriptor permits, as it is.
-[[nodiscard]] bool holds_numbers(Type native, const pus::Argument& declared) {
-  const Type type = declared.field.type;
-  if (type == Type::Text) return false;
-  const TypeRange wanted = permitted(declared);
-  if (is_integer(native)) {
-    const TypeRange held = range_of(native);
-    return is_integer(type) && held.lowest <= wanted.lowest && wanted.highest <= held.highest;
-  }
-  if (!is_integer(type)) return native == Type::Double || type == Type::Float;
-  const Number exact = std::int64_t{1} << (native == Type::Double ? std::numeric_limits<double>::digits
-                                                                  : std::numeric_limits<float>::digits);
-  return Number{-exact.real()} <= wanted.lowest && wanted.highest <= exact;
-}
-
-[[nodiscard]] bool holds(const NativeField& native, const pus::Argument& declared) {
-  const descriptor::Field& field = declared.field;
-  if (native.type == Type::Text || field.type == Type::Text) return native.type == field.type;
-  return native.takes(native.type, field.count) && holds_numbers(native.type, declared);
-}
-
-[[nodiscard]] std::string text_of(const pus::Argument& declared) {
-  if (declared.field.type == Type::Text) return "TEXT of " + std::to_string(declared.field.text_octets) + " octets";
-  return descriptor_text(declared.field.type, declared.field.count);
-}
-
-/// "3 (double, bool, std::array<float, 2>)"
-template <class List>
-[[nodiscard]] std::string listed(const List& list, std::string (*text)(const typename List::value_type&)) {
-  std::string all;
-  for (const auto& one : list) all.append(all.empty() ? " (" : ", ").append(text(one));
-  return std::to_string(list.size()) + all + (all.empty() ? "" : ")");
-}
-
-}  // namespace
-
-void GenericSubsystem::mistake(std::string problem) {
+void GenericSubsystem::mistake(std::string problem, std::optional<descriptor::Location> at) {
   // A software_init() that needs several rounds may say the same again.
-  if (std::ranges::find(problems_, problem) == problems_.end()) problems_.push_back(std::move(problem));
+  Mistake made{std::move(problem), at};
+  if (std::ranges::find(problems_, made) == problems_.end()) problems_.push_back(std::move(made));
+}
+
+std::string GenericSubsystem::words_of(const Mistake& mistake) const {
+  if (!mistake.at) return mistake.text;
+  return descriptor_.file.string() + ":" + std::to_string(mistake.at->line) + ":" + std::to_string(mistake.at->column) +
+         ": error E0405: " + mistake.text;
+}
+
+std::vector<Mistake> GenericSubsystem::try_introduction() {
+  constexpr int most_rounds = 1'000;
+  Result<Step> step = again;
+  for (int round = 0; round < most_rounds && step && *step == Step::Again; ++round) step = initialise_software();
+  if (!step && problems_.empty()) mistake(step.error().text);
+  forget_introduction();
+  return std::exchange(problems_, {});
 }
 
 void GenericSubsystem::provide(CustomService& service) {
@@ -75,23 +42,10 @@ void GenericSubsystem::bind_function(std::string_view name, BoundHandler handler
   const auto found = std::ranges::find(functions, name, &descriptor::Function::name);
   if (found == functions.end())
     return mistake("on_function: the descriptor declares no function '" + std::string{name} + "'");
-  const std::vector<pus::Argument>& declared = found->arguments;
-  std::vector<NativeField> natives;
-  if (takes) natives.assign(takes->begin(), takes->end());
-  else
-    for (const auto& argument : declared) natives.push_back({Type::Double, argument.field.count});
-  if (natives.size() != declared.size())
-    return mistake(who + "the handler takes " + listed(natives, cpp_text) + ", the descriptor declares " +
-                   listed(declared, text_of));
-  for (std::size_t i = 0; i < declared.size(); ++i)
-    if (!holds(natives[i], declared[i]))
-      mistake(who + "argument " + std::to_string(i + 1) + ", " + declared[i].field.name + ": the descriptor declares " +
-              text_of(declared[i]) + ", " + pus::range_text(declared[i]) + "; the handler takes " +
-              (takes ? "" : "FunctionValues, ") + cpp_text(natives[i]) + ", which does not hold every value");
-  if (!takes && pus::value_count(*found) > max_function_arguments)
-    mistake(who + "FunctionValues hold " + std::to_string(max_function_arguments) +
-            " numbers, the descriptor declares " + std::to_string(pus::value_count(*found)));
-  cycle_.functions()[static_cast<std::size_t>(found - functions.begin())].handler = std::move(handler);
+  for (std::string& problem :
+       handler_mistakes("on_function " + std::string{name} + ": ", handler.takes, found->arguments))
+    mistake(std::move(problem));
+  cycle_.functions()[static_cast<std::size_t>(found - functions.begin())].handler = std::move(handler.call);
 }
 
 void GenericSubsystem::publish(std::string_view name, ParameterCell& parameter) {
@@ -127,11 +81,25 @@ void GenericSubsystem::require_link(std::string_view set, LinkInputPort& port) {
   link_ports_[std::string{set}] = &port;
 }
 
-void GenericSubsystem::use_device(std::string_view name, DevicePortBase& port) {
+void GenericSubsystem::use_device(std::string_view name, DevicePortBase& port,
+                                  std::span<const std::string_view> settings) {
   const auto& devices = descriptor_.devices;
   if (std::ranges::find(devices, name, &descriptor::Device::name) == devices.end())
     mistake("use_device: the descriptor declares no device '" + std::string{name} + "'");
+  port.will_read(settings);
   device_ports_[std::string{name}] = &port;
+}
+
+/// What a configuration gives and no code reads: in all of them, so that none has to be flown for it.
+void GenericSubsystem::check_settings() {
+  for (const auto& configuration : descriptor_.configurations)
+    for (const auto& use : configuration.devices) {
+      const std::string& device = descriptor_.devices[use.device].name;
+      const auto port = device_ports_.find(device);
+      for (const descriptor::Setting& setting : use.settings)
+        if (port == device_ports_.end() || !port->second->reads(setting.name))
+          mistake("nobody reads the setting '" + setting.name + "' of device '" + device + "'", setting.at);
+    }
 }
 
 /// What is missing when the author has said all.
@@ -146,6 +114,7 @@ void GenericSubsystem::check_introduction() {
     if (event.id < descriptor::framework_event::first && !uses_all_events_ &&
         std::ranges::find(used_events_, event.id) == used_events_.end())
       mistake("event declared but never used: " + event.name);
+  check_settings();
   for (const CustomService* service : own_services_)
     for (std::string& problem : service->problems()) mistake(std::move(problem));
   for (const auto& declared : descriptor_.services)

@@ -80,6 +80,67 @@ std::string configuration_mistake(Subsystem& author, std::uint8_t id) {
   return rig.explanations.empty() ? "" : rig.explanations.front();
 }
 
+constexpr const char* set_descriptor = R"(<Subsystem name="S" id="10">
+  <Device name="MOTOR"><Input><Field name="Q" type="DOUBLE"/></Input><Output><Field name="Q" type="DOUBLE" safe="0"/></Output></Device>
+  <Configuration name="SOFT" id="1" sampling_us="1000">
+    <Device name="MOTOR">
+      <Setting name="STIFFNESS" value="4000"/>
+      <Setting name="STIFNESS" value="4000"/>
+      <Endnode transfer="shared_memory" address="motor"/>
+    </Device>
+  </Configuration>
+  <Configuration name="HARD" id="2" sampling_us="1000">
+    <Device name="MOTOR"><Setting name="DAMPING" value="2"/><Endnode transfer="shared_memory" address="motor"/></Device>
+  </Configuration>
+</Subsystem>)";
+
+struct Motor final : Subsystem {
+  struct Sensed {
+    double q;
+  };
+  DevicePort<Sensed, Sensed> motor;
+  std::function<void(Motor&)> names;
+  Result<Step> software_init() override {
+    names(*this);
+    return done;
+  }
+  using Subsystem::use_device;
+};
+
+TEST(AuthorsMistakes, SettingsThatNobodyReadsAreToldWithTheirPlacesBeforeAnyHardwareIsAsked) {
+  Motor motor;
+  motor.names = [](Motor& own) { own.use_device("MOTOR", own.motor, {"STIFFNESS", "INERTIA"}); };
+  Rig rig{motor, set_descriptor};
+  rig.set_state_now(State::PreOperational);
+  EXPECT_EQ(rig.state(), State::Offline);
+  EXPECT_THAT(
+      rig.explanations,
+      ElementsAre(::testing::HasSubstr(":6:39: error E0405: nobody reads the setting 'STIFNESS' of device 'MOTOR'"),
+                  ::testing::HasSubstr(":11:57: error E0405: nobody reads the setting 'DAMPING' of device 'MOTOR'")));
+}
+
+TEST(AuthorsMistakes, SettingsThatAreNamedAreNone) {
+  Motor motor;
+  motor.names = [](Motor& own) { own.use_device("MOTOR", own.motor, {"STIFFNESS", "STIFNESS", "DAMPING"}); };
+  Rig rig{motor, set_descriptor};
+  rig.set_state_now(State::PreOperational);
+  EXPECT_THAT(rig.explanations, IsEmpty());
+  EXPECT_EQ(rig.state(), State::PreOperational);
+}
+
+TEST(AuthorsMistakes, AreFoundWithoutAFlightAndNothingIsKept) {
+  Motor motor;
+  motor.names = [](Motor& own) { own.use_device("MOTOR", own.motor, {"STIFFNESS", "DAMPING"}); };
+  Rig rig{motor, set_descriptor};
+  for (int again = 0; again < 2; ++again) {
+    const auto mistakes = rig.subsystem.try_introduction();
+    ASSERT_EQ(mistakes.size(), 1U);
+    EXPECT_EQ(mistakes.front().text, "nobody reads the setting 'STIFNESS' of device 'MOTOR'");
+    EXPECT_EQ(mistakes.front().at, (descriptor::Location{6, 39}));
+  }
+  EXPECT_EQ(rig.state(), State::Offline);
+}
+
 TEST(AuthorsMistakes, ALinkPortOfAnotherLayoutFailsTheConfiguration) {
   struct Wrong : Probe {
     LinkInput<Angle> short_hand;

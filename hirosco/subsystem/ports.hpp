@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
+#include <vector>
 
 #include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/layout.hpp"
 #include "hirosco/utilities/octets.hpp"
 
@@ -72,13 +73,18 @@ class DevicePortBase {
   /// Flags of the newest status frame.
   [[nodiscard]] std::uint16_t flags() const noexcept { return flags_; }
   [[nodiscard]] std::uint32_t damaged_frames() const noexcept { return damaged_frames_; }
-  /// What the configuration says of this device with <Setting name="..." value="..."/>; empty when it says nothing.
-  /// From configure() on.
+  /// What the configuration says of this device with <Setting name="..." value="..."/>; empty when it says nothing, and
+  /// for a name that was not given to use_device(). From configure() on.
   [[nodiscard]] std::string_view setting(std::string_view name) const noexcept {
-    for (const auto& [known, value] : settings_)
-      if (known == name) return value;
+    for (const descriptor::Setting& setting : settings_)
+      if (setting.name == name && reads(name)) return setting.value;
     return {};
   }
+  /// Whether its author said so.
+  [[nodiscard]] bool reads(std::string_view name) const noexcept {
+    return std::ranges::find(reads_, name) != reads_.end();
+  }
+  void will_read(std::span<const std::string_view> settings) { reads_.assign(settings.begin(), settings.end()); }
   [[nodiscard]] std::span<const NativeField> input_layout() const noexcept { return input_layout_.all(); }
   [[nodiscard]] std::span<const NativeField> output_layout() const noexcept { return output_layout_.all(); }
 
@@ -96,7 +102,8 @@ class DevicePortBase {
   MutableOctets input_;
   ObjectFields output_layout_;
   MutableOctets output_;
-  std::span<const std::pair<std::string, std::string>> settings_;
+  std::span<const descriptor::Setting> settings_;
+  std::vector<std::string_view> reads_;
   bool alive_{false};
   bool fresh_{false};
   std::uint16_t flags_{0};

@@ -124,11 +124,13 @@ TEST_F(MotorSlot, AnOutputWithARangeThatIsNoNumberGoesOutAsItsSafeValue) {
 }
 
 TEST_F(MotorSlot, WhatAConfigurationSetsForADeviceIsItsAuthorsToRead) {
-  use.settings = {{"STIFFNESS", "4000"}, {"NAME", "left"}};
+  use.settings = {{"STIFFNESS", "4000", {}}, {"NAME", "left", {}}};
+  constexpr std::array<std::string_view, 2> read{"STIFFNESS", "DAMPING"};
+  port.will_read(read);
   const DeviceSlot made = slot();
   EXPECT_EQ(port.setting("STIFFNESS"), "4000");
-  EXPECT_EQ(port.setting("NAME"), "left");
-  EXPECT_EQ(port.setting("DAMPING"), "");
+  EXPECT_EQ(port.setting("DAMPING"), "") << "not given";
+  EXPECT_EQ(port.setting("NAME"), "") << "its author has not said that it is read";
 }
 
 TEST_F(MotorSlot, EachCommandSaysModeEpochAndWatchdogAndHasASequenceOfItsOwn) {

@@ -35,11 +35,12 @@ void Subsystem::use_event(EventPort& event) { framework_->use_event(event); }
 void Subsystem::use_request(RequestPort& request, RequestHandler handler, Duration patience) {
   framework_->use_request(request, std::move(handler), patience);
 }
-void Subsystem::use_device(std::string_view name, DevicePortBase& port) { framework_->use_device(name, port); }
-
-void Subsystem::bind_function(std::string_view name, std::optional<std::span<const NativeField>> takes,
-                              FunctionHandler handler) {
-  framework_->bind_function(name, takes, std::move(handler));
+void Subsystem::use_device(std::string_view name, DevicePortBase& port,
+                           std::initializer_list<std::string_view> settings) {
+  framework_->use_device(name, port, settings);
+}
+void Subsystem::bind_function(std::string_view name, BoundHandler handler) {
+  framework_->bind_function(name, std::move(handler));
 }
 
 void Subsystem::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {

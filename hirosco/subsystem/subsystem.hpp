@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -83,8 +83,9 @@ class Subsystem {
   void publish(std::string_view name, ParameterCell& parameter);
   /// Names the author's view of a required set of real-time data.
   void require_link(std::string_view set, LinkInputPort& port);
-  /// Names the author's view of a device.
-  void use_device(std::string_view name, DevicePortBase& port);
+  /// Names the author's view of a device, and which of its settings the author reads: another that a configuration gives
+  /// fails Software-Init (E0405). All are string literals.
+  void use_device(std::string_view name, DevicePortBase& port, std::initializer_list<std::string_view> settings = {});
   /// Names an event that the author raises. Arguments that differ from the descriptor's fail Software-Init.
   void use_event(EventPort& event);
   /// Longer than a slow disk may hold a telecommand back: what timed out is not carried out later.

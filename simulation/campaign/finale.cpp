@@ -22,7 +22,7 @@ void PlannedFlight::end_faults() {
       static_cast<void>(simulated->fault("heal"));
       static_cast<void>(simulated->fault("plug"));
       // The hand moves as at the beginning: one that stirs the robot against the rail trips limits, and rightly so.
-      for (const auto& [name, value] : device.settings) static_cast<void>(simulated->fault(name + " " + value));
+      for (const auto& [name, value, at] : device.settings) static_cast<void>(simulated->fault(name + " " + value));
     }
   }
   for (const auto& member : mission_.subsystems) {

@@ -46,7 +46,7 @@ std::string Story::text() const {
 }
 
 void hand_rests(descriptor::Mission& mission) {
-  for (auto& device : mission.devices) std::erase_if(device.settings, [](const auto& s) { return s.first == "hand"; });
+  for (auto& device : mission.devices) std::erase_if(device.settings, [](const auto& s) { return s.name == "hand"; });
 }
 
 Flight::Flight(Plan plan) {

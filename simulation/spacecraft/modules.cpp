@@ -23,4 +23,15 @@ Modules load_modules(const descriptor::Mission& mission) {
   return modules;
 }
 
+std::vector<Mistake> try_introduction(Subsystem& author, const descriptor::Subsystem& described) {
+  const ManualClock clock;
+  HeapMemory memory;
+  LocalFlows flows;
+  ChannelPair channels;
+  VitalPage vital{};
+  const PermitPage permit{};
+  const Platform platform{.clock = clock, .memory = memory, .flows = flows, .explain = {}};
+  return GenericSubsystem{author, described, platform, channels.subsystem_end(), vital, permit}.try_introduction();
+}
+
 }  // namespace hirosco::simulation

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "simulation/spacecraft/spacecraft.hpp"
 
@@ -18,5 +19,8 @@ struct Modules {
 
 /// The ground link is not among them: its other end is the simulated ground, so the spacecraft makes it.
 [[nodiscard]] Modules load_modules(const descriptor::Mission& mission);
+
+/// What Software-Init will find of an author's mistakes against this descriptor, without a flight.
+[[nodiscard]] std::vector<Mistake> try_introduction(Subsystem& author, const descriptor::Subsystem& described);
 
 }  // namespace hirosco::simulation

@@ -156,7 +156,10 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       continue;
     }
     // Settings of a simulated device are lines of its fault script: <Setting name="hand" value="wander"/>.
-    for (const auto& [name, value] : described.settings) static_cast<void>(device->fault(name + " " + value));
+    for (const auto& [name, value, at] : described.settings)
+      if (const auto taken = device->fault(name + " " + value); !taken)
+        parts.observer.told(clock_.onboard(), "simulated device " + described.name + " does not take '" + name + " " +
+                                                  value + "': " + taken.error().text);
     devices_.push_back({&described, std::move(device)});
   }
   const Platform platform{

@@ -69,6 +69,26 @@ class Check(unittest.TestCase):
             self.assertEqual(hirosco(command, mission, "--for", "1s")[0], 3)
         self.assertEqual(hirosco("check", self.mission("rokviss", old='value="hold"', new='value="hold 0 0"'))[0], 0)
 
+    def test_a_setting_that_no_code_reads_is_told_with_its_place_before_and_in_a_flight(self):
+        hand = "subsystems/joystick/joystick.xml"
+        mission = self.mission("rokviss", hand, old='<Endnode transfer="shared_memory" address="rokviss-joystick"',
+                               new='<Setting name="GRIP" value="3"/>\n<Endnode transfer="shared_memory" address="rokviss-joystick"')
+        line = next(n for n, text in enumerate((self.folder / hand).read_text().splitlines(), 1) if "GRIP" in text)
+        self.expect(mission, 0)
+        for words in (("check", "--fly", mission), ("simulate", mission, "--for", "2s")):
+            code, told = hirosco(*words)
+            self.assertNotEqual(code, 0, told)
+            self.assertIn("nobody reads the setting 'GRIP' of device 'JOYSTICK'", told)
+            self.assertIn(f"joystick.xml:{line}:", told)
+
+    def test_what_software_init_will_find_is_told_by_check_fly(self):
+        mission = self.mission("hello", "subsystems/hello/hello.xml", old='<Function name="MOVE_TO"', new='<Function name="MOVE_TOO"')
+        self.expect(mission, 0)
+        code, told = hirosco("check", "--fly", mission)
+        self.assertEqual(code, 1)
+        self.assertIn("error: HELLO: on_function: the descriptor declares no function 'MOVE_TO'", told)
+        self.assertIn("error: HELLO: function declared but without a handler: MOVE_TOO", told)
+
     def test_what_cannot_fly_is_refused(self):
         robot, hand = "subsystems/manipulator/manipulator.xml", "subsystems/joystick/joystick.xml"
         for file, old, new, code in (

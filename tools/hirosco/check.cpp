@@ -131,6 +131,7 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   for (auto& problem : missing)
     if (problem.code == "E0401" && !options.fly) problem.grade = descriptor::Grade::Warning;
   findings.add(std::move(missing));
+  if (options.fly) findings.add(unintroduced(*reading.value));
 }
 
 }  // namespace

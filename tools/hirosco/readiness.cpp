@@ -35,13 +35,11 @@ class Findings {
     LocalFlows flows;
     const auto played = make(flows, {Transfer::SharedMemory, device.name}, {});
     if (!played->plug()) return;
-    for (const auto& [name, value] : device.settings) {
+    for (const auto& [name, value, at] : device.settings) {
       const auto taken = played->fault(name + " " + value);
       // What is not available in this world may be in the device's own.
       if (taken || (flown_as_ == FlownAs::Processes && taken.error().code == ErrorCode::Unavailable)) continue;
-      const auto place = device.setting_places.find(name);
-      add(place == device.setting_places.end() ? device.at : place->second, "E0402",
-          fmt::format("device {} does not take '{} {}'", device.name, name, value),
+      add(at, "E0402", fmt::format("device {} does not take '{} {}'", device.name, name, value),
           fmt::format("{}: {}", to_text(taken.error().code), taken.error().text));
     }
   }
@@ -75,6 +73,21 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
       findings.settings(device, make->second);
   }
   return findings.take();
+}
+
+std::vector<Diagnostic> unintroduced(const descriptor::Mission& mission) {
+  const auto modules = simulation::load_modules(mission);
+  std::vector<Diagnostic> found;
+  for (const auto& member : mission.subsystems) {
+    const auto make = modules.subsystems.find(member.executable);
+    if (make == modules.subsystems.end()) continue;
+    const auto author = make->second();
+    for (const auto& [text, at] : simulation::try_introduction(*author, member.subsystem))
+      if (at)
+        found.push_back({member.subsystem.file, *at, "E0405", text, "name it in use_device(), or leave it out", 1});
+      else found.push_back({mission.file, member.at, "E0406", member.subsystem.name + ": " + text, "", 1});
+  }
+  return found;
 }
 
 bool ready(const descriptor::Mission& mission, FlownAs flown_as) {

@@ -150,7 +150,7 @@ struct Locks {
   start.arguments = made->arguments();
   start.arguments.insert(start.arguments.end(),
                          {"--seed", std::to_string(device.seed), "--control", (folder / device.name).string()});
-  for (const auto& [name, value] : device.settings)
+  for (const auto& [name, value, at] : device.settings)
     start.arguments.insert(start.arguments.end(), {"--set", name + "=" + value});
   return start;
 }

@@ -19,6 +19,9 @@ inline constexpr std::size_t max_housekeeping_octets = 4096 - 22 - 2;
 /// Octets of an event's arguments: the same packet less the event's id.
 inline constexpr std::size_t max_event_octets = 4096 - 22 - 2;
 
+/// One <Setting> of a device, or of its simulation.
+void read_setting(const xml::Element& element, Problems& problems, Unique& names, std::vector<Setting>& settings);
+
 /// Reads one <Subsystem>. Declarations first, then what refers to them, whatever their order in the file.
 class SubsystemReader {
  public:
@@ -53,7 +56,6 @@ class SubsystemReader {
   void read_budget(Attributes& attributes, Configuration& configuration);
   void read_device_use(const xml::Element& element, Configuration& configuration, Unique& names);
   void check_watchdogs(const xml::Element& element, const DeviceUse& use, Duration sampling);
-  void read_setting(const xml::Element& element, DeviceUse& use, Unique& names);
   [[nodiscard]] Endnode read_endnode(const xml::Element& element);
   [[nodiscard]] Endnode read_address(Attributes& attributes);
   /// An address belongs to one device: in all configurations, and its enable endnode to nothing else.
