@@ -18,11 +18,8 @@ def utc_of(time_s: float) -> datetime.datetime:
     return EPOCH + datetime.timedelta(seconds=time_s - TAI_MINUS_UTC_S)
 
 
-@dataclasses.dataclass(frozen=True)
-class Housekeeping:
-    """One report TM[3,25]. `report["CUR_VALUES.POSITION"]` is a number, or a tuple for an array."""
-    subsystem: str
-    sid: int
+class Told:
+    """What every report of named values has: `report["CUR_VALUES.POSITION"]` is a number, a tuple for an array, a text."""
     time_s: float                 # on board: TAI since 1958
     values: Dict[str, Any]
 
@@ -35,23 +32,25 @@ class Housekeeping:
 
 
 @dataclasses.dataclass(frozen=True)
-class Report:
-    """One report of a subsystem's own service. `report["NUMBER"]` is a number, or a tuple for an array."""
+class Housekeeping(Told):
+    """One report TM[3,25]."""
+    subsystem: str
+    sid: int
+    time_s: float
+    values: Dict[str, Any]
+
+
+@dataclasses.dataclass(frozen=True)
+class Report(Told):
+    """One report of a subsystem's own service."""
     subsystem: str
     name: str
     time_s: float
     values: Dict[str, Any]
 
-    def __getitem__(self, name: str) -> Any:
-        return self.values[name]
-
-    @property
-    def utc(self) -> datetime.datetime:
-        return utc_of(self.time_s)
-
 
 @dataclasses.dataclass(frozen=True)
-class Event:
+class Event(Told):
     """One report TM[5,1] to TM[5,4]."""
     subsystem: str
     id: int
@@ -59,10 +58,6 @@ class Event:
     severity: str
     time_s: float
     values: Dict[str, Any]
-
-    @property
-    def utc(self) -> datetime.datetime:
-        return utc_of(self.time_s)
 
 
 SEVERITIES = {1: "info", 2: "low", 3: "medium", 4: "high"}
