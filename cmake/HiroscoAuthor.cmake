@@ -3,11 +3,12 @@
 #
 # What an author builds, in this repository or in one that found the package: hirosco_subsystem, hirosco_device.
 
-# hirosco_subsystem(NAME SOURCES *.cpp [DEPENDS targets...] [MAIN main.cpp])
-# hirosco_device(NAME SOURCES *.cpp [DEPENDS targets...] [MAIN main.cpp])
+# hirosco_subsystem(NAME SOURCES *.cpp [DEPENDS targets...] [MAIN main.cpp] [NOT_INSTALLED])
+# hirosco_device(NAME SOURCES *.cpp [DEPENDS targets...] [MAIN main.cpp] [NOT_INSTALLED])
 # A part of a mission: the program NAME, and the module NAME.so beside it, for `hirosco simulate`. One of the sources defines
 # hirosco_module(). They are compiled once, into NAME_objects, which tests link. MAIN: a main() of the program's own in place
-# of the one that runs the module. Both are installed: into bin and lib/hirosco.
+# of the one that runs the module. Both are installed, into bin and lib/hirosco, unless they are a
+# test's.
 function(hirosco_subsystem name)
   hirosco_part(${name} hirosco::subsystem_main hirosco::subsystem ${ARGN})
 endfunction()
@@ -20,7 +21,7 @@ set(hirosco_author_folder ${CMAKE_CURRENT_LIST_DIR})
 
 # `main`: the library of the program; `framework`: of both.
 function(hirosco_part name main framework)
-  cmake_parse_arguments(ARG "" "MAIN" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED" "MAIN" "SOURCES;DEPENDS" ${ARGN})
   add_library(${name}_objects OBJECT ${ARG_SOURCES})
   target_link_libraries(${name}_objects PUBLIC ${ARG_DEPENDS} ${framework})
   set_target_properties(${name}_objects PROPERTIES
@@ -52,6 +53,8 @@ function(hirosco_part name main framework)
     add_dependencies(hirosco_modules ${name}_module)
     add_dependencies(flown ${name} ${name}_module)
   endif()
-  install(TARGETS ${name} RUNTIME DESTINATION bin)
-  install(TARGETS ${name}_module LIBRARY DESTINATION lib/hirosco)
+  if(NOT ARG_NOT_INSTALLED)
+    install(TARGETS ${name} RUNTIME DESTINATION bin)
+    install(TARGETS ${name}_module LIBRARY DESTINATION lib/hirosco)
+  endif()
 endfunction()

@@ -94,8 +94,27 @@ class Draw:
         self.mode = "standalone" if hooks else self.random.choice(["telepresence"] * 3 + [m for m in mission.modes if m not in (mission.initial_mode, "safe")])
 
     # --- values ------------------------------------------------------------------------------------------------------
+    def argument(self, argument):
+        """All values of one argument, as they stand on the wire."""
+        return self.words(argument) if argument.type == "TEXT" else b"".join(self.value(argument) for _ in range(argument.count))
+
+    def words(self, argument):
+        """Mostly a text, of any length up to the declared one, then what is none."""
+        r, most = self.random, argument.octets
+        text = "".join(r.choice("ab \u20ac\U0001f680") for _ in range(r.choice([0, 1, most // 2, most]))).encode()[:most].decode(errors="ignore").encode()
+        draw = r.random()
+        if draw > 0.8:
+            text = r.choice([b"x" * most, b"x" * (most + 1), text[:-1] + b"\xff", b"\0" + text[1:], b"\xed\xa0\x80", b"\xe2\x82"])
+        octets = len(text) if draw < 0.97 else r.choice([0, len(text) + 1, 65535])
+        return struct.pack(">H", octets) + text
+
     def value(self, argument):
         """Mostly in range, then its corners, just beside them, and what no honest sender sends."""
+        if argument.values is not None:
+            honest = self.random.random() < 0.8
+            return pack(argument.type, self.random.choice(sorted(argument.values)) if honest else self.random.randrange(-3, 260))
+        if argument.type in ("UINT64", "INT64"):
+            return self.whole(argument)
         low = argument.minimum if argument.minimum is not None else {"D": -1e6, "F": -1e6}.get(argument.type[:1], 0)
         high = argument.maximum if argument.maximum is not None else {"D": 1e6, "F": 1e6}.get(argument.type[:1], 255)
         draw = self.random.random()
@@ -109,6 +128,15 @@ class Draw:
             value = self.random.choice([float("nan"), float("inf"), -float("inf"), 1e300, 255, 1e-300])
         return pack(argument.type, value)
 
+    def whole(self, argument):
+        """Of 64 bits, where a double would lose digits."""
+        r = self.random
+        ends = (0, 2**64 - 1) if argument.type == "UINT64" else (-2**63, 2**63 - 1)
+        low, high = (int(end if given is None else given) for given, end in zip((argument.minimum, argument.maximum), ends))
+        near = r.choice([low, high, low - 1, high + 1, 2**53 + 1, -2**53 - 1, low + 1, high - 1])
+        value = r.randint(low, high) if r.random() < 0.5 else min(max(near, ends[0]), ends[1])
+        return struct.pack(">Q", value % 2**64)
+
     def call(self, name, arguments):
         data = name.encode()[:16].ljust(16, b"\0")
         number = len(arguments)
@@ -116,7 +144,7 @@ class Draw:
             number = self.random.randrange(0, 9)
         data += bytes([number])
         for place, argument in enumerate(arguments[:number], 1):
-            data += bytes([place if self.random.random() > 0.02 else self.random.randrange(256)]) + self.value(argument)
+            data += bytes([place if self.random.random() > 0.02 else self.random.randrange(256)]) + self.argument(argument)
         return data[:-1] if self.random.random() < 0.02 else data
 
     def parameter_write(self, subsystem):
@@ -409,7 +437,7 @@ class Draw:
 
 
 def pack(kind, value):
-    octets = TYPES[kind][1] if kind in TYPES and kind != "STRUCT" else 8
+    octets = 1 if kind == "BOOL" else TYPES[kind][1] if kind in TYPES and kind != "STRUCT" else 8
     if kind == "DOUBLE":
         return struct.pack(">d", value)
     if kind == "FLOAT":

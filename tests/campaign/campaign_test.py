@@ -2,13 +2,14 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """A slice of the campaign has no violation, the same seed gives the same octets, a failing plan shrinks to what it needs,
-and each planted defect is found. campaign_test.py [flights|plants|tools] [PLANT...]"""
-import os, pathlib, subprocess, sys, tempfile
+and each planted defect is found. campaign_test.py [flights|typed|plants|tools] [PLANT...]"""
+import collections, os, pathlib, subprocess, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "simulation" / "campaign")]
 from campaign import Campaign, Pilot, parse  # noqa: E402
+from draw import Draw  # noqa: E402
 from plants_in_code import misfits  # noqa: E402
 from shrink import shrink, split  # noqa: E402
 
@@ -17,6 +18,7 @@ MISSION = str(HERE.parents[1] / "missions" / "rokviss")
 PLANTS = ["I1", "I2", "I3", "I4", "I5", "I6", "I8", "I9", "I10", "I11", "I12", "I13"]
 MOST_FLIGHTS = 40          # until a planted defect is found
 SLICE = 20
+CALLS = 1_000              # of functions with arguments of every type
 problems = []
 
 
@@ -29,6 +31,28 @@ def check(condition, text):
 def flights():
     campaign = Campaign(parse([MISSION, "--flights", str(SLICE), "--shrink", "1"]))
     check(campaign.run() == 0, f"{SLICE} flights hold every invariant")
+
+
+def typed():
+    """A subsystem with a function of every type: what is drawn for it is carried out or refused as its descriptor says."""
+    mission = HERE.parent / "typed"
+    pilot = Pilot(str(mission), fly_plan())
+    member = pilot.judged.by_name("PROGRAMMABLE")
+    draw = Draw(pilot.judged, 1, 0)
+    lines, judged = [], collections.Counter()
+    for number in range(CALLS):
+        function = draw.random.choice(list(member.functions.values()))
+        data = draw.call(function.name, function.arguments)
+        judged[function.name, function.refusal(data)] += 1
+        lines.append(f"{2 + number * 0.005:.6f} tc ground {member.apid} 8 1 15 {data.hex()}")
+    for function in member.functions:
+        check(judged[function, None] >= 20 and judged[function, "values"] >= 20, f"{function} is called with good and with bad arguments")
+    flown = pilot.fly("\n".join(["seed 1", "mode telepresence", "finale 26.0", *lines]) + "\n")
+    for violation in flown["violations"]:
+        print(*violation)
+    check(not flown["violations"], f"{CALLS} calls with arguments of every type end as their descriptor says")
+    called = sum(count for cell, count in flown["commands"].items() if cell.startswith("Operational|") and cell.endswith("|ground"))
+    check(called >= CALLS, "they reached a subsystem that is Operational")
 
 
 def find(plant):
@@ -71,6 +95,8 @@ if __name__ == "__main__":
     what = sys.argv[1] if len(sys.argv) > 1 else "all"
     if what in ("flights", "all"):
         flights()
+    if what in ("typed", "all"):
+        typed()
     if what in ("plants", "all"):
         plants(sys.argv[2:] or PLANTS)
     if what in ("tools", "all"):

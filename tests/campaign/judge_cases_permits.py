@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""Cases of I8: what may run in which mode and state (judge/packet_rules.py)."""
-import struct
+"""Cases of I8: what may run in which mode and state, and with which arguments (judge/packet_rules.py)."""
+import copy, struct
 
 from judge_cases import case
 from judge_flight import JOYSTICK, MISSION, MS, ROBOT, S, SUPERVISOR, call
-from descriptors import ERROR, OPERATIONAL, PRE, SAFE
+from descriptors import ERROR, OPERATIONAL, PRE, SAFE, Argument, Function
 
 # --- I8 --------------------------------------------------------------------------------------------------------------------
 PERMIT_RULE = "i8_nothing_unauthorised"
@@ -179,3 +179,118 @@ def a_write_that_is_cut_off_is_the_addressees_to_refuse(w):
 @case(PERMIT_RULE)
 def a_write_of_nothing_is_the_addressees_to_refuse(w):
     runs(w, service=20, subtype=3, data=b"")
+
+
+# --- I8, the arguments of a function ---------------------------------------------------------------------------------------
+VALUES_RULE = "i8_what_its_descriptor_permits"
+RAN, REFUSED = "PROGRAM of MANIPULATOR ran", "PROGRAM of MANIPULATOR was refused, though"
+# One of each kind: SERIAL UINT64 from 2^53 + 1, OFFSET INT64 up to 0, COLOUR, NOTE, STEPS FLOAT[2], ON with a default.
+TYPED = copy.deepcopy(MISSION)
+TYPED.by_name("MANIPULATOR").functions["PROGRAM"] = Function("PROGRAM", {OPERATIONAL}, False, [
+    Argument("SERIAL", "UINT64", 2**53 + 1, 2**64 - 1), Argument("OFFSET", "INT64", -2**63, 0), Argument("COLOUR", "INT8", None, None, values={-1, 7}),
+    Argument("NOTE", "TEXT", None, None, octets=4), Argument("STEPS", "FLOAT", 0.0, 0.5, count=2),
+    Argument("ON", "BOOL", None, None, values={0, 1}, has_default=True)])
+GOOD = {1: struct.pack(">Q", 2**53 + 1), 2: struct.pack(">q", -2**63), 3: b"\xff", 4: b"\0\3\xe2\x82\xac", 5: struct.pack(">ff", 0, 0.5), 6: b"\1"}
+
+
+def programmed(w, subtype, code=b"", given=None, number=None, cut=0, **runs_with):
+    data = b"PROGRAM".ljust(16, b"\0") + bytes([len(given or GOOD) if number is None else number])
+    data += b"".join(bytes([place]) + octets for place, octets in (given or GOOD).items())
+    runs(w, data=data[:len(data) - cut], **runs_with)
+    w.verified(1100 * MS, 0x180AC000 | 77, 1, apid=ROBOT)
+    w.report(1200 * MS, ROBOT, 1, subtype, struct.pack(">I", 0x180AC000 | 77) + code)
+
+
+WITH = [
+    ("a_number_below_its_range_that_a_double_would_not_tell_from_it", {1: struct.pack(">Q", 2**53)}),
+    ("a_negative_number_above_its_range", {2: struct.pack(">q", 1)}),
+    ("a_value_that_its_enumeration_does_not_have", {3: b"\0"}),
+    ("a_text_that_is_longer_than_declared", {4: b"\0\5abcde"}),
+    ("a_text_that_is_no_utf8", {4: b"\0\1\xff"}),
+    ("a_text_with_a_zero", {4: b"\0\2a\0"}),
+    ("one_element_of_an_array_outside_its_range", {5: struct.pack(">ff", 0, 0.6)}),
+    ("what_is_no_number", {5: struct.pack(">ff", float("nan"), 0)}),
+    ("what_is_neither_on_nor_off", {6: b"\2"}),
+    ("an_argument_that_it_does_not_have", {7: b"\0"}),
+]
+for name, other in WITH:
+    def ran(w, other=other):
+        programmed(w, 3, given=GOOD | other)
+
+    def refused(w, other=other):
+        programmed(w, 4, b"\1\5\0" + bytes(4), given=GOOD | other)
+
+    ran.__name__, refused.__name__ = f"{name}_ran", f"{name}_was_refused"
+    case(VALUES_RULE, found=RAN, mission=TYPED)(ran)
+    case(VALUES_RULE, mission=TYPED)(refused)
+
+
+@case(VALUES_RULE, mission=TYPED)
+def values_of_every_kind(w):
+    programmed(w, 3)
+
+
+@case(VALUES_RULE, mission=TYPED)
+def one_that_has_a_default_is_left_out(w):
+    programmed(w, 7, given={place: GOOD[place] for place in (5, 4, 3, 2, 1)})
+
+
+@case(VALUES_RULE, found=RAN, mission=TYPED)
+def one_without_a_default_is_left_out(w):
+    programmed(w, 7, given={place: GOOD[place] for place in (1, 2, 3, 4, 6)})
+
+
+@case(VALUES_RULE, found=RAN, mission=TYPED)
+def one_is_given_twice(w):
+    programmed(w, 7, given=GOOD | {6: b"\1\6\1"}, number=7)
+
+
+@case(VALUES_RULE, found="its length are not", mission=TYPED)
+def what_is_cut_off_in_a_number(w):
+    programmed(w, 7, cut=1, given={1: GOOD[1]})
+
+
+@case(VALUES_RULE, found="its length are not", mission=TYPED)
+def what_is_cut_off_in_a_text(w):
+    programmed(w, 7, cut=1, given={4: GOOD[4]})
+
+
+@case(VALUES_RULE, found="its length are not", mission=TYPED)
+def what_is_cut_off_before_an_argument(w):
+    programmed(w, 7, number=7)
+
+
+@case(VALUES_RULE, found="its length are not", mission=TYPED)
+def what_goes_on_behind_the_last(w):
+    programmed(w, 7, number=5)
+
+
+@case(VALUES_RULE, found="its length are not", mission=TYPED)
+def what_ends_behind_the_name(w):
+    programmed(w, 7, given={6: b""}, cut=2)
+
+
+@case(VALUES_RULE, found=REFUSED, mission=TYPED)
+def good_values_are_refused(w):
+    programmed(w, 4, b"\1\5\0" + bytes(4))
+
+
+@case(VALUES_RULE, found=REFUSED, mission=TYPED)
+def a_good_length_is_refused(w):
+    programmed(w, 2, b"\0\x08")
+
+
+@case(VALUES_RULE, mission=TYPED)
+def what_its_author_refuses_has_a_reason(w):
+    programmed(w, 4, b"\1\5\xff" + bytes(9) + b"why")
+
+
+@case(VALUES_RULE, mission=TYPED)
+def what_is_refused_for_another_reason(w):
+    programmed(w, 2, b"\0\x0d\1")
+
+
+@case(VALUES_RULE, mission=TYPED)
+def who_says_so_is_another(w):
+    programmed(w, 4, b"\0\0", given=GOOD | {3: b"\0"})
+    w.report(1300 * MS, JOYSTICK, 1, 7, struct.pack(">I", 0x180AC000 | 77))

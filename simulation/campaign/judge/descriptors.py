@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """What the judge must know of mission and descriptors. An own reading: nothing here comes from the code it judges."""
-import dataclasses, pathlib
+import dataclasses, math, pathlib, struct
 import xml.etree.ElementTree as xml
 
 STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational",
@@ -31,6 +31,10 @@ def reachable_unseen(start, goal):
     return False
 
 
+FORMATS = {"UINT8": "B", "INT8": "b", "UINT16": "H", "INT16": "h", "UINT32": "I", "INT32": "i", "UINT64": "Q", "INT64": "q",
+           "FLOAT": "f", "DOUBLE": "d", "BOOL": "B"}
+
+
 @dataclasses.dataclass
 class Argument:
     name: str
@@ -38,6 +42,29 @@ class Argument:
     minimum: float | None
     maximum: float | None
     count: int = 1
+    values: set | None = None  # of BOOL and of an enumeration: there are no others
+    octets: int = 0            # of TEXT
+    has_default: bool = False
+
+    def read(self, data, at):
+        """(where the next one stands, whether this one is permitted); None instead of a place: the data end before."""
+        if self.type == "TEXT":
+            end = at + 2 + int.from_bytes(data[at:at + 2], "big")
+            return (None, False) if at + 2 > len(data) or end > len(data) else (end, self.permits_text(data[at + 2:end]))
+        form = f">{self.count}{FORMATS[self.type]}"
+        end = at + struct.calcsize(form)
+        return (None, False) if end > len(data) else (end, all(map(self.permits, struct.unpack(form, data[at:end]))))
+
+    def permits(self, number):
+        """Python compares integers and floats without rounding."""
+        return (math.isfinite(number) and not (self.minimum is not None and number < self.minimum) and
+                not (self.maximum is not None and number > self.maximum) and (self.values is None or number in self.values))
+
+    def permits_text(self, words):
+        try:
+            return len(words) <= self.octets and "\0" not in words.decode()
+        except UnicodeDecodeError:
+            return False
 
 
 @dataclasses.dataclass
@@ -46,6 +73,27 @@ class Function:
     states: set
     essential: bool
     arguments: list
+
+    def refusal(self, data):
+        """Why the data of TC[8,1] are none that its descriptor permits: "length", "values", or None when they are."""
+        if len(data) < 17:
+            return "length"
+        at, seen, good = 17, set(), True
+        for _ in range(data[16]):
+            if at >= len(data):
+                return "length"
+            place = data[at]
+            if not 1 <= place <= len(self.arguments):
+                return "values"  # how long it is nobody knows
+            at, permitted = self.arguments[place - 1].read(data, at + 1)
+            if at is None:
+                return "length"
+            good = good and permitted and place not in seen
+            seen.add(place)
+        if at != len(data):
+            return "length"
+        given = all(place in seen or each.has_default for place, each in enumerate(self.arguments, 1))
+        return None if good and given else "values"
 
 
 @dataclasses.dataclass
@@ -115,12 +163,16 @@ TYPES = {"UINT8": (1, 1), "INT8": (2, 1), "UINT16": (3, 2), "INT16": (4, 2), "UI
 
 def number(element, name):
     text = element.get(name)
-    return float(text) if text is not None else None
+    if text is None:
+        return None
+    return int(text) if text.lstrip("+-").isdigit() else float(text)
 
 
-def argument(element):
-    return Argument(element.get("name"), element.get("type") or "", number(element, "minimum"), number(element, "maximum"),
-                    int(element.get("count", 1)))
+def argument(element, enumerations):
+    kind = element.get("type") or ""
+    values = {0, 1} if kind == "BOOL" else enumerations.get(element.get("enumeration"))
+    return Argument(element.get("name"), kind, number(element, "minimum"), number(element, "maximum"), int(element.get("count", 1)),
+                    values, int(element.get("octets", 0)), element.get("default") is not None)
 
 
 def states(text):
@@ -133,7 +185,7 @@ BUILT_IN = {"CYCLE_STATS": (39, [("UINT32", 1), ("FLOAT", 1), ("FLOAT", 1)]),
             "LINK_STATS": (41, [("UINT32", 1), ("UINT32", 1)])}
 
 
-def read_parameters(root, apid):
+def read_parameters(root, apid, enumerations):
     def wire_id(kind, number):
         return apid << 16 | TYPES[kind][0] << 8 | int(number)
 
@@ -143,7 +195,7 @@ def read_parameters(root, apid):
         if name in BUILT_IN:
             ids[name] = element.get("id")
             continue
-        fields = [argument(child) for child in element] if kind == "STRUCT" else [argument(element)]
+        fields = [argument(child, enumerations) for child in (element if kind == "STRUCT" else [element])]
         writable = element.get("writable")
         parameters.append(Parameter(name, wire_id(kind, element.get("id")), fields,
                                     states(writable) if writable is not None else None, element.get("protection") == "yes"))
@@ -164,16 +216,19 @@ def read_configuration(element):
 def read_subsystem(path):
     root = xml.parse(path).getroot()
     apid = int(root.get("id"))
-    parameters = read_parameters(root, apid)
+    enumerations = {e.get("name"): {int(text.get("value"), 0) for text in e.findall("Text")} for e in root.iter("Enumeration")}
+    parameters = read_parameters(root, apid, enumerations)
     ranges = {p.name: p.fields[0] for p in parameters}
+    ranges |= {f"{p.name}.{f.name}": f for p in parameters for f in p.fields}
+    ranges |= {f.name: f for p in parameters for f in p.fields if f.name not in ranges}
     functions = {}
     for element in root.iter("Function"):
         arguments = []
         for child in element.findall("Argument"):
-            given = argument(child)
-            if child.get("of") in ranges:
+            given = argument(child, enumerations)
+            if child.get("of") is not None:
                 same = ranges[child.get("of")]
-                given = Argument(given.name, same.type, same.minimum, same.maximum)
+                given = dataclasses.replace(same, name=given.name, count=1, has_default=given.has_default)
             arguments.append(given)
         functions[element.get("name")] = Function(element.get("name"), states(element.get("states")),
                                                   element.get("essential") == "yes", arguments)
@@ -196,7 +251,7 @@ def read_mission(path):
         modes[mode.get("name")] = permits
         mode_ids[mode.get("name")] = int(mode.get("id", place))
     links = {int(link.get("id")): (link.get("from").split(".")[0], *link.get("to").split("."))
-             for link in root.find("Links")}
+             for link in root.findall("Links/Link")}
     devices = {d.get("name"): (d.get("subsystem"), d.get("device")) for d in root.findall("SimulatedDevice")}
     ground = root.find("Supervisor/Ground").get("subsystem")
     high = next(({step.get("action") for step in plan.findall("Do")} for plan in root.findall("Recovery/Plan")

@@ -11,6 +11,7 @@ PING_US = 200_000
 FLOODED_PING_US = 500_000
 LAST_SECOND_US = 1_000_000
 OUTCOME_UNKNOWN = bytes([2, 6])
+VALUE_NOT_ACCEPTABLE, DATA_LENGTH = bytes([1, 5]), bytes([0, 8])
 
 
 def lost_records(flight):
@@ -146,6 +147,31 @@ def i8_nothing_unauthorised(flight, victims):
                                 f" of {name_of(flight, source)} to {name} ran in mode {modes[-1]}, {STATES[states[-1]]}")
 
 
+def i8_what_its_descriptor_permits(flight, _):
+    """A function runs with arguments that its descriptor permits and no others, and is refused for none that it permits."""
+    calls = collections.defaultdict(list)
+    for record in flight.log:
+        if record.kind == "telecommand-forwarded" and record.telecommand:
+            calls[record.telecommand.key].append(record)
+    for record in flight.log:
+        said = record.report
+        if said is None or said.service != 1 or len(said.data) < 4 or len(calls[said.request_key]) != 1:
+            continue
+        (call,) = calls[said.request_key]
+        addressee = flight.mission.by_apid(call.telecommand.apid)
+        function = addressee.functions.get(call.telecommand.function) if addressee is not None else None
+        if function is None or said.apid != addressee.apid:
+            continue
+        why = function.refusal(call.telecommand.data)
+        if why is not None and said.subtype in (3, 5, 7):
+            yield record.time, f"{function.name} of {addressee.name} ran, though its {why} are not as its descriptor says"
+        # What its author refuses has the author's reason behind the code.
+        code, behind = said.data[4:6], said.data[6:]
+        by_values = said.subtype == 4 and code == VALUE_NOT_ACCEPTABLE and len(behind) == 5
+        if why is None and (by_values or (said.subtype == 2 and code == DATA_LENGTH)):
+            yield record.time, f"{function.name} of {addressee.name} was refused, though its arguments are as its descriptor says"
+
+
 def permitted(mission, record, source, mode, state):
     """May this source send this in that mode to an addressee in that state? Own words of the mission's rules."""
     tc, own = record.telecommand, source == mission.supervisor.apid
@@ -234,4 +260,4 @@ def name_of(flight, apid):
 
 
 PACKETS = {"I2": [i2_one_final_report], "I3": [i3_everything_is_logged_once], "I6": [i6_ping_is_answered],
-           "I8": [i8_nothing_unauthorised], "I11": [i11_nothing_goes_back]}
+           "I8": [i8_nothing_unauthorised, i8_what_its_descriptor_permits], "I11": [i11_nothing_goes_back]}
