@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""A fuzz target under libFuzzer, ASan and UBSan: as many inputs as it is given, from its corpus on, break nothing; and each
+planted defect is found, so that the target can see. fuzz_test.py arguments BUILD-FOLDER [--runs N]. Exit code 77: there is no clang
+with libFuzzer."""
+import argparse, pathlib, re, shutil, subprocess, sys, tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+COMPILERS = ("clang++-19", "clang++")
+FLAGS = ["-std=c++23", "-O1", "-g1", "-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all", f"-I{ROOT}"]
+LONGEST_INPUT = 400
+MOST_RUNS_OF_A_PLANT = 2_000_000
+ARGUMENTS = "hirosco/pus/service/arguments.cpp"
+# The files of a target, and its plants: what stands in a file, and what does in its place.
+TARGETS = {"arguments": (
+    [ARGUMENTS, "hirosco/pus/st08_function/function_service.cpp", "hirosco/pus/st01_verification/verification.cpp",
+     "hirosco/pus/packet/packet.cpp", "hirosco/pus/packet/cuc.cpp", "hirosco/parameter/exact_number.cpp"],
+    {"a text may be longer than declared":
+         (ARGUMENTS, "return text.size() <= argument.field.text_octets && is_text(text);", "return is_text(text);"),
+     "the last element of an array has no range":
+         (ARGUMENTS, "good = permits(argument, read_number(reader, argument.field.type)) && good;",
+          "good = permits(argument, read_number(reader, argument.field.type)) && (good || i + 1 == argument.field.count);"),
+     "an argument that is given twice counts":
+         ("hirosco/pus/st08_function/function_service.cpp", " && taken_[id - 1].empty();", ";")})}
+
+
+def compiler():
+    """One that has libFuzzer, None when there is none."""
+    for name in filter(shutil.which, COMPILERS):
+        tried = subprocess.run([name, "-fsanitize=fuzzer", "-x", "c++", "-", "-o", "/dev/null"], capture_output=True, check=False,
+                               input=b'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }')
+        if tried.returncode == 0:
+            return name
+    return None
+
+
+def built(name, sources, program):
+    """Sources are compiled anew; the library's headers may have changed since."""
+    done = subprocess.run([name, *FLAGS, *map(str, sources), "-o", str(program)], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"cannot be built:\n{done.stderr[-4000:]}")
+    return program
+
+
+def fuzz(program, corpus, runs):
+    """What it says, when it found something."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([program, f"-runs={runs}", "-seed=1", f"-max_len={LONGEST_INPUT}", f"-artifact_prefix={folder}/", corpus],
+                              capture_output=True, text=True, errors="replace", check=False)
+        found = [path.read_bytes().hex() for path in pathlib.Path(folder).iterdir()]
+    return None if done.returncode == 0 else f"{done.stderr[-3000:]}\ninput: {' '.join(found)}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("target", choices=TARGETS)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--runs", type=int, default=1_000_000)
+    given = parser.parse_args()
+    name = compiler()
+    if name is None:
+        print("skipped: no clang with libFuzzer")
+        return 77
+    files, plants = TARGETS[given.target]
+    harness = HERE / f"{given.target}_fuzz.cpp"
+    folder = given.build / "fuzz" / given.target
+    corpus = folder / "corpus"
+    shutil.rmtree(folder, ignore_errors=True)
+    corpus.mkdir(parents=True)
+    lines = [line for line in (HERE / f"{given.target}_corpus.txt").read_text().splitlines() if not line.startswith("#")]
+    for number, line in enumerate(lines):
+        (corpus / f"seed{number}").write_bytes(bytes.fromhex(line))
+    problem = fuzz(built(name, [harness, *(ROOT / file for file in files)], folder / "target"), corpus, given.runs)
+    print(f"{given.runs} runs of {given.target}: {problem or 'nothing found'}")
+    missed = 0
+    for says, (file, good, bad) in plants.items():
+        text = (ROOT / file).read_text()
+        if text.count(good) != 1:
+            sys.exit(f"{says}: its place is no longer in {file}")
+        planted = folder / (re.sub(r"\W", "_", file) + ".cpp")
+        planted.write_text(text.replace(good, bad))
+        sources = [harness, planted, *(ROOT / other for other in files if other != file)]
+        found = fuzz(built(name, sources, folder / "planted"), corpus, MOST_RUNS_OF_A_PLANT)
+        print(f"{'found' if found else 'NOT FOUND'}: {says}", flush=True)
+        missed += found is None
+    return 1 if problem or missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
