@@ -49,13 +49,17 @@ TEST_F(TelemetryTest, WithoutAGroundLinkItIsLoggedAllTheSame) {
   EXPECT_EQ(passed_on(), 0U);
 }
 
-TEST_F(TelemetryTest, FailuresAreCountedByTheirCodeThoseOfAuthorsTogether) {
+TEST_F(TelemetryTest, FailuresAreCountedByTheirCodeThoseOfServicesAndAuthorsTogether) {
   start_all(Operational);
-  verify(arm, 1, 4, pus::FailureCode::WrongMode, 0);
-  verify(arm, 2, 8, static_cast<pus::FailureCode>(0x8001), 0);
-  verify(arm, 3, 7, {}, 0);
-  EXPECT_EQ(parts.traffic.rejections()[static_cast<std::size_t>(pus::FailureCode::WrongMode)], 1U);
-  EXPECT_EQ(parts.traffic.rejections()[0], 1U);
+  std::uint16_t count = 0;
+  for (std::uint16_t code = 1; code <= 18; ++code)
+    for (std::uint16_t times = 0; times < code; ++times)
+      verify(arm, ++count, 2, static_cast<pus::FailureCode>(code), 0);
+  verify(arm, ++count, 4, pus::FailureCode::ValueNotAcceptable, 0);
+  verify(arm, ++count, 8, static_cast<pus::FailureCode>(0x8001), 0);
+  verify(arm, ++count, 7, {}, 0);
+  EXPECT_THAT(parts.traffic.rejections(),
+              ElementsAre(2, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18));
 }
 
 }  // namespace

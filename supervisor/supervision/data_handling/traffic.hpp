@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -21,7 +22,15 @@ class Traffic final : public Hearer {
     std::uint32_t housekeeping_lost{0};  ///< on the way to the ground link, as the next
     std::uint32_t reports_lost{0};
   };
-  static constexpr std::size_t reasons = 17;  ///< by failure code; those of authors count as 0
+  /// A place for each code of the framework below those of services and authors, which share the first.
+  static constexpr std::size_t reasons = [] {
+    constexpr auto first_of_services = static_cast<std::uint16_t>(pus::FailureCode::UnknownIdentifier);
+    std::uint16_t last = 0;
+    for (const auto& row : EnumTexts<pus::FailureCode>::table)
+      if (const auto code = static_cast<std::uint16_t>(row.value); code < first_of_services)
+        last = std::max(last, code);
+    return std::size_t{last} + 1;
+  }();
   using Rejections = std::array<std::uint32_t, reasons>;
 
   /// Each failure report passes here.
