@@ -13,7 +13,7 @@
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
-#include "supervisor/supervision/event_handling/stops.hpp"
+#include "supervisor/supervision/event_handling/stop_outcome.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
 #include "supervisor/supervision/modes/modes.hpp"
 #include "supervisor/supervision/modes/shutdown.hpp"
@@ -36,7 +36,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count} {
     // No cycle, no queue and no state of the supervisor's own holds these up.
-    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { stops.safe_all(request); });
+    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { stop_outcome.safe_all(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
   }
 
@@ -46,7 +46,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
     links.provide();
     log_watch.provide();
     power.provide();
-    stops.provide();
+    stop_outcome.provide();
     shutdown.provide();
   }
   void show() noexcept override { housekeeping.show(); }
@@ -54,18 +54,18 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Craft craft;
   OwnSubsystem own{craft.mission.supervisor, craft.platform, *this};
   LinkGraph graph{craft.mission};
-  Outstanding outstanding;
+  Unanswered unanswered;
   Restarts restarts;
   Traffic traffic;
   GroundRoute ground_route;
   // data handling
-  Telecommands telecommands{{craft, own, graph, power, outstanding, traffic, ground_route}};
+  Telecommands telecommands{{craft, own, graph, power, unanswered, traffic, ground_route}};
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
-  Replies replies{craft, outstanding};
+  Replies replies{craft, unanswered};
   Telemetry telemetry{
       craft, own, traffic, ground_route, {&traffic, &replies, &reception, &power, &own_telecommands, &links}};
-  Reception reception{{craft, own, telecommands, telemetry, reactions, outstanding, traffic}};
+  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic}};
   // real-time links, resource management
   Links links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
@@ -76,11 +76,11 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Shutdown shutdown{{means, own, commissioning, telecommands}};
   // event handling
   Reactions reactions{means, own};
-  Stops stops{craft, own, own_telecommands, commissioning};
+  StopOutcome stop_outcome{craft, own, own_telecommands, commissioning};
   // subsystem handling, status
   GroundLinkCare ground_link{means, commissioning};
   Processes processes{
-      {craft, own, reception, reactions, stops, links, telecommands, own_telecommands, ground_link, restarts}};
+      {craft, own, reception, reactions, stop_outcome, links, telecommands, own_telecommands, ground_link, restarts}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
   std::array<Watch*, 9> watches{&processes, &ground_link,  &housekeeping,     &power,  &links,
                                 &log_watch, &telecommands, &own_telecommands, &replies};

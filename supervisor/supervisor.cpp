@@ -37,7 +37,7 @@ TimePoint Supervisor::step(TimePoint now) {
 
   for (Member& member : craft.members) parts_->reception.read(member);
   parts_->processes.watch_closed();
-  parts_->stops.follow();
+  parts_->stop_outcome.follow();
   parts_->telecommands.forward_durable();
   TimePoint wake = parts_->own.step(now);
   parts_->reception.read_own();

@@ -7,7 +7,7 @@
 
 #include "ground/commands/foreign_command.hpp"
 #include "ground/model/json.hpp"
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 
 namespace hirosco::ground {

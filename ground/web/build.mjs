@@ -29,7 +29,7 @@ await build({
   logLevel: 'warning',
 });
 // The 3D part comes while the rest starts: most visits begin with the robot, and its code is most of the octets.
-const drawing = readdirSync(out).find((name) => /^scene-.*\.js$/.test(name));
+const drawing = readdirSync(out).find((name) => /^robot_drawing-.*\.js$/.test(name));
 writeFileSync(join(out, 'index.html'), readFileSync(join(sources, 'page/index.html'), 'utf8')
     .replace('</head>', `  <link rel="modulepreload" href="${drawing}">\n</head>`));
 cpSync(join(sources, 'page/icon.svg'), join(out, 'icon.svg'));
@@ -48,6 +48,6 @@ let first = 0, all = 0;
 for (const entry of readdirSync(out).filter((name) => /\.(js|css|html)$/.test(name))) {
   const octets = gzipSync(readFileSync(join(out, entry))).length;
   all += octets;
-  if (!entry.startsWith('scene')) first += octets;
+  if (!entry.startsWith('robot_drawing')) first += octets;
 }
 console.log(`ground page: ${(first / 1024).toFixed(0)} KiB without 3D, ${(all / 1024).toFixed(0)} KiB in all (gzip)`);

@@ -16,8 +16,6 @@
 #include "hirosco/subsystem/handover.hpp"
 #include "hirosco/subsystem/pages.hpp"
 #include "hirosco/subsystem/slots.hpp"
-#include "hirosco/utilities/record_ring.hpp"
-#include "hirosco/utilities/spsc_ring.hpp"
 
 /// The cycle of a subsystem (architecture, rule 1): reads links and devices, runs the state's node, gates the actuators,
 /// samples housekeeping, writes links and devices.
@@ -57,28 +55,6 @@ struct CyclePlan {
   pus::HousekeepingSampler* sampler{nullptr};
   std::vector<std::uint16_t> device_lost_events;  ///< ids, per device
   std::vector<std::uint16_t> input_stale_events;  ///< per input
-};
-
-/// Commands and reports between the loops of one subsystem. Three rings of reports, so that none is crowded out by
-/// another kind: whatever an author raises, and however much housekeeping is asked for, who waits for an answer gets it.
-struct Handover {
-  Handover() : answers{32 * 1024}, events{32 * 1024}, housekeeping{64 * 1024} {}
-  SpscRing<CycleCommand, 64> commands;
-  RecordRing answers;  ///< somebody waits for them: at most two for each command, progress, and framework events
-  RecordRing events;  ///< the author's
-  RecordRing housekeeping;
-  // Written by the cycle, besides what the rings count themselves: what may not take the last half of one.
-  std::atomic<std::uint64_t> lost_progress{0};
-  std::atomic<std::uint64_t> lost_remarks{0};
-  [[nodiscard]] std::uint64_t lost_answers() const noexcept {
-    return answers.dropped() + lost_progress.load(std::memory_order_relaxed);
-  }
-  [[nodiscard]] std::uint64_t lost_events() const noexcept {
-    return events.dropped() + lost_remarks.load(std::memory_order_relaxed);
-  }
-  [[nodiscard]] std::uint64_t dropped() const noexcept {
-    return lost_answers() + lost_events() + housekeeping.dropped();
-  }
 };
 
 class CycleLoop final : private pus::SampleSource, private pus::SampleSink {

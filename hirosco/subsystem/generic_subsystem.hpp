@@ -26,9 +26,9 @@
 #include "hirosco/subsystem/backlog.hpp"
 #include "hirosco/subsystem/custom_service.hpp"
 #include "hirosco/subsystem/cycle.hpp"
-#include "hirosco/subsystem/link_service.hpp"
 #include "hirosco/subsystem/pages.hpp"
 #include "hirosco/subsystem/requester.hpp"
+#include "hirosco/subsystem/st128_link_service.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
 
 /// The active part of the component framework (paper 4.1 and 4.2): standard behaviour of every subsystem around one

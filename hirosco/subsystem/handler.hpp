@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "hirosco/parameter/layout.hpp"
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/service/arguments.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/subsystem/typed_values.hpp"

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 
 #include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/subsystem/states.hpp"
 #include "hirosco/subsystem/subsystem.hpp"
+#include "hirosco/utilities/record_ring.hpp"
+#include "hirosco/utilities/spsc_ring.hpp"
 
 /// What the two loops of a subsystem tell each other. Trivially copyable records in preallocated rings: the only way
 /// between them (architecture, rule 1).
@@ -72,6 +75,28 @@ struct CycleReport {
   std::uint32_t number{0};  ///< answers and events count together: they are taken in the order in which they were made
   pus::Request request{};
   AttachedLink* link{nullptr};
+};
+
+/// Commands and reports between the loops of one subsystem. Three rings of reports, so that none is crowded out by
+/// another kind: whatever an author raises, and however much housekeeping is asked for, who waits for an answer gets it.
+struct Handover {
+  Handover() : answers{32 * 1024}, events{32 * 1024}, housekeeping{64 * 1024} {}
+  SpscRing<CycleCommand, 64> commands;
+  RecordRing answers;  ///< somebody waits for them: at most two for each command, progress, and framework events
+  RecordRing events;  ///< the author's
+  RecordRing housekeeping;
+  // Written by the cycle, besides what the rings count themselves: what may not take the last half of one.
+  std::atomic<std::uint64_t> lost_progress{0};
+  std::atomic<std::uint64_t> lost_remarks{0};
+  [[nodiscard]] std::uint64_t lost_answers() const noexcept {
+    return answers.dropped() + lost_progress.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t lost_events() const noexcept {
+    return events.dropped() + lost_remarks.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t dropped() const noexcept {
+    return lost_answers() + lost_events() + housekeeping.dropped();
+  }
 };
 
 }  // namespace hirosco

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "hirosco/parameter/layout.hpp"
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/subsystem/typed_values.hpp"
 #include "hirosco/utilities/octets.hpp"
 

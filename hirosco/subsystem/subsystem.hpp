@@ -11,7 +11,7 @@
 
 #include "hirosco/descriptor/subsystem.hpp"
 #include "hirosco/parameter/parameter.hpp"
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/subsystem/event_port.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "hirosco/pus/st08_function/function_service.hpp"
-#include "simulation/devices/described_device.hpp"
+#include "simulation/devices/device_arguments.hpp"
 
 namespace hirosco::simulation {
 namespace {
@@ -140,7 +140,7 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
   for (const auto& described : parts.mission.devices) {
     const auto make = parts.devices.find(described.executable);
     if (make == parts.devices.end()) continue;
-    auto wanted = described_device(parts.mission, described);
+    auto wanted = device_arguments(parts.mission, described);
     const auto told = [&](std::string_view why) {
       parts.observer.told(clock_.onboard(), "no simulated device " + described.name + ": " + std::string{why});
     };

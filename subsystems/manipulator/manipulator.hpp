@@ -10,9 +10,9 @@
 
 #include "hirosco/subsystem/subsystem.hpp"
 #include "subsystems/manipulator/control/clutch.hpp"
-#include "subsystems/manipulator/control/guards.hpp"
 #include "subsystems/manipulator/control/joint_controller.hpp"
 #include "subsystems/manipulator/control/programme.hpp"
+#include "subsystems/manipulator/control/sensor_limits.hpp"
 #include "subsystems/manipulator/control/setpoint_governor.hpp"
 #include "subsystems/manipulator/manipulator_data.hpp"
 

@@ -13,7 +13,7 @@ from campaign import Campaign, parse  # noqa: E402
 
 SUPERVISION = "supervisor/supervision"
 TELECOMMANDS, REACTIONS = f"{SUPERVISION}/data_handling/telecommands.cpp", f"{SUPERVISION}/event_handling/reactions.cpp"
-STOPS, SHUTDOWN = f"{SUPERVISION}/event_handling/stops.cpp", f"{SUPERVISION}/modes/shutdown.cpp"
+STOPS, SHUTDOWN = f"{SUPERVISION}/event_handling/stop_outcome.cpp", f"{SUPERVISION}/modes/shutdown.cpp"
 REFUSED = "return refused(pus::FailureCode::ExecutionError);"
 CHOSEN = "HIROSCO_PLANTED_FINDING"  # which of them a flight has
 # {finding: (invariant, [(file, as it is, as it was where the finding is chosen)])}
@@ -47,7 +47,7 @@ PLANTS = {
          '<When severity="high"/><Do action="set_state" state="SafeOperational"/>')]),
     # Recovery heard events as reports: one whose report was off was not heard.
     "SF6": ("I4", [
-        ("hirosco/subsystem/reporting.cpp", "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
+        ("hirosco/subsystem/cycle_reports.cpp", "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
          'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event')]),
     # Nothing raised the epoch on the way up: a device that had latched on the way down stayed so.
     "SF14": ("I10", [
@@ -56,8 +56,8 @@ PLANTS = {
          "  } else {\n    member->permit->release();\n  }")]),
     # Nobody remembered what the dead had been asked.
     "NO_OUTCOME": ("I2", [
-        (TELECOMMANDS, "for (const pus::Request& request : parts_.outstanding.take(apid))",
-         'for (const pus::Request& request : planted("NO_OUTCOME") ? std::vector<pus::Request>{} : parts_.outstanding.take(apid))')]),
+        (TELECOMMANDS, "for (const pus::Request& request : parts_.unanswered.take(apid))",
+         'for (const pus::Request& request : planted("NO_OUTCOME") ? std::vector<pus::Request>{} : parts_.unanswered.take(apid))')]),
     # An exchange moved a device's clock by at least one cycle, and the rest was forgotten.
     "OWN_CLOCK": ("I13", [
         ("simulation/devices/simulated_device.cpp", "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;",

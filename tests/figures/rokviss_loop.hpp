@@ -12,8 +12,8 @@
 #include "simulation/devices/robot/robot_device.hpp"
 #include "subsystems/joystick/control_law.hpp"
 #include "subsystems/manipulator/control/clutch.hpp"
-#include "subsystems/manipulator/control/guards.hpp"
 #include "subsystems/manipulator/control/joint_controller.hpp"
+#include "subsystems/manipulator/control/sensor_limits.hpp"
 
 namespace hirosco::simulation {
 

@@ -10,7 +10,7 @@
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
-#include "simulation/devices/described_device.hpp"
+#include "simulation/devices/device_arguments.hpp"
 #include "subsystems/communication/tcp_server.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "tools/hirosco/commands.hpp"
@@ -136,7 +136,7 @@ struct Locks {
                                                        const descriptor::SimulatedDevice& device,
                                                        const std::filesystem::path& folder) {
   const auto program = find_program(device.executable);
-  const auto made = simulation::described_device(mission, device);
+  const auto made = simulation::device_arguments(mission, device);
   if (!made) {
     fmt::print(stderr, "hirosco run: no simulated device {}: {}\n", device.name, made.error());
     return std::nullopt;

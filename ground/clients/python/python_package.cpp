@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ground/clients/python/runtime_text.hpp"
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 
 namespace hirosco::ground {

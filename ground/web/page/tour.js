@@ -6,7 +6,7 @@
 import {signal} from '@preact/signals';
 import {bring_up, fault, say, send_and_say, state_name} from './commanding.js';
 import {html} from './html.js';
-import {mission_code, mission_has} from './mission_page.js';
+import {mission_code, mission_has} from './mission_files.js';
 import {commands, events, injections, mission, mode_of, outcome_of, slow, status, status_of, subsystem_of, values} from './store.js';
 
 /// What a mission's tour may use; README.md says what a step is.

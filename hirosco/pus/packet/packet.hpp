@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <expected>
 
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"

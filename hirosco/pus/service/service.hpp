@@ -6,7 +6,7 @@
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/subsystem.hpp"
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/service/service_kind.hpp"
 #include "hirosco/utilities/octets.hpp"

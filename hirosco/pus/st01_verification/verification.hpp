@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/service/service.hpp"
 
 namespace hirosco::pus {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "hirosco/descriptor/mission.hpp"
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "supervisor/supervision/data_handling/origin.hpp"
 #include "supervisor/supervision/interfaces.hpp"

@@ -18,8 +18,8 @@ constexpr int ground_messages_per_step = 32;
 constexpr Duration unreadable_period = 1s;
 /// With so many under way the ground's next ones wait for a report instead of finding a full channel; but hardly for
 /// addressees that stand still: SAFE_ALL may be behind them.
-constexpr std::size_t most_outstanding = 128;
-constexpr Duration outstanding_patience = 1ms;
+constexpr std::size_t most_unanswered = 128;
+constexpr Duration unanswered_patience = 1ms;
 
 /// Steps in a row in which the operating system refused to read a channel, before it counts as closed.
 constexpr std::uint32_t most_refused = 3;
@@ -31,7 +31,7 @@ bool is_damage(ErrorCode code) noexcept { return code == ErrorCode::Malformed ||
 bool Reception::reads(const Member& member) const {
   if (!craft_.is_ground_link(member)) return true;
   const bool addressees_behind =
-      parts_.outstanding.size() >= most_outstanding && craft_.now - answered_ < outstanding_patience;
+      parts_.unanswered.size() >= most_unanswered && craft_.now - answered_ < unanswered_patience;
   return !addressees_behind && parts_.telemetry.ground().takes_telecommands(craft_.now);
 }
 
@@ -97,9 +97,9 @@ void Reception::read_own() {
 }
 
 void Reception::hear(std::uint16_t, const pus::TelemetryView& report) {
-  const std::size_t under_way = parts_.outstanding.size();
-  parts_.outstanding.reported(report);
-  if (parts_.outstanding.size() < under_way) answered_ = craft_.now;
+  const std::size_t under_way = parts_.unanswered.size();
+  parts_.unanswered.reported(report);
+  if (parts_.unanswered.size() < under_way) answered_ = craft_.now;
 }
 
 /// What is damaged or claims another sender is no loss: it is counted and told, and what follows is read (hazard SF9).

@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/data_handling/outstanding.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
+#include "supervisor/supervision/data_handling/unanswered.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 
 namespace hirosco::supervisor {
@@ -24,7 +24,7 @@ class Reception final : public Hearer {
     Telecommands& telecommands;
     Telemetry& telemetry;
     Reactions& reactions;
-    Outstanding& outstanding;
+    Unanswered& unanswered;
     Traffic& traffic;
   };
   explicit Reception(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}

@@ -17,7 +17,7 @@ void Replies::hear(std::uint16_t from, const pus::TelemetryView& report) {
   if (to == 0 || to == supervisor_apid || to == from) return;
   const Member* asker = craft_.member(to);
   if (asker == nullptr || !asker->alive() || craft_.is_ground_link(*asker)) return;  // that has all reports anyway
-  if (from != supervisor_apid && !outstanding_.answers(report)) return;
+  if (from != supervisor_apid && !unanswered_.answers(report)) return;
   Queue& queue = queue_of(*asker);
   flush(*asker, queue);
   if (queue.waiting.empty() && asker->channel()->send({.packet = report.packet()})) return;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/data_handling/outstanding.hpp"
+#include "supervisor/supervision/data_handling/unanswered.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 
 namespace hirosco::supervisor {
@@ -21,7 +21,7 @@ class Replies final : public Hearer, public Watch {
   static constexpr std::size_t most_waiting = 256;  ///< packets for one member
 
   /// Stands before whoever forgets what was answered.
-  Replies(Craft& craft, Outstanding& outstanding) : craft_{craft}, outstanding_{outstanding} {}
+  Replies(Craft& craft, Unanswered& unanswered) : craft_{craft}, unanswered_{unanswered} {}
 
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
   void watch(TimePoint now) override;
@@ -38,7 +38,7 @@ class Replies final : public Hearer, public Watch {
   static void flush(const Member& member, Queue& queue);
 
   Craft& craft_;
-  Outstanding& outstanding_;
+  Unanswered& unanswered_;
   std::map<std::uint16_t, Queue> queues_;  ///< of those who have asked
 };
 

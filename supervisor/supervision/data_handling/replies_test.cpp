@@ -169,8 +169,8 @@ TEST_F(RepliesTest, NobodyIsSentWhatItHasNotAskedFor) {
 
 TEST_F(RepliesTest, WhoWasAskedCannotFloodWhoAsksAndTheEndPasses) {
   const std::uint32_t id = ask();
-  for (int i = 0; i < 3 * Outstanding::most_reports; ++i) verify(arm, id, i % 2 == 0 ? 5 : 6, {}, hand);
-  EXPECT_EQ(heard(hand).size(), Outstanding::most_reports);
+  for (int i = 0; i < 3 * Unanswered::most_reports; ++i) verify(arm, id, i % 2 == 0 ? 5 : 6, {}, hand);
+  EXPECT_EQ(heard(hand).size(), Unanswered::most_reports);
   verify(arm, id, 8, pus::FailureCode::Aborted, hand);
   EXPECT_THAT(heard(hand), ElementsAre(Heard{arm, 1, 8, {2, 4}}));
 }

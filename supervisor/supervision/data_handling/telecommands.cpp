@@ -142,7 +142,7 @@ std::optional<FailureNotice> Telecommands::refuse_flood(const pus::TelecommandVi
   if ((telecommand.ack() & pus::ack_completion) == 0) return FailureNotice{FailureCode::IllegalField};
   const auto waiting =
       std::ranges::count(waiting_, origin.apid(), [](const Waiting& each) { return each.origin.apid(); });
-  const std::size_t under_way = parts_.outstanding.count_of(origin.apid()) + static_cast<std::size_t>(waiting);
+  const std::size_t under_way = parts_.unanswered.count_of(origin.apid()) + static_cast<std::size_t>(waiting);
   Window& window = asked_[origin.apid()];
   if (craft_.now - window.begin >= 1s) window = {.begin = craft_.now};
   if (under_way >= Requester::most_open || window.taken == Requester::most_a_second)
@@ -221,7 +221,7 @@ void Telecommands::refuse_waiting() {
 }
 
 void Telecommands::outcome_unknown(std::uint16_t apid) {
-  for (const pus::Request& request : parts_.outstanding.take(apid))
+  for (const pus::Request& request : parts_.unanswered.take(apid))
     parts_.own.verification().completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});
 }
 
@@ -249,7 +249,7 @@ void Telecommands::forward(const Outgoing& outgoing) {
     return reject({.packet = packet, .origin = origin}, request, FailureNotice{code});
   }
   if (const auto telecommand = pus::TelecommandView::parse(packet); !to_itself && telecommand)
-    parts_.outstanding.forwarded(apid, *telecommand);
+    parts_.unanswered.forwarded(apid, *telecommand);
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandForwarded,
                                        .source = supervisor_apid,
                                        .peer = apid,

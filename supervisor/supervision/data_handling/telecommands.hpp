@@ -13,9 +13,9 @@
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/ground_route.hpp"
-#include "supervisor/supervision/data_handling/outstanding.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
+#include "supervisor/supervision/data_handling/unanswered.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 
@@ -39,7 +39,7 @@ class Telecommands final : public Watch, public Accounts {
     OwnSubsystem& own;
     const LinkGraph& links;
     PowerHandling& power;
-    Outstanding& outstanding;
+    Unanswered& unanswered;
     Traffic& traffic;
     GroundRoute& ground_route;
   };

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 
 namespace hirosco::supervisor {

@@ -9,7 +9,7 @@
 #include "hirosco/pus/words/describe.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/event_handling/recovery.hpp"
+#include "supervisor/supervision/event_handling/plan_choice.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/engine.hpp"
 

@@ -10,8 +10,8 @@
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/interfaces.hpp"
-#include "supervisor/supervision/procedures/restarts.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
+#include "supervisor/supervision/restarts.hpp"
 
 /// One step of a procedure, and what a kind of step is (docs/adr/0057).
 namespace hirosco::supervisor {

@@ -5,7 +5,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/procedures/restarts.hpp"
+#include "supervisor/supervision/restarts.hpp"
 
 namespace hirosco::supervisor {
 
@@ -14,7 +14,7 @@ class Links;
 class OwnTelecommands;
 class Reactions;
 class Reception;
-class Stops;
+class StopOutcome;
 class Telecommands;
 
 /// Starts the processes of the subsystems, sees them end or hang, and starts them again (paper 4.3 subsystem handling).
@@ -26,7 +26,7 @@ class Processes final : public Watch {
     OwnSubsystem& own;
     Reception& reception;
     Reactions& reactions;
-    Stops& stops;
+    StopOutcome& stop_outcome;
     Links& links;
     Telecommands& telecommands;
     OwnTelecommands& desk;

@@ -7,15 +7,15 @@ GOAL = "1 row; here its number and its words"
 MOST_FILES, MOST_EDITED = 0, 1
 FILES = {}
 EDITS = [
-    ("hirosco/pus/packet/failure.hpp", "      {PowerShort, \"power budget exceeded\"},\n",
+    ("hirosco/pus/packet/failure_code.hpp", "      {PowerShort, \"power budget exceeded\"},\n",
      "      {PowerShort, \"power budget exceeded\"},\n      {TooDark, \"too dark\"},\n"),
-    ("hirosco/pus/packet/failure.hpp", "enum class FailureCode : std::uint16_t {\n", "enum class FailureCode : std::uint16_t {\n  TooDark = 0x7F,\n"),
+    ("hirosco/pus/packet/failure_code.hpp", "enum class FailureCode : std::uint16_t {\n", "enum class FailureCode : std::uint16_t {\n  TooDark = 0x7F,\n"),
 ]
 SOURCES = []
 TRY = """\
 #include <gtest/gtest.h>
 
-#include "hirosco/pus/packet/failure.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 
 TEST(NewCode, HasWords) { EXPECT_EQ(hirosco::to_text(hirosco::pus::FailureCode::TooDark), "too dark"); }
 """

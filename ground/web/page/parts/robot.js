@@ -5,14 +5,14 @@ import {useEffect, useRef, useState} from 'preact/hooks';
 import {fault} from '../commanding.js';
 import {age_text, number_text} from '../format.js';
 import {html} from '../html.js';
-import {mission_folder, mission_has, mission_json} from '../mission_page.js';
+import {mission_folder, mission_has, mission_json} from '../mission_files.js';
 import {target_line} from './hand.js';
 import {fallen_text, inhibited_text} from '../stop.js';
 import {columns, fast, freshness, mission, operator, replay, slow, status_of, values} from '../store.js';
 
 /// scene.json of the mission; null when there is none, undefined while it is not known.
 export const scene_of_mission = signal(undefined);
-const drawing_code = () => import('./scene.js');
+const drawing_code = () => import('./robot_drawing.js');
 // A page that opens with the robot in it asks for the code before it knows what to draw.
 const opens_with_robot = !/^#\/(?!overview)/.test(location.hash);
 mission_has('scene.json').then((there) => {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/devices/described_device.hpp"
+#include "simulation/devices/device_arguments.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -37,9 +37,9 @@ std::string count_of(Duration span) {
 
 }  // namespace
 
-FlowAddress DescribedDevice::address() const { return address_of(endnode); }
+FlowAddress DeviceArguments::address() const { return address_of(endnode); }
 
-std::vector<std::string> DescribedDevice::arguments() const {
+std::vector<std::string> DeviceArguments::arguments() const {
   std::vector<std::string> words{"--transfer",       std::string{to_text(endnode.transfer)},
                                  "--address",        endnode.address,
                                  "--byte-order",     settings.byte_order == std::endian::big ? "big" : "little",
@@ -52,7 +52,7 @@ std::vector<std::string> DescribedDevice::arguments() const {
   return words;
 }
 
-std::expected<DescribedDevice, std::string> described_device(const descriptor::Mission& mission,
+std::expected<DeviceArguments, std::string> device_arguments(const descriptor::Mission& mission,
                                                              const descriptor::SimulatedDevice& device) {
   const auto* member = mission.find_subsystem(device.subsystem);
   if (member == nullptr) return std::unexpected{fmt::format("there is no subsystem {}", device.subsystem)};
@@ -60,7 +60,7 @@ std::expected<DescribedDevice, std::string> described_device(const descriptor::M
   const auto found = std::ranges::find(subsystem.devices, device.device, &descriptor::Device::name);
   if (found == subsystem.devices.end())
     return std::unexpected{fmt::format("{} has no device {}", device.subsystem, device.device)};
-  DescribedDevice made{.enable = found->enable};
+  DeviceArguments made{.enable = found->enable};
   const descriptor::Configuration* first = nullptr;
   for (const auto& configuration : subsystem.configurations)
     for (const auto& use : configuration.devices) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/event_handling/recovery.hpp"
+#include "supervisor/supervision/event_handling/plan_choice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ descriptor::Plan plan(std::string name, std::string event, std::string subsystem
 
 constexpr RaisedEvent raised{.subsystem = "ARM", .event = "HOT", .severity = Severity::Medium, .mode = "open"};
 
-TEST(Recovery, WithoutPlansThePapersDefaultsHold) {
+TEST(PlanChoice, WithoutPlansThePapersDefaultsHold) {
   const descriptor::Mission mission;
   const auto action = [&](Severity severity) {
     return choose_reaction(mission, {.subsystem = "ARM", .event = "HOT", .severity = severity, .mode = "open"})
@@ -37,7 +37,7 @@ TEST(Recovery, WithoutPlansThePapersDefaultsHold) {
   EXPECT_EQ(choose_reaction(mission, raised).plan, "default");
 }
 
-TEST(Recovery, APlanThatDoesNotMatchInOneCriterionIsNotTaken) {
+TEST(PlanChoice, APlanThatDoesNotMatchInOneCriterionIsNotTaken) {
   descriptor::Mission mission;
   mission.plans = {plan("other event", "COLD", "", "", {}), plan("other subsystem", "", "HAND", "", {}),
                    plan("other mode", "", "", "closed", {}), plan("other severity", "", "", "", {Severity::High}),
@@ -45,7 +45,7 @@ TEST(Recovery, APlanThatDoesNotMatchInOneCriterionIsNotTaken) {
   EXPECT_EQ(choose_reaction(mission, raised).plan, "default");
 }
 
-TEST(Recovery, EventCountsMoreThanSubsystemThanModeThanSeverityThanNothing) {
+TEST(PlanChoice, EventCountsMoreThanSubsystemThanModeThanSeverityThanNothing) {
   descriptor::Mission mission;
   mission.plans = {
       plan("anything", "", "", "", {}),     plan("severity", "", "", "", {Severity::Low, Severity::Medium}),
@@ -59,7 +59,7 @@ TEST(Recovery, EventCountsMoreThanSubsystemThanModeThanSeverityThanNothing) {
   EXPECT_EQ(choose_reaction(mission, raised).plan, "anything");
 }
 
-TEST(Recovery, APlanForWhatTheSupervisorTellsOfASubsystemMayNameEither) {
+TEST(PlanChoice, APlanForWhatTheSupervisorTellsOfASubsystemMayNameEither) {
   descriptor::Mission mission;
   mission.plans = {plan("of the other", "HANG", "HAND", "", {}), plan("of ours", "HANG", "SUPERVISOR", "", {})};
   RaisedEvent hang{.subsystem = "ARM", .event = "HANG", .severity = Severity::High, .mode = "open"};
@@ -70,13 +70,13 @@ TEST(Recovery, APlanForWhatTheSupervisorTellsOfASubsystemMayNameEither) {
   EXPECT_EQ(choose_reaction(mission, hang).plan, "of the arm");
 }
 
-TEST(Recovery, OfEquallySpecificPlansTheFirstIsTaken) {
+TEST(PlanChoice, OfEquallySpecificPlansTheFirstIsTaken) {
   descriptor::Mission mission;
   mission.plans = {plan("first", "HOT", "", "", {}), plan("second", "HOT", "", "", {})};
   EXPECT_EQ(choose_reaction(mission, raised).plan, "first");
 }
 
-TEST(Recovery, APlansStepsAreHandedOnInTheirOrder) {
+TEST(PlanChoice, APlansStepsAreHandedOnInTheirOrder) {
   descriptor::Mission mission;
   mission.plans = {plan("stop", "HOT", "", "", {})};
   mission.plans[0].steps = {{"restart", {3, 60, 100}}, {"set_state", {7}}};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/event_handling/recovery.hpp"
+#include "supervisor/supervision/event_handling/plan_choice.hpp"
 
 #include <algorithm>
 #include <optional>

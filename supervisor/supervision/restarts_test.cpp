@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/procedures/restarts.hpp"
+#include "supervisor/supervision/restarts.hpp"
 
 #include <gtest/gtest.h>
 

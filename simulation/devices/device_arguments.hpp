@@ -12,7 +12,7 @@
 namespace hirosco::simulation {
 
 /// What a simulated device is to be, as the descriptor of its subsystem says.
-struct DescribedDevice {
+struct DeviceArguments {
   descriptor::Endnode endnode{};
   std::optional<descriptor::Endnode> enable{};
   /// Byte order, cycle (of the fastest configuration that uses it) and stop; the seed is the caller's.
@@ -24,7 +24,7 @@ struct DescribedDevice {
 };
 
 /// In words why there can be none: it is not used, or its configurations do not agree on where and how it speaks.
-[[nodiscard]] std::expected<DescribedDevice, std::string> described_device(const descriptor::Mission& mission,
+[[nodiscard]] std::expected<DeviceArguments, std::string> device_arguments(const descriptor::Mission& mission,
                                                                            const descriptor::SimulatedDevice& device);
 
 }  // namespace hirosco::simulation

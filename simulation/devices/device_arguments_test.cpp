@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/devices/described_device.hpp"
+#include "simulation/devices/device_arguments.hpp"
 
 #include <algorithm>
 #include <array>
@@ -37,9 +37,9 @@ descriptor::Mission a_mission() {
   return mission;
 }
 
-TEST(DescribedDevice, TakesByteOrderPeriodStopAndSecondInhibitFromTheDescriptor) {
+TEST(DeviceArguments, TakesByteOrderPeriodStopAndSecondInhibitFromTheDescriptor) {
   const auto mission = a_mission();
-  const auto made = described_device(mission, mission.devices[0]);
+  const auto made = device_arguments(mission, mission.devices[0]);
   ASSERT_TRUE(made) << made.error();
   EXPECT_EQ(made->settings.byte_order, std::endian::big);
   EXPECT_EQ(made->settings.cycle, std::chrono::microseconds{250}) << "of the fastest configuration";
@@ -55,16 +55,16 @@ TEST(DescribedDevice, TakesByteOrderPeriodStopAndSecondInhibitFromTheDescriptor)
   EXPECT_EQ(made->arguments(), expected);
 }
 
-TEST(DescribedDevice, IsRefusedInWordsWhereConfigurationsDisagreeOrNoneUsesIt) {
+TEST(DeviceArguments, IsRefusedInWordsWhereConfigurationsDisagreeOrNoneUsesIt) {
   auto mission = a_mission();
   mission.subsystems[0].subsystem.configurations[1].devices[0].endnode.byte_order = descriptor::ByteOrder::Little;
-  const auto different = described_device(mission, mission.devices[0]);
+  const auto different = device_arguments(mission, mission.devices[0]);
   ASSERT_FALSE(different);
   EXPECT_NE(different.error().find("SLOW and FAST"), std::string::npos) << different.error();
   for (auto& configuration : mission.subsystems[0].subsystem.configurations) configuration.devices.clear();
-  EXPECT_FALSE(described_device(mission, mission.devices[0]));
+  EXPECT_FALSE(device_arguments(mission, mission.devices[0]));
   mission.devices[0].device = "NONE";
-  EXPECT_FALSE(described_device(mission, mission.devices[0]));
+  EXPECT_FALSE(device_arguments(mission, mission.devices[0]));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/data_handling/outstanding.hpp"
+#include "supervisor/supervision/data_handling/unanswered.hpp"
 
 #include <algorithm>
 
@@ -15,13 +15,13 @@ namespace {
 }
 }  // namespace
 
-void Outstanding::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand) {
+void Unanswered::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand) {
   const pus::Request request = pus::request_of(telecommand);
   if ((request.ack & (pus::ack_acceptance | pus::ack_completion)) == 0 || full()) return;
   entries_.push_back({.apid = apid, .request = request});
 }
 
-bool Outstanding::answers(const pus::TelemetryView& report) {
+bool Unanswered::answers(const pus::TelemetryView& report) {
   const bool verification = report.service() == 1;
   const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
   const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {
@@ -32,12 +32,12 @@ bool Outstanding::answers(const pus::TelemetryView& report) {
   return (verification && is_end(report.subtype())) || found->reports++ < most_reports;
 }
 
-std::size_t Outstanding::count_of(std::uint16_t source) const {
+std::size_t Unanswered::count_of(std::uint16_t source) const {
   return static_cast<std::size_t>(
       std::ranges::count(entries_, source, [](const Entry& entry) { return entry.request.source; }));
 }
 
-void Outstanding::reported(const pus::TelemetryView& report) {
+void Unanswered::reported(const pus::TelemetryView& report) {
   if (report.service() != 1) return;
   OctetReader reader{report.source_data()};
   const auto id = reader.get<std::uint32_t>();
@@ -52,7 +52,7 @@ void Outstanding::reported(const pus::TelemetryView& report) {
   if (final || (found->request.ack & pus::ack_completion) == 0) entries_.erase(found);
 }
 
-std::vector<pus::Request> Outstanding::take(std::uint16_t apid) {
+std::vector<pus::Request> Unanswered::take(std::uint16_t apid) {
   std::vector<pus::Request> taken;
   std::erase_if(entries_, [&](const Entry& entry) {
     if (entry.apid != apid) return false;

@@ -13,7 +13,7 @@
 /// somebody must say that their outcome is unknown (reliability 5.2).
 namespace hirosco::supervisor {
 
-class Outstanding {
+class Unanswered {
  public:
   /// More cannot be on their way to all subsystems at once: forward_room() is asked before.
   static constexpr std::size_t most = 16'384;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/event_handling/stops.hpp"
+#include "supervisor/supervision/event_handling/stop_outcome.hpp"
 
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
@@ -12,7 +12,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using enum descriptor::State;
 
-struct StopsTest : PartsTest {
+struct StopOutcomeTest : PartsTest {
   void answered() {
     for (const TimePoint end = clock.now() + 1s; clock.now() < end; wait(Guard::period)) {
       guard.beat();
@@ -23,28 +23,28 @@ struct StopsTest : PartsTest {
       }
       static_cast<void>(guard.step(clock.now()));
     }
-    parts.stops.follow();
+    parts.stop_outcome.follow();
   }
 };
 
-TEST_F(StopsTest, TheStatesFollowOfWhoActsButNotOfTheGroundLink) {
+TEST_F(StopOutcomeTest, TheStatesFollowOfWhoActsButNotOfTheGroundLink) {
   start_all(Operational);
   set(hand, SafeOperational);
-  parts.stops.asked();
+  parts.stop_outcome.asked();
   EXPECT_THAT(texts(arm), ElementsAre(to(SafeOperational)));
   EXPECT_THAT(texts(hand), IsEmpty());
   EXPECT_THAT(texts(camera), IsEmpty());
   EXPECT_TRUE(was_told("stop by signal or local socket: every actuator inhibited"));
 }
 
-TEST_F(StopsTest, TheGuardHasStoppedEverythingBeforeAnythingIsSent) {
+TEST_F(StopOutcomeTest, TheGuardHasStoppedEverythingBeforeAnythingIsSent) {
   start_all(Operational);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
-  parts.stops.asked();
+  parts.stop_outcome.asked();
   EXPECT_TRUE(guard.fenced(arm));
 }
 
-TEST_F(StopsTest, ItWaitsForNoStateOfTheSupervisorItself) {
+TEST_F(StopOutcomeTest, ItWaitsForNoStateOfTheSupervisorItself) {
   start_all(Operational);
   ASSERT_EQ(parts.own.state(), Offline);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
@@ -54,10 +54,10 @@ TEST_F(StopsTest, ItWaitsForNoStateOfTheSupervisorItself) {
   EXPECT_TRUE(was_told("SAFE_ALL: every actuator inhibited"));
 }
 
-TEST_F(StopsTest, WhatBecameOfItIsToldWhenAllHaveStopped) {
+TEST_F(StopOutcomeTest, WhatBecameOfItIsToldWhenAllHaveStopped) {
   start_all(SafeOperational);
-  parts.stops.asked();
-  parts.stops.follow();
+  parts.stop_outcome.asked();
+  parts.stop_outcome.follow();
   EXPECT_FALSE(was_told("everything has stopped"));
   answered();
   EXPECT_TRUE(was_told("everything has stopped"));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/data_handling/outstanding.hpp"
+#include "supervisor/supervision/data_handling/unanswered.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,15 +14,15 @@ namespace {
 using testing::arm;
 using testing::hand;
 
-struct OutstandingTest : ::testing::Test {
-  Outstanding outstanding;
+struct UnansweredTest : ::testing::Test {
+  Unanswered unanswered;
   std::array<std::byte, 64> buffer{};
 
   std::uint32_t forward(std::uint16_t apid, std::uint16_t count, std::uint8_t ack = pus::ack_all) {
     const auto packet = pus::write_telecommand(
         buffer, {.apid = apid, .sequence_count = count, .ack = ack, .service = 17, .subtype = 1, .source = 7}, {});
     const auto telecommand = pus::TelecommandView::parse(*packet).value();
-    outstanding.forwarded(apid, telecommand);
+    unanswered.forwarded(apid, telecommand);
     return telecommand.request_id();
   }
   void report(std::uint16_t apid, std::uint8_t subtype, std::uint32_t id, std::uint16_t destination = 7) {
@@ -31,49 +31,49 @@ struct OutstandingTest : ::testing::Test {
     writer.put(id);
     const auto packet = pus::write_telemetry(
         buffer, {.apid = apid, .service = 1, .subtype = subtype, .destination = destination}, writer.written());
-    outstanding.reported(pus::TelemetryView::parse(*packet).value());
+    unanswered.reported(pus::TelemetryView::parse(*packet).value());
   }
 };
 
-TEST_F(OutstandingTest, WhatDidNotEndIsKnownWhenItsAddresseeDies) {
+TEST_F(UnansweredTest, WhatDidNotEndIsKnownWhenItsAddresseeDies) {
   const auto first = forward(arm, 1);
   const auto second = forward(arm, 2);
   forward(hand, 3);
   report(arm, 1, first);
   report(arm, 3, first);
-  const auto taken = outstanding.take(arm);
+  const auto taken = unanswered.take(arm);
   ASSERT_EQ(taken.size(), 2u);
   EXPECT_EQ(taken[0].id, first);
   EXPECT_EQ(taken[1].id, second);
   EXPECT_EQ(taken[0].source, 7);
-  EXPECT_TRUE(outstanding.take(arm).empty());
-  EXPECT_EQ(outstanding.size(), 1u);
+  EXPECT_TRUE(unanswered.take(arm).empty());
+  EXPECT_EQ(unanswered.size(), 1u);
 }
 
-TEST_F(OutstandingTest, CompletionAndEveryFinalFailureEndIt) {
+TEST_F(UnansweredTest, CompletionAndEveryFinalFailureEndIt) {
   for (const std::uint8_t subtype : std::array<std::uint8_t, 5>{2, 4, 7, 8, 10}) {
     const auto id = forward(arm, subtype);
     report(arm, subtype, id);
-    EXPECT_EQ(outstanding.size(), 0u) << int{subtype};
+    EXPECT_EQ(unanswered.size(), 0u) << int{subtype};
   }
 }
 
-TEST_F(OutstandingTest, AFailedStepAndTheReportsOfOthersDoNot) {
+TEST_F(UnansweredTest, AFailedStepAndTheReportsOfOthersDoNot) {
   const auto id = forward(arm, 1);
   report(arm, 6, id);
   report(arm, 7, id, 8);
   report(hand, 7, id);
   report(arm, 7, id + 1);
-  EXPECT_EQ(outstanding.size(), 1u);
+  EXPECT_EQ(unanswered.size(), 1u);
 }
 
-TEST_F(OutstandingTest, WhoAsksForNoReportOfTheEndWaitsForNone) {
+TEST_F(UnansweredTest, WhoAsksForNoReportOfTheEndWaitsForNone) {
   forward(arm, 1, 0);
-  EXPECT_EQ(outstanding.size(), 0u);
+  EXPECT_EQ(unanswered.size(), 0u);
   const auto id = forward(arm, 2, pus::ack_acceptance);
-  EXPECT_EQ(outstanding.size(), 1u);
+  EXPECT_EQ(unanswered.size(), 1u);
   report(arm, 1, id);
-  EXPECT_EQ(outstanding.size(), 0u);
+  EXPECT_EQ(unanswered.size(), 0u);
 }
 
 }  // namespace

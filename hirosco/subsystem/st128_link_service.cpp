@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/subsystem/link_service.hpp"
+#include "hirosco/subsystem/st128_link_service.hpp"
 
 #include <array>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "subsystems/manipulator/control/guards.hpp"
+#include "subsystems/manipulator/control/sensor_limits.hpp"
 
 #include <bit>
 

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/procedures/steps/shut_down_network.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/procedures/steps/set_state.hpp"
+
+namespace hirosco::supervisor::steps::network {
+namespace {
+
+/// The ground link may carry sets of the network; it has no actuators, and ground must hear what goes on.
+std::vector<std::uint16_t> members_of(const ProcedureStep& step, const Means& means) {
+  auto members = means.links.network_of(step.subject);
+  std::erase_if(members, [&](std::uint16_t apid) {
+    const Member* subject = means.craft.member(apid);
+    return subject != nullptr && apid != step.subject && means.craft.is_ground_link(*subject);
+  });
+  return members;
+}
+
+std::string names(const std::vector<std::uint16_t>& members, const Craft& craft) {
+  std::string text;
+  for (const std::uint16_t apid : members) text += (text.empty() ? "" : ", ") + craft.name_of(apid);
+  return text;
+}
+
+Procedure to(std::uint16_t apid, State state, std::function<void(const ProcedureEnd&)> finished) {
+  return {.stages = {{{.kind = &set_state, .subject = apid, .values = {static_cast<std::int64_t>(state)}}}},
+          .on_failure = Procedure::OnFailure::GoOn,
+          .finished = std::move(finished)};
+}
+
+/// Each member goes its own way: one that does not answer holds up nobody else.
+void bring_down(const Member& member, const Means& means) {
+  const std::uint16_t apid = member.apid();
+  const auto to_offline = [apid, means](const ProcedureEnd&) {
+    Member* again = means.craft.member(apid);
+    if (!again->alive() || again->state() == State::Offline) return again->recovered(descriptor::Severity::High);
+    Engine{means}.start(to(apid, State::Offline, [apid, means](const ProcedureEnd& end) {
+      means.craft.member(apid)->recovered(descriptor::Severity::High);
+      means.craft.tell(means.craft.name_of(apid) + (end.success ? " is Offline" : " did not reach Offline: " + end.why),
+                       apid);
+    }));
+  };
+  const auto state = member.state();
+  const bool can_stop =
+      state == State::PreOperational || state == State::SafeOperational || state == State::Operational;
+  if (!can_stop) return to_offline({});
+  Engine{means}.start(to(apid, State::ErrorOperational, to_offline));
+}
+
+}  // namespace
+
+void shut_down(const ProcedureStep& step, const Means& means, const CommandDone& done) {
+  const auto members = members_of(step, means);
+  const std::string plan = "plan " + step.occasion.plan;
+  means.craft.tell(plan + ": network {" + names(members, means.craft) + "} to ErrorOperational and down", step.subject);
+  if (means.commissioning.cancel(plan)) means.craft.failed = true;
+  for (const std::uint16_t apid : members) {
+    Member* member = means.craft.member(apid);
+    if (member == nullptr || !member->alive()) continue;
+    member->recovering = descriptor::Severity::High;
+    if (!std::exchange(member->going_down, true)) bring_down(*member, means);
+  }
+  done(true, {});
+}
+
+void fence(const ProcedureStep& step, const Means& means) {
+  for (const std::uint16_t apid : members_of(step, means)) means.craft.guard.fence(apid);
+}
+
+}  // namespace hirosco::supervisor::steps::network
