@@ -35,8 +35,8 @@ PLANTS = {
          "  if (asks_only) return answer_question(incoming, *telecommand);\n"
          '  if (planted("SF4") && decision->releases_stop && apid != supervisor_apid)\n'
          "    static_cast<void>(craft_.guard.release(apid, craft_.guard.fences(apid)));"),
-        (TELECOMMANDS, "if (craft_.guard.fences(next.apid) != next.fences) {",
-         'if (!planted("SF4") && craft_.guard.fences(next.apid) != next.fences) {'),
+        (TELECOMMANDS, "if (craft_.guard.fences(next->apid) != next->fences) {",
+         'if (!planted("SF4") && craft_.guard.fences(next->apid) != next->fences) {'),
         (TELECOMMANDS, "if (releases_stop && !to_itself && !craft_.guard", 'if (!planted("SF4") && releases_stop && !to_itself && !craft_.guard')]),
     # Death was swallowed while a plan of the same severity ran. This mission's plans take the network down all the same;
     # it shows where the plan for high severity is milder.

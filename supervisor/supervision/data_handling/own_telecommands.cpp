@@ -13,7 +13,7 @@ namespace hirosco::supervisor {
 namespace {
 /// Generous: a slow disk alone may hold a telecommand back for seconds (decision 24). No less than it may wait for the disk, so
 /// that none is executed after it was reported as failed.
-constexpr Duration answer_limit = Telecommands::durable_limit;
+constexpr Duration answer_limit = WaitingForDisk::limit;
 }  // namespace
 
 void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::optional<double> argument,

@@ -20,7 +20,6 @@ using pus::FailureNotice;
 
 /// Reports on damaged packets in one second (pus-c tailoring 5.3).
 constexpr int damaged_reports_per_second = 10;
-constexpr std::size_t most_waiting = 1024;
 
 }  // namespace
 
@@ -54,7 +53,7 @@ void Telecommands::take(const Incoming& incoming) {
     return reject(incoming, request, decision.error());
   }
   if (decision->reserves_w > 0)
-    parts_.power.ledger().reserve(apid, decision->reserves_w, request, craft_.now + durable_limit);
+    parts_.power.ledger().reserve(apid, decision->reserves_w, request, craft_.now + WaitingForDisk::limit);
   if (asks_only) return answer_question(incoming, *telecommand);
   const std::string text = telecommand_text(*telecommand);
   const LogEntry received{.kind = LogKind::TelecommandReceived,
@@ -80,20 +79,19 @@ void Telecommands::take(const Incoming& incoming) {
   }
   copy_to_ground();
   const std::uint64_t number = craft_.log.append(received);
-  if (number == 0 || waiting_.size() == most_waiting)
-    return reject(incoming, request, FailureNotice{FailureCode::QueueFull});
+  if (number == 0 || waiting_.full()) return reject(incoming, request, FailureNotice{FailureCode::QueueFull});
   // Its own telecommands were not permitted by the mode, so a change of mode does not void them.
   const std::uint32_t mode_epoch = incoming.origin.is_supervisor() ? 0 : craft_.mode_epoch;
-  waiting_.push_back({number,
-                      apid,
-                      incoming.origin,
-                      {incoming.packet.begin(), incoming.packet.end()},
-                      incoming.memory,
-                      request,
-                      mode_epoch,
-                      craft_.now,
-                      decision->releases_stop,
-                      fences});
+  waiting_.add({number,
+                apid,
+                incoming.origin,
+                {incoming.packet.begin(), incoming.packet.end()},
+                incoming.memory,
+                request,
+                mode_epoch,
+                craft_.now,
+                decision->releases_stop,
+                fences});
   forward_durable();
 }
 
@@ -140,9 +138,7 @@ std::optional<FailureNotice> Telecommands::refuse_flood(const pus::TelecommandVi
   if (!origin.is_subsystem() || telecommand.apid() == supervisor_apid) return std::nullopt;
   // What nobody waits for would not be known to be under way.
   if ((telecommand.ack() & pus::ack_completion) == 0) return FailureNotice{FailureCode::IllegalField};
-  const auto waiting =
-      std::ranges::count(waiting_, origin.apid(), [](const Waiting& each) { return each.origin.apid(); });
-  const std::size_t under_way = parts_.unanswered.count_of(origin.apid()) + static_cast<std::size_t>(waiting);
+  const std::size_t under_way = parts_.unanswered.count_of(origin.apid()) + waiting_.count_of(origin.apid());
   Window& window = asked_[origin.apid()];
   if (craft_.now - window.begin >= 1s) window = {.begin = craft_.now};
   if (under_way >= Requester::most_open || window.taken == Requester::most_a_second)
@@ -194,30 +190,23 @@ void Telecommands::answer_question(const Incoming& incoming, const pus::Telecomm
 }
 
 void Telecommands::forward_durable() {
-  while (!waiting_.empty() && waiting_.front().number <= craft_.log.durable()) {
-    const Waiting next = std::move(waiting_.front());
-    waiting_.pop_front();
+  while (const auto next = waiting_.take_durable(craft_.log.durable())) {
     // What was permitted before a fence is void after it: it was permitted for another situation (hazard SF4).
-    if (craft_.guard.fences(next.apid) != next.fences) {
-      reject({.packet = next.packet, .origin = next.origin}, next.request, FailureNotice{FailureCode::NotPermittedNow});
+    if (craft_.guard.fences(next->apid) != next->fences) {
+      refuse(*next, FailureCode::NotPermittedNow);
       continue;
     }
-    forward({next.apid, next.origin, next.packet, next.memory, next.request, next.mode_epoch, false, next.releases_stop,
-             next.fences});
+    forward({next->apid, next->origin, next->packet, next->memory, next->request, next->mode_epoch, false,
+             next->releases_stop, next->fences});
   }
 }
 
-std::optional<TimePoint> Telecommands::waiting_since() const {
-  if (waiting_.empty()) return std::nullopt;
-  return waiting_.front().since;
-}
-
 void Telecommands::watch(TimePoint now) {
-  while (!waiting_.empty() && now - waiting_.front().since >= durable_limit) refuse_oldest(FailureCode::QueueFull);
+  while (const auto late = waiting_.take_late(now)) refuse(*late, FailureCode::QueueFull);
 }
 
 void Telecommands::refuse_waiting() {
-  while (!waiting_.empty()) refuse_oldest(FailureCode::NotPermittedNow);
+  while (const auto each = waiting_.take()) refuse(*each, FailureCode::NotPermittedNow);
 }
 
 void Telecommands::outcome_unknown(std::uint16_t apid) {
@@ -225,10 +214,8 @@ void Telecommands::outcome_unknown(std::uint16_t apid) {
     parts_.own.verification().completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});
 }
 
-void Telecommands::refuse_oldest(FailureCode why) {
-  const Waiting oldest = std::move(waiting_.front());
-  waiting_.pop_front();
-  reject({.packet = oldest.packet, .origin = oldest.origin}, oldest.request, FailureNotice{why});
+void Telecommands::refuse(const WaitingForDisk::Telecommand& waited, FailureCode why) {
+  reject({.packet = waited.packet, .origin = waited.origin}, waited.request, FailureNotice{why});
 }
 
 void Telecommands::forward(const Outgoing& outgoing) {

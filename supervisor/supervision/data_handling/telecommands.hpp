@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <expected>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/craft.hpp"
@@ -16,6 +15,7 @@
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
+#include "supervisor/supervision/data_handling/waiting_for_disk.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 
@@ -43,9 +43,6 @@ class Telecommands final : public Watch, public Accounts {
     Traffic& traffic;
     GroundRoute& ground_route;
   };
-  /// A telecommand that is not durable after this time is refused: late execution surprises whoever gave it up.
-  static constexpr Duration durable_limit = std::chrono::seconds{15};
-
   explicit Telecommands(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
   void take(const Incoming& incoming);
@@ -56,7 +53,7 @@ class Telecommands final : public Watch, public Accounts {
   void refuse_waiting() override;
   void outcome_unknown(std::uint16_t apid) override;
   /// Since when the oldest waits for the disk; empty when none does.
-  [[nodiscard]] std::optional<TimePoint> waiting_since() const;
+  [[nodiscard]] std::optional<TimePoint> waiting_since() const { return waiting_.since(); }
 
   /// An essential function of the supervisor that is carried out where it is received, by no cycle and no queue. Whoever
   /// carries it out reports on it.
@@ -65,18 +62,6 @@ class Telecommands final : public Watch, public Accounts {
   }
 
  private:
-  struct Waiting {
-    std::uint64_t number{};
-    std::uint16_t apid{};
-    Origin origin;
-    std::vector<std::byte> packet;
-    MemoryHandle memory;
-    pus::Request request;
-    std::uint32_t mode_epoch{0};
-    TimePoint since{};
-    bool releases_stop{false};
-    std::uint64_t fences{0};
-  };
   /// A permitted telecommand on its way to the addressee.
   struct Outgoing {
     std::uint16_t apid{};
@@ -98,14 +83,14 @@ class Telecommands final : public Watch, public Accounts {
   [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
   void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
   void answer_question(const Incoming& incoming, const pus::TelecommandView& question);
-  void refuse_oldest(pus::FailureCode why);
+  void refuse(const WaitingForDisk::Telecommand& waited, pus::FailureCode why);
   void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
   void forward(const Outgoing& outgoing);
 
   Parts parts_;
   Craft& craft_;
   std::map<std::string, std::function<void(const pus::Request&)>, std::less<>> at_once_;
-  std::deque<Waiting> waiting_;
+  WaitingForDisk waiting_;
   TimePoint report_window_{};
   int reports_in_window_{0};
   struct Window {
