@@ -35,6 +35,7 @@ TimePoint Supervisor::step(TimePoint now) {
   parts_->own.beat(beat);
   for (Member& member : craft.members) member.beat(beat, now);
 
+  parts_->ground_route.begin_step(now);
   for (Member& member : craft.members) parts_->reception.read(member);
   parts_->processes.watch_closed();
   parts_->stop_outcome.follow();

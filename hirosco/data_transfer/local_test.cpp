@@ -27,7 +27,6 @@ class PairEnds {
 
 struct SimulatedFlowTraits {
   using Factory = LocalFlows;
-  static constexpr bool newest_wins = true;
   static constexpr bool knows_its_peer = true;
   static FlowAddress address() { return {Transfer::SharedMemory, "joint1"}; }
 };

@@ -50,15 +50,24 @@ bool Guard::Watched::damaged() const noexcept {
          vital->realtime.load(relaxed) > 1 || !known || !gate;
 }
 
-std::uint32_t Guard::Watched::hang_limit() const noexcept {
-  const descriptor::Subsystem& subsystem = described->subsystem;
-  const bool realtime = vital->realtime.load(std::memory_order_relaxed) != 0;
-  const std::uint32_t limit = realtime ? subsystem.hang.realtime : subsystem.hang.reduced;
-  // A slow cycle stands still between its steps: three of its own periods are granted at least.
+bool Guard::Watched::stands_fenced() const noexcept {
+  constexpr auto relaxed = std::memory_order_relaxed;
+  return !released && permit != nullptr && permit->stop.load(relaxed) != 0 && permit->go.load(relaxed) == 0 &&
+         permit->epoch.load(relaxed) == epoch;
+}
+
+/// A slow cycle stands still between its steps: three of its own periods are granted.
+Duration Guard::Watched::slow_steps() const noexcept {
+  if (vital == nullptr) return {};
   const auto id = static_cast<std::uint8_t>(vital->configuration.load(std::memory_order_relaxed));
-  const auto* configured = subsystem.find_configuration(id);
-  const auto slow = configured != nullptr ? 3 * configured->sampling / observation_period : 0;
-  return std::max(limit, static_cast<std::uint32_t>(slow));
+  const auto* configured = described->subsystem.find_configuration(id);
+  return configured != nullptr ? 3 * configured->sampling : Duration{};
+}
+
+std::uint32_t Guard::Watched::hang_limit() const noexcept {
+  const bool realtime = vital->realtime.load(std::memory_order_relaxed) != 0;
+  const std::uint32_t limit = realtime ? described->subsystem.hang.realtime : described->subsystem.hang.reduced;
+  return std::max(limit, static_cast<std::uint32_t>(slow_steps() / observation_period));
 }
 
 Guard::Watched* Guard::find(std::uint16_t apid) noexcept {
@@ -146,6 +155,8 @@ void Guard::fence(std::uint16_t apid) {
 
 void Guard::fence(Watched& member) noexcept {
   ++member.fences;
+  // Who stands fenced stays so: a further epoch, or a further answer to wait for, would only put off its word that it has stopped.
+  if (member.stands_fenced()) return;
   member.released = false;
   if (PermitPage* page = member.permit) {
     if (member.vital != nullptr && page->stop.load(std::memory_order_relaxed) == 0)
@@ -406,7 +417,8 @@ void Guard::tell_devices(Watched& member, TimePoint now) noexcept {
 Duration Guard::stop_limit(const Watched& member) const noexcept {
   Duration longest{};
   for (const Device& device : member.devices) longest = std::max(longest, device.stop_within);
-  return longest + answer_limit;
+  // Its own word comes with its cycle.
+  return std::max(longest, member.slow_steps()) + answer_limit;
 }
 
 bool Guard::has_stopped(const Watched& member) const noexcept {

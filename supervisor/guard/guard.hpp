@@ -145,6 +145,8 @@ class Guard {
     [[nodiscard]] std::uint16_t apid() const noexcept { return described->subsystem.id; }
     [[nodiscard]] std::optional<State> state() const noexcept;
     [[nodiscard]] bool damaged() const noexcept;
+    [[nodiscard]] bool stands_fenced() const noexcept;
+    [[nodiscard]] Duration slow_steps() const noexcept;
     [[nodiscard]] std::uint32_t hang_limit() const noexcept;
   };
   [[nodiscard]] Watched* find(std::uint16_t apid) noexcept;

@@ -393,5 +393,52 @@ TEST_F(GuardTest, ASupervisorThatStandsStillStopsEverythingThatMoves) {
   EXPECT_THAT(kinds(0), ElementsAre(Kind::SupervisorStill));
 }
 
+TEST_F(GuardTest, AFloodOfStopsEndsNobodyWhoStopsAndConfirmsEach) {
+  cycling(arm);
+  cycling(hand);
+  for (const std::uint16_t apid : {arm, hand}) ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  run(50ms);
+  // A stop with each step of the supervisor: each member sees the epoch of a step before, as its cycle comes later.
+  std::vector<std::uint64_t> stops;
+  looks = false;
+  const auto epoch = guard.highest_epoch();
+  for (int i = 0; i < 600; ++i) {
+    for (const std::uint16_t apid : {arm, hand}) {
+      lives[apid].vital->seen_epoch = lives[apid].permit->epoch.load();
+      lives[apid].vital->inhibited = guard.fenced(apid) ? 1 : 0;
+    }
+    for (int flood = 0; flood < 5; ++flood) stops.push_back(guard.stop_all());
+    run(Guard::period);
+  }
+  looks = true;
+  run(500ms);
+  for (const std::uint16_t apid : {arm, hand}) EXPECT_FALSE(lives[apid].process->killed) << apid;
+  for (const auto stop : stops) {
+    const auto outcome = guard.stop_outcome(stop);
+    ASSERT_TRUE(outcome);
+    for (const StopAnswer& answer : *outcome) EXPECT_TRUE(answer.stopped) << answer.name;
+  }
+  EXPECT_LE(guard.highest_epoch(), epoch + 2) << "a flood uses up no epochs";
+}
+
+TEST_F(GuardTest, AStopGrantsASlowCycleItsOwnStepsBeforeItsMemberIsEnded) {
+  descriptor::Configuration slow;
+  slow.id = 2;
+  slow.sampling = 1s;
+  mission.subsystems[1].subsystem.configurations = {slow};
+  lives[hand].vital->configuration = 2;
+  cycling(hand);
+  ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  run(20ms);
+  const auto stop = guard.stop_all();
+  run(1s, {});
+  EXPECT_FALSE(guard.stop_outcome(stop));
+  EXPECT_FALSE(lives[hand].process->killed);
+  lives[hand].vital->inhibited = 1;
+  run(20ms, {hand});
+  EXPECT_FALSE(lives[hand].process->killed);
+  EXPECT_TRUE(guard.stop_outcome(stop));
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -8,7 +8,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <new>
 #include <string>
@@ -38,14 +40,19 @@ class LinuxGrip final : public ProcessGrip {
   void take_realtime() noexcept override {
     if (!runs()) return;
     std::error_code failed;
+    bool refused = false;
     const auto tasks = std::filesystem::path{"/proc"} / std::to_string(process_.pid()) / "task";
     for (const auto& task : std::filesystem::directory_iterator{tasks, failed}) {
       int thread = 0;
       const std::string name = task.path().filename();
       std::from_chars(name.data(), name.data() + name.size(), thread);
       const sched_param ordinary{};
-      if (thread > 0) static_cast<void>(::sched_setscheduler(thread, SCHED_OTHER, &ordinary));
+      // What the thread has of this flag an ordinary user may not take away.
+      const int kept = std::max(::sched_getscheduler(thread), 0) & SCHED_RESET_ON_FORK;
+      if (thread > 0 && ::sched_setscheduler(thread, SCHED_OTHER | kept, &ordinary) != 0 && errno != ESRCH)
+        refused = true;
     }
+    if (refused) kill();  // or the others would not have the processor until its grace is over
   }
   Duration processor_time() noexcept override {
     timespec time{};
@@ -60,13 +67,6 @@ class LinuxGrip final : public ProcessGrip {
   clockid_t clock_{};
 };
 
-[[nodiscard]] std::shared_ptr<ProcessGrip> grip_of(const Process& process) {
-  FileDescriptor handle{::fcntl(process.handle().get(), F_DUPFD_CLOEXEC, 0)};
-  if (!handle) return nullptr;
-  auto second = Process::adopt(process.pid(), std::move(handle));
-  return second ? std::make_shared<LinuxGrip>(std::move(*second)) : nullptr;
-}
-
 /// A page in memory of its own, constructed in place.
 template <class Page>
 [[nodiscard]] Result<std::pair<MemoryHandle, Mapping>> make_page(SealedMemory& memory, const char* name) {
@@ -77,6 +77,13 @@ template <class Page>
 }
 
 }  // namespace
+
+Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process) {
+  FileDescriptor handle{::fcntl(process.handle().get(), F_DUPFD_CLOEXEC, 0)};
+  if (!handle) return fail(ErrorCode::SystemFailure, "hold of a process", errno);
+  HIROSCO_TRY_LET(Process second, Process::adopt(process.pid(), std::move(handle)));
+  return std::make_shared<LinuxGrip>(std::move(second));
+}
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
   const auto program = find_program(subsystem.executable);
@@ -105,13 +112,19 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   const auto errors = errors_.open(subsystem.subsystem.name);
   if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
   HIROSCO_TRY_LET(Process process, Process::spawn(start));
+  auto grip = grip_of(process);
+  if (!grip) {
+    // One that nobody could end is not let go at all.
+    static_cast<void>(process.send_signal(SIGKILL));
+    return fail(grip.error());
+  }
   LaunchedSubsystem launched;
   launched.vital = std::move(vital.second);
   launched.permit = std::move(permit.second);
   launched.port = std::make_unique<LocalMemberPort>(std::make_unique<SocketChannel>(std::move(ends.first)),
                                                     launched.vital, launched.permit);
   launched.process = next_++;
-  launched.grip = grip_of(process);
+  launched.grip = std::move(*grip);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
   if (!memory_use_[0]) memory_use_[0] = open_statm("self");
   processes_.emplace(launched.process, std::move(process));

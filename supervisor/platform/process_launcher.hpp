@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
@@ -12,6 +13,9 @@
 #include "supervisor/platform/launcher.hpp"
 
 namespace hirosco::supervisor {
+
+/// What can be done to it whatever it does, kept beside whoever else holds it. SystemFailure: no descriptor is left.
+[[nodiscard]] Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process);
 
 /// Starts each subsystem as a process of its own that inherits its end of the control channel and its two pages; who is
 /// who is proven by the inherited socket (decision 2).  Thread: the supervisor's.

@@ -25,6 +25,7 @@ class Restarts {
     Duration pause{};
   };
   static constexpr Duration longest_pause = std::chrono::seconds{10};
+  static constexpr Duration shortest_retry = std::chrono::milliseconds{100};
 
   /// False: the limit is reached, it stays down.
   bool plan(std::uint16_t apid, const Rule& rule, TimePoint now, AtLimit at_limit = AtLimit::StaysDown) {
@@ -36,7 +37,14 @@ class Restarts {
     pause = std::min(pause, std::max(longest_pause, rule.pause));
     before.push_back(now);
     due_[apid] = now + pause;
+    pauses_[apid] = pause;
     return true;
+  }
+  /// The start itself failed, which is no death: it is tried again as long as the flight lasts, after a pause that doubles.
+  void again(std::uint16_t apid, TimePoint now) {
+    Duration& pause = pauses_[apid];
+    pause = std::clamp(2 * pause, shortest_retry, longest_pause);
+    due_[apid] = now + pause;
   }
   /// One that is due now, and no longer planned.
   [[nodiscard]] std::optional<std::uint16_t> take_due(TimePoint now) {
@@ -53,6 +61,7 @@ class Restarts {
  private:
   std::map<std::uint16_t, std::vector<TimePoint>> history_;
   std::map<std::uint16_t, TimePoint> due_;
+  std::map<std::uint16_t, Duration> pauses_;  ///< before the newest start
 };
 
 }  // namespace hirosco::supervisor

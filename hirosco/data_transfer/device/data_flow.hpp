@@ -24,7 +24,8 @@ struct Received {
 };
 
 /// Any means of communication with a device (paper 4.1): whole frames, both ways, never blocking.
-/// Realtime: send and receive are bounded (at most one system call). Thread: the one user.
+/// Realtime: bounded; send() at most one system call, receive() one for each frame that waits, of so many at most.
+/// Thread: the one user.
 class DataFlow {
  public:
   virtual ~DataFlow() = default;

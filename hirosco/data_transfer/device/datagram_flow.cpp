@@ -21,6 +21,8 @@
 namespace hirosco {
 namespace {
 
+constexpr int most_at_once = 16;
+
 struct Address {
   sockaddr_storage storage{};
   socklen_t octets{0};
@@ -61,7 +63,20 @@ class DatagramFlow final : public DataFlow {
     return fail(ErrorCode::SystemFailure, "send frame", errno);
   }
 
+  /// Older frames are let go: whoever paused for a while would else control on what was, for ever.
   [[nodiscard]] Result<Received> do_receive(MutableOctets buffer) noexcept override {
+    Received newest;
+    for (int frames = 0; frames < most_at_once; ++frames) {
+      const auto next = receive_one(buffer);
+      const bool overwritten = !next && next.error().code == ErrorCode::Malformed;
+      if (!next && (newest.flow == Flow::None || overwritten)) return next;
+      if (!next || next->flow == Flow::None) break;
+      newest = *next;
+    }
+    return newest;
+  }
+
+  [[nodiscard]] Result<Received> receive_one(MutableOctets buffer) noexcept {
     Address from;
     from.octets = sizeof from.storage;
     const ssize_t octets = ::recvfrom(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT | MSG_TRUNC,

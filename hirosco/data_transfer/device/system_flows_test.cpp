@@ -44,19 +44,16 @@ std::string free_port() {
 
 struct SharedMemoryTraits {
   using Factory = SystemFlowFactory;
-  static constexpr bool newest_wins = true;
   static constexpr bool knows_its_peer = true;
   static FlowAddress address() { return {Transfer::SharedMemory, unique_name()}; }
 };
 struct UnixTraits {
   using Factory = SystemFlowFactory;
-  static constexpr bool newest_wins = false;
   static constexpr bool knows_its_peer = false;
   static FlowAddress address() { return {Transfer::Unix, "/tmp/hirosco-" + unique_name()}; }
 };
 struct UdpTraits {
   using Factory = SystemFlowFactory;
-  static constexpr bool newest_wins = false;
   static constexpr bool knows_its_peer = false;
   static FlowAddress address() { return {Transfer::Udp, "127.0.0.1:" + free_port()}; }
 };

@@ -29,6 +29,13 @@ void GroundRoute::keep(Octets packet, Kind kind) {
   }
 }
 
+void GroundRoute::begin_step(TimePoint now) noexcept {
+  if (reports_.size() < limits_.busy) next_breath_ = now + limits_.breath;
+  if (now < next_breath_) return;
+  breath_ = now;
+  next_breath_ = now + limits_.breath;
+}
+
 void GroundRoute::flush(Channel& link, TimePoint now) {
   if (!waiting()) moved_ = now;
   std::array<Message, together> messages;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,8 @@ class GroundRoute {
     /// A link that has taken nothing for this long is not waited for with telecommands: it may itself wait for its
     /// own telemetry to be read.
     Duration patience{100ms};
+    /// While many wait, whoever brings them, the telecommands of one step are read this often: SAFE_ALL may be among them.
+    Duration breath{20ms};
   };
   struct Lost {
     std::uint32_t housekeeping{0};
@@ -44,6 +47,8 @@ class GroundRoute {
   }
   /// Takes a packet behind those that wait. It is sent with them: by flush(), or when enough are together.
   void send(Channel& link, Octets packet, Kind kind, TimePoint now);
+  /// Before telecommands are read.
+  void begin_step(TimePoint now) noexcept;
   /// Sends what waits, as much as the link takes.
   void flush(Channel& link, TimePoint now);
   /// Nobody is there: what waits is in the log only, and counted as lost.
@@ -52,7 +57,7 @@ class GroundRoute {
   [[nodiscard]] bool waiting() const noexcept { return !reports_.empty() || !housekeeping_.empty(); }
   /// Whether a telecommand of the ground may be read now.
   [[nodiscard]] bool takes_telecommands(TimePoint now) const noexcept {
-    return reports_.size() < limits_.busy || now - moved_ >= limits_.patience;
+    return reports_.size() < limits_.busy || now - moved_ >= limits_.patience || now == breath_;
   }
   [[nodiscard]] const Lost& lost() const noexcept { return lost_; }
 
@@ -71,6 +76,8 @@ class GroundRoute {
   std::deque<Packet> housekeeping_;
   std::size_t reports_octets_{0};
   std::uint64_t order_{0};
+  std::optional<TimePoint> breath_;  ///< the step that reads telecommands although many wait
+  TimePoint next_breath_{};
   TimePoint moved_{};  ///< when the link took something last, or had nothing to take
   Lost lost_{};
 };

@@ -91,5 +91,20 @@ TEST_F(GroundRouteTest, CountsEachReportThatALinkThatIsStuckCannotBeKept) {
   EXPECT_THAT(read(), IsEmpty());
 }
 
+TEST_F(GroundRouteTest, ReadsTheTelecommandsOfAStepNowAndThenWhileReportsWaitWhoeverBringsThem) {
+  TimePoint now{1s};
+  int steps_that_read = 0;
+  // The link takes one report a step, somebody on board brings two.
+  for (int step = 0; step < 1000; ++step, now += 1ms) {
+    route_.begin_step(now);
+    if (step > 10 && route_.takes_telecommands(now)) ++steps_that_read;
+    for (int i = 0; i < 2; ++i) send(i, Kind::Report, now);
+    read(1);
+    flush(now);
+  }
+  EXPECT_GE(steps_that_read, 45);
+  EXPECT_LE(steps_that_read, 55) << "each would bring more";
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -58,11 +58,13 @@ void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_
   telecommands_.take({.packet = *packet, .origin = Origin::supervisor(), .memory = memory});
 }
 
-void OwnTelecommands::hear(std::uint16_t, const pus::TelemetryView& report) {
+void OwnTelecommands::hear(std::uint16_t from, const pus::TelemetryView& report) {
   if (report.service() != 1 || report.destination() != supervisor_apid) return;
   OctetReader reader{report.source_data()};
   const auto found = sent_.find(reader.get<std::uint32_t>());
   if (found == sent_.end() || !reader.good()) return;
+  // Its end is told by whom it was for, or by the supervisor that did not let it go there.
+  if (from != found->second.apid && from != supervisor_apid) return;
   const bool failure = report.subtype() % 2 == 0;
   const bool completed = report.subtype() == 7;
   if (!failure && !completed) return;

@@ -71,5 +71,14 @@ TEST_F(OwnTelecommandsTest, AFunctionThatNobodyHasFailsAtOnce) {
   EXPECT_THAT(ends, ElementsAre("unknown function"));
 }
 
+TEST_F(OwnTelecommandsTest, OnlyWhoWasCommandedOrTheSupervisorTellsItsEnd) {
+  const auto request = send();
+  verify(hand, request, 7);
+  verify(hand, request, 8, pus::FailureCode::WrongState);
+  EXPECT_THAT(ends, IsEmpty()) << "HAND says that ARM has done it";
+  verify(arm, request, 7);
+  EXPECT_THAT(ends, ElementsAre("done"));
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -46,7 +46,7 @@ void Telecommands::take(const Incoming& incoming) {
   parts_.power.observe();
   auto decision = judge(*telecommand, incoming.origin);
   if (decision)
-    if (const auto flood = refuse_flood(*telecommand, incoming.origin)) decision = std::unexpected{*flood};
+    if (const auto flood = refuse_flood(*telecommand, incoming.origin, *decision)) decision = std::unexpected{*flood};
   if (!decision) {
     copy_to_ground();
     if (decision.error().code() == FailureCode::PowerShort) parts_.power.tell_shortage(apid, decision.error());
@@ -118,9 +118,11 @@ std::expected<Permitted, FailureNotice> Telecommands::judge(const pus::Telecomma
   if (decision && !decision->essential && origin.is_subsystem() && !is_sound(origin.apid()))
     return std::unexpected{FailureNotice{FailureCode::WrongState}};
   if (!decision || !decision->releases_stop) return decision;
-  // What a recovery has stopped is not released by a command that crosses it.
+  // On the way down nobody begins to move any more.
+  if (craft_.shutting_down) return std::unexpected{FailureNotice{FailureCode::NotPermittedNow}};
+  // What a recovery has stopped is not released by a command that crosses it, nor who cannot hear it.
   if (const Member* addressee = std::as_const(craft_).member(telecommand.apid());
-      addressee != nullptr && addressee->recovering)
+      addressee != nullptr && (addressee->recovering || addressee->closed_at))
     return std::unexpected{FailureNotice{FailureCode::WrongState}};
   return decision;
 }
@@ -134,15 +136,18 @@ bool Telecommands::is_sound(std::uint16_t apid) const {
 }
 
 /// Stopping the craft is no request of another one, and never too much.
-std::optional<FailureNotice> Telecommands::refuse_flood(const pus::TelecommandView& telecommand, const Origin& origin) {
+std::optional<FailureNotice> Telecommands::refuse_flood(const pus::TelecommandView& telecommand, const Origin& origin,
+                                                        const Permitted& permitted) {
   if (!origin.is_subsystem() || telecommand.apid() == supervisor_apid) return std::nullopt;
   // What nobody waits for would not be known to be under way.
   if ((telecommand.ack() & pus::ack_completion) == 0) return FailureNotice{FailureCode::IllegalField};
-  const std::size_t under_way = parts_.unanswered.count_of(origin.apid()) + waiting_.count_of(origin.apid());
+  const std::size_t under_way =
+      parts_.unanswered.count_of(origin.apid(), craft_.now) + waiting_.count_of(origin.apid());
   Window& window = asked_[origin.apid()];
   if (craft_.now - window.begin >= 1s) window = {.begin = craft_.now};
-  if (under_way >= Requester::most_open || window.taken == Requester::most_a_second)
-    return FailureNotice{FailureCode::QueueFull};
+  // What protects does not wait for the end of others.
+  const bool too_many = under_way >= Requester::most_open && !permitted.essential;
+  if (too_many || window.taken == Requester::most_a_second) return FailureNotice{FailureCode::QueueFull};
   ++window.taken;
   return std::nullopt;
 }
@@ -232,11 +237,13 @@ void Telecommands::forward(const Outgoing& outgoing) {
   const Message message{.kind = MessageKind::Packet, .mode_epoch = mode_epoch, .packet = packet, .memory = memory};
   const bool sent = channel != nullptr && channel->send(message).has_value();
   if (!sent) {
+    // The permission was for this one: an older one that stands unread must not find it (hazard SF4).
+    if (releases_stop && !to_itself) craft_.guard.fence(apid);
     const auto code = channel == nullptr ? FailureCode::UnknownApid : FailureCode::QueueFull;
     return reject({.packet = packet, .origin = origin}, request, FailureNotice{code});
   }
   if (const auto telecommand = pus::TelecommandView::parse(packet); !to_itself && telecommand)
-    parts_.unanswered.forwarded(apid, *telecommand);
+    parts_.unanswered.forwarded(apid, *telecommand, craft_.now);
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandForwarded,
                                        .source = supervisor_apid,
                                        .peer = apid,

@@ -79,7 +79,7 @@ class Telecommands final : public Watch, public Accounts {
   [[nodiscard]] bool is_sound(std::uint16_t apid) const;
   /// A subsystem that asks more than it may at once: the others' telecommands have their place.
   [[nodiscard]] std::optional<pus::FailureNotice> refuse_flood(const pus::TelecommandView& telecommand,
-                                                               const Origin& origin);
+                                                               const Origin& origin, const Permitted& permitted);
   [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
   void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
   void answer_question(const Incoming& incoming, const pus::TelecommandView& question);

@@ -144,5 +144,92 @@ TEST_F(TelecommandsTest, WhoIsNotOnBoardCannotBeAddressed) {
   EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::UnknownApid)));
 }
 
+/// A telecommand that lets ARM move, and what stands between.
+struct ReleaseTest : TelecommandsTest {
+  const std::vector<std::byte> go = telecommand(arm, 8, 1, call_data("SET_STATE", static_cast<int>(Operational)));
+
+  void SetUp() override {
+    TelecommandsTest::SetUp();
+    for (const auto& link : craft.mission.links) parts.graph.set_up(link.id, true);
+    set(arm, SafeOperational, 2);
+  }
+  [[nodiscard]] bool may_move() {
+    const PermitPage& page = *played[arm].permit;
+    return page.permits(page.epoch.load());
+  }
+};
+
+TEST_F(ReleaseTest, OneThatCouldNotBeSentLeavesNoPermissionToAnOlderOneThatWasNotRead) {
+  take(go);
+  EXPECT_TRUE(may_move());
+  const auto ping = telecommand(arm, 17, 1, {});
+  for (std::size_t i = 1; i < ChannelPair::default_capacity; ++i) take(ping);
+  guard.stop_all();
+  played[arm].vital->cycling = 0;
+  for (int step = 0; step < 2; ++step, wait(10ms)) static_cast<void>(guard.step(clock.now()));
+  EXPECT_FALSE(may_move());
+  EXPECT_THAT(refusals(), IsEmpty());
+  take(go);
+  EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::QueueFull)));
+  EXPECT_FALSE(may_move());
+  EXPECT_TRUE(guard.fenced(arm));
+}
+
+TEST_F(ReleaseTest, WhoClosedItsChannelIsNotLetGo) {
+  played[arm].channel.close_subsystem_end();
+  parts.reception.read(*craft.member(arm));
+  take(go);
+  EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::WrongState)));
+  EXPECT_FALSE(may_move());
+}
+
+TEST_F(ReleaseTest, NothingBeginsToMoveAfterShutdownNeitherWhatWaitedForTheDiskNorWhatComesThen) {
+  hold_disk();
+  take(go);
+  parts.shutdown.request();
+  take(go);
+  let_go();
+  EXPECT_FALSE(may_move());
+  EXPECT_THAT(texts(arm), ::testing::Not(::testing::Contains("SET_STATE 5")));
+  craft.tell("and the refusals are written");
+  EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::NotPermittedNow), words(FailureCode::NotPermittedNow)));
+}
+
+TEST_F(ReleaseTest, ShutdownTakesThePermissionOfWhoActsBeforeItObeys) {
+  take(go);
+  EXPECT_TRUE(may_move());
+  parts.shutdown.request();
+  EXPECT_FALSE(may_move());
+}
+
+TEST_F(TelecommandsTest, WhatProtectsIsNotRefusedForRequestsWhoseEndNobodyTold) {
+  auto& others = craft.mission.subsystems;
+  auto& asking = *std::ranges::find(others, hand, [](const auto& member) { return member.subsystem.id; });
+  descriptor::Commands commands;
+  commands.subsystem = "ARM";
+  commands.apid = arm;
+  commands.functions = {"MOVE_TO", "BRAKE"};
+  asking.subsystem.commands = {commands};
+  std::uint16_t count = 0;
+  const auto ask = [&](std::string_view function) {
+    std::vector<std::byte> octets(pus::max_telecommand_octets);
+    const auto data = call_data(function);
+    const auto packet = pus::write_telecommand(
+        octets,
+        {.apid = arm, .sequence_count = count++, .ack = pus::ack_all, .service = 8, .subtype = 1, .source = hand},
+        data);
+    octets.resize(packet.value().size());
+    take(octets, Origin::subsystem(hand));
+  };
+  for (std::size_t i = 0; i < Requester::most_open; ++i) ask("MOVE_TO");
+  ask("MOVE_TO");
+  EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::QueueFull)));
+  ask("BRAKE");
+  EXPECT_THAT(texts(arm), ::testing::Contains("BRAKE"));
+  wait(Unanswered::patience);
+  ask("MOVE_TO");
+  EXPECT_THAT(texts(arm), ElementsAre("MOVE_TO")) << "HAND has given up the others, and so has the supervisor";
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

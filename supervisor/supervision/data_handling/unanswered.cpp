@@ -15,10 +15,10 @@ namespace {
 }
 }  // namespace
 
-void Unanswered::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand) {
+void Unanswered::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand, TimePoint now) {
   const pus::Request request = pus::request_of(telecommand);
   if ((request.ack & (pus::ack_acceptance | pus::ack_completion)) == 0 || full()) return;
-  entries_.push_back({.apid = apid, .request = request});
+  entries_.push_back({.apid = apid, .request = request, .since = now});
 }
 
 bool Unanswered::answers(const pus::TelemetryView& report) {
@@ -32,9 +32,9 @@ bool Unanswered::answers(const pus::TelemetryView& report) {
   return (verification && is_end(report.subtype())) || found->reports++ < most_reports;
 }
 
-std::size_t Unanswered::count_of(std::uint16_t source) const {
-  return static_cast<std::size_t>(
-      std::ranges::count(entries_, source, [](const Entry& entry) { return entry.request.source; }));
+std::size_t Unanswered::count_of(std::uint16_t source, TimePoint now) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      entries_, [&](const Entry& entry) { return entry.request.source == source && now - entry.since < patience; }));
 }
 
 void Unanswered::reported(const pus::TelemetryView& report) {

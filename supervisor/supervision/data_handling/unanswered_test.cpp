@@ -22,7 +22,7 @@ struct UnansweredTest : ::testing::Test {
     const auto packet = pus::write_telecommand(
         buffer, {.apid = apid, .sequence_count = count, .ack = ack, .service = 17, .subtype = 1, .source = 7}, {});
     const auto telecommand = pus::TelecommandView::parse(*packet).value();
-    unanswered.forwarded(apid, telecommand);
+    unanswered.forwarded(apid, telecommand, TimePoint{});
     return telecommand.request_id();
   }
   void report(std::uint16_t apid, std::uint8_t subtype, std::uint32_t id, std::uint16_t destination = 7) {

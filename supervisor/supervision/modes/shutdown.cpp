@@ -29,6 +29,10 @@ void Shutdown::request() {
   deadline_ = craft_.now + limit;
   craft_.tell("shutdown");
   parts_.commissioning.drop();
+  // Nobody moves on until its service loop has obeyed, and nothing that waited for the disk begins to.
+  for (const Member& member : craft_.members)
+    if (!craft_.is_ground_link(member)) craft_.guard.fence(member.apid());
+  parts_.accounts.refuse_waiting();
   Stage safe, offline;
   for (const Member& member : craft_.members) {
     if (!member.alive() || !member.state() || member.state() == State::Offline) continue;

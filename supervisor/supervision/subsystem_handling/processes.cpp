@@ -29,6 +29,7 @@ void Processes::start_all() {
       craft_.failed = true;
     }
     launch(member);
+    if (!member.alive()) craft_.failed = true;
     for (const auto device : descriptor::actuators_without_enable(member.descriptor()))
       craft_.tell(name + "'s " + std::string{device} + " has no second inhibit: that it has stopped is known from " +
                       name + " only",
@@ -42,7 +43,6 @@ void Processes::launch(Member& member) {
   auto launched = craft_.launcher.launch(member.described());
   if (!launched) {
     craft_.tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
-    craft_.failed = true;
     return;
   }
   craft_.guard.adopt(member.apid(), *launched);
@@ -57,6 +57,7 @@ void Processes::watch(TimePoint now) {
     Member* subject = craft_.member(*apid);
     if (subject == nullptr || subject->alive() || craft_.shutting_down) continue;
     launch(*subject);
+    if (!subject->alive()) parts_.restarts.again(*apid, now);
     if (subject->alive() && craft_.is_ground_link(*subject)) parts_.ground_link.restore(*subject);
   }
 }

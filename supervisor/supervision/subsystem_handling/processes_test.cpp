@@ -12,6 +12,11 @@ using ::testing::ElementsAre;
 using enum descriptor::State;
 
 struct ProcessesTest : PartsTest {
+  int starts_that_fail{0};  ///< from now on
+  [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override {
+    if (starts_that_fail-- > 0) return fail(ErrorCode::SystemFailure, "new process", 11);
+    return PartsTest::launch(subsystem);
+  }
   void dies(std::uint16_t apid) {
     ends[played[apid].process] = {.by_signal = true, .value = 9};
     parts.processes.watch(clock.now());
@@ -70,6 +75,33 @@ TEST_F(ProcessesTest, OneThatIsDueIsStartedAgainButNotWhileTheFlightEnds) {
   wait(200ms);
   parts.processes.watch(clock.now());
   EXPECT_TRUE(craft.member(hand)->alive());
+}
+
+TEST_F(ProcessesTest, AStartThatFailsIsTriedAgainWithAPauseThatDoubles) {
+  start_all(Operational);
+  for (const std::uint16_t apid : {hand, camera}) {
+    dies(apid);
+    ASSERT_TRUE(parts.restarts.plan(apid, {.limit = 1, .within = 600s, .pause = 100ms}, clock.now()));
+    starts_that_fail = 3;
+    // Tried after 100, 200, 400 and 800 ms.
+    for (const Duration pause : {100ms, 200ms, 400ms, 800ms}) {
+      EXPECT_FALSE(craft.member(apid)->alive());
+      wait(pause - 1ms);
+      parts.processes.watch(clock.now());
+      EXPECT_FALSE(craft.member(apid)->alive());
+      wait(1ms);
+      parts.processes.watch(clock.now());
+    }
+    EXPECT_TRUE(craft.member(apid)->alive()) << craft.name_of(apid);
+  }
+  EXPECT_TRUE(was_told("cannot start HAND: new process"));
+  EXPECT_FALSE(craft.failed);
+}
+
+TEST_F(ProcessesTest, AFlightWhoseFirstStartsFailIsNotOrderly) {
+  starts_that_fail = 1;
+  parts.processes.start_all();
+  EXPECT_TRUE(craft.failed);
 }
 
 }  // namespace

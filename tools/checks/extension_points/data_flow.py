@@ -55,7 +55,11 @@ class MessageQueueFlow final : public DataFlow {
   }
   Result<Received> do_receive(MutableOctets buffer) noexcept override {
     std::array<char, max_frame_octets> frame;
-    const auto octets = ::mq_receive(queue_, frame.data(), frame.size(), nullptr);
+    ssize_t octets = -1;
+    for (ssize_t next = 0; next >= 0;) {
+      next = ::mq_receive(queue_, frame.data(), frame.size(), nullptr);
+      if (next >= 0) octets = next;
+    }
     if (octets < 0) return Received{};
     if (static_cast<std::size_t>(octets) > buffer.size())
       return fail(ErrorCode::Malformed, "frame is longer than expected", octets);
@@ -105,7 +109,6 @@ namespace {
 
 struct MessageQueueTraits {
   using Factory = SystemFlowFactory;
-  static constexpr bool newest_wins = false;
   static constexpr bool knows_its_peer = false;
   static FlowAddress address() {
     static int number = 0;
