@@ -22,6 +22,7 @@ constexpr std::size_t stack_octets = std::size_t{256} << 10;
 
 constexpr std::size_t most_clients = 8;
 constexpr Duration patience = std::chrono::seconds{1};
+constexpr Duration knock_pause = std::chrono::milliseconds{1};
 
 [[nodiscard]] std::string line_of(const StopAnswer& answer) {
   if (!answer.stopped) return answer.name + " did not confirm that it stopped\n";
@@ -84,7 +85,8 @@ void GuardShell::run() {
     if (!ready) continue;
     bool asked = false;
     for (const Ready& entry : *ready) {
-      if (entry.descriptor == listener_.get()) welcome(clock_.now());
+      // No descriptor is left for whoever knocks: it goes on knocking, and the guard must not keep the processor for that.
+      if (entry.descriptor == listener_.get() && !welcome(clock_.now())) sleep_until(clock_.now() + knock_pause);
       if (entry.descriptor != signals_.get()) continue;
       signalfd_siginfo info;
       while (::read(signals_.get(), &info, sizeof info) > 0) asked = true;
@@ -93,11 +95,12 @@ void GuardShell::run() {
   }
 }
 
-void GuardShell::welcome(TimePoint now) {
+bool GuardShell::welcome(TimePoint now) {
   FileDescriptor socket{::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
-  if (!socket) return;
+  if (!socket) return errno == EAGAIN;
   if (clients_.size() == most_clients) clients_.erase(clients_.begin());
   clients_.push_back({std::move(socket), now + patience, 0});
+  return true;
 }
 
 void GuardShell::hear(Client& client) {

@@ -39,7 +39,8 @@ class GuardShell {
       : guard_{guard}, clock_{clock}, ending_{std::move(ending)} {}
   [[nodiscard]] Result<> listen(const std::filesystem::path& folder);
   void run();
-  void welcome(TimePoint now);
+  /// False: the system has no descriptor for it.
+  [[nodiscard]] bool welcome(TimePoint now);
   void hear(Client& client);
   void answer_clients(TimePoint now);
 

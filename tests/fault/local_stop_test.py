@@ -2,7 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """`hirosco safe`: everything that moves is stopped from beside the flight, whatever else of it stands still."""
+import os
+import pathlib
+import resource
 import signal
+import threading
 import time
 import unittest
 
@@ -56,6 +60,38 @@ class LocalStop(unittest.TestCase):
             self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
             self.assertIn("its keeper was signalled", done.stderr)
             self.assertEqual(rokviss.wait_until_gone(10.0), {})
+
+    def test_who_knocks_where_no_descriptor_is_left_costs_no_processor_and_is_answered_when_there_is_one(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            pid = rokviss.pid_of("hirosco-supervisor")
+
+            def used_s():
+                words = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+                return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+
+            def used_in(seconds):
+                before = used_s()
+                time.sleep(seconds)
+                return used_s() - before
+
+            answers = []
+            usual_s = used_in(0.5)
+            taken = {int(entry.name) for entry in pathlib.Path(f"/proc/{pid}/fd").iterdir()}
+            first_free = next(number for number in range(len(taken) + 1) if number not in taken)
+            before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
+            resource.prlimit(pid, resource.RLIMIT_NOFILE, (first_free, before[1]))
+            asking = threading.Thread(target=lambda: answers.append(rokviss.hirosco("safe")))
+            asking.start()
+            time.sleep(0.2)
+            knocked_s = used_in(0.5)
+            flight.measure(f"supervisor in half a second: {usual_s:.2f} s of a processor, {knocked_s:.2f} s while somebody knocks")
+            self.assertEqual(answers, [], "nobody can be let in")
+            resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
+            asking.join()
+            self.assertLess(knocked_s, usual_s + 0.2)
+            self.assertEqual(answers[0].returncode, 0, answers[0].stdout + answers[0].stderr)
+            self.nothing_moves(rokviss)
 
     def test_where_nothing_flies_it_says_so(self):
         with flight.Flight() as rokviss:
