@@ -21,6 +21,13 @@ std::string GenericSubsystem::words_of(const Mistake& mistake) const {
          ": error E0405: " + mistake.text;
 }
 
+/// What ground has room for: the reason before the length of a path.
+std::string GenericSubsystem::short_words_of(const Mistake& mistake) const {
+  if (!mistake.at) return mistake.text;
+  return descriptor_.file.filename().string() + ":" + std::to_string(mistake.at->line) + ":" +
+         std::to_string(mistake.at->column) + ": " + mistake.text;
+}
+
 std::vector<Mistake> GenericSubsystem::try_introduction() {
   constexpr int most_rounds = 1'000;
   Result<Step> step = again;
@@ -98,7 +105,7 @@ void GenericSubsystem::check_settings() {
       const auto port = device_ports_.find(device);
       for (const descriptor::Setting& setting : use.settings)
         if (port == device_ports_.end() || !port->second->reads(setting.name))
-          mistake("nobody reads the setting '" + setting.name + "' of device '" + device + "'", setting.at);
+          mistake("nobody reads setting '" + setting.name + "' of '" + device + "'", setting.at);
     }
 }
 

@@ -113,10 +113,9 @@ TEST(AuthorsMistakes, SettingsThatNobodyReadsAreToldWithTheirPlacesBeforeAnyHard
   Rig rig{motor, set_descriptor};
   rig.set_state_now(State::PreOperational);
   EXPECT_EQ(rig.state(), State::Offline);
-  EXPECT_THAT(
-      rig.explanations,
-      ElementsAre(::testing::HasSubstr(":6:39: error E0405: nobody reads the setting 'STIFNESS' of device 'MOTOR'"),
-                  ::testing::HasSubstr(":11:57: error E0405: nobody reads the setting 'DAMPING' of device 'MOTOR'")));
+  EXPECT_THAT(rig.explanations,
+              ElementsAre(::testing::HasSubstr(":6:39: error E0405: nobody reads setting 'STIFNESS' of 'MOTOR'"),
+                          ::testing::HasSubstr(":11:57: error E0405: nobody reads setting 'DAMPING' of 'MOTOR'")));
 }
 
 TEST(AuthorsMistakes, SettingsThatAreNamedAreNone) {
@@ -135,7 +134,7 @@ TEST(AuthorsMistakes, AreFoundWithoutAFlightAndNothingIsKept) {
   for (int again = 0; again < 2; ++again) {
     const auto mistakes = rig.subsystem.try_introduction();
     ASSERT_EQ(mistakes.size(), 1U);
-    EXPECT_EQ(mistakes.front().text, "nobody reads the setting 'STIFNESS' of device 'MOTOR'");
+    EXPECT_EQ(mistakes.front().text, "nobody reads setting 'STIFNESS' of 'MOTOR'");
     EXPECT_EQ(mistakes.front().at, (descriptor::Location{6, 39}));
   }
   EXPECT_EQ(rig.state(), State::Offline);

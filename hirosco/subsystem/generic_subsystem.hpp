@@ -188,6 +188,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void check_introduction();
   void check_settings();
   [[nodiscard]] std::string words_of(const Mistake& mistake) const;
+  [[nodiscard]] std::string short_words_of(const Mistake& mistake) const;
   void forget_introduction();
   void raise_event(std::uint16_t event, Octets auxiliary);
   /// STATE_FAILED and CONFIGURATION_FAILED of `what`.

@@ -111,7 +111,7 @@ Result<Step> GenericSubsystem::initialise_software() {
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
   if (step) check_introduction();
   if (!problems_.empty()) {
-    problems_text_ = words_of(problems_.front());
+    problems_text_ = short_words_of(problems_.front());
     const Error said =
         step ? Error{ErrorCode::Mismatch, "", static_cast<std::int64_t>(problems_.size())} : step.error();
     return fail(said.code, problems_text_.c_str(), said.value);
@@ -191,10 +191,14 @@ void GenericSubsystem::arrive(State state) {
 }
 
 void GenericSubsystem::fail_transition(State at, const Failure& why) {
-  if (platform_.explain) platform_.explain(descriptor_.name + ": " + std::string{to_text(at)} + " failed: " + why.text);
   // Ground hears the first mistake and how many there are; the author each, on a line of its own.
-  for (std::size_t i = 1; i < problems_.size() && at == State::SoftwareInit && platform_.explain; ++i)
-    platform_.explain(descriptor_.name + ": SoftwareInit failed: " + words_of(problems_[i]));
+  const bool by_mistakes = at == State::SoftwareInit && !problems_.empty();
+  const auto explain = [&](const std::string& words) {
+    if (platform_.explain) platform_.explain(descriptor_.name + ": " + std::string{to_text(at)} + " failed: " + words);
+  };
+  if (!by_mistakes) explain(why.text);
+  else
+    for (const Mistake& mistake : problems_) explain(words_of(mistake));
   raise_failure(descriptor::framework_event::state_failed, static_cast<std::uint8_t>(at), why);
   if (way_request_)
     verification_.completion_failed(

@@ -78,7 +78,7 @@ class Check(unittest.TestCase):
         for words in (("check", "--fly", mission), ("simulate", mission, "--for", "2s")):
             code, told = hirosco(*words)
             self.assertNotEqual(code, 0, told)
-            self.assertIn("nobody reads the setting 'GRIP' of device 'JOYSTICK'", told)
+            self.assertIn("nobody reads setting 'GRIP' of 'JOYSTICK'", told)
             self.assertIn(f"joystick.xml:{line}:", told)
 
     def test_what_software_init_will_find_is_told_by_check_fly(self):
