@@ -158,8 +158,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   }
   const bool realtime = realtime_permitted();
   // The log's and the console's threads exist already: they stay ordinary.
-  // A first stop waits for no page of this program to come from a disk.
-  if (realtime) static_cast<void>(lock_memory());
+  if (realtime) keep_code_in_memory();
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
   EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
   const auto first_epoch = epochs.first(clock.onboard());

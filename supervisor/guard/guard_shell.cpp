@@ -3,7 +3,9 @@
 #include "supervisor/guard/guard_shell.hpp"
 
 #include <fmt/format.h>
+#include <link.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -17,7 +19,7 @@
 namespace hirosco::supervisor {
 namespace {
 
-/// Of the guard's thread: all memory is locked.
+/// Of the guard's thread: what it uses of it stays in memory.
 constexpr std::size_t stack_octets = std::size_t{256} << 10;
 
 constexpr std::size_t most_clients = 8;
@@ -31,7 +33,23 @@ constexpr Duration knock_pause = std::chrono::milliseconds{1};
                      answer.asked_device ? ", says the device" : "", answer.killed ? ", its subsystem was ended" : "");
 }
 
+/// The code of a program or library as it is in memory.
+int lock_code(dl_phdr_info* object, std::size_t, void*) {
+  for (int i = 0; i < object->dlpi_phnum; ++i) {
+    const auto& part = object->dlpi_phdr[i];
+    if (part.p_type == PT_LOAD && (part.p_flags & PF_X) != 0)
+      static_cast<void>(::mlock(reinterpret_cast<const void*>(object->dlpi_addr + part.p_vaddr), part.p_memsz));
+  }
+  return 0;
+}
+
 }  // namespace
+
+void keep_code_in_memory() noexcept {
+  // What has been used stays; all else of the heap and of stacks would be memory that nobody needs.
+  static_cast<void>(::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT));
+  ::dl_iterate_phdr(lock_code, nullptr);
+}
 
 Result<std::unique_ptr<GuardShell>> GuardShell::start(Guard& guard, const Clock& clock,
                                                       const std::filesystem::path& folder) {

@@ -15,6 +15,10 @@
 
 namespace hirosco::supervisor {
 
+/// A first stop waits for no page of this program to come from a disk: its code is in memory, and what it has used stays there.
+/// Where the system refuses that, all goes on without.
+void keep_code_in_memory() noexcept;
+
 /// The guard's thread, above every cycle, and its own two ways in, neither of which passes the ground link or the
 /// supervisor's loop: signal SIGUSR1, and the local socket `safe.socket` (SOCK_SEQPACKET; "SAFE" is answered with one line
 /// for everybody who was to stop, and the end).
