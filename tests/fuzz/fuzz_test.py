@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """A fuzz target under libFuzzer, ASan and UBSan: as many inputs as it is given, from its corpus on, break nothing; and each
-planted defect is found, so that the target can see. fuzz_test.py arguments BUILD-FOLDER [--runs N]. Exit code 77: there is no clang
-with libFuzzer."""
+planted defect is found, so that the target can see. fuzz_test.py arguments BUILD-FOLDER [--runs N]. Skipped
+where there is no clang with libFuzzer (tools/skip_reason)."""
 import argparse, pathlib, re, shutil, subprocess, sys, tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -61,8 +61,7 @@ def main():
     given = parser.parse_args()
     name = compiler()
     if name is None:
-        print("skipped: no clang with libFuzzer")
-        return 77
+        return subprocess.run([ROOT / "tools/skip_reason", "no-libfuzzer"], check=False).returncode
     files, plants = TARGETS[given.target]
     harness = HERE / f"{given.target}_fuzz.cpp"
     folder = given.build / "fuzz" / given.target
