@@ -11,13 +11,48 @@ LinkGraph::LinkGraph(const descriptor::Mission& mission) {
     const auto* from = mission.find_subsystem(link.from);
     const auto* to = mission.find_subsystem(link.to);
     if (from == nullptr || to == nullptr) continue;  // refused when the mission was read
-    edges_.push_back({link.id, from->subsystem.id, to->subsystem.id, link.requires_, false});
+    edges_.push_back(
+        {.link = link.id, .from = from->subsystem.id, .to = to->subsystem.id, .required_set = link.requires_});
   }
 }
 
+LinkGraph::Edge* LinkGraph::find(std::uint8_t link) noexcept {
+  const auto found = std::ranges::find(edges_, link, &Edge::link);
+  return found != edges_.end() ? &*found : nullptr;
+}
+
 void LinkGraph::set_up(std::uint8_t link, bool up) {
-  for (Edge& edge : edges_)
-    if (edge.link == link) edge.up = up;
+  Edge* edge = find(link);
+  if (edge == nullptr) return;
+  edge->up = up;
+  if (up) edge->from_holds = edge->to_holds = true;
+}
+
+void LinkGraph::let_go(std::uint8_t link, std::uint16_t apid) {
+  Edge* edge = find(link);
+  if (edge == nullptr) return;
+  edge->up = false;
+  if (edge->from == apid) edge->from_holds = false;
+  if (edge->to == apid) edge->to_holds = false;
+}
+
+void LinkGraph::forget(std::uint8_t link) {
+  if (Edge* edge = find(link)) edge->up = edge->from_holds = edge->to_holds = false;
+}
+
+void LinkGraph::forget_all_of(std::uint16_t apid) {
+  for (const Edge& edge : edges_)
+    if (edge.from == apid || edge.to == apid) forget(edge.link);
+}
+
+std::vector<LinkGraph::HalfHeld> LinkGraph::half_held() const {
+  std::vector<HalfHeld> found;
+  for (const Edge& edge : edges_)
+    if (edge.from_holds != edge.to_holds)
+      found.push_back({.link = edge.link,
+                       .gone = edge.from_holds ? edge.to : edge.from,
+                       .holder = edge.from_holds ? edge.from : edge.to});
+  return found;
 }
 
 bool LinkGraph::is_up(std::uint8_t link) const noexcept {
@@ -32,7 +67,7 @@ std::vector<std::uint16_t> LinkGraph::network_of(std::uint16_t apid) const {
   std::vector<std::uint16_t> members{apid};
   for (std::size_t next = 0; next < members.size(); ++next) {
     for (const Edge& edge : edges_) {
-      if (!edge.up) continue;
+      if (!edge.joins()) continue;
       const std::uint16_t other = edge.from == members[next] ? edge.to : edge.to == members[next] ? edge.from : apid;
       if (std::ranges::find(members, other) == members.end()) members.push_back(other);
     }

@@ -9,19 +9,33 @@
 
 #include "hirosco/descriptor/mission.hpp"
 
-/// The graph of real-time links (paper 4.3): which are up, which networks they form.
+/// The graph of real-time links (paper 4.3): which are up, which networks they form. A link is up for use until one end lets go of
+/// it, and joins its ends until both have: the word of one alone takes nobody out of the reach of a fence (docs/adr/0068).
 namespace hirosco::supervisor {
 
 class LinkGraph {
  public:
   explicit LinkGraph(const descriptor::Mission& mission);
 
+  /// Up: both ends hold it. Down: of no use any more, and held by whoever has not let go of it.
   void set_up(std::uint8_t link, bool up);
+  /// One end says that it has.
+  void let_go(std::uint8_t link, std::uint16_t apid);
+  /// Nobody holds it any more.
+  void forget(std::uint8_t link);
+  /// Who is gone holds nothing, nor can anybody be held by it.
+  void forget_all_of(std::uint16_t apid);
+  struct HalfHeld {
+    std::uint8_t link{};
+    std::uint16_t gone{};  ///< the end that says that it has let go
+    std::uint16_t holder{};  ///< the one that does not
+  };
+  [[nodiscard]] std::vector<HalfHeld> half_held() const;
   [[nodiscard]] bool is_up(std::uint8_t link) const noexcept;
   [[nodiscard]] std::size_t up_count() const noexcept;
   [[nodiscard]] std::size_t defined_count() const noexcept { return edges_.size(); }
-  /// The real-time network of a subsystem: all that are transitively connected to it by links that are up, itself
-  /// included, in ascending order.
+  /// The real-time network of a subsystem: all that are transitively connected to it by links that are up or that one end
+  /// still holds, itself included, in ascending order.
   [[nodiscard]] std::vector<std::uint16_t> network_of(std::uint16_t apid) const;
   /// Links that are up with this subsystem at either end.
   [[nodiscard]] std::vector<std::uint8_t> links_of(std::uint16_t apid) const;
@@ -38,7 +52,11 @@ class LinkGraph {
     std::uint16_t to{};
     std::string_view required_set;
     bool up{false};
+    bool from_holds{false};
+    bool to_holds{false};
+    [[nodiscard]] bool joins() const noexcept { return from_holds || to_holds; }
   };
+  [[nodiscard]] Edge* find(std::uint8_t link) noexcept;
   std::vector<Edge> edges_;
 };
 

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -34,6 +36,7 @@ struct LinkGraphTest : ::testing::Test {
   [[nodiscard]] std::vector<std::uint16_t> network_of(int apid) const {
     return graph.network_of(static_cast<std::uint16_t>(apid));
   }
+  void let_go(std::uint8_t link, int apid) { graph.let_go(link, static_cast<std::uint16_t>(apid)); }
 };
 
 TEST_F(LinkGraphTest, BeginsWithEverythingDownAndEverybodyAlone) {
@@ -51,15 +54,61 @@ TEST_F(LinkGraphTest, ANetworkIsWhateverIsConnectedWhicheverWayTheLinksPoint) {
   for (const int member : {14, 15}) EXPECT_THAT(network_of(member), ElementsAre(14, 15));
 }
 
-TEST_F(LinkGraphTest, ALinkThatGoesDownSplitsItsNetwork) {
+TEST_F(LinkGraphTest, ALinkThatBothEndsLetGoOfSplitsItsNetwork) {
   graph.set_up(1, true);
   graph.set_up(2, true);
   graph.set_up(3, true);
-  graph.set_up(3, false);
+  for (const int end : {12, 13}) let_go(3, end);
   EXPECT_THAT(graph.network_of(13), ElementsAre(13));
   EXPECT_THAT(graph.network_of(11), ElementsAre(11, 12));
-  graph.set_up(1, false);
+  for (const int end : {12, 11}) let_go(1, end);
   EXPECT_THAT(graph.network_of(11), ElementsAre(11, 12));  // the other way still holds them together
+}
+
+TEST_F(LinkGraphTest, TheWordOfOneEndEndsTheUseOfALinkAndNotTheNetworkThatAFenceReaches) {
+  for (const auto& [sayer, holder] : {std::pair{12, 13}, std::pair{13, 12}}) {
+    graph.set_up(3, true);
+    let_go(3, sayer);
+    EXPECT_FALSE(graph.is_up(3));
+    EXPECT_EQ(graph.up_count(), 0u);
+    EXPECT_THAT(graph.links_of(12), IsEmpty());
+    for (const int member : {12, 13}) EXPECT_THAT(network_of(member), ElementsAre(12, 13));
+    const auto half = graph.half_held();
+    ASSERT_EQ(half.size(), 1u);
+    EXPECT_EQ(half[0].gone, sayer);
+    EXPECT_EQ(half[0].holder, holder);
+    graph.let_go(3, 14);
+    let_go(3, sayer);
+    EXPECT_THAT(network_of(12), ElementsAre(12, 13)) << "who is no end of it, or says it twice";
+    let_go(3, holder);
+    for (const int member : {12, 13}) EXPECT_THAT(network_of(member), ElementsAre(member));
+    EXPECT_THAT(graph.half_held(), IsEmpty());
+  }
+}
+
+TEST_F(LinkGraphTest, ALinkOfNoUseIsHeldByBothUntilTheySayOtherwise) {
+  graph.set_up(4, true);
+  graph.set_up(4, false);
+  EXPECT_FALSE(graph.is_up(4));
+  EXPECT_THAT(network_of(14), ElementsAre(14, 15));
+}
+
+TEST_F(LinkGraphTest, WhoIsGoneIsJoinedToNobody) {
+  for (const int link : {1, 3, 4}) graph.set_up(static_cast<std::uint8_t>(link), true);
+  graph.let_go(1, 12);
+  graph.forget_all_of(12);
+  for (const int member : {11, 12, 13}) EXPECT_THAT(network_of(member), ElementsAre(member));
+  EXPECT_THAT(network_of(14), ElementsAre(14, 15));
+}
+
+TEST_F(LinkGraphTest, ALinkThatIsMadeAnewIsHeldByBothAgain) {
+  graph.set_up(3, true);
+  graph.let_go(3, 12);
+  graph.set_up(3, true);
+  graph.let_go(3, 13);
+  EXPECT_THAT(network_of(12), ElementsAre(12, 13));
+  graph.let_go(3, 12);
+  EXPECT_THAT(network_of(12), ElementsAre(12));
 }
 
 TEST_F(LinkGraphTest, LinksOfASubsystemAreThoseAtEitherEndThatAreUp) {

@@ -92,7 +92,9 @@ void LinkHandling::handle(std::uint16_t from, const pus::TelemetryView& report) 
 
 void LinkHandling::detached(std::uint8_t link, std::uint16_t from) {
   const auto found = handshakes_.find(link);
-  if (found == handshakes_.end()) return down(link, "detached by " + std::to_string(from));
+  if (found == handshakes_.end()) down(link, "detached by " + std::to_string(from));
+  graph_.let_go(link, from);
+  if (found == handshakes_.end()) return;
   // Reports of one subsystem come in order: a producer that attached in this handshake and detached since has left it.
   // Before that the report is a late one of the link's earlier life.
   const Handshake& handshake = found->second;
@@ -216,6 +218,7 @@ void LinkHandling::forget(std::uint16_t apid) {
     if (handshake.producer == apid || handshake.consumer == apid) broken.push_back(link);
   for (const std::uint8_t link : broken) give_up(link, "a partner is gone", apid);
   for (const std::uint8_t link : graph_.links_of(apid)) down(link, "subsystem " + std::to_string(apid) + " is gone");
+  graph_.forget_all_of(apid);
 }
 
 void LinkHandling::step(TimePoint now) {

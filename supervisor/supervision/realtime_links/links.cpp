@@ -27,6 +27,22 @@ void Links::hear(std::uint16_t from, const pus::TelemetryView& report) {
   if (report.service() == pus::st128::service_type) handling_.handle(from, report);
 }
 
+/// Whom a fence reaches ends with what it is for: who has left a link by the way of its states is joined to nobody by it, though
+/// the other end holds on to its memory until its own configuration ends, or never says that it has let go.
+void Links::watch(TimePoint now) {
+  handling_.step(now);
+  for (const LinkGraph::HalfHeld& half : graph_.half_held())
+    if (has_left(half.gone, half.link) || has_left(half.holder, half.link)) graph_.forget(half.link);
+}
+
+bool Links::has_left(std::uint16_t apid, std::uint8_t link) const {
+  const Member* end = std::as_const(craft_).member(apid);
+  if (end == nullptr || !end->alive() || end->state() == State::Offline) return true;
+  const auto when_up = configurations_.find({link, apid});
+  const std::uint8_t now = end->configuration();
+  return when_up != configurations_.end() && now != 0 && now != when_up->second;
+}
+
 void Links::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) {
   const auto link = data.empty() ? std::uint8_t{0} : std::to_integer<std::uint8_t>(data[0]);
   desk_.send(apid, pus::st128::service_type, subtype, data, memory, [=, this](bool success, const std::string& why) {
@@ -35,6 +51,9 @@ void Links::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets d
 }
 
 void Links::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {
+  for (const Member& member : craft_.members)
+    if (const auto& name = member.descriptor().name; up && (name == link.from || name == link.to))
+      configurations_[{link.id, member.apid()}] = member.configuration();
   craft_.tell("link " + std::to_string(link.id) + " " + link.from + "." + link.provides + " -> " + link.to +
               (up ? " up: " : " down: ") + text);
 }

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/command_desk.hpp"
@@ -21,6 +23,7 @@ class Links final : public Watch, public Hearer, private LinkOperator {
       : craft_{craft},
         own_{own},
         desk_{desk},
+        graph_{graph},
         handling_{craft.mission, graph, craft.platform.memory, craft.platform.links, *this} {}
 
   /// LINK and UNLINK.
@@ -31,16 +34,21 @@ class Links final : public Watch, public Hearer, private LinkOperator {
   /// A subsystem is gone without reporting: all its links are down.
   void forget(std::uint16_t apid) { handling_.forget(apid); }
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
-  void watch(TimePoint now) override { handling_.step(now); }
+  void watch(TimePoint now) override;
 
  private:
   void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) override;
   void link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) override;
+  /// Whether this end of a link that was up has left it, whatever it says.
+  [[nodiscard]] bool has_left(std::uint16_t apid, std::uint8_t link) const;
 
   Craft& craft_;
   OwnSubsystem& own_;
   CommandDesk& desk_;
+  LinkGraph& graph_;
   LinkHandling handling_;
+  /// In force at an end when its link came up, by link and APID.
+  std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint8_t> configurations_;
 };
 
 }  // namespace hirosco::supervisor

@@ -95,5 +95,85 @@ TEST_F(LinksTest, TheLinksOfWhoIsGoneAreDown) {
   EXPECT_TRUE(was_told("link 2 HAND.HAND_STATE -> ARM down: "));
 }
 
+/// HAND and ARM are joined by link 2, and HAND alone says that it has left.
+struct LinkOfWhichOneEndHasLeft : LinksTest {
+  void SetUp() override {
+    LinksTest::SetUp();
+    bring_up();
+    for (const std::uint16_t apid : {arm, hand}) set(apid, Operational);
+    ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+    says(hand, st128::detached, st128::Role::Producer);
+    ASSERT_FALSE(parts.graph.is_up(2));
+  }
+  void dies(std::uint16_t apid) {
+    ends[played[apid].process] = {.by_signal = true, .value = 9};
+    parts.processes.watch(clock.now());
+    ends.clear();
+  }
+  void look() {
+    wait(10ms);
+    parts.links.watch(clock.now());
+  }
+};
+
+TEST_F(LinkOfWhichOneEndHasLeft, TheDeathOfThatEndFencesTheOneThatHoldsOn) {
+  look();
+  dies(hand);
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_TRUE(was_told("network {ARM, HAND} to ErrorOperational and down"));
+}
+
+TEST_F(LinkOfWhichOneEndHasLeft, TheDeathOfTheOneThatHoldsOnFencesThatEnd) {
+  ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  dies(arm);
+  EXPECT_TRUE(guard.fenced(hand));
+}
+
+TEST_F(LinkOfWhichOneEndHasLeft, OnceBothHaveSaidSoADeathHarmsNobodyElse) {
+  says(arm, st128::detached, st128::Role::Consumer);
+  dies(hand);
+  EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(LinkOfWhichOneEndHasLeft, OnceEitherIsOfflineADeathHarmsNobodyElse) {
+  set(hand, Offline);
+  look();
+  set(hand, Operational);
+  dies(hand);
+  EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(LinkOfWhichOneEndHasLeft, OnceItIsConfiguredForSomethingElseADeathHarmsNobodyElse) {
+  set(hand, PreOperational, 0);
+  look();
+  EXPECT_THAT(parts.graph.network_of(arm), ElementsAre(arm, hand)) << "without a configuration it may come back";
+  set(hand, Operational, 2);
+  look();
+  dies(hand);
+  EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(LinkOfWhichOneEndHasLeft, WhoDiedAndWasStartedAnewIsJoinedToNobody) {
+  dies(hand);
+  ASSERT_TRUE(parts.restarts.plan(hand, {.limit = 1, .within = 60s, .pause = 1ms}, clock.now()));
+  wait(1ms);
+  parts.processes.watch(clock.now());
+  ASSERT_TRUE(craft.member(hand)->alive());
+  EXPECT_THAT(parts.graph.network_of(hand), ElementsAre(hand));
+  EXPECT_THAT(parts.graph.network_of(arm), ElementsAre(arm));
+}
+
+TEST_F(LinkOfWhichOneEndHasLeft, MadeAnewItIsHeldByBothUntilBothHaveSaidSoAgain) {
+  for (const std::uint16_t apid : {arm, hand}) set(apid, PreOperational);
+  own_end.clear();
+  static_cast<void>(texts(arm));
+  bring_up();
+  says(arm, st128::detached, st128::Role::Consumer);
+  look();
+  EXPECT_THAT(parts.graph.network_of(arm), ElementsAre(arm, hand));
+  says(hand, st128::detached, st128::Role::Producer);
+  EXPECT_THAT(parts.graph.network_of(arm), ElementsAre(arm));
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor
