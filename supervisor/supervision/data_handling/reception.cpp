@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "hirosco/descriptor/supervisor_events.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
 namespace hirosco::supervisor {
@@ -50,9 +51,11 @@ void Reception::read(Member& member) {
       if (++member.refused < most_refused) return;
     }
     if (!found && !member.closed_at) {
-      // Whoever can be neither commanded nor heard moves nothing any more, whatever became of the channel.
+      // Whoever can be neither commanded nor heard moves nothing any more, whatever became of the channel; nor do those whom its
+      // death, which comes within a second, would stop.
       member.closed_at = craft_.now;
       craft_.guard.fence(member.apid());
+      parts_.reactions.act_first(member, descriptor::event_of_death, descriptor::Severity::High);
     }
     if (!found || found->flow == Flow::None) return;
     take(member, found->message);

@@ -42,7 +42,7 @@ bool Reactions::take_event(std::uint16_t from, Octets message) {
 
 /// What we tell of a subsystem is answered where it is told: by the plan that names it or us, or the event, as severe as our
 /// descriptor calls it.
-void Reactions::react(Member& origin, std::string_view event, Severity severity) {
+Reactions::Answer Reactions::answer_to(const Member& origin, std::string_view event, Severity severity) const {
   const descriptor::Subsystem& supervisor = craft_.mission.supervisor;
   const bool ours = descriptor::is_about_subsystem(event) && origin.descriptor().find_event(event) == nullptr;
   const auto* declared = ours ? supervisor.find_event(event) : nullptr;
@@ -50,8 +50,17 @@ void Reactions::react(Member& origin, std::string_view event, Severity severity)
   const Reaction reaction =
       choose_reaction(craft_.mission, {origin.descriptor().name, event, severity, craft_.mode->name,
                                        ours ? std::string_view{supervisor.name} : std::string_view{}});
-  if (craft_.shutting_down) return;  // everything is on its way down already
-  const Stage steps = steps_for(origin, reaction, event, {std::string{reaction.plan}, std::string{event}});
+  if (craft_.shutting_down) return {severity, {}};  // everything is on its way down already
+  return {severity, steps_for(origin, reaction, event, {std::string{reaction.plan}, std::string{event}})};
+}
+
+void Reactions::act_first(const Member& origin, std::string_view event, Severity severity) const {
+  for (const ProcedureStep& step : answer_to(origin, event, severity).steps)
+    if (step.kind->act_first != nullptr) step.kind->act_first(step, means_);
+}
+
+void Reactions::react(Member& origin, std::string_view event, Severity told) {
+  const auto [severity, steps] = answer_to(origin, event, told);
   if (steps.empty()) return;
   // One plan at a time for a subsystem; only something worse overrides it.
   if (origin.recovering && *origin.recovering >= severity && !is_loss(event)) return;

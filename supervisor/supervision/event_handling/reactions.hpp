@@ -29,8 +29,15 @@ class Reactions {
   [[nodiscard]] bool take_event(std::uint16_t from, Octets message);
   /// What the mission's plans ask for when this event concerns `origin`.
   void react(Member& origin, std::string_view event, descriptor::Severity severity);
+  /// What they do first of all about this event, fences, where it is as good as certain and its reaction waits for more.
+  void act_first(const Member& origin, std::string_view event, descriptor::Severity severity) const;
 
  private:
+  struct Answer {
+    descriptor::Severity severity{};
+    Stage steps;
+  };
+  [[nodiscard]] Answer answer_to(const Member& origin, std::string_view event, descriptor::Severity severity) const;
   void react_to_own(std::string_view event, descriptor::Severity severity);
   [[nodiscard]] Stage steps_for(const Member& subject, const Reaction& reaction, std::string_view event,
                                 const Occasion& occasion) const;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 
+#include "hirosco/descriptor/supervisor_events.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {
@@ -58,6 +59,33 @@ TEST_F(ProcessesTest, WhoLivesOnWithItsChannelClosedIsFencedAndEndedAfterASecond
   wait(1ms);
   parts.processes.watch_closed();
   EXPECT_THAT(killed, ElementsAre(played[arm].process));
+}
+
+TEST_F(ProcessesTest, WithWhoClosesItsChannelItsNetworkIsFencedAtOnce) {
+  start_all(Operational);
+  parts.graph.set_up(2, true);
+  for (const std::uint16_t apid : {arm, hand}) ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  played[hand].channel.close_subsystem_end();
+  parts.reception.read(*craft.member(hand));
+  EXPECT_TRUE(guard.fenced(hand));
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_TRUE(craft.member(hand)->alive()) << "before it has ended";
+  EXPECT_FALSE(was_told("network {"));
+}
+
+TEST_F(ProcessesTest, WhoClosesItsChannelFencesNobodyWhomItsPlanLetsGoOn) {
+  start_all(Operational);
+  parts.graph.set_up(2, true);
+  descriptor::Plan alone;
+  alone.name = "alone";
+  alone.event = descriptor::event_of_death;
+  alone.steps = {{"log"}};
+  craft.mission.plans = {alone};
+  for (const std::uint16_t apid : {arm, hand}) ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  played[hand].channel.close_subsystem_end();
+  parts.reception.read(*craft.member(hand));
+  EXPECT_TRUE(guard.fenced(hand));
+  EXPECT_FALSE(guard.fenced(arm));
 }
 
 TEST_F(ProcessesTest, OneThatIsDueIsStartedAgainButNotWhileTheFlightEnds) {
