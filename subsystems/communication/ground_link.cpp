@@ -250,7 +250,8 @@ bool GroundClients::hand_over(GroundTraffic& traffic, TimePoint now) {
       ++counters_.held_back;
       return false;
     }
-    client.allowance = std::max(client.allowance, now) + little_period;
+    // What was sent while nobody was behind is no debt: within one period of silence even a flood has a turn again.
+    client.allowance = std::min(std::max(client.allowance, now), now + little_burst) + little_period;
     client.counters.heard = now;
     ++client.counters.packets;
     ++counters_.packets;

@@ -189,8 +189,8 @@ class GroundClients {
     std::optional<CloseReason> dismissed{};
     std::optional<TimePoint> behind_since{};  ///< of a listener: since then it has taken less than progress_octets
     std::uint64_t behind_from{0};
-    TimePoint
-        allowance{};  ///< who sends little: a packet moves it on by little_period, never more than little_burst ahead
+    /// Who sends little: a packet moves it on by little_period, and never further ahead than one beyond little_burst.
+    TimePoint allowance{};
     ClientCounters counters{};
     Deframer deframer;
     [[nodiscard]] bool waits() const noexcept { return !deframer.front().empty(); }

@@ -8,8 +8,6 @@
 #include <deque>
 #include <random>
 
-#include "subsystems/communication/delay_line.hpp"
-
 namespace hirosco::communication {
 namespace {
 
@@ -354,6 +352,29 @@ TEST(GroundClients, LetAFloodWaitForAListenerThatCatchesUpAndNobodyElse) {
   EXPECT_EQ(traffic.all.size(), 101U);
 }
 
+/// A stop may come from who has sent much: it waits for one period, not for all that it sent before anybody was behind.
+TEST(GroundClients, HoldNothingAgainstAClientThatItSentWhileNobodyWasBehind) {
+  GroundClients clients{{.behind_octets = 1000, .patience = 1s}};
+  Received traffic;
+  const ClientId listener = admit(clients);
+  const ClientId busy = admit(clients, GroundPort::TelecommandsOnly);
+  std::vector<std::byte> many;
+  for (std::uint16_t i = 0; i < 1000; ++i) append(many, ping_of(0, i));
+  const TimePoint now{10s};
+  for (Octets rest{many}; !rest.empty() || clients.waiting_packets() > 0; clients.hand_over(traffic, now))
+    rest = rest.subspan(put(clients, busy, rest, now));
+  ASSERT_EQ(traffic.all.size(), 1000U);
+  while (clients.output(listener).size() <= 1000) ASSERT_TRUE(clients.telemetry(ping_of(100)));
+
+  traffic.all.clear();
+  put(clients, busy, ping_of(), now);
+  EXPECT_FALSE(clients.hand_over(traffic, now));
+  EXPECT_FALSE(clients.hand_over(traffic, now + 49ms));
+  EXPECT_TRUE(traffic.all.empty()) << "it sends no more than who sends little";
+  EXPECT_TRUE(clients.hand_over(traffic, now + 50ms));
+  EXPECT_EQ(traffic.all.size(), 1U);
+}
+
 TEST(GroundClients, WaitNoLongerThanTheirPatienceForAListenerThatDoesNotCatchUp) {
   GroundClients clients{{.behind_octets = 1000, .patience = 1s}};
   Received traffic;
@@ -467,32 +488,6 @@ TEST(GroundClients, CountByClientAndByReason) {
   clients.remove(late, CloseReason::PeerClosed);
   EXPECT_EQ(clients.counters().closed[static_cast<std::size_t>(CloseReason::Incomplete)], 1U);
   EXPECT_EQ(clients.counters().clients, 1U);
-}
-
-TEST(DelayLine, GivesEachSetAfterItsDelayAndHoldsTheLastWhereOneIsLost) {
-  DelayLine<int> line;
-  std::vector<int> out;
-  for (int k = 1; k <= 8; ++k) out.push_back(line.pass(k, k != 4, 2));
-  EXPECT_THAT(out, ElementsAre(0, 0, 1, 2, 3, 3, 5, 6));
-  EXPECT_EQ(line.age_cycles(), 0U);
-  for (int k = 0; k < 5; ++k) line.pass(9, false, 2);
-  EXPECT_EQ(line.age_cycles(), 3U);
-}
-
-TEST(DelayLine, ReachesItsLongestDelay) {
-  DelayLine<int> line;
-  int out = 0;
-  for (int k = 1; k <= 1000; ++k) out = line.pass(k, true, line.longest_cycles);
-  EXPECT_EQ(out, 1000 - 127);
-}
-
-TEST(Loss, StrikesByItsShare) {
-  Loss loss;
-  int lost = 0;
-  for (int k = 0; k < 100'000; ++k) lost += loss.strikes(0.1) ? 1 : 0;
-  EXPECT_NEAR(lost, 10'000, 500);
-  EXPECT_FALSE(loss.strikes(0));
-  EXPECT_TRUE(loss.strikes(1));
 }
 
 }  // namespace
