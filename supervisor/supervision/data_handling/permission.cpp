@@ -241,6 +241,7 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   const bool reserves = up_to_safe(asked) && situation.power != nullptr;
   return Permitted{.essential = essential(asked),
                    .releases_stop = up_to_operational(asked),
+                   .stops_the_craft = stops_the_craft(asked),
                    .reserves_w = reserves ? demand_w(*subsystem, situation) : 0};
 }
 

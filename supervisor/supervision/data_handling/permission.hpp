@@ -35,6 +35,7 @@ struct Situation {
 struct Permitted {
   bool essential{false};             ///< forwarded first, logged after (decision 24)
   bool releases_stop{false};         ///< SET_STATE(Operational): lifts the addressee's stop flag
+  bool stops_the_craft{false};       ///< SAFE_ALL: carried out whoever says it, under whatever source id
   double reserves_w{0};              ///< SET_STATE(SafeOperational): what the addressee may draw from now on
 };
 

@@ -37,7 +37,8 @@ void Telecommands::take(const Incoming& incoming) {
   if (!telecommand) return take_damaged(incoming, telecommand.error());
   pus::Request request = pus::request_of(*telecommand);
   // Reports to a claimed id would end somebody else's requests.
-  if (!incoming.origin.owns(request.source, craft_.mission)) request = {request.id, incoming.origin.apid(), 0};
+  const bool foreign = !incoming.origin.owns(request.source, craft_.mission);
+  if (foreign) request = {request.id, incoming.origin.apid(), 0};
   const std::uint16_t apid = telecommand->apid();
   const bool asks_only = apid == supervisor_apid && telecommand->service() == pus::st129::service_type;
   const auto copy_to_ground = [&] {
@@ -55,7 +56,12 @@ void Telecommands::take(const Incoming& incoming) {
   if (decision->reserves_w > 0)
     parts_.power.ledger().reserve(apid, decision->reserves_w, request, craft_.now + WaitingForDisk::limit);
   if (asks_only) return answer_question(incoming, *telecommand);
-  const std::string text = telecommand_text(*telecommand);
+  std::string text = telecommand_text(*telecommand);
+  if (foreign) {
+    // What is carried out all the same is reported to who said it, and is told.
+    request.ack = telecommand->ack();
+    text += fmt::format(" under the source id {}, which is somebody else's", telecommand->source());
+  }
   const LogEntry received{.kind = LogKind::TelecommandReceived,
                           .source = incoming.origin.apid(),
                           .peer = apid,
@@ -73,6 +79,7 @@ void Telecommands::take(const Incoming& incoming) {
     else
       forward({apid, incoming.origin, incoming.packet, incoming.memory, request, 0, true,
                restores && decision->releases_stop, fences});
+    if (foreign) craft_.tell(text, incoming.origin.apid());
     copy_to_ground();
     static_cast<void>(craft_.log.append(received));
     return;
@@ -111,9 +118,11 @@ void Telecommands::take_damaged(const Incoming& incoming, const FailureNotice& n
 /// is decided on sending are this one function.
 std::expected<Permitted, FailureNotice> Telecommands::judge(const pus::TelecommandView& telecommand,
                                                             const Origin& origin) const {
-  if (const std::uint16_t source = telecommand.source(); !origin.owns(source, craft_.mission))
-    return std::unexpected{FailureNotice{FailureCode::ForeignSource}.with(source)};
   const auto decision = decide(telecommand, origin, situation_of(telecommand.apid()));
+  // A stop is asked for no name: one by who may not is an unwanted stop at worst, a refused one would be none (adr 0068).
+  const std::uint16_t source = telecommand.source();
+  if (!origin.owns(source, craft_.mission) && !(decision && decision->stops_the_craft))
+    return std::unexpected{FailureNotice{FailureCode::ForeignSource}.with(source)};
   // Who has failed, is stopped or on its way down commands nobody; towards safety it may.
   if (decision && !decision->essential && origin.is_subsystem() && !is_sound(origin.apid()))
     return std::unexpected{FailureNotice{FailureCode::WrongState}};

@@ -139,6 +139,49 @@ TEST_F(TelecommandsTest, ASourceIdOfSomebodyOnBoardIsRefusedFromGroundWithTheCli
   EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::ForeignSource) + ", client 3"));
 }
 
+TEST_F(TelecommandsTest, AStopIsCarriedOutAndReportedToWhoSaidItUnderWhateverSourceId) {
+  struct Ear final : Hearer {
+    void hear(std::uint16_t, const pus::TelemetryView& heard) override {
+      if (heard.service() == 1) reports.emplace_back(heard.subtype(), heard.destination());
+    }
+    std::vector<std::pair<int, int>> reports;
+  };
+  const auto stop_by = [&](std::uint16_t source) {
+    std::vector<std::byte> octets(pus::max_telecommand_octets);
+    const auto packet = pus::write_telecommand(
+        octets, {.apid = supervisor_apid, .ack = pus::ack_all, .service = 8, .subtype = 1, .source = source},
+        call_data("SAFE_ALL"));
+    octets.resize(packet.value().size());
+    return octets;
+  };
+  set(arm, Operational, 2);
+  for (const Origin& origin : {Origin::ground(3), Origin::subsystem(hand)})
+    for (const std::uint16_t source : {supervisor_apid, arm, std::uint16_t{99}}) {
+      if (origin.owns(source, craft.mission)) continue;
+      ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+      take(stop_by(source), origin);
+      EXPECT_TRUE(guard.fenced(arm)) << source;
+      // Who was told to stop has.
+      for (auto& [apid, member] : played) member.vital->cycling = 0;
+      for (int step = 0; step < 2; ++step, wait(10ms)) static_cast<void>(guard.step(clock.now()));
+      parts.stop_outcome.follow();
+      Ear ear;
+      Telemetry listening{craft, parts.own, parts.traffic, parts.ground_route, {&ear}};
+      static_cast<void>(parts.own.step(clock.now()));
+      MessageBuffer buffer;
+      for (;;) {
+        const auto next = parts.own.channel().receive(buffer);
+        if (!next || next->flow == Flow::None) break;
+        if (next->message.kind == MessageKind::Packet)
+          static_cast<void>(listening.take(supervisor_apid, next->message.packet));
+      }
+      for (const int subtype : {1, 3, 7})
+        EXPECT_THAT(ear.reports, ::testing::Contains(std::pair{subtype, int{origin.apid()}})) << source;
+      EXPECT_TRUE(was_told("under the source id " + std::to_string(source)));
+    }
+  EXPECT_THAT(refusals(), IsEmpty());
+}
+
 TEST_F(TelecommandsTest, WhoIsNotOnBoardCannotBeAddressed) {
   take(telecommand(99, 17, 1, {}));
   EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::UnknownApid)));
