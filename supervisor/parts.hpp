@@ -38,6 +38,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { stop_outcome.safe_all(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
+    telecommands.starts_with([this](std::uint16_t apid) { return processes.start(apid); });
   }
 
   void provide(OwnSubsystem&) override {

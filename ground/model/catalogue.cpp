@@ -133,7 +133,8 @@ double Catalogue::read(const Place& place, Octets source_data) const noexcept {
 std::vector<descriptor::Function> Catalogue::functions_of(const descriptor::Subsystem& subsystem) const {
   std::vector<descriptor::Function> functions = pus::requests_of(subsystem);
   for (auto& function : functions) {
-    if (function.name == "SET_STATE") function.description = "Takes the subsystem to a state, through those between";
+    if (function.name == "SET_STATE")
+      function.description = "Takes the subsystem to a state, through those between; Offline starts one that is down";
     if (function.name == "CONFIGURE") function.description = "Chooses the configuration, in Pre-Operational";
   }
   return functions;

@@ -85,8 +85,9 @@ const transient = new Set(['SoftwareInit', 'HardwareInit', 'HardwareDeinit', 'So
 const after_failure = new Set(['SoftwareInit>SoftwareDeinit', 'HardwareInit>HardwareDeinit']);
 
 /// The states passed on the way to `to`, `to` last; null where the command is illegal. The same rule as on board:
-/// transient states and the way down from Post-Operational are passed through.
+/// transient states and the way down from Post-Operational are passed through. Who does not run, null, is started by Offline.
 export function route(from, to) {
+  if (from === null) return to === 'Offline' ? ['Offline'] : null;
   if (!from || from === to || transient.has(from) || transient.has(to)) return null;
   const edges = (mission.value?.transitions ?? []).filter((edge) => !after_failure.has(`${edge.from}>${edge.to}`));
   const passes = (state) => transient.has(state) || state === 'PostOperational';
@@ -204,6 +205,7 @@ export function commissioning_steps(mode) {
   const others = members.filter((member) => down.has(member.subsystem));
   for (const member of others) {
     const from = () => state_name(status_of(member.subsystem)?.state);
+    add(`${member.subsystem} started again`, member.subsystem, 'SET_STATE', {STATE: state_value('Offline')}, () => from() === null);
     add(`${member.subsystem} to Safe-Operational`, member.subsystem, 'SET_STATE', {STATE: state_value('SafeOperational')},
       () => from() === 'Operational');
     add(`${member.subsystem} to Post-Operational`, member.subsystem, 'SET_STATE', {STATE: state_value('PostOperational')},

@@ -65,7 +65,7 @@ export function rate_text(hz) {
 }
 
 /// "SafeOperational" -> "Safe-Operational", as the paper writes the states.
-export const state_text = (state) => (state ?? 'unknown').replace(/([a-z])([A-Z])/g, '$1-$2');
+export const state_text = (state) => (state === null ? 'not running' : state ?? 'unknown').replace(/([a-z])([A-Z])/g, '$1-$2');
 
 export const unit_text = (unit) => (unit ?? '').replace('degC', '°C').replaceAll(' ', '·').replace(/^us$/, 'µs');
 

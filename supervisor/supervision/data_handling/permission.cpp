@@ -120,6 +120,11 @@ using Notice = std::optional<FailureNotice>;
   return asked.asks_for(State::Operational) && asked.situation.state == State::SafeOperational;
 }
 
+/// Who is down is started again by the ground and nobody else: a plan has its limit, and nobody on board goes round that.
+[[nodiscard]] bool starts(const Asked& asked) {
+  return asked.situation.down && asked.origin.is_ground() && asked.asks_for(State::Offline);
+}
+
 // --- the rules ---------------------------------------------------------------------------------------------------------
 
 /// Is there such a request? Service and subtype are the framework's, or the addressee's own.
@@ -229,18 +234,26 @@ std::optional<CalledFunction> called_function(const pus::TelecommandView& teleco
   return call;
 }
 
+FailureNotice is_down() {
+  FailureNotice notice{FailureCode::UnknownApid};
+  return notice.because({ErrorCode::Unavailable, 0, "it is down; SET_STATE Offline starts it again"});
+}
+
 std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telecommand, const Origin& origin,
                                                const Situation& situation) {
   const descriptor::Subsystem* subsystem = addressee(situation.mission, telecommand.apid());
-  if (subsystem == nullptr || !situation.state) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
+  if (subsystem == nullptr) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
   Asked asked{telecommand, origin, situation, *subsystem, called_function(telecommand)};
   asked.request = asked.call ? subsystem->find_function(asked.call->name)
                              : subsystem->find_request(telecommand.service(), telecommand.subtype());
+  if (!situation.state && !starts(asked))
+    return std::unexpected{situation.down ? is_down() : FailureNotice{FailureCode::UnknownApid}};
   for (const auto rule : rules)
     if (const auto refused = rule(asked)) return std::unexpected{*refused};
   const bool reserves = up_to_safe(asked) && situation.power != nullptr;
   return Permitted{.essential = essential(asked),
                    .releases_stop = up_to_operational(asked),
+                   .starts = starts(asked),
                    .stops_the_craft = stops_the_craft(asked),
                    .reserves_w = reserves ? demand_w(*subsystem, situation) : 0};
 }

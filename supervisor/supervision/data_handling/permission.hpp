@@ -30,14 +30,20 @@ struct Situation {
   std::uint8_t configuration{0};
   /// Null: power is no matter here.
   const PowerLedger* power{nullptr};
+  /// The addressee's process does not run; one that does may have no state that can be read.
+  bool down{false};
 };
 
 struct Permitted {
   bool essential{false};             ///< forwarded first, logged after (decision 24)
   bool releases_stop{false};         ///< SET_STATE(Operational): lifts the addressee's stop flag
+  bool starts{false};                ///< SET_STATE(Offline) to who is down: the supervisor starts its process
   bool stops_the_craft{false};       ///< SAFE_ALL: carried out whoever says it, under whatever source id
   double reserves_w{0};              ///< SET_STATE(SafeOperational): what the addressee may draw from now on
 };
+
+/// Who is down answers nothing; what brings it up again is said with the refusal.
+[[nodiscard]] pus::FailureNotice is_down();
 
 /// Acceptance checks 6, 8, 9 and 12 (pus-c tailoring 5.3) plus codes 13, 14, 16 and 18. A notice with code UnknownApid belongs
 /// into TM[1,10], every other into TM[1,2].

@@ -179,6 +179,46 @@ TEST(Permission, TheGroundLinkComesUpWhateverTheBudgetAndItsPowerIsReserved) {
   }
 }
 
+TEST(Permission, WhoIsDownIsStartedByTheGroundWhereTheModeOpensThatAndByNobodyElse) {
+  auto mission = testing::small_mission();
+  mission.subsystems[2].subsystem.commands = {{.subsystem = "ARM", .functions = {"SET_STATE"}, .at = {}, .apid = arm}};
+  const LinkGraph links{mission};
+  const auto decided = [&](const std::vector<std::byte>& data, const Origin& origin, std::size_t mode, bool down) {
+    const auto packet = testing::telecommand(arm, 8, 1, data);
+    const Situation situation{.mission = mission,
+                              .mode = mission.modes[mode],
+                              .links = links,
+                              .state = std::nullopt,
+                              .configuration = 0,
+                              .power = nullptr,
+                              .down = down};
+    return decide(pus::TelecommandView::parse(packet).value(), origin, situation);
+  };
+  const auto offline = set_state(State::Offline);
+  const auto started = decided(offline, Origin::ground(), open_mode, true);
+  ASSERT_TRUE(started);
+  EXPECT_TRUE(started->starts);
+  EXPECT_FALSE(started->essential);
+  const auto in_narrow = decided(offline, Origin::ground(), narrow_mode, true);
+  ASSERT_FALSE(in_narrow);
+  EXPECT_EQ(in_narrow.error().code(), pus::FailureCode::WrongMode);
+  const auto refused = [&](const auto& decision) {
+    return !decision && decision.error().code() == pus::FailureCode::UnknownApid;
+  };
+  for (const Origin& origin : {Origin::supervisor(), Origin::subsystem(camera)})
+    EXPECT_TRUE(refused(decided(offline, origin, open_mode, true)));
+  for (const auto& other : {set_state(State::PreOperational), call("MOVE_TO")}) {
+    const auto decision = decided(other, Origin::ground(), open_mode, true);
+    EXPECT_TRUE(refused(decision));
+    const auto reason = pus::reason_in(decision.error().data());
+    ASSERT_TRUE(reason) << "the refusal says what helps";
+    EXPECT_EQ(reason->text, "it is down; SET_STATE Offline starts it again");
+  }
+  const auto unreadable = decided(offline, Origin::ground(), open_mode, false);
+  EXPECT_TRUE(refused(unreadable)) << "it runs, and its state cannot be read";
+  EXPECT_FALSE(pus::reason_in(unreadable.error().data()));
+}
+
 TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
   const auto mission = testing::small_mission();
   const LinkGraph links{mission};

@@ -98,7 +98,8 @@ void Telecommands::take(const Incoming& incoming) {
                 mode_epoch,
                 craft_.now,
                 decision->releases_stop,
-                fences});
+                fences,
+                decision->starts});
   forward_durable();
 }
 
@@ -126,12 +127,12 @@ std::expected<Permitted, FailureNotice> Telecommands::judge(const pus::Telecomma
   // Who has failed, is stopped or on its way down commands nobody; towards safety it may.
   if (decision && !decision->essential && origin.is_subsystem() && !is_sound(origin.apid()))
     return std::unexpected{FailureNotice{FailureCode::WrongState}};
-  if (!decision || !decision->releases_stop) return decision;
-  // On the way down nobody begins to move any more.
+  if (!decision || !(decision->releases_stop || decision->starts)) return decision;
+  // On the way down nobody begins to move any more, nor comes up.
   if (craft_.shutting_down) return std::unexpected{FailureNotice{FailureCode::NotPermittedNow}};
   // What a recovery has stopped is not released by a command that crosses it, nor who cannot hear it.
   if (const Member* addressee = std::as_const(craft_).member(telecommand.apid());
-      addressee != nullptr && (addressee->recovering || addressee->closed_at))
+      addressee != nullptr && addressee->alive() && (addressee->recovering || addressee->closed_at))
     return std::unexpected{FailureNotice{FailureCode::WrongState}};
   return decision;
 }
@@ -166,14 +167,16 @@ Situation Telecommands::situation_of(std::uint16_t apid) const {
                       .mode = *craft_.mode,
                       .links = parts_.links,
                       .state = std::nullopt,
-                      .power = &parts_.power.ledger()};
+                      .power = &parts_.power.ledger(),
+                      .down = false};
   if (apid == supervisor_apid) {
     situation.state = parts_.own.state();
     situation.configuration = parts_.own.configuration();
     return situation;
   }
   const Member* addressee = std::as_const(craft_).member(apid);
-  if (addressee == nullptr || !addressee->alive()) return situation;
+  situation.down = addressee != nullptr && !addressee->alive();
+  if (addressee == nullptr || situation.down) return situation;
   situation.state = addressee->state();
   situation.configuration = addressee->configuration();
   return situation;
@@ -210,6 +213,10 @@ void Telecommands::forward_durable() {
       refuse(*next, FailureCode::NotPermittedNow);
       continue;
     }
+    if (next->starts) {
+      start(*next);
+      continue;
+    }
     forward({next->apid, next->origin, next->packet, next->memory, next->request, next->mode_epoch, false,
              next->releases_stop, next->fences});
   }
@@ -232,6 +239,18 @@ void Telecommands::refuse(const WaitingForDisk::Telecommand& waited, FailureCode
   reject({.packet = waited.packet, .origin = waited.origin}, waited.request, FailureNotice{why});
 }
 
+/// The supervisor ends it, as who is addressed cannot hear it; a plan that was quicker has done what it asks for.
+void Telecommands::start(const WaitingForDisk::Telecommand& waited) {
+  if (waited.mode_epoch != craft_.mode_epoch) return refuse(waited, FailureCode::NotPermittedNow);
+  pus::Verification& verification = parts_.own.verification();
+  verification.accepted(waited.request);
+  verification.started(waited.request);
+  if (start_ && start_(waited.apid)) return verification.completed(waited.request);
+  FailureNotice notice{FailureCode::ExecutionError};
+  verification.completion_failed(waited.request,
+                                 notice.because({ErrorCode::Unavailable, 0, "its process could not be started"}));
+}
+
 void Telecommands::forward(const Outgoing& outgoing) {
   const auto& [apid, origin, packet, memory, request, mode_epoch, essential, releases_stop, fences] = outgoing;
   const bool to_itself = apid == supervisor_apid;
@@ -248,8 +267,8 @@ void Telecommands::forward(const Outgoing& outgoing) {
   if (!sent) {
     // The permission was for this one: an older one that stands unread must not find it (hazard SF4).
     if (releases_stop && !to_itself) craft_.guard.fence(apid);
-    const auto code = channel == nullptr ? FailureCode::UnknownApid : FailureCode::QueueFull;
-    return reject({.packet = packet, .origin = origin}, request, FailureNotice{code});
+    return reject({.packet = packet, .origin = origin}, request,
+                  channel == nullptr ? is_down() : FailureNotice{FailureCode::QueueFull});
   }
   if (const auto telecommand = pus::TelecommandView::parse(packet); !to_itself && telecommand)
     parts_.unanswered.forwarded(apid, *telecommand, craft_.now);
@@ -271,6 +290,7 @@ void Telecommands::reject(const Incoming& incoming, const pus::Request& request,
   // Nobody else says which client of the ground link it was.
   if (notice.code() == FailureCode::ForeignSource && incoming.origin.is_ground())
     note += fmt::format(", client {}", incoming.origin.client());
+  if (const auto reason = pus::reason_in(notice.data())) note += fmt::format(": {}", reason->text);
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandRefused,
                                        .source = incoming.origin.apid(),
                                        .peer = header ? header->apid : std::uint16_t{0},

@@ -60,6 +60,8 @@ class Telecommands final : public Watch, public Accounts {
   void at_once(std::string function, std::function<void(const pus::Request&)> carry_out) {
     at_once_.emplace(std::move(function), std::move(carry_out));
   }
+  /// Who starts a subsystem that is down; false: it could not.
+  void starts_with(std::function<bool(std::uint16_t apid)> start) { start_ = std::move(start); }
 
  private:
   /// A permitted telecommand on its way to the addressee.
@@ -86,10 +88,12 @@ class Telecommands final : public Watch, public Accounts {
   void refuse(const WaitingForDisk::Telecommand& waited, pus::FailureCode why);
   void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
   void forward(const Outgoing& outgoing);
+  void start(const WaitingForDisk::Telecommand& waited);
 
   Parts parts_;
   Craft& craft_;
   std::map<std::string, std::function<void(const pus::Request&)>, std::less<>> at_once_;
+  std::function<bool(std::uint16_t)> start_;
   WaitingForDisk waiting_;
   TimePoint report_window_{};
   int reports_in_window_{0};

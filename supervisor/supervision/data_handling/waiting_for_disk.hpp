@@ -35,6 +35,7 @@ class WaitingForDisk {
     TimePoint since{};
     bool releases_stop{false};
     std::uint64_t fences{0};  ///< of the addressee at permission
+    bool starts{false};
   };
 
   [[nodiscard]] bool full() const noexcept { return waiting_.size() == most; }

@@ -51,15 +51,18 @@ void Processes::launch(Member& member) {
   craft_.tell("started " + member.descriptor().name, member.apid());
 }
 
+bool Processes::start(std::uint16_t apid) {
+  Member* subject = craft_.member(apid);
+  if (subject == nullptr || subject->alive()) return subject != nullptr;
+  launch(*subject);
+  if (subject->alive() && craft_.is_ground_link(*subject)) parts_.ground_link.restore(*subject);
+  return subject->alive();
+}
+
 void Processes::watch(TimePoint now) {
   watch_ends(Whom::All);
-  while (const auto apid = parts_.restarts.take_due(now)) {
-    Member* subject = craft_.member(*apid);
-    if (subject == nullptr || subject->alive() || craft_.shutting_down) continue;
-    launch(*subject);
-    if (!subject->alive()) parts_.restarts.again(*apid, now);
-    if (subject->alive() && craft_.is_ground_link(*subject)) parts_.ground_link.restore(*subject);
-  }
+  while (const auto apid = parts_.restarts.take_due(now))
+    if (!craft_.shutting_down && !start(*apid)) parts_.restarts.again(*apid, now);
 }
 
 void Processes::watch_ends(Whom whom) {

@@ -36,6 +36,8 @@ class Processes final : public Watch {
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
   void start_all();
+  /// One that is down: by the ground, however often it died. False: it could not be started.
+  bool start(std::uint16_t apid);
   void take_guard_findings();
   /// Those whose channel is closed: how they ended is known at once.
   void watch_closed() { watch_ends(Whom::Closed); }

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 
+#include <algorithm>
+
 #include "hirosco/descriptor/supervisor_events.hpp"
+#include "supervisor/platform/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {
@@ -124,6 +127,124 @@ TEST_F(ProcessesTest, AStartThatFailsIsTriedAgainWithAPauseThatDoubles) {
   }
   EXPECT_TRUE(was_told("cannot start HAND: new process"));
   EXPECT_FALSE(craft.failed);
+}
+
+/// ARM is down for good: its plan, which starts nobody, is over.
+struct WhoStaysDown : ProcessesTest {
+  struct Report {
+    int subtype{};
+    std::uint16_t code{};
+    bool operator==(const Report&) const = default;
+  };
+  void SetUp() override {
+    ProcessesTest::SetUp();
+    start_all(Operational);
+    dies(arm);
+    ASSERT_FALSE(craft.member(arm)->alive());
+    static_cast<void>(reports());
+  }
+  /// What the supervisor reported on requests since it was asked last.
+  std::vector<Report> reports() {
+    struct Ear final : Hearer {
+      void hear(std::uint16_t, const pus::TelemetryView& heard) override {
+        if (heard.service() != 1) return;
+        OctetReader reader{heard.source_data()};
+        static_cast<void>(reader.get<std::uint32_t>());
+        const bool failure = heard.subtype() % 2 == 0;
+        all.push_back({heard.subtype(), failure ? reader.get<std::uint16_t>() : std::uint16_t{0}});
+      }
+      std::vector<Report> all;
+    } ear;
+    Telemetry listening{craft, parts.own, parts.traffic, parts.ground_route, {&ear}};
+    static_cast<void>(parts.own.step(clock.now()));
+    MessageBuffer buffer;
+    for (;;) {
+      const auto next = parts.own.channel().receive(buffer);
+      if (!next || next->flow == Flow::None) return ear.all;
+      if (next->message.kind == MessageKind::Packet)
+        static_cast<void>(listening.take(supervisor_apid, next->message.packet));
+    }
+  }
+  void ask_for(descriptor::State state, Origin origin = Origin::ground()) {
+    const auto packet = telecommand(arm, 8, 1, call_data("SET_STATE", static_cast<int>(state)));
+    parts.telecommands.take({.packet = packet, .origin = origin});
+    parts.telecommands.forward_durable();
+  }
+};
+
+TEST_F(WhoStaysDown, IsStartedBySetStateOfflineAgainAndAgainAndTheGroundIsToldHowThatEnded) {
+  for (int time = 0; time < 10; ++time) {
+    ask_for(Offline);
+    EXPECT_TRUE(craft.member(arm)->alive()) << time;
+    EXPECT_EQ(craft.member(arm)->state(), Offline);
+    EXPECT_TRUE(guard.fenced(arm) || !played[arm].permit->permits(played[arm].permit->epoch.load()));
+    EXPECT_THAT(reports(), ElementsAre(Report{1}, Report{3}, Report{7})) << time;
+    ask_for(PreOperational);
+    EXPECT_THAT(texts(arm), ElementsAre(to(PreOperational))) << "it is commanded as ever";
+    dies(arm);
+    static_cast<void>(reports());
+  }
+}
+
+TEST_F(WhoStaysDown, HearsNothingElseAndTheRefusalSaysWhatHelps) {
+  ask_for(PreOperational);
+  EXPECT_FALSE(craft.member(arm)->alive());
+  EXPECT_THAT(reports(), ElementsAre(Report{10, static_cast<std::uint16_t>(pus::FailureCode::UnknownApid)}));
+}
+
+TEST_F(WhoStaysDown, AndCannotBeStartedIsReportedAsFailedAndMayBeAskedForAgain) {
+  starts_that_fail = 1;
+  ask_for(Offline);
+  EXPECT_FALSE(craft.member(arm)->alive());
+  EXPECT_THAT(reports(), ElementsAre(Report{1}, Report{3},
+                                     Report{8, static_cast<std::uint16_t>(pus::FailureCode::ExecutionError)}));
+  ask_for(Offline);
+  EXPECT_TRUE(craft.member(arm)->alive());
+}
+
+TEST_F(WhoStaysDown, IsNotStartedOnTheWayDown) {
+  craft.shutting_down = true;
+  ask_for(Offline);
+  EXPECT_THAT(reports(), ElementsAre(Report{2, static_cast<std::uint16_t>(pus::FailureCode::NotPermittedNow)}));
+  EXPECT_FALSE(craft.member(arm)->alive());
+}
+
+TEST_F(WhoStaysDown, IsStartedOnceWhatWasAskedIsOnTheDiskUnlessTheModeIsAnotherThen) {
+  const auto hold = std::make_shared<HeldDatabase::Hold>();
+  log.switch_to(std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>()));
+  const auto let_go = [&] {
+    hold->tries = 0;
+    craft.tell("the disk works");
+    parts.telecommands.forward_durable();
+  };
+  hold->tries = 1'000'000;
+  ask_for(Offline);
+  ++craft.mode_epoch;
+  let_go();
+  EXPECT_FALSE(craft.member(arm)->alive());
+  EXPECT_THAT(reports(), ElementsAre(Report{2, static_cast<std::uint16_t>(pus::FailureCode::NotPermittedNow)}));
+  hold->tries = 1'000'000;
+  ask_for(Offline);
+  EXPECT_FALSE(craft.member(arm)->alive());
+  let_go();
+  EXPECT_TRUE(craft.member(arm)->alive());
+}
+
+TEST_F(WhoStaysDown, AndIsStartedByItsPlanMeanwhileIsNotStartedTwice) {
+  const auto hold = std::make_shared<HeldDatabase::Hold>();
+  log.switch_to(std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>()));
+  hold->tries = 1'000'000;
+  ASSERT_TRUE(parts.restarts.plan(arm, {.limit = 1, .within = 60s, .pause = 1ms}, clock.now()));
+  ask_for(Offline);
+  wait(1ms);
+  parts.processes.watch(clock.now());
+  ASSERT_TRUE(craft.member(arm)->alive());
+  const auto starts = std::ranges::count(story, "started ARM");
+  hold->tries = 0;
+  craft.tell("the disk works");
+  parts.telecommands.forward_durable();
+  EXPECT_EQ(std::ranges::count(story, "started ARM"), starts);
+  EXPECT_THAT(reports(), ElementsAre(Report{1}, Report{3}, Report{7}));
 }
 
 TEST_F(ProcessesTest, AFlightWhoseFirstStartsFailIsNotOrderly) {

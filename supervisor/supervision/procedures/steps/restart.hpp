@@ -22,7 +22,9 @@ inline constexpr StepKind restart{
           const Member* subject = means.craft.member(step.subject);
           const bool spared = subject != nullptr && means.craft.is_ground_link(*subject);
           if (!means.restarts.plan(step.subject, rule, means.craft.now, spared ? GoesOn : StaysDown))
-            means.craft.tell(means.craft.name_of(step.subject) + " stays down: it died too often", step.subject);
+            means.craft.tell(
+                means.craft.name_of(step.subject) + " stays down: it died too often; SET_STATE Offline starts it again",
+                step.subject);
           done(true, {});
         },
     .holds = StepKind::Holds::Nobody,
