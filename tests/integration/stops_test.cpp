@@ -238,6 +238,27 @@ TEST_F(Stops, AGroundLinkThatDiesAgainAndAgainComesBackAgainAndAgain) {
   }
 }
 
+/// "What a fault stopped can be brought up again, every time": the plan starts three times in a minute, the ground as often as it asks.
+TEST_F(Stops, WhoDiedTooOftenIsStartedByTheGroundAndOneBringUpCouplesAgain) {
+  open_for_bring_up();
+  const auto down = [&] { return !flight.craft().subsystem("JOYSTICK"); };
+  for (int death = 1; death <= 4; ++death) {
+    flight.craft().kill("JOYSTICK");
+    flight.craft().run(3s);
+  }
+  ASSERT_TRUE(flight.story().has("JOYSTICK stays down")) << flight.story().text();
+  for (int time = 1; time <= 3; ++time) {
+    ASSERT_TRUE(down()) << time;
+    EXPECT_EQ(flight.set_state("JOYSTICK", State::PreOperational).failure, FailureCode::UnknownApid);
+    ASSERT_TRUE(flight.set_state("JOYSTICK", State::Offline).completed) << flight.story().text();
+    ASSERT_TRUE(bring_up()) << time;
+    flight.craft().run(200ms);
+    EXPECT_TRUE(coupled()) << time;
+    flight.craft().kill("JOYSTICK");
+    flight.craft().run(3s);
+  }
+}
+
 TEST_F(Stops, AModeWhoseMembersAreDeadIsRefused) {
   open_for_bring_up();
   flight.craft().kill("JOYSTICK");
