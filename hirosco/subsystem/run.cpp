@@ -32,7 +32,8 @@ namespace {
 /// Of the cycle's thread. All memory is locked, so that every octet of it is taken from the computer.
 constexpr std::size_t cycle_stack_octets = std::size_t{1} << 20;
 
-/// Real-time, but below every cycle: a busy core cannot hold up a command to stop (decision 8a).
+/// Real-time, but below every cycle: a busy core cannot hold up a command to stop (decision 8a). Service loops share: one that never
+/// rests must not keep those of others from stepping, which would then count as hanging (hazard R16).
 constexpr int service_priority = 20;
 constexpr int exit_usage = 2;
 constexpr int exit_environment = 3;
@@ -216,7 +217,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   const bool realtime = realtime_permitted();
   if (realtime) {
     static_cast<void>(lock_memory());
-    static_cast<void>(set_fifo_priority(service_priority));
+    static_cast<void>(set_shared_priority(service_priority));
   }
   const Platform platform{
       .clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = [](std::string_view text) {

@@ -40,13 +40,15 @@ class Thread {
 /// Puts the calling thread under SCHED_FIFO; children made later start without it where the system can say so.
 /// Priority 1..99, out of range refused; SystemFailure when the system does not permit it. Realtime: bounded.
 [[nodiscard]] Result<> set_fifo_priority(int priority) noexcept;
+/// The same under SCHED_RR: threads of one priority share the processor in turn, so that one that never rests leaves the others theirs.
+[[nodiscard]] Result<> set_shared_priority(int priority) noexcept;
 /// Returns the calling thread to ordinary scheduling.
 [[nodiscard]] Result<> set_ordinary_scheduling() noexcept;
 /// For a thread that may not have SCHED_FIFO: asks the ordinary scheduler for short slices, so that it is served sooner
 /// after it wakes on a busy computer; needs no right. Unavailable where the system has no such wish (Linux from 6.12 on
 /// heeds it, earlier ones accept and ignore it).
 [[nodiscard]] Result<> ask_for_short_slices() noexcept;
-/// Whether the calling thread may have SCHED_FIFO: tried and undone.
+/// Whether the calling thread may have SCHED_FIFO or SCHED_RR: tried and undone.
 [[nodiscard]] bool realtime_permitted() noexcept;
 /// Keeps the calling thread on one processor, counted from 0; Unavailable where the system has no such call.
 [[nodiscard]] Result<> pin_to_cpu(unsigned cpu) noexcept;

@@ -98,6 +98,24 @@ TEST(Scheduling, RefusesAPriorityThatDoesNotExist) {
   EXPECT_EQ(set_fifo_priority(1000).error().code, ErrorCode::OutOfRange);
 }
 
+TEST(Scheduling, ThreadsOfASharedPriorityTakeTurnsAndPassNothingOn) {
+  EXPECT_EQ(set_shared_priority(0).error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(set_shared_priority(1000).error().code, ErrorCode::OutOfRange);
+  Thread::start("sharer", [] {
+    if (!realtime_permitted()) return;
+    ASSERT_TRUE(set_shared_priority(10));
+    sched_param parameters{};
+    ASSERT_EQ(sched_getparam(0, &parameters), 0);
+    EXPECT_EQ(parameters.sched_priority, 10);
+    EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_RR);
+    EXPECT_TRUE(realtime_permitted());
+    EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_RR) << "the probe leaves it as it is";
+    Thread::start("child", [] { EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER); })->join();
+    EXPECT_TRUE(set_ordinary_scheduling());
+    EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER);
+  })->join();
+}
+
 TEST(Scheduling, ShortSlicesNeedNoRightAndChangeNoPolicy) {
   Thread::start("modest", [] {
     const auto asked = ask_for_short_slices();

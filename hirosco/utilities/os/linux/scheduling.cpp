@@ -34,18 +34,21 @@ static_assert(sizeof(SchedulingWish) == 48);
 
 constexpr std::uint64_t shortest_slice_ns = 100'000;  // the kernel grants no shorter one
 
-}  // namespace
-
-Result<> set_fifo_priority(int priority) noexcept {
-  if (priority < sched_get_priority_min(SCHED_FIFO) || priority > sched_get_priority_max(SCHED_FIFO))
-    return fail(ErrorCode::OutOfRange, "FIFO priority", priority);
+Result<> set_priority(int policy, int priority) noexcept {
+  if (priority < sched_get_priority_min(policy) || priority > sched_get_priority_max(policy))
+    return fail(ErrorCode::OutOfRange, "real-time priority", priority);
   sched_param parameters{};
   parameters.sched_priority = priority;
   // Without the flag a process we start would compete with our loops.
-  if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) != 0)
-    return fail(ErrorCode::SystemFailure, "FIFO scheduling (rtprio limit, or cpu group without rt_runtime)", errno);
+  if (::sched_setscheduler(0, policy | SCHED_RESET_ON_FORK, &parameters) != 0)
+    return fail(ErrorCode::SystemFailure, "real-time scheduling (rtprio limit, or cpu group without rt_runtime)", errno);
   return ok();
 }
+
+}  // namespace
+
+Result<> set_fifo_priority(int priority) noexcept { return set_priority(SCHED_FIFO, priority); }
+Result<> set_shared_priority(int priority) noexcept { return set_priority(SCHED_RR, priority); }
 
 Result<> set_ordinary_scheduling() noexcept {
   const sched_param parameters{};
@@ -67,7 +70,8 @@ bool realtime_permitted() noexcept {
   const int policy = ::sched_getscheduler(0);
   sched_param before{};
   if (policy < 0 || ::sched_getparam(0, &before) != 0) return false;
-  if ((policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO) return true;
+  const int bare = policy & ~SCHED_RESET_ON_FORK;
+  if (bare == SCHED_FIFO || bare == SCHED_RR) return true;
   sched_param lowest{};
   lowest.sched_priority = sched_get_priority_min(SCHED_FIFO);
   // An unprivileged thread cannot clear the flag again, so the probe leaves it as it was.

@@ -6,15 +6,22 @@
 
 namespace hirosco {
 
-Result<> set_fifo_priority(int priority) noexcept {
-  if (priority < sched_get_priority_min(SCHED_FIFO) || priority > sched_get_priority_max(SCHED_FIFO))
-    return fail(ErrorCode::OutOfRange, "FIFO priority", priority);
+namespace {
+
+Result<> set_priority(int policy, int priority) noexcept {
+  if (priority < sched_get_priority_min(policy) || priority > sched_get_priority_max(policy))
+    return fail(ErrorCode::OutOfRange, "real-time priority", priority);
   sched_param parameters{};
   parameters.sched_priority = priority;
-  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters); error != 0)
-    return fail(ErrorCode::SystemFailure, "FIFO scheduling", error);
+  if (const int error = pthread_setschedparam(pthread_self(), policy, &parameters); error != 0)
+    return fail(ErrorCode::SystemFailure, "real-time scheduling", error);
   return ok();
 }
+
+}  // namespace
+
+Result<> set_fifo_priority(int priority) noexcept { return set_priority(SCHED_FIFO, priority); }
+Result<> set_shared_priority(int priority) noexcept { return set_priority(SCHED_RR, priority); }
 
 Result<> set_ordinary_scheduling() noexcept {
   const sched_param parameters{};
@@ -29,7 +36,7 @@ bool realtime_permitted() noexcept {
   int policy = 0;
   sched_param before{};
   if (pthread_getschedparam(pthread_self(), &policy, &before) != 0) return false;
-  if (policy == SCHED_FIFO) return true;
+  if (policy == SCHED_FIFO || policy == SCHED_RR) return true;
   sched_param lowest{};
   lowest.sched_priority = sched_get_priority_min(SCHED_FIFO);
   if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &lowest) != 0) return false;
