@@ -196,6 +196,7 @@ constexpr Mistake mistakes[] = {
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES" label)"},
     {"E0304", R"(<Show subsystem="CORONAGRAPH" parameter="ACTIVE")", R"(<Show subsystem="@NOBODY" parameter="ACTIVE")"},
     {"E0105", R"( label="active")", ""},
+    {"E0329", R"(<Ground subsystem="GROUNDSTATION")", R"(<Ground subsystem="@CORONAGRAPH")", "another subsystem"},
 };
 // clang-format on
 

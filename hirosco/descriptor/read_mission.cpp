@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
@@ -134,7 +135,13 @@ void MissionReader::read_ground(const xml::Element& element) {
   no_children(element, problems_);
   if (const auto* subsystem = attributes.required("subsystem"); subsystem != nullptr) {
     mission_.ground.subsystem = subsystem->value;
-    static_cast<void>(find(*subsystem, subsystem->value, false));
+    // A stop of everything spares it, so nothing that moves may be its own (hazard SF1).
+    if (const Subsystem* carries = find(*subsystem, subsystem->value, false); carries != nullptr)
+      if (const auto acts = std::ranges::find_if(carries->devices, &Device::actuator); acts != carries->devices.end())
+        problems_.add(*subsystem, "E0329",
+                      fmt::format("'{}' carries the ground link, which a stop spares, and has the actuator '{}'",
+                                  carries->name, acts->name),
+                      "give the actuator, or the ground link, to another subsystem");
   }
   read_address(attributes, "telemetry", mission_.ground.telemetry);
   read_address(attributes, "telecommand", mission_.ground.telecommand);

@@ -26,7 +26,9 @@ void Processes::start_all() {
     const std::string& name = member.descriptor().name;
     if (const auto guarded = craft_.guard.add(member.described(), craft_.is_ground_link(member)); !guarded) {
       craft_.tell("cannot hold the second inhibit of " + name + "'s devices: " + guarded.error().text, member.apid());
+      // Nobody would see that it hangs, or take the enable of those devices that can be reached: it does not fly.
       craft_.failed = true;
+      continue;
     }
     launch(member);
     if (!member.alive()) craft_.failed = true;

@@ -253,5 +253,22 @@ TEST_F(ProcessesTest, AFlightWhoseFirstStartsFailIsNotOrderly) {
   EXPECT_TRUE(craft.failed);
 }
 
+TEST_F(ProcessesTest, OneWhoseDevicesTheGuardCannotInhibitDoesNotFly) {
+  descriptor::Device motor;
+  motor.name = "MOTOR";
+  motor.actuator = true;
+  motor.enable = descriptor::Endnode{};
+  motor.enable->address = "motor-enable";
+  craft.mission.subsystems[1].subsystem.devices = {motor};
+  const auto other = flows.open({motor.enable->transfer, motor.enable->address}, FlowSide::Subsystem);
+  ASSERT_TRUE(other) << "somebody else has it";
+  parts.processes.start_all();
+  EXPECT_FALSE(craft.member(hand)->alive());
+  EXPECT_EQ(played.count(hand), 0u);
+  EXPECT_TRUE(craft.member(arm)->alive());
+  EXPECT_TRUE(was_told("cannot hold the second inhibit of HAND's devices: "));
+  EXPECT_TRUE(craft.failed);
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor
