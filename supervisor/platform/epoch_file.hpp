@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -12,21 +13,24 @@
 /// latched nor takes an old command for a new one (hazard SF11).
 namespace hirosco::supervisor {
 
-/// Thread: the supervisor's. Realtime: blocks; hardly ever after first().
+/// Thread: the supervisor's.
 class EpochFile {
  public:
-  explicit EpochFile(std::filesystem::path path) : path_{std::move(path)} {}
-  /// Epoch that a flight begins with: above all that were kept, and not below the seconds since 2020.
+  explicit EpochFile(std::filesystem::path path);
+  /// Epoch that a flight begins with: above all that were kept, and not below the seconds since 2020. Blocks until the disk has it.
   /// OutOfRange: the numbers have run out. A file that cannot be read or written leaves the clock's number.
   [[nodiscard]] Result<std::uint32_t> first(OnboardTime now);
-  /// Reserves further epochs before they are used up.
+  /// Reserves further epochs before they are used up, which no ordinary flight comes to. Waits for no disk: a thread of its own writes,
+  /// and one that cannot is tried again later.
   void keep_above(std::uint32_t used);
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  /// What the disk has.
+  [[nodiscard]] std::uint32_t kept() const noexcept;
+  [[nodiscard]] const std::filesystem::path& path() const noexcept;
 
  private:
-  void write(std::uint32_t reserved);
-  std::filesystem::path path_;
-  std::uint32_t reserved_{0};
+  struct File;
+  std::shared_ptr<File> file_;  ///< a write that the disk holds up outlives the flight's own end
+  std::uint32_t next_try_{0};
 };
 
 }  // namespace hirosco::supervisor

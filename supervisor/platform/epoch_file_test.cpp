@@ -3,8 +3,10 @@
 #include "supervisor/platform/epoch_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
+#include <thread>
 
 #include "supervisor/platform/test_folder.hpp"
 
@@ -34,8 +36,37 @@ TEST_F(EpochFileTest, AClockThatWasSetBackDoesNotBringOldEpochsBack) {
 TEST_F(EpochFileTest, WhatAFlightUsesBeyondItsReserveIsKeptToo) {
   EpochFile file{path};
   const auto first = file.first(seconds_after_2020(10)).value();
-  for (std::uint32_t used = first; used < first + 100'000; used += 100) file.keep_above(used);
-  EXPECT_GT(EpochFile{path}.first(seconds_after_2020(10)).value(), first + 99'900);
+  std::uint32_t used = first;
+  while (file.kept() < first + 200'000) file.keep_above(used += 10);
+  EXPECT_GE(EpochFile{path}.first(seconds_after_2020(10)).value(), first + 200'000);
+}
+
+TEST_F(EpochFileTest, AnOrdinaryFlightWritesOnce) {
+  EpochFile file{path};
+  const auto first = file.first(seconds_after_2020(10)).value();
+  const auto reserved = file.kept();
+  std::filesystem::remove(path);
+  for (std::uint32_t used = first; used < first + 30'000; ++used) file.keep_above(used);
+  EXPECT_EQ(file.kept(), reserved);
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST_F(EpochFileTest, ADiskThatHangsOrFailsHoldsNobodyUpAndIsTriedAgain) {
+  EpochFile file{path};
+  const auto first = file.first(seconds_after_2020(10)).value();
+  // Whoever writes a pipe waits for a reader.
+  auto beside = path;
+  beside += ".new";
+  ASSERT_EQ(::mkfifo(beside.c_str(), 0600), 0);
+  std::uint32_t used = first + 60'000;
+  for (int i = 0; i < 1'000; ++i) file.keep_above(++used);
+  EXPECT_LT(file.kept(), first + 66'000);
+  std::string text;
+  std::ifstream{beside} >> text;
+  EXPECT_FALSE(text.empty());
+  std::filesystem::remove(beside);
+  while (file.kept() < first + 120'000) file.keep_above(++used);
+  EXPECT_GT(EpochFile{path}.first(seconds_after_2020(10)).value(), first + 120'000);
 }
 
 TEST_F(EpochFileTest, NumbersThatHaveRunOutAreRefused) {
