@@ -46,8 +46,8 @@ struct ProcessStart {
 /// Realtime: blocks. Thread: one at a time.
 class Process {
  public:
-  /// Starts an executable; an executable that cannot be started is an error here, not an exit later. It begins with no
-  /// ignored signals, no blocked ones but those named, and ordinary scheduling.
+  /// Starts an executable; an executable that cannot be started is an error here, not an exit later, unless its disk takes longer
+  /// than 0.3 s to say so. It begins with no ignored signals, no blocked ones but those named, and ordinary scheduling.
   [[nodiscard]] static Result<Process> spawn(const ProcessStart& start);
   /// Takes over a process that somebody else started.
   [[nodiscard]] static Result<Process> adopt(int pid) noexcept;

@@ -19,6 +19,8 @@ namespace hirosco {
 namespace {
 
 constexpr int exit_code_not_started = 127;
+/// An executable on a disk that hangs holds up nobody for longer. Well below what the supervisor's loop may stand still for.
+constexpr int longest_start_ms = 300;
 
 /// All the child needs, prepared before fork(): between fork() and exec() only async-signal-safe calls are allowed,
 /// since another thread may have held the heap's lock.
@@ -28,11 +30,11 @@ struct Plan {
   char** environment_used{environ};
   std::vector<ProcessStart::Inherited> inherited;
   std::vector<int> parked;  ///< room for the child's temporary numbers
-  int first_free{3};        ///< above every number wanted
+  int first_free{3};  ///< above every number wanted
   const char* executable{};
   const char* directory{};
   sigset_t blocked{};
-  int report{-1};           ///< the child writes errno here when it fails
+  int report{-1};  ///< the child writes errno here when it fails
 };
 
 void add_texts(std::vector<char*>& texts, const std::vector<std::string>& values) {
@@ -99,10 +101,13 @@ void reset_signals(const sigset_t& blocked) noexcept {
   give_up(plan.report, errno);
 }
 
-/// 0 once the child runs its executable (which closes the pipe), otherwise the child's errno.
+/// 0 once the child runs its executable (which closes the pipe), or when it takes so long that it counts as started: should it fail
+/// then, its end tells. Otherwise the child's errno.
 [[nodiscard]] int reported_error(int read_end) noexcept {
   int error = 0;
   ssize_t got = 0;
+  pollfd report{read_end, POLLIN, 0};
+  if (::poll(&report, 1, longest_start_ms) == 0) return 0;
   do {
     got = ::read(read_end, &error, sizeof error);
   } while (got < 0 && errno == EINTR);

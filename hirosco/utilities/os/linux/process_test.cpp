@@ -75,6 +75,26 @@ TEST(Process, AnExecutableThatDoesNotExistIsAnErrorAtOnce) {
   EXPECT_FALSE(Process::spawn({}));
 }
 
+/// A lease holds up whoever opens the file, as a disk that hangs does.
+TEST(Process, AnExecutableThatItsDiskHoldsUpHoldsUpNobodyAndRunsOnceItIsThere) {
+  std::string folder = (std::filesystem::temp_directory_path() / "hirosco-lease-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(folder.data()), nullptr);
+  const std::string program = folder + "/program";
+  std::filesystem::copy_file("/bin/true", program);
+  const auto before = std::signal(SIGIO, SIG_IGN);
+  {
+    const FileDescriptor file{::open(program.c_str(), O_RDONLY | O_CLOEXEC)};
+    ASSERT_EQ(::fcntl(file.get(), F_SETLEASE, F_WRLCK), 0);
+    auto process = Process::spawn({.executable = program});
+    ASSERT_TRUE(process);
+    EXPECT_FALSE(process->poll()->has_value()) << "it counts as started";
+    ASSERT_EQ(::fcntl(file.get(), F_SETLEASE, F_UNLCK), 0);
+    EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Exited, 0}));
+  }
+  static_cast<void>(std::signal(SIGIO, before));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Process, HasTheInheritedDescriptorsAndNoOthers) {
   Pipe first;
   Pipe second;
