@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <optional>
@@ -30,18 +31,25 @@ inline constexpr Duration keeper_patience = std::chrono::seconds{3};
 /// Looks at one counter of the page from time to time.
 class Progress {
  public:
+  /// Of the time between two looks no more counts: while the whole computer was stopped neither could move.
+  static constexpr Duration most_unwatched = std::chrono::milliseconds{400};
   /// True while it has moved and then stood still for longer than the patience. A counter that is damaged has moved once.
   [[nodiscard]] bool stands_still(std::uint64_t count, TimePoint now) noexcept {
+    if (looked_) still_ += std::min(now - *looked_, most_unwatched);
+    looked_ = now;
     if (count != seen_) {
       seen_ = count;
-      moved_ = now;
+      begun_ = true;
+      still_ = Duration{0};
     }
-    return moved_ && now - *moved_ > keeper_patience;
+    return begun_ && still_ > keeper_patience;
   }
 
  private:
   std::uint64_t seen_{0};
-  std::optional<TimePoint> moved_;  ///< empty: it has not begun
+  bool begun_{false};
+  Duration still_{};
+  std::optional<TimePoint> looked_;
 };
 
 struct KeeperPlan {

@@ -15,12 +15,27 @@ TEST(Progress, BeforeTheFirstStepNobodyStandsStill) {
   for (TimePoint now{1s}; now < TimePoint{60s}; now += 100ms) EXPECT_FALSE(progress.stands_still(0, now));
 }
 
+/// Looks every 100 ms from then to the end.
+bool looks(Progress& progress, std::uint64_t count, TimePoint from, TimePoint end) {
+  bool still = false;
+  for (TimePoint now = from; now <= end; now += 100ms) still = progress.stands_still(count, now);
+  return still;
+}
+
 TEST(Progress, StandsStillOnceItsPatienceIsOverAndNoLongerWhenItMoves) {
   Progress progress;
   EXPECT_FALSE(progress.stands_still(5, TimePoint{10s}));
-  EXPECT_FALSE(progress.stands_still(5, TimePoint{10s} + keeper_patience));
+  EXPECT_FALSE(looks(progress, 5, TimePoint{10s}, TimePoint{10s} + keeper_patience));
   EXPECT_TRUE(progress.stands_still(5, TimePoint{10s} + keeper_patience + 1ms));
   EXPECT_FALSE(progress.stands_still(6, TimePoint{14s}));
+}
+
+TEST(Progress, APauseOfTheWholeComputerIsNoStandstill) {
+  Progress progress;
+  EXPECT_FALSE(looks(progress, 5, TimePoint{10s}, TimePoint{12s}));
+  EXPECT_FALSE(progress.stands_still(5, TimePoint{100s}));
+  EXPECT_FALSE(looks(progress, 6, TimePoint{100s}, TimePoint{102s}));
+  EXPECT_TRUE(looks(progress, 6, TimePoint{102s}, TimePoint{104s})) << "whoever stands is seen afterwards";
 }
 
 TEST(Progress, NoDamageOfTheCounterHidesThatItStandsStillForLongerThanOnePatience) {
@@ -31,7 +46,7 @@ TEST(Progress, NoDamageOfTheCounterHidesThatItStandsStillForLongerThanOnePatienc
     Progress progress;
     EXPECT_FALSE(progress.stands_still(count, TimePoint{10s}));
     EXPECT_FALSE(progress.stands_still(damaged, TimePoint{11s}));
-    EXPECT_TRUE(progress.stands_still(damaged, TimePoint{11s} + keeper_patience + 1ms)) << damaged;
+    EXPECT_TRUE(looks(progress, damaged, TimePoint{11s}, TimePoint{11s} + keeper_patience + 100ms)) << damaged;
   }
 }
 
