@@ -64,6 +64,11 @@ TEST(VitalPage, HasABitOfItsOwnForEachReasonToInhibit) {
   for (std::size_t i = 0; i < reasons.size(); ++i) EXPECT_EQ(reasons[i], 1u << i) << "ground reads them as numbers";
 }
 
+TEST(VitalPage, IsOfTheVersionThatDecodersOfOthersKnow) {
+  EXPECT_EQ(VitalPage{}.version, 3u) << "tests/endtoend/pages.py";
+  EXPECT_EQ(PermitPage{}.version, 3u);
+}
+
 /// The finisher of SplitMix64 (Steele, Lea, Flood 2014): its first numbers of the seeds 0 and 1, as others print them.
 TEST(PermissionWord, IsTheFirstNumberOfSplitMix64FromTheEpoch) {
   EXPECT_EQ(permission_word(0), 0xE220A8397B1DCDAFu);

@@ -138,7 +138,7 @@ class CycleThread {
   bool realtime_;
   Semaphore wanted_{0};
   std::atomic<bool> ending_{false};
-  std::uint64_t cycles_{0};          ///< the cycle thread's until it is joined, like the next
+  std::uint64_t cycles_{0};  ///< the cycle thread's until it is joined, like the next
   std::uint64_t heap_uses_{0};
   Thread thread_;
 };

@@ -133,6 +133,15 @@ TEST_F(RealtimeLink, ShowsAStatusBeforeTheFirstSample) {
   EXPECT_EQ(sample.status, LinkStatus::Stopping);
 }
 
+TEST_F(RealtimeLink, LeavesThePayloadAloneBeforeTheFirstSample) {
+  seen_.fill(std::byte{0x55});
+  const Payload before = seen_;
+  EXPECT_EQ(reader_.read(seen_).flow, Flow::None);
+  writer_.set_status(LinkStatus::Degraded);
+  EXPECT_EQ(reader_.read(seen_).flow, Flow::None);
+  EXPECT_EQ(seen_, before);
+}
+
 TEST_F(RealtimeLink, KeepsItsOldCopyWhenTheWriterDiesInTheMiddle) {
   write(1);
   ASSERT_EQ(reader_.read(seen_).flow, Flow::New);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <atomic>
+#include <barrier>
 #include <csignal>
 #include <memory>
 #include <vector>
@@ -114,6 +115,27 @@ TEST(Scheduling, ThreadsOfASharedPriorityTakeTurnsAndPassNothingOn) {
     EXPECT_TRUE(set_ordinary_scheduling());
     EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER);
   })->join();
+}
+
+TEST(Scheduling, OneThatNeverRestsLeavesOthersOfASharedPriorityTheirTurn) {
+  std::array<std::atomic<std::uint64_t>, 2> turns{};
+  std::array<bool, 2> got{};
+  std::barrier both{2};
+  const auto spins = [&](std::size_t own) {
+    const bool shares = set_shared_priority(1) && pin_to_cycle_cpu();
+    both.arrive_and_wait();
+    got.at(own) = !shares;  // without the right to it there is nothing to see
+    if (!shares) return;
+    constexpr std::uint64_t most = 2'000'000'000;  // a thread that gets no turn at all fails, it does not hang
+    ++turns.at(own);
+    for (std::uint64_t i = 0; i < most && turns.at(1 - own) == 0; ++i) ++turns.at(own);
+    got.at(own) = turns.at(1 - own) != 0;
+  };
+  {
+    const Thread first = *Thread::start("first", [&] { spins(0); });
+    const Thread second = *Thread::start("second", [&] { spins(1); });
+  }
+  EXPECT_TRUE(got[0] && got[1]);
 }
 
 TEST(Scheduling, ShortSlicesNeedNoRightAndChangeNoPolicy) {

@@ -41,7 +41,8 @@ Result<> set_priority(int policy, int priority) noexcept {
   parameters.sched_priority = priority;
   // Without the flag a process we start would compete with our loops.
   if (::sched_setscheduler(0, policy | SCHED_RESET_ON_FORK, &parameters) != 0)
-    return fail(ErrorCode::SystemFailure, "real-time scheduling (rtprio limit, or cpu group without rt_runtime)", errno);
+    return fail(ErrorCode::SystemFailure, "real-time scheduling (rtprio limit, or cpu group without rt_runtime)",
+                errno);
   return ok();
 }
 
