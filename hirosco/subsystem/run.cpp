@@ -33,7 +33,7 @@ namespace {
 constexpr std::size_t cycle_stack_octets = std::size_t{1} << 20;
 
 /// Real-time, but below every cycle: a busy core cannot hold up a command to stop (decision 8a). Service loops share: one that never
-/// rests must not keep those of others from stepping, which would then count as hanging (hazard R16).
+/// rests must not keep those of others from stepping, which would then count as hanging (hazard R18).
 constexpr int service_priority = 20;
 constexpr int exit_usage = 2;
 constexpr int exit_environment = 3;

@@ -111,6 +111,10 @@ class Spacecraft::Grip final : public supervisor::ProcessGrip {
  public:
   Grip(Spacecraft& craft, std::size_t member) : craft_{craft}, member_{member} {}
   void take_realtime() noexcept override { craft_.members_[member_]->realtime_taken = true; }
+  // Service loops of simulated processes take no time, so they keep none from others.
+  void take_loops_realtime() noexcept override {}
+  void give_realtime() noexcept override { craft_.members_[member_]->realtime_taken = false; }
+  supervisor::LoopTime loop_time() noexcept override { return {}; }
   Duration processor_time() noexcept override {
     const Member& member = *craft_.members_[member_];
     return member.spinning ? craft_.now() - member.spins_since : Duration{0};

@@ -4,77 +4,21 @@
 #include "supervisor/guard/guard.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace hirosco::supervisor {
 namespace {
 
-/// From the order to stop until the last answer of a device that has nothing to wind down: its own cycle, an enable
-/// command, and a busy computer.
-constexpr Duration answer_limit = std::chrono::milliseconds{250};
 /// From the end of a member to the answer of its devices (hazard SF2).
 constexpr Duration killed_limit = std::chrono::milliseconds{400};
 /// Findings that nobody takes are those of a supervisor that stands still; the first tell the story.
 constexpr std::size_t most_findings = 1024;
 
-/// Damage of the page neither lowers an epoch, so that devices would not hear of it, nor uses up those that are left.
-void restore_epoch(PermitPage& page, std::uint32_t epoch) noexcept {
-  if (page.epoch.load(std::memory_order_relaxed) == epoch) return;
-  page.go.store(0, std::memory_order_release);
-  page.epoch.store(epoch, std::memory_order_release);
-}
-
 }  // namespace
 
-// --- one member --------------------------------------------------------------------------------------------------------
+Watched* Guard::find(std::uint16_t apid) noexcept { return const_cast<Watched*>(std::as_const(*this).find(apid)); }
 
-std::optional<State> Guard::Watched::state() const noexcept {
-  if (vital == nullptr) return std::nullopt;
-  const std::uint32_t number = vital->state.load(std::memory_order_acquire);
-  if (number > static_cast<std::uint32_t>(State::SoftwareDeinit)) return std::nullopt;
-  return static_cast<State>(number);
-}
-
-bool Guard::Watched::damaged() const noexcept {
-  constexpr auto relaxed = std::memory_order_relaxed;
-  // What it demands and how often it cycles follows from its configuration: one that nobody declared is none.
-  const std::uint32_t id = vital->configuration.load(relaxed);
-  const auto declared = [&](const descriptor::Configuration& configuration) { return configuration.id == id; };
-  const bool known = id == 0 || std::ranges::any_of(described->subsystem.configurations, declared);
-  // Nobody but the guard writes what gates: where it finds something else than it wrote, that page is believed no more.
-  const std::uint64_t go = permit->go.load(relaxed);
-  const bool gate = permit->magic == page_magic && permit->version == page_version &&
-                    permit->epoch.load(relaxed) == epoch && (go == 0 || (released && go == permission_word(epoch)));
-  return vital->magic != page_magic || vital->version != page_version || !state() || vital->cycling.load(relaxed) > 1 ||
-         vital->realtime.load(relaxed) > 1 || !known || !gate;
-}
-
-bool Guard::Watched::stands_fenced() const noexcept {
-  constexpr auto relaxed = std::memory_order_relaxed;
-  return !released && permit != nullptr && permit->stop.load(relaxed) != 0 && permit->go.load(relaxed) == 0 &&
-         permit->epoch.load(relaxed) == epoch;
-}
-
-/// A slow cycle stands still between its steps: three of its own periods are granted.
-Duration Guard::Watched::slow_steps() const noexcept {
-  if (vital == nullptr) return {};
-  const auto id = static_cast<std::uint8_t>(vital->configuration.load(std::memory_order_relaxed));
-  const auto* configured = described->subsystem.find_configuration(id);
-  return configured != nullptr ? 3 * configured->sampling : Duration{};
-}
-
-std::uint32_t Guard::Watched::hang_limit() const noexcept {
-  const bool realtime = vital->realtime.load(std::memory_order_relaxed) != 0;
-  const std::uint32_t limit = realtime ? described->subsystem.hang.realtime : described->subsystem.hang.reduced;
-  return std::max(limit, static_cast<std::uint32_t>(slow_steps() / observation_period));
-}
-
-Guard::Watched* Guard::find(std::uint16_t apid) noexcept {
-  return const_cast<Watched*>(std::as_const(*this).find(apid));
-}
-
-const Guard::Watched* Guard::find(std::uint16_t apid) const noexcept {
+const Watched* Guard::find(std::uint16_t apid) const noexcept {
   const auto found = std::ranges::find(members_, apid, &Watched::apid);
   return found != members_.end() ? &*found : nullptr;
 }
@@ -90,7 +34,7 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
     if (!device.enable) continue;
     HIROSCO_TRY_LET(auto flow,
                     parts_.flows.open({device.enable->transfer, device.enable->address}, FlowSide::Subsystem));
-    Device watched;
+    WatchedDevice watched;
     watched.name = device.name;
     watched.flow = std::move(flow);
     watched.stop_within = device.stop_within;
@@ -99,7 +43,13 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
   const LockGuard lock{mutex_};
   findings_.reserve(most_findings);
   members_.push_back(std::move(member));
+  for (Watched& each : members_) each.had_then.resize(members_.size());
   return ok();
+}
+
+bool Guard::holds(std::uint16_t apid) const {
+  const LockGuard lock{mutex_};
+  return find(apid) != nullptr;
 }
 
 void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
@@ -113,11 +63,13 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->vital = reinterpret_cast<const VitalPage*>(launched.vital.octets.data());
   member->permit = reinterpret_cast<PermitPage*>(launched.permit.octets.data());
   member->grip = launched.grip;
+  member->taken = Watched::Taken::Nothing;
   // A device may have heard of every epoch of the process before.
   member->permit->epoch.store(++member->epoch, std::memory_order_release);
   member->released = member->seen_operational = false;
   member->cycles = member->service_steps = 0;
   member->still = 0;
+  member->asked_who_runs.reset();
   member->doomed.reset();
   member->killed = false;
 }
@@ -126,7 +78,7 @@ void Guard::forget(std::uint16_t apid) {
   const LockGuard lock{mutex_};
   Watched* member = find(apid);
   if (member == nullptr) return;
-  fence(*member);
+  member->fence();
   member->vital = nullptr;
   member->permit = nullptr;
   member->vital_memory = member->permit_memory = {};
@@ -150,22 +102,7 @@ void Guard::find_out(GuardFinding::Kind kind, std::uint16_t apid) {
 
 void Guard::fence(std::uint16_t apid) {
   const LockGuard lock{mutex_};
-  if (Watched* member = find(apid)) fence(*member);
-}
-
-void Guard::fence(Watched& member) noexcept {
-  ++member.fences;
-  // Who stands fenced stays so: a further epoch, or a further answer to wait for, would only put off its word that it has stopped.
-  if (member.stands_fenced()) return;
-  member.released = false;
-  if (PermitPage* page = member.permit) {
-    if (member.vital != nullptr && page->stop.load(std::memory_order_relaxed) == 0)
-      page->stopped_at_cycle.store(member.vital->cycles.load(std::memory_order_acquire), std::memory_order_relaxed);
-    restore_epoch(*page, member.epoch);
-    page->fence();
-    member.epoch = page->epoch.load(std::memory_order_relaxed);
-  }
-  for (Device& device : member.devices) device.fenced_at_sequence = device.sequence;
+  if (Watched* member = find(apid)) member->fence();
 }
 
 std::uint64_t Guard::fences(std::uint16_t apid) const {
@@ -186,17 +123,12 @@ bool Guard::release(std::uint16_t apid, std::uint64_t seen_fences) {
   if (member == nullptr || member->permit == nullptr || member->fences != seen_fences || member->doomed) return false;
   // What is being stopped is let go again once it has stopped; what it did then is no matter of that stop any more.
   const bool stopping = stops_ended_ != stops_ && !member->spared;
-  if (stopping && !has_stopped(*member)) return false;
+  if (stopping && !member->has_stopped()) return false;
   if (stopping) {
     member->settled = stops_;
     if (!member->stopped) member->stopped = parts_.clock.now() - stop_begun_;
   }
-  restore_epoch(*member->permit, member->epoch);
-  member->permit->release();
-  member->epoch = member->permit->epoch.load(std::memory_order_relaxed);
-  member->released = true;
-  member->seen_operational = false;
-  member->released_at = parts_.clock.now();
+  member->release(watched_at(parts_.clock.now()));
   return true;
 }
 
@@ -213,17 +145,18 @@ std::uint64_t Guard::stop_all() {
     if (member.spared) continue;
     if (member.released) {
       member.stopped.reset();
-      for (Device& device : member.devices) device.stopped.reset();
+      for (WatchedDevice& device : member.devices) device.stopped.reset();
     }
-    fence(member);
+    member.fence();
   }
   // Stops that overlap end together; their time runs from the first.
   if (stops_ended_ == stops_) {
     stop_begun_ = parts_.clock.now();
+    stop_watched_ = watched_at(stop_begun_);
     for (Watched& member : members_) {
       member.stop_killed = false;
       member.stopped.reset();
-      for (Device& device : member.devices) device.stopped.reset();
+      for (WatchedDevice& device : member.devices) device.stopped.reset();
     }
   }
   return ++stops_;
@@ -236,7 +169,7 @@ std::optional<std::vector<StopAnswer>> Guard::stop_outcome(std::uint64_t stop) c
   for (const Watched& member : members_) {
     if (member.spared) continue;
     const std::string& name = member.described->subsystem.name;
-    for (const Device& device : member.devices)
+    for (const WatchedDevice& device : member.devices)
       answers.push_back({member.apid(), device.name, true, device.stopped, member.stop_killed});
     if (member.devices.empty()) answers.push_back({member.apid(), name, false, member.stopped, member.stop_killed});
   }
@@ -254,18 +187,41 @@ std::uint32_t Guard::highest_epoch() const {
 
 TimePoint Guard::step(TimePoint now) {
   const LockGuard lock{mutex_};
-  watch_supervisor(now);
-  if (now >= next_observation_) {
-    next_observation_ = now + observation_period;
-    observe(now);
+  watched_ = watched_at(now);
+  stepped_ = now;
+  watch_supervisor(watched_);
+  if (watched_ >= next_observation_) {
+    next_observation_ = watched_ + observation_period;
+    observe(watched_);
   }
   for (Watched& member : members_) {
-    end_permission(member, now);
-    tell_devices(member, now);
-    if (member.doomed) judge_doomed(member, now);
+    member.end_permission(watched_);
+    for (WatchedDevice& device : member.devices) {
+      device.hear();
+      const bool at_rest = device.last.output == DeviceOutput::Off || device.last.output == DeviceOutput::Holding;
+      if (!member.released && device.knows() && at_rest && !device.stopped) device.stopped = now - stop_begun_;
+      device.tell(member.released && !supervisor_still_, member.epoch);
+    }
+    if (member.doomed) judge_doomed(member, watched_);
   }
   if (stops_ended_ != stops_) follow_stop(now);
   return now + period;
+}
+
+TimePoint Guard::watched_at(TimePoint now) const noexcept {
+  if (!stepped_) return now;
+  const Duration passed = now - *stepped_;
+  return watched_ + (passed <= most_unwatched || somebody_went_on(passed) ? passed : most_unwatched);
+}
+
+/// Half of the cycles that were due count: while the guard alone does not run, a computer may be busy.
+bool Guard::somebody_went_on(Duration passed) const noexcept {
+  return std::ranges::any_of(members_, [&](const Watched& member) {
+    const Duration sampling = member.sampling();
+    if (sampling <= Duration{0} || member.vital->cycling.load(std::memory_order_acquire) == 0) return false;
+    const auto went = member.vital->cycles.load(std::memory_order_acquire) - member.cycles;
+    return went >= static_cast<std::uint64_t>(passed / sampling / 2 + 1);
+  });
 }
 
 void Guard::watch_supervisor(TimePoint now) {
@@ -280,7 +236,7 @@ void Guard::watch_supervisor(TimePoint now) {
   if (supervisor_still_ || now - *beat_seen_ < supervisor_limit) return;
   // Nobody permits, plans or tells any more: what moves is stopped, the ground link included.
   supervisor_still_ = true;
-  for (Watched& member : members_) fence(member);
+  for (Watched& member : members_) member.fence();
   find_out(GuardFinding::Kind::SupervisorStill, 0);
 }
 
@@ -318,7 +274,7 @@ void Guard::observe_cycle(Watched& member, TimePoint now) {
 }
 
 /// All cycles of a node share one processor (adr 0007): of those that stand still it is the one that has had it.
-Guard::Watched& Guard::spinner(Watched& standing) {
+Watched& Guard::spinner(Watched& standing) {
   Watched* most = &standing;
   double most_share = 0;
   for (Watched& member : members_) {
@@ -340,18 +296,60 @@ void Guard::observe_service(Watched& member, TimePoint now) {
   if (steps == 0) return;  // it has not begun
   if (steps != std::exchange(member.service_steps, steps)) {
     member.service_moved = now;
+    member.asked_who_runs.reset();
     return;
   }
   const auto state = member.state();
   const Duration limit = state && is_transient(*state) ? transient_service_limit : service_limit;
-  if (now - member.service_moved >= limit) doom(member, GuardFinding::Kind::ServiceHangs, now);
+  const Duration stood = now - member.service_moved;
+  // It is asked late, as it costs more than a look at a page.
+  if (stood >= limit / 2 && !member.asked_who_runs) look_who_runs(member, now);
+  if (stood < limit) return;
+  if (!was_starved(member, now)) return doom(member, GuardFinding::Kind::ServiceHangs, now);
+  member.service_moved = now;
+  member.asked_who_runs.reset();
+}
+
+void Guard::look_who_runs(Watched& standing, TimePoint now) noexcept {
+  standing.asked_who_runs = now;
+  for (std::size_t i = 0; i < members_.size(); ++i)
+    standing.had_then[i] = members_[i].grip ? members_[i].grip->loop_time() : LoopTime{};
+}
+
+/// A service loop that wants the processor and does not get it stands still for no fault of its own: the loops that have had it
+/// instead lose their real-time priority. One that waits for something else, or runs, has nobody else to blame.
+bool Guard::was_starved(Watched& standing, TimePoint now) {
+  if (!standing.grip) return false;
+  const auto share = [span = now - *standing.asked_who_runs](Duration had, Duration before) {
+    return static_cast<double>((had - before).count()) / static_cast<double>(std::max(span, period).count());
+  };
+  constexpr double hardly = 0.1, mostly = 0.5;
+  const auto at = static_cast<std::size_t>(&standing - members_.data());
+  const LoopTime own = standing.grip->loop_time();
+  if (!own.waits || share(own.service, standing.had_then[at].service) > hardly) return false;
+  bool starved = false;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    Watched& other = members_[i];
+    if (i == at || other.vital == nullptr || other.doomed || !other.grip) continue;
+    if (share(other.grip->loop_time().realtime, standing.had_then[i].realtime) < mostly) continue;
+    starved = true;
+    // One that has lost it once and has it again took it by itself: it is ended.
+    if (other.taken != Watched::Taken::Nothing) {
+      doom(other, GuardFinding::Kind::Starves, now);
+      continue;
+    }
+    other.take_realtime(Watched::Taken::Loops);
+    find_out(GuardFinding::Kind::Starves, other.apid());
+  }
+  return starved;
 }
 
 void Guard::doom(Watched& member, GuardFinding::Kind why, TimePoint now) {
-  fence(member);
+  member.fence();
   // One that merely stands (SIGSTOP) keeps its priority: it takes nothing from anybody.
   const Duration had = member.grip ? member.grip->processor_time() - member.processor_time : Duration{};
-  if (member.grip && (why != GuardFinding::Kind::CycleHangs || had >= observation_period)) member.grip->take_realtime();
+  if (member.grip && (why != GuardFinding::Kind::CycleHangs || had >= observation_period))
+    member.take_realtime(Watched::Taken::All);
   member.doomed = now + grace;
   member.doom = why;
   find_out(why, member.apid());
@@ -373,6 +371,7 @@ void Guard::judge_doomed(Watched& member, TimePoint now) {
     member.doomed.reset();
     member.still = 0;
     member.service_moved = now;
+    member.asked_who_runs.reset();
     return find_out(GuardFinding::Kind::Back, member.apid());
   }
   if (now < *member.doomed || member.killed) return;
@@ -381,89 +380,23 @@ void Guard::judge_doomed(Watched& member, TimePoint now) {
   find_out(GuardFinding::Kind::Killed, member.apid());
 }
 
-/// A permission is for one stay in Operational: it ends with it.
-void Guard::end_permission(Watched& member, TimePoint now) noexcept {
-  if (!member.released) return;
-  const bool operational = member.state() == State::Operational;
-  member.seen_operational = member.seen_operational || operational;
-  const bool over = member.seen_operational ? !operational : now - member.released_at >= entry_limit;
-  if (!over) return;
-  member.released = false;
-  if (member.permit != nullptr) member.permit->go.store(0, std::memory_order_release);
-}
-
-void Guard::tell_devices(Watched& member, TimePoint now) noexcept {
-  std::array<std::byte, enable_frame_octets> frame;
-  for (Device& device : member.devices) {
-    const auto received = device.flow->receive(frame);
-    if (received && received->flow == Flow::New) {
-      if (const auto status = read_enable_status(Octets{frame}.first(std::min(received->octets, frame.size())))) {
-        device.last = *status;
-        device.heard = true;
-      }
-    }
-    const bool knows = device.heard && static_cast<std::int32_t>(device.last.sequence - device.fenced_at_sequence) > 0;
-    const bool at_rest = device.last.output == DeviceOutput::Off || device.last.output == DeviceOutput::Holding;
-    if (!member.released && knows && at_rest && !device.stopped) device.stopped = now - stop_begun_;
-    const bool enabled = member.released && !supervisor_still_;
-    const auto written = write_enable_command(
-        frame,
-        {.enabled = static_cast<std::uint8_t>(enabled ? 1 : 0), .epoch = member.epoch, .sequence = ++device.sequence});
-    // A device that does not hear it stops by itself: that is what it waits for.
-    if (written) static_cast<void>(device.flow->send(*written));
-  }
-}
-
-Duration Guard::stop_limit(const Watched& member) const noexcept {
-  Duration longest{};
-  for (const Device& device : member.devices) longest = std::max(longest, device.stop_within);
-  // Its own word comes with its cycle.
-  return std::max(longest, member.slow_steps()) + answer_limit;
-}
-
-bool Guard::has_stopped(const Watched& member) const noexcept {
-  if (!member.devices.empty())
-    return std::ranges::all_of(member.devices, [](const Device& device) { return device.stopped.has_value(); });
-  return says_stopped(member);
-}
-
-/// Its own word: that of its page.
-bool Guard::says_stopped(const Watched& member) const noexcept {
-  if (member.vital == nullptr) return true;  // there is no process that could move anything
-  const auto state = member.state();
-  if (!state) return false;  // what a damaged page says is nothing
-  if (*state == State::Offline) return true;
-  const bool rests = member.vital->cycling.load(std::memory_order_acquire) == 0;
-  const bool knows = member.vital->seen_epoch.load(std::memory_order_acquire) == member.epoch;
-  const bool inhibited = *state != State::Operational || member.vital->inhibited.load(std::memory_order_acquire) != 0;
-  return rests || (knows && inhibited);
-}
-
-/// A device that cannot be heard (unplugged, say) is no reason to end the subsystem that has let go of it.
-bool Guard::to_blame(const Watched& member) const noexcept {
-  const auto moves = [](const Device& device) {
-    const bool knows = device.heard && static_cast<std::int32_t>(device.last.sequence - device.fenced_at_sequence) > 0;
-    return knows && !device.stopped;
-  };
-  return !says_stopped(member) || std::ranges::any_of(member.devices, moves);
-}
-
 void Guard::follow_stop(TimePoint now) {
+  // How long a stop took is told in real time; who is given how long goes by what was watched.
+  const Duration since = watched_ - stop_watched_;
   bool waiting = false;
   for (Watched& member : members_) {
     if (member.spared || member.settled == stops_) continue;
-    if (has_stopped(member)) {
+    if (member.has_stopped()) {
       if (!member.stopped) member.stopped = now - stop_begun_;
       continue;
     }
     member.stopped.reset();
-    const Duration since = now - stop_begun_;
-    if (since >= stop_limit(member) && !member.stop_killed && member.grip && to_blame(member)) {
+    if (since >= member.stop_limit() && !member.stop_killed && member.grip && member.to_blame()) {
       member.stop_killed = true;
       member.grip->kill();
       find_out(GuardFinding::Kind::Killed, member.apid());
     }
-    waiting = waiting || since < stop_limit(member) + (member.stop_killed ? killed_limit : Duration{0});
+    waiting = waiting || since < member.stop_limit() + (member.stop_killed ? killed_limit : Duration{0});
   }
   if (waiting) return;
   stops_ended_ = stops_;

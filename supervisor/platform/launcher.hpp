@@ -15,6 +15,13 @@
 /// How subsystems come to life (architecture, rule 3). Real: one process each; simulated: objects of one process.
 namespace hirosco::supervisor {
 
+/// Processor time of the loops of a process, its cycle left out.
+struct LoopTime {
+  Duration service{};   ///< had by its service loop
+  Duration realtime{};  ///< had by all loops that have real-time priority
+  bool waits{false};    ///< its service loop could run at this moment
+};
+
 /// What can be done to a started process whatever it does itself. After its end nothing happens any more.
 /// Realtime: system calls, bounded. Thread: any.
 class ProcessGrip {
@@ -22,6 +29,11 @@ class ProcessGrip {
   virtual ~ProcessGrip() = default;
   /// All its threads lose real-time priority: who waited for the processor gets it.
   virtual void take_realtime() noexcept = 0;
+  /// The same, but its cycle keeps what it has.
+  virtual void take_loops_realtime() noexcept = 0;
+  /// What was taken is given back to each thread that had it and has none now.
+  virtual void give_realtime() noexcept = 0;
+  [[nodiscard]] virtual LoopTime loop_time() noexcept = 0;
   /// Processor time that all its threads have had so far.
   [[nodiscard]] virtual Duration processor_time() noexcept = 0;
   virtual void kill() noexcept = 0;

@@ -38,6 +38,8 @@ class SystemLauncher final : public ProcessLauncher {
   std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
   std::map<std::uint32_t, Process> processes_;
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
+  /// Where each executable was found: a disk is not searched again in flight, where it might hang.
+  std::map<std::string, std::filesystem::path, std::less<>> programs_;
   std::uint32_t next_{1};
 };
 

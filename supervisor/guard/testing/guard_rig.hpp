@@ -17,10 +17,15 @@
 namespace hirosco::supervisor::testing {
 
 struct FakeProcess final : ProcessGrip {
-  void take_realtime() noexcept override { realtime = false; }
+  void take_realtime() noexcept override { realtime = loops_realtime = false; }
+  void take_loops_realtime() noexcept override { loops_realtime = false; }
+  void give_realtime() noexcept override { realtime = loops_realtime = true; }
+  LoopTime loop_time() noexcept override { return loops; }
   Duration processor_time() noexcept override { return had; }
   void kill() noexcept override { killed = true; }
   bool realtime{true};
+  bool loops_realtime{true};
+  LoopTime loops;
   bool killed{false};
   Duration had{};
 };

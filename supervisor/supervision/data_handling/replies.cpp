@@ -9,7 +9,7 @@
 namespace hirosco::supervisor {
 
 namespace {
-constexpr Duration loss_period = 1s;
+constexpr Duration reply_loss_period = 1s;
 }
 
 void Replies::hear(std::uint16_t from, const pus::TelemetryView& report) {
@@ -44,7 +44,7 @@ void Replies::watch(TimePoint now) {
     }
     flush(member, queue);
     if (queue.lost == queue.lost_told || now < queue.next_told) continue;
-    queue.next_told = now + loss_period;
+    queue.next_told = now + reply_loss_period;
     craft_.tell(fmt::format("{} does not read what it asked for: {} reports lost", member.descriptor().name,
                             queue.lost - std::exchange(queue.lost_told, queue.lost)),
                 apid);

@@ -24,12 +24,6 @@ constexpr Duration closed_channel_limit = 1s;
 void Processes::start_all() {
   for (Member& member : craft_.members) {
     const std::string& name = member.descriptor().name;
-    if (const auto guarded = craft_.guard.add(member.described(), craft_.is_ground_link(member)); !guarded) {
-      craft_.tell("cannot hold the second inhibit of " + name + "'s devices: " + guarded.error().text, member.apid());
-      // Nobody would see that it hangs, or take the enable of those devices that can be reached: it does not fly.
-      craft_.failed = true;
-      continue;
-    }
     launch(member);
     if (!member.alive()) craft_.failed = true;
     for (const auto device : descriptor::actuators_without_enable(member.descriptor()))
@@ -42,6 +36,14 @@ void Processes::start_all() {
 }
 
 void Processes::launch(Member& member) {
+  if (!craft_.guard.holds(member.apid())) {
+    const auto held = craft_.guard.add(member.described(), craft_.is_ground_link(member));
+    // Nobody would see that it hangs, or take the enable of those devices that can be reached: it does not fly.
+    if (!held)
+      return craft_.tell(
+          "cannot hold the second inhibit of " + member.descriptor().name + "'s devices: " + held.error().text,
+          member.apid());
+  }
   auto launched = craft_.launcher.launch(member.described());
   if (!launched) {
     craft_.tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
@@ -126,6 +128,7 @@ void Processes::hear_of(Member& subject, GuardFinding::Kind what) {
     case CycleHangs: tell(" hangs: its cycle stands still"); break;
     case ServiceHangs: tell(" hangs: its service loop stands still"); break;
     case PageDamaged: tell(" hangs: its vital or permit page is damaged"); break;
+    case Starves: return tell("'s loops kept the processor from others: they have lost their real-time priority");
     case Back: return tell(" moves again");
     case Killed: return tell(" was ended: it did not come back or had not stopped in time");
     default: return;

@@ -253,14 +253,14 @@ TEST_F(ProcessesTest, AFlightWhoseFirstStartsFailIsNotOrderly) {
   EXPECT_TRUE(craft.failed);
 }
 
-TEST_F(ProcessesTest, OneWhoseDevicesTheGuardCannotInhibitDoesNotFly) {
+TEST_F(ProcessesTest, OneWhoseDevicesTheGuardCannotInhibitDoesNotFlyUntilItCan) {
   descriptor::Device motor;
   motor.name = "MOTOR";
   motor.actuator = true;
   motor.enable = descriptor::Endnode{};
   motor.enable->address = "motor-enable";
   craft.mission.subsystems[1].subsystem.devices = {motor};
-  const auto other = flows.open({motor.enable->transfer, motor.enable->address}, FlowSide::Subsystem);
+  auto other = flows.open({motor.enable->transfer, motor.enable->address}, FlowSide::Subsystem);
   ASSERT_TRUE(other) << "somebody else has it";
   parts.processes.start_all();
   EXPECT_FALSE(craft.member(hand)->alive());
@@ -268,6 +268,12 @@ TEST_F(ProcessesTest, OneWhoseDevicesTheGuardCannotInhibitDoesNotFly) {
   EXPECT_TRUE(craft.member(arm)->alive());
   EXPECT_TRUE(was_told("cannot hold the second inhibit of HAND's devices: "));
   EXPECT_TRUE(craft.failed);
+  EXPECT_FALSE(parts.processes.start(hand));
+  EXPECT_EQ(played.count(hand), 0u);
+  other->reset();
+  EXPECT_TRUE(parts.processes.start(hand));
+  EXPECT_TRUE(craft.member(hand)->alive());
+  EXPECT_TRUE(guard.release(hand, guard.fences(hand))) << "the guard has it";
 }
 
 }  // namespace

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+// Safety module: fence (docs/safety/modules.csv).
+#include "supervisor/guard/watched.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace hirosco::supervisor {
+namespace {
+
+/// From the order to stop until the last answer of a device that has nothing to wind down: its own cycle, an enable
+/// command, and a busy computer.
+constexpr Duration answer_limit = std::chrono::milliseconds{250};
+/// A slow cycle stands still between its steps: so many of its own periods are granted.
+constexpr int slow_steps = 3;
+
+/// Damage of the page neither lowers an epoch, so that devices would not hear of it, nor uses up those that are left.
+void restore_epoch(PermitPage& page, std::uint32_t epoch) noexcept {
+  if (page.epoch.load(std::memory_order_relaxed) == epoch) return;
+  page.go.store(0, std::memory_order_release);
+  page.epoch.store(epoch, std::memory_order_release);
+}
+
+}  // namespace
+
+// --- one device --------------------------------------------------------------------------------------------------------
+
+bool WatchedDevice::knows() const noexcept {
+  return heard && static_cast<std::int32_t>(last.sequence - fenced_at_sequence) > 0;
+}
+
+void WatchedDevice::hear() noexcept {
+  std::array<std::byte, enable_frame_octets> frame;
+  const auto received = flow->receive(frame);
+  if (!received || received->flow != Flow::New) return;
+  if (const auto status = read_enable_status(Octets{frame}.first(std::min(received->octets, frame.size())))) {
+    last = *status;
+    heard = true;
+  }
+}
+
+void WatchedDevice::tell(bool enabled, std::uint32_t epoch) noexcept {
+  std::array<std::byte, enable_frame_octets> frame;
+  const auto written = write_enable_command(
+      frame, {.enabled = static_cast<std::uint8_t>(enabled ? 1 : 0), .epoch = epoch, .sequence = ++sequence});
+  // A device that does not hear it stops by itself: that is what it waits for.
+  if (written) static_cast<void>(flow->send(*written));
+}
+
+// --- what a member's pages say -----------------------------------------------------------------------------------------
+
+std::optional<State> Watched::state() const noexcept {
+  if (vital == nullptr) return std::nullopt;
+  const std::uint32_t number = vital->state.load(std::memory_order_acquire);
+  if (number > static_cast<std::uint32_t>(State::SoftwareDeinit)) return std::nullopt;
+  return static_cast<State>(number);
+}
+
+bool Watched::damaged() const noexcept {
+  constexpr auto relaxed = std::memory_order_relaxed;
+  // What it demands and how often it cycles follows from its configuration: one that nobody declared is none.
+  const std::uint32_t id = vital->configuration.load(relaxed);
+  const auto declared = [&](const descriptor::Configuration& configuration) { return configuration.id == id; };
+  const bool known = id == 0 || std::ranges::any_of(described->subsystem.configurations, declared);
+  // Nobody but the guard writes what gates: where it finds something else than it wrote, that page is believed no more.
+  const std::uint64_t go = permit->go.load(relaxed);
+  const bool gate = permit->magic == page_magic && permit->version == page_version &&
+                    permit->epoch.load(relaxed) == epoch && (go == 0 || (released && go == permission_word(epoch)));
+  return vital->magic != page_magic || vital->version != page_version || !state() || vital->cycling.load(relaxed) > 1 ||
+         vital->realtime.load(relaxed) > 1 || !known || !gate;
+}
+
+Duration Watched::sampling() const noexcept {
+  if (vital == nullptr) return {};
+  const auto id = static_cast<std::uint8_t>(vital->configuration.load(std::memory_order_relaxed));
+  const auto* configured = described->subsystem.find_configuration(id);
+  return configured != nullptr ? configured->sampling : Duration{};
+}
+
+std::uint32_t Watched::hang_limit() const noexcept {
+  const bool realtime = vital->realtime.load(std::memory_order_relaxed) != 0 && taken != Taken::All;
+  const std::uint32_t limit = realtime ? described->subsystem.hang.realtime : described->subsystem.hang.reduced;
+  return std::max(limit, static_cast<std::uint32_t>(slow_steps * sampling() / guard_observation_period));
+}
+
+// --- its permission ----------------------------------------------------------------------------------------------------
+
+bool Watched::stands_fenced() const noexcept {
+  constexpr auto relaxed = std::memory_order_relaxed;
+  return !released && permit != nullptr && permit->stop.load(relaxed) != 0 && permit->go.load(relaxed) == 0 &&
+         permit->epoch.load(relaxed) == epoch;
+}
+
+void Watched::fence() noexcept {
+  ++fences;
+  // Who stands fenced stays so: a further epoch, or a further answer to wait for, would only put off its word that it has stopped.
+  if (stands_fenced()) return;
+  released = false;
+  if (permit != nullptr) {
+    if (vital != nullptr && permit->stop.load(std::memory_order_relaxed) == 0)
+      permit->stopped_at_cycle.store(vital->cycles.load(std::memory_order_acquire), std::memory_order_relaxed);
+    restore_epoch(*permit, epoch);
+    permit->fence();
+    epoch = permit->epoch.load(std::memory_order_relaxed);
+  }
+  for (WatchedDevice& device : devices) device.fenced_at_sequence = device.sequence;
+}
+
+void Watched::release(TimePoint now) noexcept {
+  // Who may move has the priority that its limits are made for.
+  if (taken != Taken::Nothing) grip->give_realtime();
+  taken = Taken::Nothing;
+  restore_epoch(*permit, epoch);
+  permit->release();
+  epoch = permit->epoch.load(std::memory_order_relaxed);
+  released = true;
+  seen_operational = false;
+  released_at = now;
+}
+
+void Watched::end_permission(TimePoint now) noexcept {
+  if (!released) return;
+  const bool operational = state() == State::Operational;
+  seen_operational = seen_operational || operational;
+  const bool over = seen_operational ? !operational : now - released_at >= permission_entry_limit;
+  if (!over) return;
+  released = false;
+  if (permit != nullptr) permit->go.store(0, std::memory_order_release);
+}
+
+void Watched::take_realtime(Taken what) noexcept {
+  if (what == Taken::All) grip->take_realtime();
+  else grip->take_loops_realtime();
+  taken = std::max(taken, what);
+}
+
+// --- a stop ------------------------------------------------------------------------------------------------------------
+
+bool Watched::has_stopped() const noexcept {
+  if (!devices.empty())
+    return std::ranges::all_of(devices, [](const WatchedDevice& device) { return device.stopped.has_value(); });
+  return says_stopped();
+}
+
+bool Watched::says_stopped() const noexcept {
+  if (vital == nullptr) return true;  // there is no process that could move anything
+  const auto now = state();
+  if (!now) return false;  // what a damaged page says is nothing
+  if (*now == State::Offline) return true;
+  const bool rests = vital->cycling.load(std::memory_order_acquire) == 0;
+  const bool knows = vital->seen_epoch.load(std::memory_order_acquire) == epoch;
+  const bool inhibited = *now != State::Operational || vital->inhibited.load(std::memory_order_acquire) != 0;
+  return rests || (knows && inhibited);
+}
+
+bool Watched::to_blame() const noexcept {
+  const auto moves = [](const WatchedDevice& device) { return device.knows() && !device.stopped; };
+  return !says_stopped() || std::ranges::any_of(devices, moves);
+}
+
+Duration Watched::stop_limit() const noexcept {
+  Duration longest{};
+  for (const WatchedDevice& device : devices) longest = std::max(longest, device.stop_within);
+  // Its own word comes with its cycle.
+  return std::max(longest, slow_steps * sampling()) + answer_limit;
+}
+
+}  // namespace hirosco::supervisor

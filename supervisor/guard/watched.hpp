@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/enable_frame.hpp"
+#include "hirosco/subsystem/pages.hpp"
+#include "hirosco/subsystem/states.hpp"
+#include "supervisor/platform/launcher.hpp"
+
+/// What the guard holds of one member, and what it reads from it. Thread: under the guard's mutex.
+namespace hirosco::supervisor {
+
+inline constexpr Duration guard_observation_period = std::chrono::milliseconds{10};
+inline constexpr Duration permission_entry_limit = std::chrono::seconds{2};
+
+/// What the guard saw or did, for the rest of the supervisor to tell and to plan for.
+struct GuardFinding {
+  enum class Kind : std::uint8_t {
+    CycleHangs,  ///< its cycle stands still: fenced, its real-time priority taken; killed unless it comes back
+    ServiceHangs,  ///< its service loop stands still: as above
+    PageDamaged,  ///< its vital page is not one any more: as above
+    Starves,  ///< its loops kept the processor from a service loop: they lose their real-time priority, its cycle keeps its own
+    Back,  ///< it moves again within the grace: it is not killed
+    Killed,  ///< it did not come back
+    SupervisorStill,  ///< the supervisor's own loop stood still: everything was fenced
+    StopAsked,  ///< somebody stopped everything by signal or local socket
+  };
+  Kind kind{};
+  std::uint16_t apid{0};
+};
+
+/// A device of a member, by the endnode of its second inhibit.
+struct WatchedDevice {
+  std::string name;
+  std::unique_ptr<DataFlow> flow;
+  Duration stop_within{};
+  std::uint32_t sequence{0};
+  EnableStatus last{};
+  bool heard{false};
+  std::uint32_t fenced_at_sequence{0};  ///< an answer to a later command knows of the newest stop
+  std::optional<Duration> stopped;
+  /// It has answered a command that came after the newest fence.
+  [[nodiscard]] bool knows() const noexcept;
+  void hear() noexcept;
+  void tell(bool enabled, std::uint32_t epoch) noexcept;
+};
+
+struct Watched {
+  /// What of its real-time priority the guard has taken; it has all of it back with its next release.
+  enum class Taken : std::uint8_t { Nothing, Loops, All };
+
+  const descriptor::MissionSubsystem* described{nullptr};
+  bool spared{false};
+  Mapping vital_memory, permit_memory;
+  const VitalPage* vital{nullptr};
+  PermitPage* permit{nullptr};
+  std::shared_ptr<ProcessGrip> grip;
+  Taken taken{Taken::Nothing};
+  std::uint32_t epoch{0};  ///< of the page, kept when a process ends
+  std::uint64_t fences{0};
+  // permission
+  bool released{false};
+  bool seen_operational{false};
+  TimePoint released_at{};
+  // observation
+  std::uint64_t cycles{0};
+  std::uint32_t still{0};
+  Duration processor_time{};  ///< when the cycle stood still first
+  std::uint64_t service_steps{0};
+  TimePoint service_moved{};
+  std::optional<TimePoint> asked_who_runs;  ///< since its service loop stands
+  std::vector<LoopTime> had_then;  ///< by the loops of each member
+  std::optional<TimePoint> doomed;  ///< killed then unless it comes back
+  GuardFinding::Kind doom{};
+  // stop
+  std::optional<Duration> stopped;
+  bool killed{false};
+  std::uint64_t settled{0};  ///< the stop in which it had stopped and was let go again
+  bool stop_killed{false};  ///< by the present stop: nobody is ended twice for one
+  std::vector<WatchedDevice> devices;
+
+  [[nodiscard]] std::uint16_t apid() const noexcept { return described->subsystem.id; }
+  [[nodiscard]] std::optional<State> state() const noexcept;
+  [[nodiscard]] bool damaged() const noexcept;
+  /// Of its cycle, as declared; 0 while it has none.
+  [[nodiscard]] Duration sampling() const noexcept;
+  /// In observations.
+  [[nodiscard]] std::uint32_t hang_limit() const noexcept;
+
+  [[nodiscard]] bool stands_fenced() const noexcept;
+  void fence() noexcept;
+  void release(TimePoint now) noexcept;
+  /// A permission is for one stay in Operational: it ends with it.
+  void end_permission(TimePoint now) noexcept;
+  void take_realtime(Taken what) noexcept;
+
+  [[nodiscard]] bool has_stopped() const noexcept;
+  /// Its own word: that of its page.
+  [[nodiscard]] bool says_stopped() const noexcept;
+  /// A device that cannot be heard (unplugged, say) is no reason to end the subsystem that has let go of it.
+  [[nodiscard]] bool to_blame() const noexcept;
+  [[nodiscard]] Duration stop_limit() const noexcept;
+};
+
+}  // namespace hirosco::supervisor
