@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/archive/archive.hpp"
 
+#include <sqlite3.h>
+
 #include <algorithm>
 
-#include "ground/archive/statement.hpp"
+#include "ground/archive/columns.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -46,147 +48,125 @@ constexpr int busy_limit_ms = 2000;  ///< while opening
 
 }  // namespace
 
+Archive::Archive(const std::string& path, std::int64_t limit_octets)
+    : database_{std::make_unique<SQLite::Database>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_limit_ms)},
+      limit_octets_{limit_octets} {}
+
 Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, std::int64_t limit_octets) {
-  sqlite3* database = nullptr;
-  const int opened = sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
-  if (opened != SQLITE_OK) {
-    sqlite3_close(database);
-    return fail(ErrorCode::Unavailable, "the archive cannot be opened", opened);
+  std::unique_ptr<Archive> archive;
+  try {
+    archive.reset(new Archive{path, limit_octets});
+    const std::int64_t owner = archive->number("PRAGMA application_id"),
+                       version = archive->number("PRAGMA user_version");
+    if (owner != 0 && owner != application_id)
+      return fail(ErrorCode::Mismatch, "this is a database of something else, not an archive", owner);
+    if (version != 0 && version != schema_version)
+      return fail(ErrorCode::Mismatch, "the archive was written by another version of hirosco", version);
+    archive->database_->exec(schema);
+    // Neither: a new one, or one from before they were written.
+    if (owner == 0) archive->database_->exec(mark);
+    archive->add_packet_ = std::make_unique<SQLite::Statement>(
+        *archive->database_, "INSERT INTO packets(t, apid, service, subtype, sid, octets) VALUES(?, ?, ?, ?, ?, ?)");
+    // From here on nobody else's business with the file holds up the live view: what it costs is counted.
+    archive->database_->setBusyTimeout(0);
+    return archive;
+  } catch (const SQLite::Exception& refused) {
+    if (archive == nullptr) return fail(ErrorCode::Unavailable, "the archive cannot be opened", refused.getErrorCode());
+    return fail(ErrorCode::Malformed, "the archive is not one of ours", refused.getExtendedErrorCode());
   }
-  auto archive = std::unique_ptr<Archive>{new Archive{database, limit_octets}};
-  sqlite3_busy_timeout(database, busy_limit_ms);
-  const auto number = [&](const char* sql) {
-    Statement statement{*archive, sql};
-    return statement.row() ? statement.integer() : 0;
-  };
-  const std::int64_t owner = number("PRAGMA application_id"), version = number("PRAGMA user_version");
-  if (owner != 0 && owner != application_id)
-    return fail(ErrorCode::Mismatch, "this is a database of something else, not an archive", owner);
-  if (version != 0 && version != schema_version)
-    return fail(ErrorCode::Mismatch, "the archive was written by another version of hirosco", version);
-  constexpr const char* add_packet =
-      "INSERT INTO packets(t, apid, service, subtype, sid, octets) VALUES(?, ?, ?, ?, ?, ?)";
-  // Neither: a new one, or one from before they were written.
-  if (!archive->execute(schema) || (owner == 0 && !archive->execute(mark)) ||
-      sqlite3_prepare_v2(database, add_packet, -1, &archive->add_packet_, nullptr) != SQLITE_OK)
-    return fail(ErrorCode::Malformed, "the archive is not one of ours", sqlite3_extended_errcode(database));
-  // From here on nobody else's business with the file holds up the live view: what it costs is counted.
-  sqlite3_busy_timeout(database, 0);
-  return archive;
 }
 
-Archive::~Archive() {
-  commit();
-  sqlite3_finalize(add_packet_);
-  sqlite3_close(database_);
-}
+Archive::~Archive() { commit(); }
 
-bool Archive::execute(const char* sql) { return sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) == SQLITE_OK; }
+std::int64_t Archive::number(const std::string& sql) {
+  std::int64_t answer = 0;
+  counted([&] { answer = database_->execAndGet(sql); });
+  return answer;
+}
 
 void Archive::begin() {
-  if (!in_transaction_) in_transaction_ = execute("BEGIN");
+  if (!in_transaction_) in_transaction_ = database_->tryExec("BEGIN") == SQLite::OK;
 }
 
 void Archive::commit() {
   if (!in_transaction_) return;
-  if (!execute("COMMIT")) {
+  if (database_->tryExec("COMMIT") != SQLite::OK) {
     ++failures_;
-    if (sqlite3_get_autocommit(database_) == 0) return;  // full or busy: what waits is tried again with the next
+    // Full or busy: what waits is tried again with the next.
+    if (sqlite3_get_autocommit(database_->getHandle()) == 0) return;
   }
   in_transaction_ = false;
 }
 
 void Archive::keep_within_limit() {
   commit();
-  const auto value = [this](const std::string& sql) {
-    Statement statement{*this, sql};
-    return statement.row() ? statement.integer() : 0;
-  };
-  const std::int64_t used = (value("PRAGMA page_count") - value("PRAGMA freelist_count")) * value("PRAGMA page_size");
+  const std::int64_t used =
+      (number("PRAGMA page_count") - number("PRAGMA freelist_count")) * number("PRAGMA page_size");
   if (used < limit_octets_) return;
   // Little at a time, since the live view waits; of every table the same share.
   constexpr std::int64_t most_packets = 5000;
   const auto size = [&](const std::string& table) {
-    const std::int64_t oldest = value("SELECT min(id) FROM " + table);
-    return std::pair{oldest, value("SELECT max(id) FROM " + table) - oldest + 1};
+    const std::int64_t oldest = number("SELECT min(id) FROM " + table);
+    return std::pair{oldest, number("SELECT max(id) FROM " + table) - oldest + 1};
   };
   const std::int64_t packets = size("packets").second;
   const std::int64_t removed = std::min(most_packets, packets / 10 + 1);
-  begin();
   for (const char* table : {"packets", "events", "commands", "reports", "changes", "gaps", "faults"}) {
     const auto [oldest, count] = size(table);
-    Statement remove{*this, "DELETE FROM " + std::string{table} + " WHERE id < ?"};
-    remove << oldest + static_cast<std::int64_t>(static_cast<double>(count) * static_cast<double>(removed) /
-                                                 static_cast<double>(packets));
-    if (!remove.run()) ++failures_;
+    store("DELETE FROM " + std::string{table} + " WHERE id < ?",
+          oldest + static_cast<std::int64_t>(static_cast<double>(count) * static_cast<double>(removed) /
+                                             static_cast<double>(packets)));
   }
   commit();
 }
 
+template <class... Values>
+bool Archive::store(const std::string& sql, const Values&... values) {
+  begin();
+  return counted([&] { statement(*database_, sql, values...).exec(); });
+}
+
 void Archive::add(const StoredPacket& packet, Octets octets) {
   begin();
-  sqlite3_reset(add_packet_);
-  sqlite3_bind_int64(add_packet_, 1, Statement::ns(packet.t));
-  sqlite3_bind_int(add_packet_, 2, packet.apid);
-  sqlite3_bind_int(add_packet_, 3, packet.service);
-  sqlite3_bind_int(add_packet_, 4, packet.subtype);
-  sqlite3_bind_int(add_packet_, 5, packet.sid);
-  sqlite3_bind_blob(add_packet_, 6, octets.data(), static_cast<int>(octets.size()), SQLITE_STATIC);
-  if (sqlite3_step(add_packet_) != SQLITE_DONE) ++failures_;
-  sqlite3_reset(add_packet_);
+  counted([&] {
+    bind(*add_packet_, packet.t, packet.apid, packet.service, packet.subtype, packet.sid);
+    add_packet_->bindNoCopy(6, octets.data(), static_cast<int>(octets.size()));
+    add_packet_->exec();
+  });
+  static_cast<void>(add_packet_->tryReset());  // unfinished it would keep its lock
 }
 
 void Archive::add(const StoredEvent& event) {
-  begin();
-  Statement add{*this,
-                "INSERT INTO events(t, apid, subsystem, event, name, severity, text, vals) VALUES(?,?,?,?,?,?,?,?)"};
-  add << event.t << event.apid << event.subsystem << event.id << event.name << event.severity << event.text
-      << event.values;
-  if (!add.run()) ++failures_;
+  store("INSERT INTO events(t, apid, subsystem, event, name, severity, text, vals) VALUES(?,?,?,?,?,?,?,?)", event.t,
+        event.apid, event.subsystem, event.id, event.name, event.severity, event.text, event.values);
 }
 
 std::int64_t Archive::add(const StoredCommand& command) {
-  begin();
-  Statement add{*this,
-                "INSERT INTO commands(t, sender, apid, subsystem, function, arguments, stage, code, reason) "
-                "VALUES(?,?,?,?,?,?,?,?,?)"};
-  add << command.t << command.sender << command.apid << command.subsystem << command.function << command.arguments
-      << command.stage << command.code << command.reason;
-  if (add.run()) return sqlite3_last_insert_rowid(database_);
+  const bool added = store(
+      "INSERT INTO commands(t, sender, apid, subsystem, function, arguments, stage, code, reason) "
+      "VALUES(?,?,?,?,?,?,?,?,?)",
+      command.t, command.sender, command.apid, command.subsystem, command.function, command.arguments, command.stage,
+      command.code, command.reason);
   // The number of whatever was added last would give its reports to a stranger.
-  ++failures_;
-  return 0;
+  return added ? database_->getLastInsertRowid() : 0;
 }
 
 void Archive::add(std::int64_t command, const StoredReport& report) {
   if (command == 0) return;
-  begin();
-  Statement add{*this, "INSERT INTO reports(command, t, stage, code, reason) VALUES(?,?,?,?,?)"};
-  add << command << report.t << report.stage << report.code << report.reason;
-  Statement update{*this, "UPDATE commands SET stage=?, code=?, reason=? WHERE id=?"};
-  update << report.stage << report.code << report.reason << command;
-  if (!add.run() || !update.run()) ++failures_;
+  if (store("INSERT INTO reports(command, t, stage, code, reason) VALUES(?,?,?,?,?)", command, report.t, report.stage,
+            report.code, report.reason))
+    store("UPDATE commands SET stage=?, code=?, reason=? WHERE id=?", report.stage, report.code, report.reason,
+          command);
 }
 
 void Archive::add(const StoredChange& change) {
-  begin();
-  Statement add{*this, "INSERT INTO changes(t, kind, name, value) VALUES(?,?,?,?)"};
-  add << change.t << change.kind << change.name << change.value;
-  if (!add.run()) ++failures_;
+  store("INSERT INTO changes(t, kind, name, value) VALUES(?,?,?,?)", change.t, change.kind, change.name, change.value);
 }
 
-void Archive::add(const StoredGap& gap) {
-  begin();
-  Statement add{*this, "INSERT INTO gaps(t, until) VALUES(?,?)"};
-  add << gap.from << gap.to;
-  if (!add.run()) ++failures_;
-}
+void Archive::add(const StoredGap& gap) { store("INSERT INTO gaps(t, until) VALUES(?,?)", gap.from, gap.to); }
 
 void Archive::add(const StoredFault& fault) {
-  begin();
-  Statement add{*this, "INSERT INTO faults(t, device, line, answer) VALUES(?,?,?,?)"};
-  add << fault.t << fault.device << fault.line << fault.answer;
-  if (!add.run()) ++failures_;
+  store("INSERT INTO faults(t, device, line, answer) VALUES(?,?,?,?)", fault.t, fault.device, fault.line, fault.answer);
 }
 
 }  // namespace hirosco::ground

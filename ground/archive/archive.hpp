@@ -15,8 +15,10 @@
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
-struct sqlite3;
-struct sqlite3_stmt;
+namespace SQLite {
+class Database;
+class Statement;
+}  // namespace SQLite
 
 /// The memory of the ground station: every packet as it came, and what the live view made of it. The packets are the
 /// truth; histories and replay decode them again.
@@ -82,16 +84,22 @@ class Archive {
   [[nodiscard]] std::vector<StoredFault> faults(const Span& span);
 
  private:
-  class Statement;
-  explicit Archive(sqlite3* database, std::int64_t limit_octets) : database_{database}, limit_octets_{limit_octets} {}
+  explicit Archive(const std::string& path, std::int64_t limit_octets);
   void begin();
-  [[nodiscard]] bool execute(const char* sql);
+  /// Whether it was done; what the disk refuses is counted, and ends it.
+  template <class Work>
+  bool counted(Work work);
+  /// A change, within the transaction.
+  template <class... Values>
+  bool store(const std::string& sql, const Values&... values);
+  /// The one number that a question has as its answer; 0 when it was refused.
+  [[nodiscard]] std::int64_t number(const std::string& sql);
 
-  sqlite3* database_;
+  std::unique_ptr<SQLite::Database> database_;  // closed after its statement
+  std::unique_ptr<SQLite::Statement> add_packet_;
   std::int64_t limit_octets_;
   bool in_transaction_{false};
   std::uint64_t failures_{0};
-  sqlite3_stmt* add_packet_{nullptr};
 };
 
 }  // namespace hirosco::ground

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string_view>
 
-#include "ground/archive/statement.hpp"
+#include "ground/archive/columns.hpp"
 
 /// What the archive is asked.
 namespace hirosco::ground {
@@ -23,100 +23,116 @@ constexpr std::int64_t most_listed = 10'000;
   return pattern + "%";
 }
 
-template <class Row>
-[[nodiscard]] StoredCommand command_of(Row& row) {
-  StoredCommand command;
-  command.number = row.integer();
-  command.t = row.time();
-  command.sender = row.text();
-  command.apid = row.template number<std::uint16_t>();
-  command.subsystem = row.text();
-  command.function = row.text();
-  command.arguments = row.text();
-  command.stage = row.text();
-  command.code = row.optional();
-  command.reason = row.text();
-  return command;
+[[nodiscard]] StoredCommand command_of(const SQLite::Statement& row) {
+  return {.number = row.getColumn(0),
+          .t = time_of(row.getColumn(1)),
+          .sender = row.getColumn(2),
+          .apid = row.getColumn(3),
+          .subsystem = row.getColumn(4),
+          .function = row.getColumn(5),
+          .arguments = row.getColumn(6),
+          .stage = row.getColumn(7),
+          .code = optional_of(row.getColumn(8)),
+          .reason = row.getColumn(9)};
+}
+
+/// From the column of its time on.
+[[nodiscard]] StoredReport report_of(const SQLite::Statement& row, int first) {
+  return {.t = time_of(row.getColumn(first)),
+          .stage = row.getColumn(first + 1),
+          .code = optional_of(row.getColumn(first + 2)),
+          .reason = row.getColumn(first + 3)};
 }
 
 }  // namespace
 
 std::optional<Span> Archive::extent() {
-  Statement find{*this, "SELECT min(t), max(t), count(*) FROM (SELECT t FROM packets ORDER BY t LIMIT 1)"};
-  Statement last{*this, "SELECT max(t) FROM packets"};
-  if (!find.row() || !last.row()) return std::nullopt;
-  Span span;
-  span.from = find.time();
-  static_cast<void>(find.time());
-  if (find.integer() == 0) return std::nullopt;
-  span.to = last.time();
-  return span;
+  std::optional<Span> extent;
+  counted([&] {
+    auto first = statement(*database_, "SELECT t FROM packets ORDER BY t LIMIT 1");
+    auto last = statement(*database_, "SELECT max(t) FROM packets");
+    if (first.executeStep() && last.executeStep())
+      extent = Span{.from = time_of(first.getColumn(0)), .to = time_of(last.getColumn(0))};
+  });
+  return extent;
 }
 
 void Archive::packets(const Span& span, const std::function<bool(const StoredPacket&)>& take) {
-  Statement find{*this,
-                 "SELECT t, apid, service, subtype, sid, octets FROM packets WHERE t >= ? AND t <= ? ORDER BY t, id"};
-  find << span.from << span.to;
-  while (find.row()) {
-    StoredPacket packet{.t = find.time(), .octets = {}};
-    packet.apid = find.number<std::uint16_t>();
-    packet.service = find.number<std::uint8_t>();
-    packet.subtype = find.number<std::uint8_t>();
-    packet.sid = find.number<std::uint16_t>();
-    packet.octets = find.octets();
-    if (!take(packet)) return;
-  }
+  counted([&] {
+    auto find = statement(
+        *database_, "SELECT t, apid, service, subtype, sid, octets FROM packets WHERE t >= ? AND t <= ? ORDER BY t, id",
+        span.from, span.to);
+    StoredPacket packet;
+    while (find.executeStep()) {
+      packet.t = time_of(find.getColumn(0));
+      packet.apid = find.getColumn(1);
+      packet.service = find.getColumn(2);
+      packet.subtype = find.getColumn(3);
+      packet.sid = find.getColumn(4);
+      read_octets(packet, find.getColumn(5));
+      if (!take(packet)) return;
+    }
+  });
 }
 
 void Archive::packets_back(OnboardTime to, std::int64_t before, Housekeeping housekeeping,
                            const std::function<bool(const StoredPacket&)>& take) {
-  OnboardTime from = to;
-  std::int64_t number = std::numeric_limits<std::int64_t>::max();
-  if (before != 0) {
-    Statement find{*this, "SELECT t FROM packets WHERE id = ?"};
-    find << before;
-    if (!find.row()) return;
-    from = find.time();
-    number = before;
-  }
-  const std::string which = housekeeping == Housekeeping::LeftOut ? "sid = 0 AND " : "";
-  Statement find{*this, "SELECT id, t, apid, service, subtype, octets FROM packets WHERE " + which +
-                            "t <= ? AND (t, id) < (?, ?) ORDER BY t DESC, id DESC"};
-  find << from << from << number;
-  while (find.row()) {
-    StoredPacket packet{.number = find.integer(), .t = find.time(), .octets = {}};
-    packet.apid = find.number<std::uint16_t>();
-    packet.service = find.number<std::uint8_t>();
-    packet.subtype = find.number<std::uint8_t>();
-    packet.octets = find.octets();
-    if (!take(packet)) return;
-  }
+  counted([&] {
+    OnboardTime from = to;
+    std::int64_t number = std::numeric_limits<std::int64_t>::max();
+    if (before != 0) {
+      auto find = statement(*database_, "SELECT t FROM packets WHERE id = ?", before);
+      if (!find.executeStep()) return;
+      from = time_of(find.getColumn(0));
+      number = before;
+    }
+    const std::string which = housekeeping == Housekeeping::LeftOut ? "sid = 0 AND " : "";
+    auto find = statement(*database_,
+                          "SELECT id, t, apid, service, subtype, octets FROM packets WHERE " + which +
+                              "t <= ? AND (t, id) < (?, ?) ORDER BY t DESC, id DESC",
+                          from, from, number);
+    StoredPacket packet;
+    while (find.executeStep()) {
+      packet.number = find.getColumn(0);
+      packet.t = time_of(find.getColumn(1));
+      packet.apid = find.getColumn(2);
+      packet.service = find.getColumn(3);
+      packet.subtype = find.getColumn(4);
+      read_octets(packet, find.getColumn(5));
+      if (!take(packet)) return;
+    }
+  });
 }
 
 void Archive::packets_of(std::uint16_t apid, std::uint16_t sid, const Span& span,
                          const std::function<bool(const StoredPacket&)>& take) {
-  Statement find{*this,
-                 "SELECT t, octets FROM packets WHERE apid = ? AND sid = ? AND sid != 0 AND t >= ? AND t <= ? "
-                 "ORDER BY t"};
-  find << apid << sid << span.from << span.to;
-  StoredPacket packet{.apid = apid, .service = 3, .subtype = 25, .sid = sid, .octets = {}};
-  while (find.row()) {
-    packet.t = find.time();
-    packet.octets = find.octets();
-    if (!take(packet)) return;
-  }
+  counted([&] {
+    auto find = statement(*database_,
+                          "SELECT t, octets FROM packets WHERE apid = ? AND sid = ? AND sid != 0 AND t >= ? AND "
+                          "t <= ? ORDER BY t",
+                          apid, sid, span.from, span.to);
+    StoredPacket packet{.apid = apid, .service = 3, .subtype = 25, .sid = sid, .octets = {}};
+    while (find.executeStep()) {
+      packet.t = time_of(find.getColumn(0));
+      read_octets(packet, find.getColumn(1));
+      if (!take(packet)) return;
+    }
+  });
 }
 
 std::optional<StoredPacket> Archive::last_of(std::uint16_t apid, std::uint16_t sid, OnboardTime before) {
-  Statement find{*this,
-                 "SELECT t, octets FROM packets WHERE apid = ? AND sid = ? AND sid != 0 AND t <= ? "
-                 "ORDER BY t DESC LIMIT 1"};
-  find << apid << sid << before;
-  if (!find.row()) return std::nullopt;
-  StoredPacket packet{.apid = apid, .service = 3, .subtype = 25, .sid = sid, .octets = {}};
-  packet.t = find.time();
-  packet.octets = find.octets();
-  return packet;
+  std::optional<StoredPacket> last;
+  counted([&] {
+    auto find = statement(*database_,
+                          "SELECT t, octets FROM packets WHERE apid = ? AND sid = ? AND sid != 0 AND t <= ? "
+                          "ORDER BY t DESC LIMIT 1",
+                          apid, sid, before);
+    if (!find.executeStep()) return;
+    last = StoredPacket{
+        .t = time_of(find.getColumn(0)), .apid = apid, .service = 3, .subtype = 25, .sid = sid, .octets = {}};
+    read_octets(*last, find.getColumn(1));
+  });
+  return last;
 }
 
 std::vector<StoredEvent> Archive::events(const Filter& filter) {
@@ -127,22 +143,20 @@ std::vector<StoredEvent> Archive::events(const Filter& filter) {
                         : "SELECT t, apid, subsystem, event, name, severity, text, vals FROM events WHERE t >= ? AND "
                           "t <= ? AND severity >= ? AND (subsystem || ' ' || name || ' ' || text) LIKE ? ESCAPE '\\' "
                           "ORDER BY t, id LIMIT ?";
-  Statement find{*this, sql};
-  find << filter.span.from << filter.span.to << filter.severity << pattern_of(filter.text)
-       << static_cast<std::int64_t>(filter.limit);
   std::vector<StoredEvent> events;
-  while (find.row()) {
-    StoredEvent event;
-    event.t = find.time();
-    event.apid = find.number<std::uint16_t>();
-    event.subsystem = find.text();
-    event.id = find.number<std::uint16_t>();
-    event.name = find.text();
-    event.severity = find.number<int>();
-    event.text = find.text();
-    event.values = find.text();
-    events.push_back(std::move(event));
-  }
+  counted([&] {
+    auto find = statement(*database_, sql, filter.span.from, filter.span.to, filter.severity, pattern_of(filter.text),
+                          static_cast<std::int64_t>(filter.limit));
+    while (find.executeStep())
+      events.push_back({.t = time_of(find.getColumn(0)),
+                        .apid = find.getColumn(1),
+                        .subsystem = find.getColumn(2),
+                        .id = find.getColumn(3),
+                        .name = find.getColumn(4),
+                        .severity = find.getColumn(5),
+                        .text = find.getColumn(6),
+                        .values = find.getColumn(7)});
+  });
   return events;
 }
 
@@ -154,98 +168,99 @@ std::vector<StoredCommand> Archive::commands(const Filter& filter) {
                         : "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM "
                           "commands WHERE t >= ? AND t <= ? AND (subsystem || ' ' || function || ' ' || sender) LIKE ? "
                           "ESCAPE '\\' ORDER BY t, id LIMIT ?";
-  Statement find{*this, sql};
-  find << filter.span.from << filter.span.to << pattern_of(filter.text) << static_cast<std::int64_t>(filter.limit);
   std::vector<StoredCommand> commands;
-  while (find.row()) commands.push_back(command_of(find));
+  counted([&] {
+    auto find = statement(*database_, sql, filter.span.from, filter.span.to, pattern_of(filter.text),
+                          static_cast<std::int64_t>(filter.limit));
+    while (find.executeStep()) commands.push_back(command_of(find));
+  });
   return commands;
 }
 
 std::optional<StoredCommand> Archive::command(std::int64_t number) {
-  Statement find{*this,
-                 "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM commands "
-                 "WHERE id = ?"};
-  find << number;
-  if (!find.row()) return std::nullopt;
-  return command_of(find);
+  std::optional<StoredCommand> command;
+  counted([&] {
+    auto find = statement(*database_,
+                          "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM "
+                          "commands WHERE id = ?",
+                          number);
+    if (find.executeStep()) command = command_of(find);
+  });
+  return command;
 }
 
 std::vector<StoredReport> Archive::reports(std::int64_t command) {
-  Statement find{*this, "SELECT t, stage, code, reason FROM reports WHERE command = ? ORDER BY id"};
-  find << command;
   std::vector<StoredReport> reports;
-  while (find.row()) {
-    StoredReport report{.t = find.time(), .stage = find.text(), .code = find.optional(), .reason = {}};
-    report.reason = find.text();
-    reports.push_back(std::move(report));
-  }
+  counted([&] {
+    auto find =
+        statement(*database_, "SELECT t, stage, code, reason FROM reports WHERE command = ? ORDER BY id", command);
+    while (find.executeStep()) reports.push_back(report_of(find, 0));
+  });
   return reports;
 }
 
 std::vector<std::pair<std::int64_t, StoredReport>> Archive::reports_in(const Span& span) {
-  Statement find{*this, "SELECT command, t, stage, code, reason FROM reports WHERE t >= ? AND t <= ? ORDER BY t, id"};
-  find << span.from << span.to;
   std::vector<std::pair<std::int64_t, StoredReport>> reports;
-  while (find.row()) {
-    const std::int64_t command = find.integer();
-    StoredReport report{.t = find.time(), .stage = find.text(), .code = find.optional(), .reason = {}};
-    report.reason = find.text();
-    reports.emplace_back(command, std::move(report));
-  }
+  counted([&] {
+    auto find = statement(*database_,
+                          "SELECT command, t, stage, code, reason FROM reports WHERE t >= ? AND t <= ? ORDER BY t, id",
+                          span.from, span.to);
+    while (find.executeStep()) reports.emplace_back(find.getColumn(0).getInt64(), report_of(find, 1));
+  });
   return reports;
 }
 
 std::vector<StoredChange> Archive::changes(Span span) {
-  const auto rows = [](Statement& find) {
+  const auto rows = [this](const auto&... question) {
     std::vector<StoredChange> changes;
-    while (find.row()) {
-      StoredChange change{.t = find.time(), .kind = find.text(), .name = find.text(), .value = {}};
-      change.value = find.text();
-      changes.push_back(std::move(change));
-    }
+    counted([&] {
+      auto find = statement(*database_, question...);
+      while (find.executeStep())
+        changes.push_back({.t = time_of(find.getColumn(0)),
+                           .kind = find.getColumn(1),
+                           .name = find.getColumn(2),
+                           .value = find.getColumn(3)});
+    });
     return changes;
   };
-  Statement newest{*this,
-                   "SELECT t, kind, name, value FROM (SELECT id, t, kind, name, value FROM changes WHERE t >= ? AND "
-                   "t <= ? ORDER BY t DESC, id DESC LIMIT ?) ORDER BY t, id"};
-  newest << span.from << span.to << most_listed;
-  const auto within = rows(newest);
+  const auto within = rows(
+      "SELECT t, kind, name, value FROM (SELECT id, t, kind, name, value FROM changes WHERE t >= ? AND "
+      "t <= ? ORDER BY t DESC, id DESC LIMIT ?) ORDER BY t, id",
+      span.from, span.to, most_listed);
   // Too many: the story begins later, with what held then.
   if (std::ssize(within) == most_listed) span.from = within.front().t;
   // SQLite takes the other columns from the row that has the greatest time.
-  Statement before{*this, "SELECT max(t), kind, name, value FROM changes WHERE t < ? GROUP BY kind, name"};
-  before << span.from;
-  auto changes = rows(before);
+  auto changes = rows("SELECT max(t), kind, name, value FROM changes WHERE t < ? GROUP BY kind, name", span.from);
   for (StoredChange& change : changes) change.t = span.from;
   changes.insert(changes.end(), within.begin(), within.end());
   return changes;
 }
 
 std::vector<StoredGap> Archive::gaps(const Span& span) {
-  Statement find{*this,
-                 "SELECT t, until FROM (SELECT t, until FROM gaps WHERE until >= ? AND t <= ? ORDER BY t DESC LIMIT ?) "
-                 "ORDER BY t"};
-  find << span.from << span.to << most_listed;
   std::vector<StoredGap> gaps;
-  while (find.row()) {
-    StoredGap gap{.from = find.time()};
-    gap.to = find.time();
-    gaps.push_back(gap);
-  }
+  counted([&] {
+    auto find = statement(*database_,
+                          "SELECT t, until FROM (SELECT t, until FROM gaps WHERE until >= ? AND t <= ? ORDER BY t "
+                          "DESC LIMIT ?) ORDER BY t",
+                          span.from, span.to, most_listed);
+    while (find.executeStep()) gaps.push_back({.from = time_of(find.getColumn(0)), .to = time_of(find.getColumn(1))});
+  });
   return gaps;
 }
 
 std::vector<StoredFault> Archive::faults(const Span& span) {
-  Statement find{*this,
-                 "SELECT t, device, line, answer FROM (SELECT t, device, line, answer FROM faults WHERE t >= ? AND "
-                 "t <= ? ORDER BY t DESC LIMIT ?) ORDER BY t"};
-  find << span.from << span.to << most_listed;
   std::vector<StoredFault> faults;
-  while (find.row()) {
-    StoredFault fault{.t = find.time(), .device = find.text(), .line = find.text(), .answer = {}};
-    fault.answer = find.text();
-    faults.push_back(std::move(fault));
-  }
+  counted([&] {
+    auto find = statement(*database_,
+                          "SELECT t, device, line, answer FROM (SELECT t, device, line, answer FROM faults WHERE "
+                          "t >= ? AND t <= ? ORDER BY t DESC LIMIT ?) ORDER BY t",
+                          span.from, span.to, most_listed);
+    while (find.executeStep())
+      faults.push_back({.t = time_of(find.getColumn(0)),
+                        .device = find.getColumn(1),
+                        .line = find.getColumn(2),
+                        .answer = find.getColumn(3)});
+  });
   return faults;
 }
 

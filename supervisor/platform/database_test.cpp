@@ -7,6 +7,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <random>
@@ -244,6 +245,7 @@ struct FailingDisk {
     sqlite3_io_methods methods;
   };
   static inline int failures_left = 0;
+  static inline int refuses_to_open = 0;  ///< why, as errno; 0 = it does not
   static inline sqlite3_vfs layer{};
   static inline sqlite3_vfs* real = nullptr;
 
@@ -264,6 +266,10 @@ struct FailingDisk {
   static int open(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* out_flags) {
     auto* outer = reinterpret_cast<File*>(file);
     outer->base.pMethods = nullptr;
+    if (refuses_to_open != 0) {
+      errno = refuses_to_open;
+      return SQLITE_CANTOPEN;
+    }
     const int code = real->xOpen(real, name, inner(file), flags, out_flags);
     if (code != SQLITE_OK) return code;
     using M = sqlite3_io_methods;
@@ -301,11 +307,22 @@ struct FailingDisk {
   ~FailingDisk() {
     sqlite3_vfs_unregister(&layer);
     sqlite3_vfs_register(real, 1);
-    failures_left = 0;
+    failures_left = refuses_to_open = 0;
   }
   FailingDisk(const FailingDisk&) = delete;
   FailingDisk& operator=(const FailingDisk&) = delete;
 };
+
+TEST_F(Sqlite, TellsADiskWithoutRoomForANewFileFromOneThatItMayNotWrite) {
+  const FailingDisk disk;
+  const auto refused = [&](int reason) {
+    FailingDisk::refuses_to_open = reason;
+    return open_database(DatabaseStrategy::Sqlite, path()).error();
+  };
+  EXPECT_EQ(refused(ENOSPC).code, ErrorCode::ResourceExhausted);
+  EXPECT_EQ(refused(EACCES).code, ErrorCode::NotPermitted);
+  EXPECT_EQ(refused(EACCES).value, SQLITE_CANTOPEN);
+}
 
 TEST_F(Sqlite, NeverTrustsADiskAgainWhoseSyncHasFailedOnce) {
   const FailingDisk disk;

@@ -14,14 +14,14 @@ namespace {
 
 constexpr const char* columns = "run, number, stored, monotonic, kind, source, peer, lost, note, packet";
 
-Error error_of(sqlite3* connection, const char* what) {
-  const int code = sqlite3_extended_errcode(connection);
+/// `reason`: what the operating system said.
+Error error_from(const SQLite::Exception& refused, int reason, const char* what) {
+  const int code = refused.getExtendedErrorCode();
   const int primary = code & 0xFF;
   if (primary == SQLITE_BUSY || primary == SQLITE_LOCKED) return {ErrorCode::Unavailable, what, code};
   if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) return {ErrorCode::Malformed, what, code};
   // A failed fsync leaves the file doubtful whatever the reason; any other call without space is only that.
   const bool synced = code == SQLITE_IOERR_FSYNC || code == SQLITE_IOERR_DIR_FSYNC;
-  const int reason = sqlite3_system_errno(connection);
   const bool no_space = primary == SQLITE_IOERR && !synced && (reason == ENOSPC || reason == EDQUOT);
   if (primary == SQLITE_FULL || no_space) return {ErrorCode::ResourceExhausted, what, code};
   if (primary == SQLITE_READONLY || primary == SQLITE_CANTOPEN || primary == SQLITE_PERM)
@@ -32,93 +32,82 @@ Error error_of(sqlite3* connection, const char* what) {
 std::int64_t nanoseconds(OnboardTime time) { return time.time_since_epoch().count(); }
 std::int64_t nanoseconds(TimePoint time) { return time.time_since_epoch().count(); }
 
-/// Puts a statement back to its start, however the function is left: an unfinished one would keep its lock.
-class Rewind {
- public:
-  explicit Rewind(sqlite3_stmt* statement) : statement_{statement} {}
-  ~Rewind() { sqlite3_reset(statement_); }
-  Rewind(const Rewind&) = delete;
-  Rewind& operator=(const Rewind&) = delete;
-
- private:
-  sqlite3_stmt* statement_;
-};
-
-std::string_view text_column(sqlite3_stmt* row, int column) {
-  const unsigned char* text = sqlite3_column_text(row, column);
-  if (text == nullptr) return {};
-  return {reinterpret_cast<const char*>(text), static_cast<std::size_t>(sqlite3_column_bytes(row, column))};
+std::string_view text_of(const SQLite::Column& column) {
+  return {column.getText(), static_cast<std::size_t>(column.getBytes())};
 }
 
 /// The record of a row; empty when somebody has put something into the file that is none.
-std::optional<LogRecord> record_of(sqlite3_stmt* row) {
-  const auto kind = from_text<LogKind>(text_column(row, 4));
+std::optional<LogRecord> record_of(const SQLite::Statement& row) {
+  const auto kind = from_text<LogKind>(text_of(row.getColumn(4)));
   if (!kind) return std::nullopt;
-  LogRecord record{.run = OnboardTime{Duration{sqlite3_column_int64(row, 0)}},
-                   .number = static_cast<std::uint64_t>(sqlite3_column_int64(row, 1)),
-                   .stored = OnboardTime{Duration{sqlite3_column_int64(row, 2)}},
-                   .monotonic = TimePoint{Duration{sqlite3_column_int64(row, 3)}},
+  LogRecord record{.run = OnboardTime{Duration{row.getColumn(0).getInt64()}},
+                   .number = static_cast<std::uint64_t>(row.getColumn(1).getInt64()),
+                   .stored = OnboardTime{Duration{row.getColumn(2).getInt64()}},
+                   .monotonic = TimePoint{Duration{row.getColumn(3).getInt64()}},
                    .kind = *kind,
-                   .source = static_cast<std::uint16_t>(sqlite3_column_int(row, 5)),
-                   .peer = static_cast<std::uint16_t>(sqlite3_column_int(row, 6)),
-                   .lost = static_cast<std::uint32_t>(sqlite3_column_int64(row, 7)),
-                   .note = Note{text_column(row, 8)}};
-  const auto* octets = static_cast<const std::byte*>(sqlite3_column_blob(row, 9));
-  const auto count = static_cast<std::size_t>(sqlite3_column_bytes(row, 9));
-  if (octets != nullptr) record.packet.assign(octets, octets + count);
+                   .source = row.getColumn(5),
+                   .peer = row.getColumn(6),
+                   .lost = row.getColumn(7),
+                   .note = Note{text_of(row.getColumn(8))}};
+  const SQLite::Column packet = row.getColumn(9);
+  const auto* octets = static_cast<const std::byte*>(packet.getBlob());
+  if (octets != nullptr) record.packet.assign(octets, octets + packet.getBytes());
   return record;
 }
 
 }  // namespace
-
-void SqliteDatabase::Close::operator()(sqlite3* connection) const noexcept { sqlite3_close_v2(connection); }
-void SqliteDatabase::Close::operator()(sqlite3_stmt* statement) const noexcept { sqlite3_finalize(statement); }
 
 Result<std::unique_ptr<Database>> SqliteDatabase::open(const std::filesystem::path& path, DatabaseAccess access) {
   const bool reading = access == DatabaseAccess::Read;
   if (reading && !std::filesystem::exists(path)) return fail(ErrorCode::NotFound, "no such log database");
   const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
                     (reading ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-  sqlite3* raw = nullptr;
-  const int code = sqlite3_open_v2(path.c_str(), &raw, flags, nullptr);
-  Connection connection{raw};
-  if (raw == nullptr) return fail(ErrorCode::ResourceExhausted, "no memory for the log database", code);
-  if (code != SQLITE_OK) return fail(error_of(raw, "opening the log database"));
-  std::unique_ptr<SqliteDatabase> database{new SqliteDatabase{std::move(connection)}};
-  HIROSCO_TRY(database->set_up(access));
-  return database;
+  constexpr const char* what = "opening the log database";
+  std::unique_ptr<SqliteDatabase> database;
+  try {
+    database.reset(new SqliteDatabase{path, flags});
+    HIROSCO_TRY(database->set_up(access));
+    return database;
+  } catch (const SQLite::Exception& refused) {
+    if (database) return fail(database->error_of(refused, what));
+    // The handle went with its constructor; what it would have said of the system stands in errno still.
+    if (refused.getErrorCode() == SQLITE_NOMEM) return fail(ErrorCode::ResourceExhausted, what, SQLITE_NOMEM);
+    return fail(error_from(refused, errno, what));
+  }
+}
+
+Error SqliteDatabase::error_of(const SQLite::Exception& refused, const char* what) const {
+  return error_from(refused, sqlite3_system_errno(connection_.getHandle()), what);
 }
 
 Result<> SqliteDatabase::set_up(DatabaseAccess access) {
-  sqlite3_busy_timeout(connection_.get(), busy_limit_ms);
   if (access == DatabaseAccess::Write) {
     HIROSCO_TRY(make_or_check_schema());
-    HIROSCO_TRY_LET(insert_,
-                    prepare("INSERT INTO log (run, number, stored, monotonic, kind, source, peer, lost, note, packet, "
-                            "apid, service, subtype) VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13) "
-                            "ON CONFLICT (run, number) DO NOTHING"));
+    insert_.emplace(connection_,
+                    "INSERT INTO log (run, number, stored, monotonic, kind, source, peer, lost, note, packet, "
+                    "apid, service, subtype) VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13) "
+                    "ON CONFLICT (run, number) DO NOTHING");
   }
-  HIROSCO_TRY_LET(const std::int64_t version, number_from("PRAGMA user_version"));
-  HIROSCO_TRY_LET(const std::int64_t owner, number_from("PRAGMA application_id"));
+  const std::int64_t version = connection_.execAndGet("PRAGMA user_version");
+  const std::int64_t owner = connection_.execAndGet("PRAGMA application_id");
   if (owner != application_id) return fail(ErrorCode::Mismatch, "not a log database of ours", owner);
   if (version != schema_version) return fail(ErrorCode::Mismatch, "log database of another schema version", version);
-  HIROSCO_TRY_LET(find_,
-                  prepare((std::string{"SELECT "} + columns + " FROM log WHERE run = ?1 AND number = ?2").c_str()));
+  find_.emplace(connection_, std::string{"SELECT "} + columns + " FROM log WHERE run = ?1 AND number = ?2");
   return ok();
 }
 
 Result<> SqliteDatabase::make_or_check_schema() {
-  HIROSCO_TRY_LET(const std::int64_t tables, number_from("SELECT count(*) FROM sqlite_schema"));
+  const std::int64_t tables = connection_.execAndGet("SELECT count(*) FROM sqlite_schema");
   // A file that belongs to somebody else is left as it is.
   if (tables != 0) {
-    HIROSCO_TRY_LET(const std::int64_t owner, number_from("PRAGMA application_id"));
+    const std::int64_t owner = connection_.execAndGet("PRAGMA application_id");
     if (owner != application_id) return fail(ErrorCode::Mismatch, "not a log database of ours", owner);
   }
-  HIROSCO_TRY(run("PRAGMA journal_mode = WAL"));
-  HIROSCO_TRY(run("PRAGMA synchronous = FULL"));
+  connection_.exec("PRAGMA journal_mode = WAL");
+  connection_.exec("PRAGMA synchronous = FULL");
   if (tables != 0) return ok();
-  return run(
-      "BEGIN IMMEDIATE;"
+  SQLite::Transaction all{connection_, SQLite::TransactionBehavior::IMMEDIATE};
+  connection_.exec(
       "CREATE TABLE IF NOT EXISTS log ("
       " position INTEGER PRIMARY KEY, run INTEGER NOT NULL, number INTEGER NOT NULL, stored INTEGER NOT NULL,"
       " monotonic INTEGER NOT NULL, kind TEXT NOT NULL, source INTEGER NOT NULL, peer INTEGER NOT NULL,"
@@ -126,76 +115,53 @@ Result<> SqliteDatabase::make_or_check_schema() {
       "INTEGER,"
       " UNIQUE (run, number));"
       "PRAGMA application_id = 1213354819;"
-      "PRAGMA user_version = 1;"
-      "COMMIT");
+      "PRAGMA user_version = 1");
+  all.commit();
+  return ok();
 }
 static_assert(SqliteDatabase::application_id == 1213354819 && SqliteDatabase::schema_version == 1);
 
-Result<> SqliteDatabase::run(const char* sql) {
-  if (sqlite3_exec(connection_.get(), sql, nullptr, nullptr, nullptr) == SQLITE_OK) return ok();
-  const Error error = error_of(connection_.get(), "log database");
-  if (sqlite3_get_autocommit(connection_.get()) == 0)
-    sqlite3_exec(connection_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
-  return fail(error);
-}
-
-Result<std::int64_t> SqliteDatabase::number_from(const char* sql) {
-  HIROSCO_TRY_LET(const Statement statement, prepare(sql));
-  if (sqlite3_step(statement.get()) != SQLITE_ROW) return fail(error_of(connection_.get(), "reading the log database"));
-  return sqlite3_column_int64(statement.get(), 0);
-}
-
-Result<SqliteDatabase::Statement> SqliteDatabase::prepare(const char* sql) {
-  sqlite3_stmt* raw = nullptr;
-  const int code = sqlite3_prepare_v3(connection_.get(), sql, -1, SQLITE_PREPARE_PERSISTENT, &raw, nullptr);
-  Statement statement{raw};
-  if (code != SQLITE_OK) return fail(error_of(connection_.get(), "preparing a statement of the log database"));
-  return statement;
-}
-
 Result<> SqliteDatabase::do_append(std::span<const LogRecord> batch) {
   if (!insert_) return fail(ErrorCode::NotPermitted, "this log is open for reading only");
-  HIROSCO_TRY(run("BEGIN IMMEDIATE"));
-  for (const LogRecord& record : batch) {
-    if (const Result<> stored = insert(record); !stored) {
-      sqlite3_exec(connection_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
-      return stored;
-    }
+  try {
+    SQLite::Transaction all{connection_, SQLite::TransactionBehavior::IMMEDIATE};
+    for (const LogRecord& record : batch) HIROSCO_TRY(insert(record));
+    all.commit();
+    return ok();
+  } catch (const SQLite::Exception& refused) {
+    return fail(error_of(refused, "storing in the log database"));
   }
-  return run("COMMIT");
 }
 
 Result<> SqliteDatabase::insert(const LogRecord& record) {
-  sqlite3_stmt* row = insert_.get();
-  const Rewind rewind{row};
   const PacketLabel label = label_of(record.packet);
-  const std::string_view kind = to_text(record.kind);
-  const std::string_view note = record.note.view();
-  sqlite3_bind_int64(row, 1, nanoseconds(record.run));
-  sqlite3_bind_int64(row, 2, static_cast<std::int64_t>(record.number));
-  sqlite3_bind_int64(row, 3, nanoseconds(record.stored));
-  sqlite3_bind_int64(row, 4, nanoseconds(record.monotonic));
-  sqlite3_bind_text(row, 5, kind.data(), static_cast<int>(kind.size()), SQLITE_STATIC);
-  sqlite3_bind_int(row, 6, record.source);
-  sqlite3_bind_int(row, 7, record.peer);
-  sqlite3_bind_int64(row, 8, record.lost);
-  sqlite3_bind_text(row, 9, note.data(), static_cast<int>(note.size()), SQLITE_STATIC);
-  if (record.packet.empty()) sqlite3_bind_zeroblob(row, 10, 0);
-  else sqlite3_bind_blob(row, 10, record.packet.data(), static_cast<int>(record.packet.size()), SQLITE_STATIC);
-  sqlite3_bind_int(row, 11, label.apid);
-  sqlite3_bind_int(row, 12, label.service);
-  sqlite3_bind_int(row, 13, label.subtype);
-  if (sqlite3_step(row) != SQLITE_DONE) return fail(error_of(connection_.get(), "storing a record"));
-  return sqlite3_changes(connection_.get()) == 0 ? check_same(record) : ok();
+  const std::string kind{to_text(record.kind)};
+  const std::string note{record.note.view()};
+  // Without a pointer SQLite would take no octets for no value.
+  const void* packet = record.packet.empty() ? "" : static_cast<const void*>(record.packet.data());
+  static_cast<void>(insert_->tryReset());   // whatever the one before came to
+  insert_->bind(1, nanoseconds(record.run));
+  insert_->bind(2, static_cast<std::int64_t>(record.number));
+  insert_->bind(3, nanoseconds(record.stored));
+  insert_->bind(4, nanoseconds(record.monotonic));
+  insert_->bindNoCopy(5, kind);
+  insert_->bind(6, record.source);
+  insert_->bind(7, record.peer);
+  insert_->bind(8, record.lost);
+  insert_->bindNoCopy(9, note);
+  insert_->bindNoCopy(10, packet, static_cast<int>(record.packet.size()));
+  insert_->bind(11, label.apid);
+  insert_->bind(12, label.service);
+  insert_->bind(13, label.subtype);
+  return insert_->exec() == 0 ? check_same(record) : ok();
 }
 
 Result<> SqliteDatabase::check_same(const LogRecord& record) {
-  sqlite3_stmt* row = find_.get();
-  const Rewind rewind{row};
-  sqlite3_bind_int64(row, 1, nanoseconds(record.run));
-  sqlite3_bind_int64(row, 2, static_cast<std::int64_t>(record.number));
-  if (sqlite3_step(row) != SQLITE_ROW) return fail(error_of(connection_.get(), "finding a record"));
-  const auto stored = record_of(row);
+  static_cast<void>(find_->tryReset());
+  find_->bind(1, nanoseconds(record.run));
+  find_->bind(2, static_cast<std::int64_t>(record.number));
+  const auto stored = find_->executeStep() ? record_of(*find_) : std::nullopt;
+  find_->reset();   // with a row in hand it would keep its lock
   if (!stored || *stored != record)
     return fail(ErrorCode::AlreadyExists, "another record has this number", static_cast<std::int64_t>(record.number));
   return ok();
@@ -207,23 +173,24 @@ Result<LogPage> SqliteDatabase::do_read(const LogQuery& query) {
   if (query.run) sql += " AND run = ?2";
   if (query.apid) sql += " AND (source = ?3 OR peer = ?3 OR apid = ?3)";
   if (query.service) sql += " AND service = ?4";
-  HIROSCO_TRY_LET(const Statement statement, prepare((sql + " ORDER BY position DESC").c_str()));
-  sqlite3_stmt* row = statement.get();
-  sqlite3_bind_int64(row, 1, static_cast<std::int64_t>(std::min<std::uint64_t>(query.since, INT64_MAX)));
-  if (query.run) sqlite3_bind_int64(row, 2, nanoseconds(*query.run));
-  if (query.apid) sqlite3_bind_int(row, 3, *query.apid);
-  if (query.service) sqlite3_bind_int(row, 4, *query.service);
+  try {
+    SQLite::Statement row{connection_, sql + " ORDER BY position DESC"};
+    row.bind(1, static_cast<std::int64_t>(std::min<std::uint64_t>(query.since, INT64_MAX)));
+    if (query.run) row.bind(2, nanoseconds(*query.run));
+    if (query.apid) row.bind(3, *query.apid);
+    if (query.service) row.bind(4, *query.service);
 
-  LogPage page;
-  int code = SQLITE_DONE;
-  while (page.records.size() < query.last && (code = sqlite3_step(row)) == SQLITE_ROW) {
-    auto record = record_of(row);
-    if (!record) ++page.damaged;
-    else if (matches(*record, query)) page.records.push_back(std::move(*record));
+    LogPage page;
+    while (page.records.size() < query.last && row.executeStep()) {
+      auto record = record_of(row);
+      if (!record) ++page.damaged;
+      else if (matches(*record, query)) page.records.push_back(std::move(*record));
+    }
+    std::ranges::reverse(page.records);
+    return page;
+  } catch (const SQLite::Exception& refused) {
+    return fail(error_of(refused, "reading the log database"));
   }
-  if (code != SQLITE_DONE && code != SQLITE_ROW) return fail(error_of(connection_.get(), "reading the log database"));
-  std::ranges::reverse(page.records);
-  return page;
 }
 
 }  // namespace hirosco::supervisor

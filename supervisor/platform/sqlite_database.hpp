@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "supervisor/platform/database.hpp"
+#include <SQLiteCpp/SQLiteCpp.h>
 
-struct sqlite3;
-struct sqlite3_stmt;
+#include "supervisor/platform/database.hpp"
 
 namespace hirosco::supervisor {
 
@@ -20,29 +19,21 @@ class SqliteDatabase final : public Database {
 
   [[nodiscard]] static Result<std::unique_ptr<Database>> open(const std::filesystem::path& path, DatabaseAccess access);
 
-  struct Close {
-    void operator()(sqlite3* connection) const noexcept;
-    void operator()(sqlite3_stmt* statement) const noexcept;
-  };
-  using Connection = std::unique_ptr<sqlite3, Close>;
-  using Statement = std::unique_ptr<sqlite3_stmt, Close>;
-
  private:
-  explicit SqliteDatabase(Connection connection) : connection_{std::move(connection)} {}
+  // What SQLite refuses leaves these as an exception and the class as an error.
+  SqliteDatabase(const std::filesystem::path& path, int flags) : connection_{path, flags, busy_limit_ms} {}
   Result<> set_up(DatabaseAccess access);
   Result<> make_or_check_schema();
-  Result<> run(const char* sql);
-  Result<std::int64_t> number_from(const char* sql);
-  Result<Statement> prepare(const char* sql);
   Result<> insert(const LogRecord& record);
   Result<> check_same(const LogRecord& record);
+  [[nodiscard]] Error error_of(const SQLite::Exception& refused, const char* what) const;
   Result<> do_append(std::span<const LogRecord> batch) override;
   Result<LogPage> do_read(const LogQuery& query) override;
   [[nodiscard]] std::string_view do_strategy() const noexcept override { return "sqlite"; }
 
-  Connection connection_;   // closed after its statements
-  Statement insert_;
-  Statement find_;
+  SQLite::Database connection_;   // closed after its statements
+  std::optional<SQLite::Statement> insert_;
+  std::optional<SQLite::Statement> find_;
 };
 
 }  // namespace hirosco::supervisor
