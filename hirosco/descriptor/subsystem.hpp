@@ -15,7 +15,6 @@
 #include "hirosco/parameter/exact_number.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/enum_text.hpp"
-#include "hirosco/utilities/id.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// The subsystem descriptor in memory (paper 4.1, figure 3). Plain data: read once, checked whole, then constant.
