@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -73,6 +74,20 @@ void check_list(pus::ArgumentList declared, Octets list) {
   expect(std::ranges::equal(again, list.first(again.size())), "a list is the octets that it came from");
 }
 
+/// As many different ids as it says, by the declared widths alone.
+[[nodiscard]] bool gives_each_once(const descriptor::Function& function, Octets given) {
+  OctetReader reader{given};
+  std::set<unsigned> ids;
+  const unsigned count = reader.get<std::uint8_t>();
+  for (unsigned i = 0; i < count; ++i) {
+    const unsigned id = reader.get<std::uint8_t>();
+    const auto& field = function.arguments.at(id - 1).field;
+    ids.insert(id);
+    static_cast<void>(reader.get(field.type == Type::Text ? reader.get<std::uint16_t>() : field.octets()));
+  }
+  return reader.exhausted() && ids.size() == count;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -87,7 +102,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::byte> call(pus::function_name_octets);
   std::ranges::copy(std::as_bytes(std::span{function.name}), call.begin());
   call.insert(call.end(), octets.begin(), octets.end());
-  if (const auto taken = pus::decode_call({&function, 1}, call)) check_list(function.arguments, taken->arguments);
+  if (const auto taken = pus::decode_call({&function, 1}, call)) {
+    check_list(function.arguments, taken->arguments);
+    expect(gives_each_once(function, octets), "a call gives no argument twice");
+  }
 
   // As somebody types it.
   const std::string typed{reinterpret_cast<const char*>(data), size};

@@ -13,6 +13,7 @@ FLAGS = ["-std=c++23", "-O1", "-g1", "-fsanitize=fuzzer,address,undefined", "-fn
 LONGEST_INPUT = 400
 MOST_RUNS_OF_A_PLANT = 2_000_000
 ARGUMENTS = "hirosco/pus/service/arguments.cpp"
+FRAMES = "hirosco/data_transfer/control/stream_frame.cpp"
 # The files of a target, and its plants: what stands in a file, and what does in its place.
 TARGETS = {"arguments": (
     [ARGUMENTS, "hirosco/pus/st08_function/function_service.cpp", "hirosco/pus/st01_verification/verification.cpp",
@@ -23,7 +24,19 @@ TARGETS = {"arguments": (
          (ARGUMENTS, "good = permits(argument, read_number(reader, argument.field.type)) && good;",
           "good = permits(argument, read_number(reader, argument.field.type)) && (good || i + 1 == argument.field.count);"),
      "an argument that is given twice counts":
-         ("hirosco/pus/st08_function/function_service.cpp", " && taken_[id - 1].empty();", ";")})}
+         ("hirosco/pus/st08_function/function_service.cpp", " && taken_[id - 1].empty();", ";")}),
+    "stream_frame": (
+    [FRAMES],
+    {"the check sum is not looked at":
+         (FRAMES, "if (crc16(received.first(checked)) != sum)", "if (checked == 0)"),
+     "a frame may be longer than there is room for":
+         (FRAMES, "if (payload > max_stream_frame_payload)\n    return fail(ErrorCode::Malformed",
+          "if (payload > 0xFFFF)\n    return fail(ErrorCode::Malformed"),
+     "a frame is taken before its last octet is there":
+         (FRAMES, "if (received.size() < whole)", "if (received.size() + 1 < whole)"),
+     "there is a fourth kind of frame":
+         (FRAMES, "kind > static_cast<std::uint8_t>(StreamFrameKind::Permit)",
+          "kind > static_cast<std::uint8_t>(StreamFrameKind::Permit) + 1")})}
 
 
 def compiler():
