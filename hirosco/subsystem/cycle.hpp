@@ -13,9 +13,10 @@
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/parameter/write_queue.hpp"
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+#include "hirosco/subsystem/device_slot.hpp"
 #include "hirosco/subsystem/handover.hpp"
+#include "hirosco/subsystem/link_slots.hpp"
 #include "hirosco/subsystem/pages.hpp"
-#include "hirosco/subsystem/slots.hpp"
 
 /// The cycle of a subsystem (architecture, rule 1): reads links and devices, runs the state's node, gates the actuators,
 /// samples housekeeping, writes links and devices.

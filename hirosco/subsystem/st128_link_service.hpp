@@ -9,7 +9,7 @@
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
-#include "hirosco/subsystem/slots.hpp"
+#include "hirosco/subsystem/link_slots.hpp"
 
 /// ST[128] at one end of a link: answers the handshake for the configuration in force.
 namespace hirosco {

@@ -6,6 +6,7 @@
 #include "hirosco/descriptor/framework_events.hpp"
 #include "hirosco/descriptor/framework_parameters.hpp"
 #include "hirosco/subsystem/generic_subsystem.hpp"
+#include "hirosco/subsystem/layout_difference.hpp"
 
 /// The state machine of the generic subsystem: commands, phases of transient states, configurations.
 namespace hirosco {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/subsystem/slots.hpp"
+#include "hirosco/subsystem/device_slot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,9 @@
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/subsystem/layout_difference.hpp"
 
-/// One device, one set: what counts as alive, and what is written, octet by octet.
+/// One device: what counts as alive, and what is written, octet by octet.
 namespace hirosco {
 namespace {
 
@@ -330,37 +331,6 @@ TEST(LayoutDifference, NamesTheFieldThatDiffersInTypeOrCountAndTheNumberOfFields
   EXPECT_TRUE(DeviceSlot::difference(device, port).starts_with("output, "));
   device.input.clear();
   EXPECT_TRUE(DeviceSlot::difference(device, port).starts_with("input, "));
-}
-
-struct Handed {
-  double angle;
-};
-
-TEST(LinkSlots, AnInputTakesFieldsOfItsOwnTypeOnlyAndLetsGoOfItsOwnLinkOnly) {
-  descriptor::Requires terms;
-  terms.fields = {field("ANGLE", Type::Double)};
-  LinkInput<Handed> port;
-  LinkInputSlot slot{terms, &port, true};
-  AttachedLink link;
-  const auto planned = [&](const char* name, Type type, std::uint16_t count) {
-    link.agreement.fields = {{"OTHER", Type::Uint8, 3}, {name, type, count}};
-    return slot.plan(link).has_value();
-  };
-  EXPECT_FALSE(planned("ANGLES", Type::Double, 1));
-  EXPECT_FALSE(planned("ANGLE", Type::Float, 1));
-  EXPECT_FALSE(planned("ANGLE", Type::Double, 2));
-  ASSERT_TRUE(planned("ANGLE", Type::Double, 1));
-  ASSERT_EQ(link.wire_offset.size(), 1u);
-  EXPECT_EQ(link.wire_offset[0], 3u) << "behind the three octets of the other";
-  slot.attach(&link);
-  const AttachedLink other;
-  slot.detach(&other);
-  EXPECT_TRUE(slot.attached());
-  slot.detach(&link);
-  EXPECT_FALSE(slot.attached());
-  EXPECT_TRUE(slot.ended());
-  slot.read(TimePoint{});
-  EXPECT_TRUE(slot.stale());
 }
 
 }  // namespace

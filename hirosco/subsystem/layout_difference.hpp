@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/parameter/layout.hpp"
+
+namespace hirosco {
+
+/// Compares a port's C++ layout with the fields of the descriptor; empty when they agree, else what differs.
+[[nodiscard]] std::string layout_difference(std::span<const NativeField> native,
+                                            const std::vector<descriptor::Field>& declared);
+
+}  // namespace hirosco
