@@ -25,8 +25,8 @@ endfunction()
 
 # What an author includes. Whatever else these include is installed with them, and nothing else is.
 hirosco_headers_of(HIROSCO_AUTHOR_HEADERS
-  hirosco/descriptor/read.hpp hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp hirosco/subsystem/module.hpp hirosco/subsystem/run.hpp
-  hirosco/subsystem/subsystem.hpp hirosco/subsystem/testing/rig.hpp
+  hirosco/descriptor/read.hpp hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp hirosco/subsystem/author/module.hpp hirosco/subsystem/process/run.hpp
+  hirosco/subsystem/author/subsystem.hpp hirosco/subsystem/testing/rig.hpp
   simulation/devices/device_shell.hpp simulation/devices/module.hpp simulation/devices/simulated_device.hpp)
 
 # hirosco_install_libraries(targets...): hirosco_NAME becomes hirosco::NAME of the package.

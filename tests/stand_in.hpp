@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "hirosco/subsystem/run.hpp"
-#include "hirosco/subsystem/subsystem.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
+#include "hirosco/subsystem/process/run.hpp"
 
 namespace hirosco {
 

@@ -28,7 +28,7 @@ struct Location {
   friend bool operator==(const Location&, const Location&) = default;
 };
 
-/// The ten states (paper 4.2, figure 4). The transition table is in hirosco/subsystem/states.hpp.
+/// The ten states (paper 4.2, figure 4). The transition table is in hirosco/subsystem/author/states.hpp.
 enum class State : std::uint8_t {
   Offline = 0,
   SoftwareInit = 1,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/spacecraft/modules.hpp"
 
-#include "hirosco/subsystem/module.hpp"
+#include "hirosco/subsystem/author/module.hpp"
 #include "simulation/devices/module.hpp"
 
 namespace hirosco::simulation {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "hirosco/subsystem/subsystem.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
 #include "subsystems/communication/ground_link.hpp"
 
 namespace hirosco {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "hirosco/subsystem/run.hpp"
+#include "hirosco/subsystem/process/run.hpp"
 #include "subsystems/communication/communication.hpp"
 #include "subsystems/communication/tcp_server.hpp"
 

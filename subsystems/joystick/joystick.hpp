@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "hirosco/subsystem/subsystem.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
 
 namespace hirosco {
 

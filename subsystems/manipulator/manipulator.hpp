@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "hirosco/subsystem/subsystem.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
 #include "subsystems/manipulator/control/clutch.hpp"
 #include "subsystems/manipulator/control/joint_controller.hpp"
 #include "subsystems/manipulator/control/programme.hpp"

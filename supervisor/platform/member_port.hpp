@@ -9,8 +9,8 @@
 
 #include "hirosco/data_transfer/control/channel.hpp"
 #include "hirosco/data_transfer/memory/memory.hpp"
-#include "hirosco/subsystem/pages.hpp"
-#include "hirosco/subsystem/states.hpp"
+#include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// How the supervisor reaches a started member, wherever that runs (docs/adr/0066).

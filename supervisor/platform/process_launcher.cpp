@@ -18,7 +18,7 @@
 #include <string_view>
 
 #include "hirosco/data_transfer/control/socket_channel.hpp"
-#include "hirosco/subsystem/pages.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::supervisor {
@@ -33,7 +33,7 @@ constexpr int permit_number = 5;
   return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
 }
 
-/// How the cycle's thread is called (hirosco/subsystem/run.cpp).
+/// How the cycle's thread is called (hirosco/subsystem/process/run.cpp).
 constexpr std::string_view cycle_name = "cycle";
 
 /// What the system tells of one thread in /proc/PID/task/TID/stat.

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "hirosco/subsystem/page_words.hpp"
+#include "hirosco/subsystem/pages/page_words.hpp"
 #include "supervisor/platform/member_port.hpp"
 
 namespace hirosco::supervisor {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/mission.hpp"
-#include "hirosco/subsystem/generic_subsystem.hpp"
+#include "hirosco/subsystem/engine/generic_subsystem.hpp"
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launcher.hpp"
 #include "supervisor/platform/packet_log.hpp"

@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "hirosco/data_transfer/control/channel_pair.hpp"
-#include "hirosco/subsystem/generic_subsystem.hpp"
-#include "hirosco/subsystem/subsystem.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
+#include "hirosco/subsystem/engine/generic_subsystem.hpp"
 #include "supervisor/platform/member_port.hpp"
 
 namespace hirosco::supervisor {

@@ -10,7 +10,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 AUTHOR = """
-#include "hirosco/subsystem/custom_service.hpp"
+#include "hirosco/subsystem/author/custom_service.hpp"
 using namespace hirosco;
 struct Author : Subsystem {
   CustomService book{"BOOK"};

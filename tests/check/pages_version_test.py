@@ -13,7 +13,7 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 BINARIES = pathlib.Path(os.environ["HIROSCO_BIN"])
-PAGES = (REPOSITORY / "hirosco/subsystem/pages.hpp").read_text()
+PAGES = (REPOSITORY / "hirosco/subsystem/pages/pages.hpp").read_text()
 MAGIC = int(re.search(r"page_magic = (0x[0-9A-F]+)", PAGES)[1], 16)
 VERSION = int(re.search(r"page_version = (\d+)", PAGES)[1])
 

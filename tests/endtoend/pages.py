@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The two pages between supervisor and subsystem (hirosco/subsystem/pages.hpp), read from outside by a decoder of its own, and a
+"""The two pages between supervisor and subsystem (hirosco/subsystem/pages/pages.hpp), read from outside by a decoder of its own, and a
 watch that looks at them once a millisecond from above all cycles. Python's standard library only."""
 import mmap
 import multiprocessing

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/subsystem/pages.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
 
 /// A real subsystem that turns on its supervisor when it is sent SIGUSR2 (hazard SF13). It tries to change every page that
 /// it may only read, by everything that the system offers for memory it was handed, and writes what came of each attempt to

@@ -8,7 +8,7 @@ import unittest
 
 import flight
 
-SERVICE_PRIORITY = 20         # hirosco/subsystem/run.cpp
+SERVICE_PRIORITY = 20         # hirosco/subsystem/process/run.cpp
 
 
 class ServiceLoops(unittest.TestCase):

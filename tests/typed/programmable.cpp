@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
-#include "hirosco/subsystem/module.hpp"
+#include "hirosco/subsystem/author/module.hpp"
 
 /// Takes whatever its descriptor permits: what it does not permit is the framework's to refuse.
 namespace hirosco {

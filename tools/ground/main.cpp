@@ -17,7 +17,7 @@
 #include "ground/api/api.hpp"
 #include "ground/api/openapi.hpp"
 #include "ground/shell/http_server.hpp"
-#include "hirosco/subsystem/states.hpp"
+#include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/installation.hpp"

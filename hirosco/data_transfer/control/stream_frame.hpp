@@ -20,7 +20,7 @@ inline constexpr std::uint8_t stream_frame_version = 1;
 
 enum class StreamFrameKind : std::uint8_t {
   Message = 1,  ///< either way: envelope and packet
-  Vital = 2,  ///< from the member: what its vital page says (hirosco/subsystem/page_words.hpp)
+  Vital = 2,  ///< from the member: what its vital page says (hirosco/subsystem/pages/page_words.hpp)
   Permit = 3,  ///< to the member: what its permit page has to say
 };
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/framework_events.hpp"
-#include "hirosco/subsystem/subsystem.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
 
 /// A subsystem that does what a test tells it: one joint, one input link, one actuator, one lamp.
 namespace hirosco::testing {

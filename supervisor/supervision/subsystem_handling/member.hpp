@@ -8,7 +8,7 @@
 #include <string>
 
 #include "hirosco/descriptor/mission.hpp"
-#include "hirosco/subsystem/states.hpp"
+#include "hirosco/subsystem/author/states.hpp"
 #include "supervisor/platform/launcher.hpp"
 
 /// One started subsystem as the supervisor sees it: its port, whether it lives. Whether it moves, and

@@ -14,7 +14,7 @@
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/read.hpp"
-#include "hirosco/subsystem/stream_subsystem_port.hpp"
+#include "hirosco/subsystem/pages/stream_subsystem_port.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "supervisor/platform/stream_member_port.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"

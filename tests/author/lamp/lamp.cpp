@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <hirosco/subsystem/custom_service.hpp>
-#include <hirosco/subsystem/module.hpp>
+#include <hirosco/subsystem/author/custom_service.hpp>
+#include <hirosco/subsystem/author/module.hpp>
 #include <optional>
 
 namespace {

@@ -3,8 +3,8 @@
 #include "switch.hpp"
 
 #include <atomic>
-#include <hirosco/subsystem/custom_service.hpp>
-#include <hirosco/subsystem/module.hpp>
+#include <hirosco/subsystem/author/custom_service.hpp>
+#include <hirosco/subsystem/author/module.hpp>
 #include <map>
 #include <string>
 

@@ -4,6 +4,6 @@
 
 #include <memory>
 
-#include <hirosco/subsystem/subsystem.hpp>
+#include <hirosco/subsystem/author/subsystem.hpp>
 
 [[nodiscard]] std::unique_ptr<hirosco::Subsystem> make_switch();

@@ -8,7 +8,7 @@ MOST_FILES, MOST_EDITED = 2, 0
 FILES = {"subsystems/diary/diary.hpp": """\
 #pragma once
 
-#include "hirosco/subsystem/custom_service.hpp"
+#include "hirosco/subsystem/author/custom_service.hpp"
 
 class Diary final : public hirosco::Subsystem {
   hirosco::Result<> offline() override {

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "hirosco/parameter/layout.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
+#include "hirosco/subsystem/author/typed_values.hpp"
+#include "hirosco/utilities/octets.hpp"
+
+/// What a subsystem asks of another one (adr 0062).
+namespace hirosco {
+
+/// What became of a request.
+struct RequestReport {
+  enum class Stage : std::uint8_t {
+    Accepted,
+    Started,
+    Progressed,
+    Answered,   ///< a report of the service that was asked: `data`
+    Completed,  ///< an end, like those below
+    Refused,    ///< nothing was done
+    Failed,     ///< it had begun
+    TimedOut,   ///< nobody said how it ended
+  };
+  Stage stage{};
+  std::uint32_t request{0};          ///< as request() returned it
+  std::uint16_t step{0};             ///< of Progressed
+  pus::FailureCode code{};           ///< of Refused and Failed
+  std::string_view reason{};         ///< of every end but Completed; valid during the call, like `data`
+  std::int64_t number{0};            ///< of a reason with words
+  std::uint8_t subtype{0};           ///< of Answered
+  Octets data{};
+  [[nodiscard]] constexpr bool is_end() const noexcept { return stage >= Stage::Completed; }
+};
+using RequestHandler = std::function<void(const RequestReport&)>;
+
+/// A function of another subsystem, or a request of its own services, as an author holds it: named, and bound in
+/// Software-Init.
+class RequestPort {
+ public:
+  [[nodiscard]] std::string_view subsystem() const noexcept { return subsystem_; }
+  [[nodiscard]] std::string_view function() const noexcept { return function_; }
+  [[nodiscard]] std::span<const NativeField> arguments() const noexcept { return arguments_; }
+
+ protected:
+  RequestPort(const char* subsystem, const char* function, std::span<const NativeField> arguments) noexcept
+      : subsystem_{subsystem}, function_{function}, arguments_{arguments} {}
+  RequestPort(const RequestPort&) = delete;
+  RequestPort& operator=(const RequestPort&) = delete;
+  ~RequestPort() = default;
+
+ private:
+  std::string_view subsystem_;
+  std::string_view function_;
+  std::span<const NativeField> arguments_;
+};
+
+/// `Request<double> dim_{"LAMP", "DIM"};` with one type for each <Argument> of the function, in their order: a number, an
+/// enumeration, bool, std::string_view for text, or a std::array of all but text. `use_request(dim_, handler)` in
+/// Software-Init, `request(dim_, 0.5)` in the service loop.
+template <class... Arguments>
+class Request final : public RequestPort {
+ public:
+  static_assert((detail::SentType<Arguments> && ...),
+                "a request takes numbers or enumerations, bool, std::string_view for text, or a std::array of all but "
+                "text: no Sized, for its length is the other's descriptor's");
+  /// Both are string literals: the subsystem as <Commands> of the descriptor calls it.
+  Request(const char* subsystem, const char* function) noexcept : RequestPort{subsystem, function, fields} {}
+
+ private:
+  static constexpr std::array<NativeField, sizeof...(Arguments)> fields{detail::native_argument<Arguments>()...};
+};
+
+}  // namespace hirosco

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/parameter/parameter.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
+#include "hirosco/pus/service/service.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/subsystem/author/event_port.hpp"
+#include "hirosco/subsystem/author/handler.hpp"
+#include "hirosco/subsystem/author/ports.hpp"
+#include "hirosco/subsystem/author/request_port.hpp"
+#include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// What a subsystem's author inherits and fills in (paper 4.2): one method per node of figure 4.
+namespace hirosco {
+
+class CustomService;
+class GenericSubsystem;
+
+/// Outcome of one phase of a transient state.
+enum class Step : std::uint8_t { Again, Done };
+inline constexpr Step again = Step::Again;
+inline constexpr Step done = Step::Done;
+
+/// The cycle that a steady state's node is called in.
+struct Cycle {
+  TimePoint planned{};               ///< when it was due
+  Duration period{};
+  std::uint64_t count{0};            ///< since the configuration was applied
+  State state{State::PreOperational};
+  bool first{false};                 ///< first cycle in this state
+  bool active{false};                ///< Operational and not inhibited: what is put out reaches the actuators
+};
+
+/// Base of every subsystem. Steady nodes run in the cycle: noexcept, no allocation, no lock, no I/O. Everything else
+/// runs in the service loop.
+class Subsystem {
+ public:
+  Subsystem() = default;
+  Subsystem(const Subsystem&) = delete;
+  Subsystem& operator=(const Subsystem&) = delete;
+  virtual ~Subsystem() = default;
+
+ protected:
+  // --- the nodes of figure 4 ------------------------------------------------------------------------------------
+  /// Entered at start and at the end: custom services start here.
+  virtual Result<> offline() { return ok(); }
+  /// Publishes parameters, functions, links and devices. Called again while it returns `again`, within 10 s.
+  virtual Result<Step> software_init() { return done; }
+  /// Powers and tests hardware.
+  virtual Result<Step> hardware_init() { return done; }
+  /// Pre-Operational, once per CONFIGURE: parameters, links and devices of the configuration are already in place.
+  virtual Result<> configure(const descriptor::Configuration&) { return ok(); }
+  virtual Result<> pre_operational(const Cycle&) noexcept { return ok(); }
+  virtual Result<> safe_operational(const Cycle&) noexcept { return ok(); }
+  virtual Result<> operational(const Cycle&) noexcept { return ok(); }
+  virtual Result<> error_operational(const Cycle&) noexcept { return ok(); }
+  virtual Result<Step> post_operational() { return done; }
+  virtual Result<Step> hardware_deinit() { return done; }
+  virtual Result<Step> software_deinit() { return done; }
+  /// Every step of the service loop, in all states: work that is not real-time.
+  virtual void service(TimePoint) {}
+  /// Telemetry that the supervisor routes to this subsystem (the communication subsystem's ground link).
+  virtual void telemetry(Octets) {}
+
+  // --- in offline() ----------------------------------------------------------------------------------------------------
+  /// A service of its own, which its descriptor declares; `service` lives as long as this subsystem.
+  void provide(CustomService& service);
+
+  // --- in software_init() -----------------------------------------------------------------------------------------
+  /// Makes a parameter known under its descriptor name. A layout that differs from the descriptor's fails Software-Init.
+  void publish(std::string_view name, ParameterCell& parameter);
+  /// Names the author's view of a required set of real-time data.
+  void require_link(std::string_view set, LinkInputPort& port);
+  /// Names the author's view of a device, and which of its settings the author reads: another that a configuration gives
+  /// fails Software-Init (E0405). All are string literals.
+  void use_device(std::string_view name, DevicePortBase& port, std::initializer_list<std::string_view> settings = {});
+  /// Names an event that the author raises. Arguments that differ from the descriptor's fail Software-Init.
+  void use_event(EventPort& event);
+  /// Longer than a slow disk may hold a telecommand back: what timed out is not carried out later.
+  static constexpr Duration request_patience = std::chrono::seconds{20};
+  /// Names what is asked of another subsystem. What <Commands> of the descriptor does not say, and arguments that differ
+  /// from the other's descriptor, fail Software-Init. The handler hears each stage of each such request, in the service
+  /// loop, and one end: completed, refused or failed with the reason, or not in `patience`.
+  void use_request(RequestPort& request, RequestHandler handler, Duration patience = request_patience);
+  /// Gives a function of the descriptor its handler: a callable that takes its arguments in order (numbers, enumerations,
+  /// bool, std::array or Sized of those, std::string_view for text, which lasts until the handler returns) and, last, a
+  /// Call if it wants to report later. Returns Result<> or Outcome. Runs at a cycle boundary; must not throw. Each C++ type
+  /// holds every value that the descriptor permits, or Software-Init fails. A handler that takes FunctionValues instead
+  /// gets all numbers, as many as the descriptor declares.
+  template <class Handler>
+  void on_function(std::string_view name, Handler handler) {
+    bind_function(name, detail::bound(std::move(handler)));
+  }
+
+  // --- in the cycle and in function handlers ----------------------------------------------------------------------
+  /// Reports an event; arguments in the unit of the descriptor.  Realtime: wait-free.
+  template <class... Arguments>
+  void raise(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) noexcept {
+    raise_encoded(event.id(), event.encode(arguments...));
+  }
+  /// Latches "actuators inhibited" in this cycle; released by the next entry into Operational.  Realtime: wait-free.
+  void inhibit_actuators() noexcept;
+  /// Later reports of a running function.  Realtime: wait-free.
+  void progress(const Call& call, std::uint16_t step) noexcept;
+  void finish(const Call& call) noexcept;
+  /// `text` is a string literal; it reaches ground with `number`.
+  template <FailureEnumeration E>
+  void abort(const Call& call, E code, const char* text = "", std::int64_t number = 0) noexcept {
+    abort_call(call, static_cast<pus::FailureCode>(code), {ErrorCode::Internal, text, number});
+  }
+  void abort(const Call& call, const Error& why) noexcept;
+
+  // --- in the service loop ----------------------------------------------------------------------------------------
+  /// Sends a telecommand that came from the ground link client `client` to the supervisor. ResourceExhausted: the
+  /// supervisor is behind; offer it again.
+  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
+  /// Asks another subsystem, through permission, log and route; what comes of it is heard by the handler under the number
+  /// that is returned. NotPermitted: it is not bound; ResourceExhausted: 16 are under way, 100 went in this second, or the
+  /// supervisor is behind: ask again later; InvalidArgument, OutOfRange: of the arguments.
+  template <class... Arguments>
+  Result<std::uint32_t> request(const Request<Arguments...>& asked,
+                                const std::type_identity_t<Arguments>&... arguments) {
+    return send_request(asked, detail::values_of<Arguments...>(arguments...));
+  }
+  /// Reports an event from the service loop, in any state.
+  template <class... Arguments>
+  void raise_in_service(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) {
+    raise_encoded_in_service(event, event.encode(arguments...));
+  }
+  [[nodiscard]] State state() const noexcept;
+  [[nodiscard]] const descriptor::Subsystem& own_descriptor() const noexcept;
+
+ private:
+  friend class GenericSubsystem;
+  friend class CycleLoop;
+  void bind_function(std::string_view name, BoundHandler handler);
+  void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
+  void raise_encoded_in_service(const EventPort& event, Octets auxiliary);
+  Result<std::uint32_t> send_request(const RequestPort& asked, pus::GivenValues values);
+  void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
+  GenericSubsystem* framework_{nullptr};
+};
+
+}  // namespace hirosco

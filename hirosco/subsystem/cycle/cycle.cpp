@@ -1,0 +1,360 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+// Safety module: cycle (docs/safety/modules.csv).
+#include "hirosco/subsystem/cycle/cycle.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
+
+namespace hirosco {
+namespace {
+
+[[nodiscard]] Octets octets_of_report(const CycleReport& report) noexcept {
+  return std::as_bytes(std::span{&report, 1});
+}
+
+/// Bin of CycleTimes.
+std::size_t bin_of(Duration span) noexcept {
+  constexpr std::int64_t ns_per_us = 1000;
+  const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(span.count() / ns_per_us, 0));
+  return std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(us)), CycleTimes{}.execution.size() - 1);
+}
+
+}  // namespace
+
+CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {
+  std::size_t largest = 0;
+  for (const auto& event : parts_.descriptor.events) largest = std::max(largest, pus::octets_of(event));
+  event_buffer_.resize(largest);
+  own_writes_octets_ = parts_.descriptor.parameters.size();
+  own_writes_ = std::make_unique<std::atomic<std::uint8_t>[]>(own_writes_octets_);
+}
+
+void CycleLoop::prepare(CyclePlan plan) {
+  plan_ = std::move(plan);
+  input_was_stale_.assign(plan_.inputs.size(), 0);
+  state_ = State::PreOperational;
+  first_ = true;
+  inhibited_ = 0;
+  count_ = 0;
+  heartbeat_ = parts_.permit.heartbeat.load(std::memory_order_acquire);
+  silent_cycles_ = 0;
+  silence_limit_ = supervisor_silence_cycles(plan_.configuration->sampling);
+  overruns_in_a_row_ = 0;
+  overruns_ = 0;
+  latency_max_ns_ = 0;
+  execution_max_ns_ = 0;
+  execution_mean_ns_ = 0.0;
+  times_ = {};
+  statistics_.store({});
+  times_parameter_.store({});
+  link_statistics_.store({});
+  watched_.clear();
+  for (std::size_t i = 0; i < own_writes_octets_; ++i) {
+    own_writes_[i].store(0, std::memory_order_relaxed);
+    const ParameterCell* cell = parts_.dictionary.cell(i);
+    if (parts_.descriptor.parameters[i].writable() && cell != nullptr)
+      watched_.push_back({cell, 0, static_cast<std::uint16_t>(i)});
+  }
+  for (IncomingLink& page : parts_.vital.incoming) page.link.store(0, std::memory_order_relaxed);
+}
+
+void CycleLoop::release() { plan_ = {}; }
+
+TimePoint CycleLoop::step(TimePoint planned) noexcept {
+  const TimePoint started = parts_.clock.now();
+  listen_to_supervisor();
+  check_permit();
+  take_commands();
+  read_inputs(started);
+  note_stores();
+  run_node(planned);
+  note_own_writes();
+  write_outputs(planned);
+  if (plan_.sampler != nullptr) plan_.sampler->tick(*this, *this);
+  ++count_;
+  account(planned, started);
+  const Duration period = plan_.configuration->sampling;
+  const TimePoint next = planned + period;
+  const TimePoint finished = parts_.clock.now();
+  if (finished <= next) return next;
+  // Missed cycles are skipped, not made up for: the next one is due on the grid and in the future.
+  const auto skipped = (finished - next) / period + 1;
+  parts_.vital.missed.fetch_add(static_cast<std::uint64_t>(skipped), std::memory_order_relaxed);
+  return next + skipped * period;
+}
+
+bool CycleLoop::controlling() const noexcept {
+  return state_ == State::SafeOperational || state_ == State::Operational;
+}
+
+void CycleLoop::check_permit() noexcept {
+  const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
+  const bool stopped = parts_.permit.stop.load(std::memory_order_acquire) != 0;
+  const bool operational = state_ == State::Operational;
+  if (stopped || (operational && (epoch != entered_epoch_ || !parts_.permit.permits(epoch))))
+    inhibit(inhibited_by_stop);
+  if (silent_cycles_ > silence_limit_) inhibit(inhibited_by_supervisor);
+  permitted_epoch_ = epoch;
+  parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);
+}
+
+/// Once a cycle, and in the cycle: a service loop that is stuck or starved must not keep the actuators going when nobody is
+/// left to stop them.
+void CycleLoop::listen_to_supervisor() noexcept {
+  const std::uint64_t heartbeat = parts_.permit.heartbeat.load(std::memory_order_acquire);
+  if (std::exchange(heartbeat_, heartbeat) != heartbeat) {
+    silent_cycles_ = 0;
+    return;
+  }
+  if (silent_cycles_ > silence_limit_) return;
+  if (++silent_cycles_ <= silence_limit_) return;
+  const double cycles = silent_cycles_;
+  raise(descriptor::framework_event::supervisor_silent, {&cycles, 1});
+}
+
+void CycleLoop::take_commands() noexcept {
+  parts_.writes.apply(parts_.dictionary);
+  // Bounded by the ring: at most what was there when the cycle began.
+  for (std::size_t left = parts_.handover.commands.size(); left > 0; --left) {
+    const auto command = parts_.handover.commands.try_pop();
+    if (!command) return;
+    switch (command->kind) {
+      case CommandKind::Function: run_function(*command); break;
+      case CommandKind::EnterState: enter(static_cast<State>(command->index)); break;
+      case CommandKind::AttachInput: plan_.inputs[command->index].attach(command->link); break;
+      case CommandKind::DetachInput:
+        plan_.inputs[command->index].detach(command->link);
+        report(ReportKind::InputDetached, command->index, {}, command->link);
+        break;
+      case CommandKind::AttachOutput: plan_.outputs[command->index].attach(command->link); break;
+      case CommandKind::DetachOutput:
+        plan_.outputs[command->index].detach(command->link);
+        report(ReportKind::OutputDetached, command->index, {}, command->link);
+        break;
+    }
+  }
+}
+
+void CycleLoop::run_function(const CycleCommand& command) noexcept {
+  pus::ArgumentReader reader{parts_.descriptor.functions[command.index].arguments, command.arguments};
+  const Outcome outcome = functions_[command.index].handler(reader, Call{command.request});
+  switch (outcome.kind) {
+    case Outcome::Kind::Refused: fail_call(ReportKind::Refused, outcome.code, command.request, outcome.reason); return;
+    case Outcome::Kind::Running: report(ReportKind::Started, 0, command.request); return;
+    case Outcome::Kind::Done:
+      report(ReportKind::Started, 0, command.request);
+      report(ReportKind::Finished, 0, command.request);
+      return;
+  }
+}
+
+void CycleLoop::enter(State state) noexcept {
+  // A node that failed is not healed by an entry that was on its way already: the way down follows (hazard SF10).
+  if (state == State::Operational && (inhibited_ & inhibited_by_failure) != 0)
+    return report(ReportKind::EntryRefused, static_cast<std::uint16_t>(state), {});
+  state_ = state;
+  first_ = true;
+  if (state == State::Operational) {
+    entered_epoch_ = parts_.permit.epoch.load(std::memory_order_acquire);
+    inhibited_ = 0;
+    check_permit();
+  }
+  report(ReportKind::StateEntered, static_cast<std::uint16_t>(state), {});
+}
+
+void CycleLoop::read_inputs(TimePoint started) noexcept {
+  for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
+    LinkInputSlot& input = plan_.inputs[i];
+    input.read(started);
+    const bool stale = controlling() && input.stale() && (input.attached() || input.terms().required);
+    if (stale && input.terms().missing == descriptor::MissingPolicy::Inhibit) inhibit(inhibited_by_link);
+    if (stale && !input.ended() && input_was_stale_[i] == 0) {
+      const double age = input.port()->age_cycles();
+      raise(plan_.input_stale_events[i], {&age, 1});
+    }
+    input_was_stale_[i] = stale ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < plan_.devices.size(); ++i) {
+    DeviceSlot& device = plan_.devices[i];
+    device.read(controlling());
+    if (!device.alive() && controlling()) inhibit(inhibited_by_device);
+    if (!device.just_lost()) continue;
+    const DeviceSlot::Loss loss = device.loss();
+    const std::array arguments{static_cast<double>(loss.reason), static_cast<double>(loss.silent_cycles),
+                               static_cast<double>(loss.damaged), static_cast<double>(loss.wrong_size)};
+    raise(plan_.device_lost_events[i], arguments);
+  }
+}
+
+void CycleLoop::run_node(TimePoint planned) noexcept {
+  const Cycle cycle{.planned = planned,
+                    .period = plan_.configuration->sampling,
+                    .count = count_,
+                    .state = state_,
+                    .first = first_,
+                    .active = state_ == State::Operational && inhibited_ == 0};
+  first_ = false;
+  Result<> result;
+  switch (state_) {
+    case State::PreOperational: result = parts_.author.pre_operational(cycle); break;
+    case State::SafeOperational: result = parts_.author.safe_operational(cycle); break;
+    case State::Operational: result = parts_.author.operational(cycle); break;
+    case State::ErrorOperational: result = parts_.author.error_operational(cycle); break;
+    default: break;
+  }
+  if (result || state_ == State::ErrorOperational || (inhibited_ & inhibited_by_failure) != 0) return;
+  inhibit(inhibited_by_failure);
+  const AuthorsError failure{result.error()};
+  answer({.kind = ReportKind::NodeFailed, .index = static_cast<std::uint16_t>(state_)},
+         std::as_bytes(std::span{&failure, 1}));
+}
+
+void CycleLoop::note_stores() noexcept {
+  for (Watched& watched : watched_) watched.stores = watched.cell->stores();
+}
+
+void CycleLoop::note_own_writes() noexcept {
+  for (const Watched& watched : watched_) {
+    const std::uint8_t own = watched.cell->stores() != watched.stores ? 1 : 0;
+    own_writes_[watched.parameter].store(own, std::memory_order_relaxed);
+  }
+}
+
+LinkStatus CycleLoop::link_status() const noexcept {
+  if (state_ == State::ErrorOperational || (inhibited_ & (inhibited_by_failure | inhibited_by_device)) != 0)
+    return LinkStatus::Fault;
+  return inhibited_ != 0 ? LinkStatus::Degraded : LinkStatus::Valid;
+}
+
+void CycleLoop::write_outputs(TimePoint planned) noexcept {
+  const bool active = state_ == State::Operational && inhibited_ == 0;
+  // Inhibited means the declared safe output; only Error-Operational brings the device to a controlled stop (decision 22).
+  const bool stopping = state_ == State::ErrorOperational;
+  // The epoch that was checked in this cycle: an output under an older permission must not carry a newer one.
+  for (DeviceSlot& device : plan_.devices) device.write(permitted_epoch_, active, stopping);
+  for (LinkOutputSlot& output : plan_.outputs) output.write(planned, link_status());
+}
+
+void CycleLoop::count_links() noexcept {
+  LinkStatistics sum;
+  for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
+    const LinkInputSlot& input = plan_.inputs[i];
+    if (i < told_incoming_links) input.tell(parts_.vital.incoming[i]);
+    sum.received += static_cast<std::uint32_t>(input.port()->received());
+    sum.lost += static_cast<std::uint32_t>(input.port()->lost());
+  }
+  link_statistics_.store(sum);
+}
+
+void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
+  const TimePoint finished = parts_.clock.now();
+  const Duration execution = finished - started;
+  latency_max_ns_ = std::max(latency_max_ns_, clamped_ns(started - planned));
+  execution_max_ns_ = std::max(execution_max_ns_, clamped_ns(execution));
+  constexpr double weight = 1e-3;
+  execution_mean_ns_ += weight * (static_cast<double>(execution.count()) - execution_mean_ns_);
+
+  ++times_.execution[bin_of(execution)];
+  ++times_.latency[bin_of(started - planned)];
+  times_parameter_.store(times_);
+  count_links();
+
+  const descriptor::CycleLimit& limit = plan_.configuration->overruns;
+  // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007). Work that
+  // takes long after a start more than a period late tells of the machine: it neither lengthens the row nor breaks it.
+  const bool overrun = execution > plan_.configuration->sampling;
+  const bool starved = started - planned > plan_.configuration->sampling;
+  if (overrun) ++overruns_;
+  if (!overrun) overruns_in_a_row_ = 0;
+  else if (!starved) ++overruns_in_a_row_;
+  if (overrun && !starved && overruns_in_a_row_ == (parts_.realtime ? limit.realtime : limit.reduced)) {
+    const double row = overruns_in_a_row_;
+    raise(descriptor::framework_event::cycle_overruns, {&row, 1});
+  }
+
+  statistics_.store({static_cast<std::uint32_t>(overruns_), static_cast<float>(execution_max_ns_) * 1e-3F,
+                     static_cast<float>(execution_mean_ns_ * 1e-3)});
+  VitalPage& vital = parts_.vital;
+  if (inhibited_ != 0 && vital.inhibited.load(std::memory_order_relaxed) == 0)
+    vital.inhibited_at_cycle.store(vital.cycles.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  vital.inhibited.store(inhibited_, std::memory_order_relaxed);
+  vital.overruns.store(overruns_, std::memory_order_relaxed);
+  vital.latency_max_ns.store(latency_max_ns_, std::memory_order_relaxed);
+  vital.execution_max_ns.store(execution_max_ns_, std::memory_order_relaxed);
+  vital.execution_mean_ns.store(static_cast<std::uint32_t>(execution_mean_ns_), std::memory_order_relaxed);
+  vital.lost_reports.store(static_cast<std::uint32_t>(parts_.handover.dropped()), std::memory_order_relaxed);
+  vital.cycles.fetch_add(1, std::memory_order_release);
+}
+
+void CycleLoop::raise(std::uint16_t event, std::span<const double> arguments) noexcept {
+  const auto& events = parts_.descriptor.events;
+  const auto found = std::ranges::find(events, event, &descriptor::Event::id);
+  if (found == events.end()) return;
+  raise_found(*found, pus::fill_arguments(*found, arguments, event_buffer_));
+}
+
+void CycleLoop::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {
+  const auto& events = parts_.descriptor.events;
+  const auto found = std::ranges::find(events, event, &descriptor::Event::id);
+  if (found != events.end() && pus::octets_of(*found) == auxiliary.size()) raise_found(*found, auxiliary);
+}
+
+void CycleLoop::raise_found(const descriptor::Event& event, Octets auxiliary) noexcept {
+  CycleReport head{.kind = ReportKind::Event, .index = event.id};
+  // A lost device or a stale link is told whatever the author raises besides.
+  if (event.id >= descriptor::framework_event::first) return answer(head, auxiliary);
+  RecordRing& ring = parts_.handover.events;
+  if (event.severity < descriptor::Severity::Medium && ring.used() > ring.capacity() / 2) {
+    parts_.handover.lost_remarks.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  head.number = ++report_number_;
+  static_cast<void>(ring.try_write(octets_of_report(head), auxiliary));
+}
+
+void CycleLoop::report(ReportKind kind, std::uint16_t index, const pus::Request& request, AttachedLink* link) noexcept {
+  answer({.kind = kind, .index = index, .request = request, .link = link});
+}
+
+void CycleLoop::fail_call(ReportKind kind, pus::FailureCode code, const pus::Request& request,
+                          const Error& why) noexcept {
+  const AuthorsError error{why};
+  answer({.kind = kind, .index = static_cast<std::uint16_t>(code), .request = request},
+         std::as_bytes(std::span{&error, 1}));
+}
+
+void CycleLoop::answer(CycleReport head, Octets payload) noexcept {
+  RecordRing& answers = parts_.handover.answers;
+  // Progress is all that an author can have without end: it never takes the last half.
+  if (head.kind == ReportKind::Progressed && answers.used() > answers.capacity() / 2) {
+    parts_.handover.lost_progress.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  head.number = ++report_number_;
+  static_cast<void>(answers.try_write(octets_of_report(head), payload));
+}
+
+std::size_t CycleLoop::sample(std::uint16_t parameter, int member, MutableOctets big_endian) noexcept {
+  return parts_.dictionary.encode(parameter, member, big_endian);
+}
+
+MutableOctets CycleLoop::reserve(std::size_t octets) noexcept {
+  reserved_ = parts_.handover.housekeeping.try_reserve(sizeof(CycleReport) + octets);
+  return reserved_.empty() ? MutableOctets{} : reserved_.subspan(sizeof(CycleReport));
+}
+
+void CycleLoop::commit(std::uint16_t structure, std::size_t octets) noexcept {
+  // reserve() left room for the head in front of what it handed out.
+  const CycleReport head{.kind = ReportKind::Housekeeping, .index = structure};
+  std::ranges::copy(octets_of_report(head), reserved_.begin());
+  parts_.handover.housekeeping.commit(sizeof head + octets);
+}
+
+}  // namespace hirosco

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/parameter/dictionary.hpp"
+#include "hirosco/parameter/write_queue.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+#include "hirosco/subsystem/cycle/device_slot.hpp"
+#include "hirosco/subsystem/cycle/handover.hpp"
+#include "hirosco/subsystem/cycle/link_slots.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
+
+/// The cycle of a subsystem (architecture, rule 1): reads links and devices, runs the state's node, gates the actuators,
+/// samples housekeeping, writes links and devices.
+namespace hirosco {
+
+/// Cycle statistics as a parameter of every subsystem: CYCLE_STATS (descriptor/framework_parameters.hpp).
+struct CycleStatistics {
+  std::uint32_t overruns{0};
+  float max_us{0.0F};  ///< longest execution since the configuration was applied
+  float avg_us{0.0F};  ///< mean over about the last 1,000 cycles
+};
+
+/// Where the cycles of a configuration fell, as a parameter of every subsystem: CYCLE_TIMES. Bin 0: below 1 us; bin i:
+/// from 2^(i-1) us to below 2^i us; the last one: all above.
+struct CycleTimes {
+  std::array<std::uint32_t, 16> execution{};  ///< of the cycle's own work
+  std::array<std::uint32_t, 16> latency{};  ///< from the planned instant to the start
+};
+
+/// What the real-time links brought since they were made, as a parameter of every subsystem: LINK_STATS.
+struct LinkStatistics {
+  std::uint32_t received{0};
+  std::uint32_t lost{0};  ///< samples that came and went between two cycles: gaps of the count
+};
+
+/// A function's handler and what the cycle needs to know of it.
+struct BoundFunction {
+  FunctionHandler handler;
+};
+
+/// What of a configuration the cycle works on. Built by the service loop while the cycle rests.
+struct CyclePlan {
+  const descriptor::Configuration* configuration{nullptr};
+  std::vector<LinkInputSlot> inputs;
+  std::vector<LinkOutputSlot> outputs;
+  std::vector<DeviceSlot> devices;
+  pus::HousekeepingSampler* sampler{nullptr};
+  std::vector<std::uint16_t> device_lost_events;  ///< ids, per device
+  std::vector<std::uint16_t> input_stale_events;  ///< per input
+};
+
+class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
+ public:
+  struct Parts {
+    Subsystem& author;
+    const descriptor::Subsystem& descriptor;
+    const Clock& clock;
+    Dictionary& dictionary;
+    WriteQueue& writes;
+    Handover& handover;
+    VitalPage& vital;
+    const PermitPage& permit;
+    bool realtime;
+  };
+  explicit CycleLoop(const Parts& parts);
+
+  // --- service loop, while the cycle rests ------------------------------------------------------------------------
+  void prepare(CyclePlan plan);
+  void release();
+  [[nodiscard]] CyclePlan& plan() noexcept { return plan_; }
+  [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
+  [[nodiscard]] Parameter<CycleStatistics>& statistics() noexcept { return statistics_; }
+  [[nodiscard]] Parameter<CycleTimes>& times() noexcept { return times_parameter_; }
+  [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
+
+  /// Whether the author's node wrote this parameter in the newest cycle: what anybody else writes would not last.
+  /// Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool writes_itself(std::size_t parameter) const noexcept {
+    return parameter < own_writes_octets_ && own_writes_[parameter].load(std::memory_order_relaxed) != 0;
+  }
+
+  // --- the cycle --------------------------------------------------------------------------------------------------
+  /// One cycle that was due at `planned`; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
+  /// at most one system call per device.
+  TimePoint step(TimePoint planned) noexcept;
+
+  // --- the author, from inside the cycle --------------------------------------------------------------------------
+  void raise(std::uint16_t event, std::span<const double> arguments) noexcept;
+  /// The same with its auxiliary data; nothing when these have not the length of the descriptor's.
+  void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
+  void inhibit(Inhibition reason) noexcept { inhibited_ |= reason; }
+  void report(ReportKind kind, std::uint16_t index, const pus::Request& request, AttachedLink* link = nullptr) noexcept;
+
+  void fail_call(ReportKind kind, pus::FailureCode code, const pus::Request& request, const Error& why) noexcept;
+
+ private:
+  void raise_found(const descriptor::Event& event, Octets auxiliary) noexcept;
+  void answer(CycleReport head, Octets payload = {}) noexcept;
+  void take_commands() noexcept;
+  void run_function(const CycleCommand& command) noexcept;
+  void enter(State state) noexcept;
+  void check_permit() noexcept;
+  void listen_to_supervisor() noexcept;
+  void read_inputs(TimePoint started) noexcept;
+  void run_node(TimePoint planned) noexcept;
+  void write_outputs(TimePoint planned) noexcept;
+  void note_stores() noexcept;
+  void note_own_writes() noexcept;
+  void account(TimePoint planned, TimePoint started) noexcept;
+  void count_links() noexcept;
+  [[nodiscard]] bool controlling() const noexcept;
+  [[nodiscard]] LinkStatus link_status() const noexcept;
+
+  std::size_t sample(std::uint16_t parameter, int member, MutableOctets big_endian) noexcept override;
+  MutableOctets reserve(std::size_t octets) noexcept override;
+  void commit(std::uint16_t structure, std::size_t octets) noexcept override;
+
+  Parts parts_;
+  CyclePlan plan_;
+  std::vector<BoundFunction> functions_;
+  Parameter<CycleStatistics> statistics_;
+  Parameter<CycleTimes> times_parameter_;
+  Parameter<LinkStatistics> link_statistics_;
+  std::vector<std::byte> event_buffer_;  ///< room for the largest event of the descriptor
+  struct Watched {
+    const ParameterCell* cell;
+    std::uint64_t stores;  ///< before the node ran
+    std::uint16_t parameter;
+  };
+  std::vector<Watched> watched_;  ///< what ST[20] might set
+  std::unique_ptr<std::atomic<std::uint8_t>[]> own_writes_;  ///< by parameter
+  std::size_t own_writes_octets_{0};
+  std::uint32_t report_number_{0};
+  MutableOctets reserved_;  ///< housekeeping report under assembly
+
+  State state_{State::PreOperational};
+  bool first_{true};
+  std::uint32_t inhibited_{0};
+  std::uint64_t count_{0};
+  std::uint32_t entered_epoch_{0};
+  std::uint32_t permitted_epoch_{0};  ///< of the permit page, as checked in this cycle
+  std::uint64_t heartbeat_{0};  ///< of the supervisor, as seen in the last cycle
+  std::uint32_t silent_cycles_{0};  ///< of the supervisor
+  std::uint32_t silence_limit_{1};
+  std::uint32_t overruns_in_a_row_{0};
+  std::uint64_t overruns_{0};
+  std::uint32_t latency_max_ns_{0};
+  std::uint32_t execution_max_ns_{0};
+  double execution_mean_ns_{0.0};
+  CycleTimes times_{};
+  std::vector<char> input_was_stale_;
+};
+
+}  // namespace hirosco

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+// Safety module: cycle (docs/safety/modules.csv).
+#include "hirosco/subsystem/cycle/device_slot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/parameter/number.hpp"
+#include "hirosco/subsystem/cycle/layout_difference.hpp"
+
+namespace hirosco {
+namespace {
+
+static_assert(descriptor::max_device_octets == max_device_payload_octets);
+
+/// Cycles without news are counted up to here, so that a counter never wraps back to "fresh".
+constexpr std::uint32_t longest_silence = 1'000'000'000;
+/// How long a device may follow an epoch before the commanded one, in silence limits: the guard names it every 5 ms.
+constexpr std::uint32_t longest_introduction = 40;
+
+[[nodiscard]] std::endian endian_of(descriptor::ByteOrder order) noexcept {
+  return order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
+}
+
+[[nodiscard]] std::vector<LayoutField> layout_fields(std::span<const NativeField> native) {
+  std::vector<LayoutField> fields;
+  for (const NativeField& field : native) fields.push_back({field.type, field.count, field.offset});
+  return fields;
+}
+
+[[nodiscard]] std::vector<descriptor::Field> outputs_of(const descriptor::Device& device) {
+  std::vector<descriptor::Field> fields;
+  for (const auto& output : device.output) fields.push_back(output.field);
+  return fields;
+}
+
+/// The fields of an object that agrees with its declaration, with the lengths that this gives.
+[[nodiscard]] std::span<const NativeField> with_lengths(ObjectFields& fields,
+                                                        const std::vector<descriptor::Field>& declared,
+                                                        MutableOctets object) noexcept {
+  for (std::size_t i = 0; i < declared.size(); ++i) fields.set_length(i, declared[i].count, object);
+  return fields.all();
+}
+
+/// Declared safe values in wire form.
+[[nodiscard]] std::vector<std::byte> safe_payload(const descriptor::Device& device, std::endian order) {
+  std::vector<std::byte> payload;
+  for (const auto& output : device.output) {
+    const std::size_t start = payload.size();
+    payload.resize(start + output.field.octets());
+    OctetWriter writer{MutableOctets{payload}.subspan(start), order};
+    for (std::uint16_t i = 0; i < output.field.count; ++i)
+      put_number(writer, output.field.type, i < output.safe.size() ? output.safe[i] : 0.0);
+  }
+  return payload;
+}
+
+}  // namespace
+
+DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::DeviceUse& use, DevicePortBase& port,
+                       std::unique_ptr<DataFlow> flow, bool realtime)
+    : device_{&device},
+      port_{&port},
+      flow_{std::move(flow)},
+      order_{endian_of(use.endnode.byte_order)},
+      silence_limit_{realtime ? use.silence.realtime : use.silence.reduced},
+      watchdog_us_{realtime ? use.watchdog_us : use.watchdog_reduced_us},
+      input_layout_{layout_fields(with_lengths(port.input_layout_, device.input, port.input_))},
+      output_layout_{layout_fields(with_lengths(port.output_layout_, outputs_of(device), port.output_))},
+      safe_payload_{safe_payload(device, order_)},
+      payload_(std::max(wire_octets(input_layout_), safe_payload_.size())),
+      frame_(max_device_frame_octets) {
+  port_->alive_ = false;
+  port_->fresh_ = false;
+  port_->damaged_frames_ = 0;
+  port_->settings_ = use.settings;
+}
+
+std::string DeviceSlot::difference(const descriptor::Device& device, const DevicePortBase& port) {
+  if (auto text = layout_difference(port.input_layout(), device.input); !text.empty()) return "input, " + text;
+  auto text = layout_difference(port.output_layout(), outputs_of(device));
+  return text.empty() ? text : "output, " + text;
+}
+
+void DeviceSlot::read(bool count_silence) noexcept {
+  port_->fresh_ = false;
+  just_lost_ = false;
+  const auto received = flow_->receive(frame_);
+  if (received && received->flow == Flow::New) take_frame(Octets{frame_}.first(received->octets));
+  if (port_->fresh_) {
+    since_good_ = {};
+    heard_ = true;
+    port_->alive_ = true;
+    return;
+  }
+  if (!heard_ && !count_silence) return;
+  hung_up_ = !received && heard_;
+  count(since_good_.silent_cycles);
+  if (since_good_.silent_cycles == silence_limit_ || (hung_up_ && port_->alive_)) {
+    just_lost_ = port_->alive_ || !heard_;
+    port_->alive_ = false;
+  }
+}
+
+void DeviceSlot::take_frame(Octets frame) noexcept {
+  const auto status = read_status(frame);
+  const bool fits = status && status->payload.size() == wire_octets(input_layout_);
+  if (!fits) {
+    ++port_->damaged_frames_;
+    return count(status ? since_good_.wrong_size : since_good_.damaged);
+  }
+  decode(input_layout_, status->payload, port_->input_, order_);
+  // A frame that answers no newer command is a repetition: a frozen device must not look alive.
+  port_->fresh_ = status->sequence != echoed_ || !heard_;
+  if (!port_->fresh_) count(since_good_.repeated);
+  echoed_ = status->sequence;
+  port_->flags_ = status->flags;
+  // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say. Of an epoch
+  // before the commanded one that says nothing at first: the guard has yet to name this one to it.
+  const bool tripped = (status->flags & device_flag::watchdog_tripped) != 0;
+  const std::uint32_t patience = status->epoch < epoch_ ? longest_introduction * silence_limit_ : silence_limit_;
+  if (!tripped || active_cycles_ <= patience) return;
+  if (port_->fresh_) count(since_good_.let_go);
+  port_->fresh_ = false;
+}
+
+void DeviceSlot::count(std::uint32_t& cycles) noexcept { cycles = std::min(cycles + 1, longest_silence); }
+
+DeviceSlot::Loss DeviceSlot::loss() const noexcept {
+  Loss loss = since_good_;
+  using enum descriptor::DeviceLoss;
+  std::uint32_t most = 0;
+  const auto blame = [&](std::uint32_t frames, descriptor::DeviceLoss reason) {
+    if (frames <= most) return;
+    most = frames;
+    loss.reason = reason;
+  };
+  blame(loss.damaged, Damaged);
+  blame(loss.wrong_size, WrongSize);
+  blame(loss.let_go, LetGo);
+  blame(loss.repeated, Repeated);
+  if (hung_up_) loss.reason = HungUp;
+  return loss;
+}
+
+void DeviceSlot::keep_in_range(MutableOctets payload) noexcept {
+  std::size_t at = 0;
+  for (const auto& output : device_->output) {
+    const descriptor::Field& field = output.field;
+    const std::size_t octets = octets_of(field.type);
+    for (std::size_t i = 0; i < field.count; ++i, at += octets) {
+      if (!field.minimum && !field.maximum) continue;
+      const MutableOctets place = payload.subspan(at, octets);
+      OctetReader reader{place, order_};
+      const double wanted = get_number(reader, field.type);
+      double held = wanted;
+      if (std::isnan(wanted)) held = i < output.safe.size() ? output.safe[i] : 0.0;
+      if (field.minimum) held = std::max(held, field.minimum->real());
+      if (field.maximum) held = std::min(held, field.maximum->real());
+      if (held == wanted) continue;
+      OctetWriter writer{place, order_};
+      put_number(writer, field.type, held);
+    }
+  }
+}
+
+void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {
+  const bool pass = active || !device_->actuator;
+  active_cycles_ = active ? std::min(active_cycles_ + 1, longest_silence) : 0;
+  epoch_ = epoch;
+  Octets payload = safe_payload_;
+  if (pass) {
+    port_->output_layout_.fit(port_->output_);
+    const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());
+    encode(output_layout_, port_->output_, room, order_);
+    keep_in_range(room);
+    payload = room;
+  }
+  const DeviceMode mode = pass ? DeviceMode::Active : stopping ? DeviceMode::Stop : DeviceMode::Off;
+  const auto frame = write_command(
+      frame_,
+      DeviceCommand{
+          .mode = mode, .epoch = epoch, .sequence = ++sequence_, .watchdog_us = watchdog_us_, .payload = payload});
+  // A device that does not listen is found by its silence, one cycle later: nothing to do here.
+  if (frame) static_cast<void>(flow_->send(*frame));
+}
+
+}  // namespace hirosco

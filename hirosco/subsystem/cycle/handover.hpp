@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/pus/service/service.hpp"
+#include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
+#include "hirosco/utilities/record_ring.hpp"
+#include "hirosco/utilities/spsc_ring.hpp"
+
+/// What the two loops of a subsystem tell each other. Trivially copyable records in preallocated rings: the only way
+/// between them (architecture, rule 1).
+namespace hirosco {
+
+struct AttachedLink;
+
+enum class CommandKind : std::uint8_t {
+  Function,       ///< run handler `index` with `arguments`
+  EnterState,     ///< `index` is the State
+  AttachInput,    ///< `link` to input slot `index`
+  DetachInput,
+  AttachOutput,   ///< `link` to output slot `index`
+  DetachOutput,
+};
+
+/// Service loop -> cycle.
+struct CycleCommand {
+  CommandKind kind{};
+  std::uint16_t index{0};
+  pus::Request request{};
+  AttachedLink* link{nullptr};
+  pus::ArgumentData arguments{};
+};
+
+enum class ReportKind : std::uint8_t {
+  Housekeeping,   ///< payload: source data of TM[3,25], `index` the structure id
+  Event,          ///< payload: auxiliary data, `index` the event id
+  Started,
+  Refused,        ///< `index` the code; payload: AuthorsError
+  Progressed,
+  Finished,
+  Aborted,        ///< of a function; `index` code or step; payload of Aborted: AuthorsError
+  StateEntered,   ///< `index` the State
+  EntryRefused,   ///< `index` the State
+  NodeFailed,     ///< `index` the State; payload: AuthorsError
+  InputDetached,
+  OutputDetached,  ///< `link` may be freed
+};
+
+/// An author's error: the words are copied, as who said them may be gone when they are read.
+struct AuthorsError {
+  ErrorCode code{ErrorCode::Internal};
+  std::uint8_t text_octets{0};
+  std::int64_t number{0};
+  std::array<char, descriptor::framework_event::text_octets> text{};
+  AuthorsError() = default;
+  explicit AuthorsError(const Error& error) noexcept : code{error.code}, number{error.value} {
+    if (error.text == nullptr) return;
+    while (text_octets < text.size() && error.text[text_octets] != '\0') {
+      text[text_octets] = error.text[text_octets];
+      ++text_octets;
+    }
+  }
+};
+
+/// Cycle -> service loop; a payload may follow in the same record.
+struct CycleReport {
+  ReportKind kind{};
+  std::uint16_t index{0};
+  std::uint32_t number{0};  ///< answers and events count together: they are taken in the order in which they were made
+  pus::Request request{};
+  AttachedLink* link{nullptr};
+};
+
+/// Commands and reports between the loops of one subsystem. Three rings of reports, so that none is crowded out by
+/// another kind: whatever an author raises, and however much housekeeping is asked for, who waits for an answer gets it.
+struct Handover {
+  Handover() : answers{32 * 1024}, events{32 * 1024}, housekeeping{64 * 1024} {}
+  SpscRing<CycleCommand, 64> commands;
+  RecordRing answers;  ///< somebody waits for them: at most two for each command, progress, and framework events
+  RecordRing events;  ///< the author's
+  RecordRing housekeeping;
+  // Written by the cycle, besides what the rings count themselves: what may not take the last half of one.
+  std::atomic<std::uint64_t> lost_progress{0};
+  std::atomic<std::uint64_t> lost_remarks{0};
+  [[nodiscard]] std::uint64_t lost_answers() const noexcept {
+    return answers.dropped() + lost_progress.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t lost_events() const noexcept {
+    return events.dropped() + lost_remarks.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t dropped() const noexcept {
+    return lost_answers() + lost_events() + housekeeping.dropped();
+  }
+};
+
+}  // namespace hirosco

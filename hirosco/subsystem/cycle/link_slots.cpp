@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+// Safety module: cycle (docs/safety/modules.csv).
+#include "hirosco/subsystem/cycle/link_slots.hpp"
+
+#include <algorithm>
+
+namespace hirosco {
+namespace {
+
+/// Cycles without news are counted up to here, so that a counter never wraps back to "fresh".
+constexpr std::uint32_t longest_age = 1'000'000'000;
+
+}  // namespace
+
+LinkInputSlot::LinkInputSlot(const descriptor::Requires& terms, LinkInputPort* port, bool realtime) noexcept
+    : terms_{&terms}, port_{port}, age_limit_{realtime ? terms.age.realtime : terms.age.reduced} {
+  for (std::size_t i = 0; i < terms.fields.size(); ++i)
+    port_->layout_.set_length(i, terms.fields[i].count, port_->native_);
+  port_->valid_ = false;
+  port_->age_cycles_ = 0;
+  port_->status_ = LinkStatus::None;
+  port_->count_ = 0;
+}
+
+Result<> LinkInputSlot::plan(AttachedLink& link) const {
+  link.scatter.clear();
+  link.wire_offset.clear();
+  for (std::size_t wanted = 0; wanted < terms_->fields.size(); ++wanted) {
+    std::size_t offset = 0;
+    const auto found = std::ranges::find_if(link.agreement.fields, [&](const pus::st128::OfferedField& field) {
+      if (field.name == terms_->fields[wanted].name) return true;
+      offset += octets_of(field.type) * field.count;
+      return false;
+    });
+    if (found == link.agreement.fields.end()) return fail(ErrorCode::Mismatch, "the agreement lacks a required field");
+    const NativeField& place = port_->layout()[wanted];
+    if (found->type != place.type || found->count != place.count)
+      return fail(ErrorCode::Mismatch, "the agreement has a required field with another type");
+    link.scatter.push_back({place.type, place.count, place.offset});
+    link.wire_offset.push_back(offset);
+  }
+  return ok();
+}
+
+void LinkInputSlot::attach(AttachedLink* link) noexcept {
+  link_ = link;
+  port_->age_cycles_ = 0;
+  // What an earlier link brought must not pass for a sample of this one.
+  port_->count_ = 0;
+  port_->received_ = 0;
+  port_->lost_ = 0;
+  port_->status_ = LinkStatus::None;
+  latency_mean_ns_ = 0.0;
+  latency_max_ns_ = 0;
+}
+
+void LinkInputSlot::detach(const AttachedLink* link) noexcept {
+  if (link_ != link) return;
+  link_ = nullptr;
+  port_->valid_ = false;
+  port_->status_ = LinkStatus::None;
+}
+
+void LinkInputSlot::read(TimePoint now) noexcept {
+  if (link_ == nullptr) {
+    port_->valid_ = false;
+    return;
+  }
+  const LinkSample sample = link_->reader->read(link_->payload);
+  if (sample.flow == Flow::New) {
+    for (std::size_t i = 0; i < link_->scatter.size(); ++i) {
+      const LayoutField& field = link_->scatter[i];
+      const std::size_t octets = octets_of(field.type) * field.count;
+      decode(std::span{&field, 1}, Octets{link_->payload}.subspan(link_->wire_offset[i], octets), port_->native_,
+             link_->order);
+    }
+    port_->age_cycles_ = 0;
+    port_->count_ = sample.count;
+    ++port_->received_;
+    port_->lost_ += sample.lost;
+    const std::uint32_t latency_ns = clamped_ns(now - sample.sampled_at);
+    latency_max_ns_ = std::max(latency_max_ns_, latency_ns);
+    // The first samples weigh as much as they are, so that the mean needs no time to arrive.
+    const double weight = std::max(1.0 / static_cast<double>(port_->received_), 1e-3);
+    latency_mean_ns_ += weight * (static_cast<double>(latency_ns) - latency_mean_ns_);
+  } else if (port_->age_cycles_ < longest_age) {
+    ++port_->age_cycles_;
+  }
+  port_->status_ = sample.status;
+  const bool fresh = port_->age_cycles_ <= age_limit_ * link_->producer_cycles_per_sample;
+  const bool reliable = sample.status == LinkStatus::Valid || sample.status == LinkStatus::Degraded;
+  port_->valid_ = port_->count_ != 0 && fresh && reliable;
+}
+
+void LinkInputSlot::tell(IncomingLink& page) const noexcept {
+  constexpr auto relaxed = std::memory_order_relaxed;
+  page.link.store(link_ != nullptr ? link_->id : 0, relaxed);
+  page.lost.store(static_cast<std::uint32_t>(port_->lost_), relaxed);
+  page.latency_mean_ns.store(static_cast<std::uint32_t>(latency_mean_ns_), relaxed);
+  page.latency_max_ns.store(latency_max_ns_, relaxed);
+}
+
+LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms,
+                               Dictionary& dictionary)
+    : terms_{&terms} {
+  for (const descriptor::ParameterRef& reference : terms.parameters) {
+    const ParameterCell* cell = dictionary.cell(reference.parameter);
+    const auto& layout = cell->fields();
+    const auto fields = descriptor::fields_of(subsystem, reference);
+    const std::size_t first = reference.member.value_or(0);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const NativeField& native = layout[first + i];
+      fields_.push_back({fields[i].name, fields[i].type, fields[i].count});
+      sources_.push_back({cell, {native.type, native.count, native.offset}});
+    }
+  }
+  std::size_t octets = 0;
+  for (const auto& field : fields_) octets += octets_of(field.type) * field.count;
+  for (auto& payload : payloads_) payload.resize(octets);
+}
+
+void LinkOutputSlot::attach(AttachedLink* link) noexcept {
+  link->next = first_;
+  first_ = link;
+}
+
+void LinkOutputSlot::detach(AttachedLink* link) noexcept {
+  for (AttachedLink** place = &first_; *place != nullptr; place = &(*place)->next)
+    if (*place == link) {
+      *place = link->next;
+      return;
+    }
+}
+
+void LinkOutputSlot::encode_for(std::endian order) noexcept {
+  std::size_t at = 0;
+  for (const Source& source : sources_) {
+    const std::size_t octets = octets_of(source.field.type) * source.field.count;
+    encode(std::span{&source.field, 1}, source.cell->live(), payload(order).subspan(at, octets), order);
+    at += octets;
+  }
+}
+
+void LinkOutputSlot::write(TimePoint now, LinkStatus status) noexcept {
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    bool encoded = false;
+    for (AttachedLink* link = first_; link != nullptr; link = link->next) {
+      if (link->order != order) continue;
+      if (!encoded) encode_for(order);
+      encoded = true;
+      link->writer->write(payload(order), now, status);
+    }
+  }
+}
+
+}  // namespace hirosco

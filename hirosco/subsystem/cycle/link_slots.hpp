@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hirosco/data_transfer/layout.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/parameter/dictionary.hpp"
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+#include "hirosco/subsystem/author/ports.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
+
+/// What the cycle moves between the author's ports and other subsystems: one slot per required set and provided set.
+/// Slots are built by the service loop while the cycle rests; step functions run in the cycle and are bounded.
+namespace hirosco {
+
+/// One end of an established link: made by the service loop, used by the cycle, freed by the service loop.
+struct AttachedLink {
+  std::uint8_t id{0};                    ///< in the mission
+  pus::st128::Agreement agreement;
+  std::unique_ptr<LinkWriter> writer;    ///< producer
+  std::unique_ptr<LinkReader> reader;    ///< consumer
+  AttachedLink* next{nullptr};           ///< producer: of the same set; the cycle's
+  std::vector<LayoutField> scatter;      ///< consumer: where each agreed field goes in the port, size 0 = unused
+  std::vector<std::size_t> wire_offset;  ///< consumer: of each entry of `scatter`
+  std::vector<std::byte> payload;        ///< consumer
+  std::endian order{std::endian::little};
+  std::uint32_t producer_cycles_per_sample{1};  ///< own cycles that one sample of a slower producer may take
+};
+
+/// A required set of real-time data.
+class LinkInputSlot {
+ public:
+  LinkInputSlot(const descriptor::Requires& terms, LinkInputPort* port, bool realtime) noexcept;
+  [[nodiscard]] const descriptor::Requires& terms() const noexcept { return *terms_; }
+  [[nodiscard]] LinkInputPort* port() const noexcept { return port_; }
+  [[nodiscard]] bool attached() const noexcept { return link_ != nullptr; }
+  /// Prepares the scatter list of a link for the port. Mismatch: the agreement lacks a field.
+  [[nodiscard]] Result<> plan(AttachedLink& link) const;
+  void attach(AttachedLink* link) noexcept;
+  /// Lets go of this link; of another one it keeps hold.
+  void detach(const AttachedLink* link) noexcept;
+  /// Reads the link into the port, in the cycle that started at `now`.
+  void read(TimePoint now) noexcept;
+  /// Tells how the link does.
+  void tell(IncomingLink& page) const noexcept;
+  /// Too old, reported faulty or absent: what a required set must not be while actuators move.
+  [[nodiscard]] bool stale() const noexcept { return !port_->valid_; }
+  /// Its producer or the supervisor has ended it in order: no reason for an alarm.
+  [[nodiscard]] bool ended() const noexcept { return link_ == nullptr || port_->status_ == LinkStatus::Stopping; }
+
+ private:
+  const descriptor::Requires* terms_;
+  LinkInputPort* port_;
+  std::uint32_t age_limit_;
+  AttachedLink* link_{nullptr};
+  double latency_mean_ns_{0.0};
+  std::uint32_t latency_max_ns_{0};
+};
+
+/// A provided set of real-time data. A set may have any number of consumers, one link each: what they get is encoded once.
+class LinkOutputSlot {
+ public:
+  LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms, Dictionary& dictionary);
+  [[nodiscard]] const descriptor::Provides& terms() const noexcept { return *terms_; }
+  [[nodiscard]] const std::vector<pus::st128::OfferedField>& fields() const noexcept { return fields_; }
+  void attach(AttachedLink* link) noexcept;
+  void detach(AttachedLink* link) noexcept;
+  void write(TimePoint now, LinkStatus status) noexcept;
+
+ private:
+  struct Source {
+    const ParameterCell* cell;
+    LayoutField field;
+  };
+  const descriptor::Provides* terms_;
+  std::vector<pus::st128::OfferedField> fields_;
+  std::vector<Source> sources_;
+  void encode_for(std::endian order) noexcept;
+  [[nodiscard]] MutableOctets payload(std::endian order) noexcept {
+    return payloads_[order == std::endian::big ? 1 : 0];
+  }
+
+  std::array<std::vector<std::byte>, 2> payloads_;  ///< little and big endian
+  AttachedLink* first_{nullptr};
+};
+
+}  // namespace hirosco

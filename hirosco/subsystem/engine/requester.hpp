@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/service/arguments.hpp"
+#include "hirosco/subsystem/author/request_port.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco {
+
+/// What a subsystem has asked of others and not heard the end of. Each request ends once: by a report, or because none came
+/// in its time.  Thread: the service loop.
+class Requester {
+ public:
+  /// More of one subsystem are not under way at once, nor sent in one second: the supervisor refuses them (adr 0062).
+  static constexpr std::size_t most_open = 16;
+  static constexpr std::size_t most_a_second = 100;
+
+  Requester(const descriptor::Subsystem& described, Channel& channel, TimePoint now);
+
+  /// Binds a request. What is wrong with it in words; empty when nothing is.
+  [[nodiscard]] std::string use(const RequestPort& port, RequestHandler handler, Duration patience);
+  /// Sends one, and returns its number. NotPermitted: it is not bound; ResourceExhausted: too many are under way, or the
+  /// supervisor is behind; of the values, what the encoder of ST[08] says.
+  [[nodiscard]] Result<std::uint32_t> send(const RequestPort& port, pus::GivenValues values, TimePoint now);
+  [[nodiscard]] bool waits() const noexcept { return !open_.empty(); }
+  /// A report that came for this subsystem.
+  void hear(const pus::TelemetryView& report);
+  /// Ends those that nobody answered in their time.
+  void step(TimePoint now);
+  /// Ends all, and unbinds what was bound.
+  void forget();
+
+ private:
+  struct Bound {
+    const RequestPort* port{nullptr};
+    std::uint16_t apid{0};
+    const descriptor::Function* function{nullptr};
+    RequestHandler handler;
+    Duration patience{};
+  };
+  struct Open {
+    std::uint32_t id{0};
+    const Bound* bound{nullptr};
+    TimePoint deadline{};
+  };
+  void hear_verification(const pus::TelemetryView& report);
+  void hear_answer(const pus::TelemetryView& report);
+  void end(std::size_t place, RequestReport report);
+
+  const descriptor::Subsystem& descriptor_;
+  Channel& channel_;
+  std::deque<Bound> bound_;  ///< those of open requests stay where they are
+  std::vector<Open> open_;  ///< the oldest first
+  std::uint16_t next_count_;
+  TimePoint window_{};
+  std::size_t sent_in_window_{0};
+};
+
+}  // namespace hirosco

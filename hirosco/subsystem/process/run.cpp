@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/process/run.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
+#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/read.hpp"
+#include "hirosco/subsystem/engine/generic_subsystem.hpp"
+#include "hirosco/utilities/allocation_guard.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/os/semaphore.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/utilities/os/wait_set.hpp"
+
+namespace hirosco {
+namespace {
+
+/// Of the cycle's thread. All memory is locked, so that every octet of it is taken from the computer.
+constexpr std::size_t cycle_stack_octets = std::size_t{1} << 20;
+
+/// Real-time, but below every cycle: a busy core cannot hold up a command to stop (decision 8a). Service loops share: one that never
+/// rests must not keep those of others from stepping, which would then count as hanging (hazard R18).
+constexpr int service_priority = 20;
+constexpr int exit_usage = 2;
+constexpr int exit_environment = 3;
+
+struct Options {
+  std::string descriptor;
+  std::vector<std::pair<std::string, std::string>> changes;  ///< as the mission has them
+  int channel{-1};
+  int vital{-1};
+  int permit{-1};
+  [[nodiscard]] bool complete() const { return !descriptor.empty() && channel >= 0 && vital >= 0 && permit >= 0; }
+};
+
+[[nodiscard]] int number_of(const char* text) {
+  int number = -1;
+  std::from_chars(text, text + std::strlen(text), number);
+  return number;
+}
+
+[[nodiscard]] Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string_view name{argv[i]};
+    if (name == "--descriptor") options.descriptor = argv[i + 1];
+    else if (name == "--channel") options.channel = number_of(argv[i + 1]);
+    else if (name == "--vital") options.vital = number_of(argv[i + 1]);
+    else if (name == "--permit") options.permit = number_of(argv[i + 1]);
+    else options.changes.emplace_back(name, argv[i + 1]);
+  }
+  return options;
+}
+
+[[nodiscard]] Mapping map_page(SealedMemory& memory, int descriptor, Access access) {
+  auto mapping = memory.map(SealedMemory::adopt(descriptor), access);
+  return mapping ? std::move(*mapping) : Mapping{};
+}
+
+/// Why the pages that the supervisor handed over are not used; empty when they are.
+[[nodiscard]] std::string refuse_pages(const Mapping& vital, const Mapping& permit) {
+  if (vital.octets.size() < sizeof(VitalPage) || permit.octets.size() < sizeof(PermitPage))
+    return "the vital or permit page cannot be mapped";
+  const auto& page = *reinterpret_cast<const PermitPage*>(permit.octets.data());
+  if (page.magic != page_magic) return "what should be the permit page is none";
+  if (page.version != page_version)
+    return fmt::format(
+        "the supervisor's pages are of version {}, this program's of version {}: build both from one hirosco",
+        page.version, page_version);
+  return {};
+}
+
+/// The cycle thread: sleeps to absolute times while a cycle is wanted, rests on a semaphore otherwise.
+class CycleThread {
+ public:
+  explicit CycleThread(GenericSubsystem& subsystem, const Clock& clock, bool realtime)
+      : subsystem_{subsystem}, clock_{clock}, realtime_{realtime} {}
+  [[nodiscard]] Result<> start() {
+    HIROSCO_TRY_LET(thread_, Thread::start("cycle", [this] { run(); }, cycle_stack_octets));
+    return ok();
+  }
+  void wake() { wanted_.post(); }
+  void end() {
+    ending_.store(true, std::memory_order_release);
+    wanted_.post();
+    thread_.join();
+  }
+  /// After end(), in executables that count: what the cycle thread took from the heap while it cycled.
+  void tell_heap_uses(const char* program) const {
+    if (RealtimeScope::hook_present())
+      fmt::print(stderr, "{}: {} uses of the heap in {} cycles\n", program, heap_uses_, cycles_);
+  }
+
+ private:
+  void run() {
+    static_cast<void>(realtime_ ? pin_to_cycle_cpu() : ask_for_short_slices());
+    while (!ending_.load(std::memory_order_acquire)) {
+      const auto demand = subsystem_.cycle_demand();
+      if (!demand.wanted) {
+        subsystem_.cycle_parked(demand.ticket);
+        wanted_.wait();
+        continue;
+      }
+      if (realtime_) static_cast<void>(set_fifo_priority(demand.priority));
+      cycle(demand.generation);
+    }
+  }
+
+  void cycle(std::uint32_t generation) {
+    const RealtimeScope no_heap;
+    TimePoint planned = clock_.now() + subsystem_.cycle_demand().period;
+    for (;;) {
+      sleep_until(planned);
+      const auto demand = subsystem_.cycle_demand();
+      if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) break;
+      planned = subsystem_.cycle_step(planned);
+      ++cycles_;
+    }
+    heap_uses_ += no_heap.count().allocations + no_heap.count().frees;
+  }
+
+  GenericSubsystem& subsystem_;
+  const Clock& clock_;
+  bool realtime_;
+  Semaphore wanted_{0};
+  std::atomic<bool> ending_{false};
+  std::uint64_t cycles_{0};  ///< the cycle thread's until it is joined, like the next
+  std::uint64_t heap_uses_{0};
+  Thread thread_;
+};
+
+/// `program` names itself where it has to say something.
+void serve(const char* program, GenericSubsystem& subsystem, const Clock& clock, const SocketChannel& channel,
+           CycleThread& cycle) {
+  WaitSet waits;
+  static_cast<void>(waits.add(channel.wait_descriptor()));
+  bool reading = true;
+  bool cycling = false;
+  bool told_version = false;
+  std::uint32_t ticket = 0;
+  while (!subsystem.finished()) {
+    const TimePoint wake = subsystem.service_step(clock.now());
+    if (const auto theirs = channel.foreign_version(); theirs && !std::exchange(told_version, true))
+      fmt::print(stderr,
+                 "{}: the supervisor's control channel is of version {}, this program's of version {}: build both from "
+                 "one hirosco\n",
+                 program, *theirs, envelope::version);
+    const auto demand = subsystem.cycle_demand();
+    // A cycle may be wanted and called off within one step: its thread must answer that order to rest, too.
+    if ((demand.wanted && !cycling) || demand.ticket != ticket) cycle.wake();
+    cycling = demand.wanted;
+    ticket = demand.ticket;
+    if (const bool reads = subsystem.reads(); reads != reading) {
+      // What is not read would end every wait: at real-time priority that takes the processor from who has to read us.
+      static_cast<void>(waits.change(channel.wait_descriptor(), reads ? Interest::Read : Interest::Write));
+      reading = reads;
+    }
+    const auto ready = waits.wait(std::max(wake - clock.now(), Duration{0}));
+    if (!ready) continue;
+    // A supervisor that is gone would end every wait from now on: at real-time priority that takes the processor.
+    for (const Ready& entry : *ready)
+      if (entry.hung_up) waits.remove(entry.descriptor);
+  }
+}
+
+}  // namespace
+
+int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Subsystem>()>& make) {
+  say_last_words(argv[0]);
+  // A terminal or pipe that is gone takes no words any more; that must not end a subsystem.
+  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
+  const Options options = read_options(argc, argv);
+  if (!options.complete()) {
+    fmt::print(stderr,
+               "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
+               "  --descriptor FILE --channel FD --vital FD --permit FD [--as NAME:ID] [--set PARAMETER=VALUES]\n"
+               "  [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--commands NAME=ID:FILE]\n",
+               argv[0]);
+    return exit_usage;
+  }
+  const auto source = descriptor::file_system();
+  auto reading = descriptor::read_subsystem(options.descriptor, source);
+  for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
+  if (!reading.value) return exit_environment;
+  for (const auto& [word, text] : options.changes)
+    if (const auto applied = word == "--commands" ? descriptor::apply_commands(*reading.value, text, source)
+                                                  : descriptor::apply_change(*reading.value, word, text);
+        !applied) {
+      fmt::print(stderr, "{}: {} {}: {}\n", argv[0], word, text, applied.error().text);
+      return exit_environment;
+    }
+
+  SystemClock clock;
+  SealedMemory memory;
+  SystemFlowFactory flows;
+  SocketChannel channel{FileDescriptor{options.channel}};
+  const Mapping vital = map_page(memory, options.vital, Access::ReadWrite);
+  const Mapping permit = map_page(memory, options.permit, Access::ReadOnly);
+  if (const std::string why = refuse_pages(vital, permit); !why.empty()) {
+    fmt::print(stderr, "{}: {}\n", argv[0], why);
+    return exit_environment;
+  }
+  const bool realtime = realtime_permitted();
+  if (realtime) {
+    static_cast<void>(lock_memory());
+    static_cast<void>(set_shared_priority(service_priority));
+  }
+  const Platform platform{
+      .clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = [](std::string_view text) {
+        std::fputs(fmt::format("{}\n", text).c_str(), stderr);
+      }};
+  const auto author = make();
+  GenericSubsystem subsystem{*author,
+                             std::move(*reading.value),
+                             platform,
+                             channel,
+                             *reinterpret_cast<VitalPage*>(vital.octets.data()),
+                             *reinterpret_cast<const PermitPage*>(permit.octets.data())};
+  CycleThread cycle{subsystem, clock, realtime};
+  if (const auto started = cycle.start(); !started) {
+    fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
+    return exit_environment;
+  }
+  serve(argv[0], subsystem, clock, channel, cycle);
+  cycle.end();
+  cycle.tell_heap_uses(argv[0]);
+  return 0;
+}
+
+}  // namespace hirosco
