@@ -10,8 +10,8 @@
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/device/enable_frame.hpp"
-#include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
 #include "supervisor/platform/launcher.hpp"
 
 /// What the guard holds of one member, and what it reads from it. Thread: under the guard's mutex.
