@@ -38,7 +38,7 @@ inline constexpr std::string_view shipped_prefix = "@hirosco/";
 [[nodiscard]] std::expected<const Module*, std::string> load_module_of(std::string_view program, ModuleKind kind);
 
 /// Loads a module for the life of the process. In words why not: there is none, it is damaged, no module, of another kind,
-/// or built against another version.
+/// or built against another version. Throws std::bad_alloc when the computer has no memory for it.
 [[nodiscard]] std::expected<const Module*, std::string> load_module(const std::filesystem::path& file, ModuleKind kind);
 
 }  // namespace hirosco

@@ -4,10 +4,13 @@
 
 #include <dlfcn.h>
 #include <link.h>
+#include <sys/mman.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
+#include <new>
 
 namespace hirosco {
 
@@ -56,6 +59,17 @@ namespace {
            std::to_string(standard_library_release) + ": build it with the same compiler";
   if (module.kind != kind) return "it is no " + std::string{text_of(kind)};
   return {};
+}
+
+/// A module takes somewhat more than its file.
+[[nodiscard]] bool has_room_for(const fs::path& file) {
+  std::error_code failed;
+  const std::size_t octets = 2 * fs::file_size(file, failed);
+  if (failed) return true;
+  void* const room = ::mmap(nullptr, octets, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED) return errno != ENOMEM;
+  ::munmap(room, octets);
+  return true;
 }
 
 }  // namespace
@@ -112,7 +126,11 @@ std::expected<const Module*, std::string> load_module(const fs::path& file, Modu
   if (!is_whole(file)) return std::unexpected{std::string{"it is no shared object, or was cut short"}};
   // Never unloaded: objects that it made may live as long as the process.
   void* const module = ::dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-  if (module == nullptr) return std::unexpected{std::string{::dlerror()}};
+  if (module == nullptr) {
+    // A computer without memory is told as such, whoever asks it for some; the loader does not tell it from other reasons.
+    if (!has_room_for(file)) throw std::bad_alloc{};
+    return std::unexpected{std::string{::dlerror()}};
+  }
   const auto entry = reinterpret_cast<decltype(&hirosco_module)>(::dlsym(module, "hirosco_module"));
   if (entry == nullptr) return std::unexpected{std::string{"it has no hirosco_module()"}};
   const Module* const told = entry();
