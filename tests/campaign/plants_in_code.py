@@ -51,9 +51,9 @@ PLANTS = {
          'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event')]),
     # Nothing raised the epoch on the way up: a device that had latched on the way down stayed so.
     "SF14": ("I10", [
-        ("supervisor/guard/guard.cpp", "  member->permit->release();",
-         '  if (planted("SF14")) {\n    member->permit->stop.store(0);\n    member->permit->go.store(permission_word(member->epoch));\n'
-         "  } else {\n    member->permit->release();\n  }")]),
+        ("supervisor/guard/watched.cpp", "  permit->release();",
+         '  if (planted("SF14")) {\n    permit->stop.store(0);\n    permit->go.store(permission_word(epoch));\n'
+         "  } else {\n    permit->release();\n  }")]),
     # Nobody remembered what the dead had been asked.
     "NO_OUTCOME": ("I2", [
         (TELECOMMANDS, "for (const pus::Request& request : parts_.unanswered.take(apid))",
