@@ -39,14 +39,15 @@ struct Watching : GuardTest {
       step();
     }
   }
-  /// All go on, but the service loop of ARM stands; HAND's loops have this share of a processor.
-  void arm_stands(Duration span, double share) {
+  /// All go on, but the service loop of one stands; the other's loops have this share of a processor.
+  void stands(std::uint16_t one, std::uint16_t other, Duration span, double share) {
     for (const TimePoint end = clock.now() + span; clock.now() < end;) {
-      lives[hand].process->loops.realtime += std::chrono::duration_cast<Duration>(Guard::period * share);
-      --lives[arm].vital->service_steps;
+      lives[other].process->loops.realtime += std::chrono::duration_cast<Duration>(Guard::period * share);
+      --lives[one].vital->service_steps;
       run(Guard::period);
     }
   }
+  void arm_stands(Duration span, double share) { stands(arm, hand, span, share); }
   void expect_all_may_move() {
     for (const std::uint16_t apid : {arm, hand, camera}) EXPECT_TRUE(may_move(apid)) << apid;
     EXPECT_EQ(told.enabled, 1);
@@ -165,6 +166,22 @@ TEST_F(Watching, AServiceLoopThatGetsNoProcessorIsNotBlamedButWhoHasIt) {
   run(5s);
   expect_all_may_move();
   EXPECT_FALSE(lives[arm].process->killed || lives[hand].process->killed);
+}
+
+TEST_F(Watching, WhoHasTheProcessorIsFoundWhereverItStandsInTheMission) {
+  lives[hand].process->loops.waits = true;
+  stands(hand, arm, Guard::service_limit + 50ms, 0.9);
+  EXPECT_TRUE(may_move(hand));
+  EXPECT_FALSE(lives[arm].process->loops_realtime);
+  EXPECT_THAT(kinds(arm), ElementsAre(Found::Starves));
+}
+
+TEST_F(Watching, ASlowCycleThatStandsHangsAfterThreeOfItsSteps) {
+  for (auto& configuration : mission.subsystems[0].subsystem.configurations) configuration.sampling = 200ms;
+  run(550ms, {hand, camera});
+  EXPECT_THAT(kinds(arm), IsEmpty());
+  run(100ms, {hand, camera});
+  EXPECT_THAT(kinds(arm), ElementsAre(Found::CycleHangs));
 }
 
 TEST_F(Watching, AStarvedLoopThatStandsOnThoughNobodyHasItsProcessorHangs) {

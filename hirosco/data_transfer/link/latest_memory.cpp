@@ -10,6 +10,8 @@
 #include <new>
 #include <utility>
 
+#include "hirosco/utilities/processor.hpp"
+
 // A sequence lock over words of 8 octets, for one writer and any number of readers. Invariants:
 //  1. Line 0 is written once, in LatestWriter::make, its magic last; nobody writes it after that.
 //  2. Only the writer writes. Its sequence is odd from before the first word of a sample is stored until after the last.
@@ -27,10 +29,8 @@ namespace {
 using Word = std::uint64_t;
 static_assert(std::atomic_ref<Word>::is_always_lock_free);
 
-constexpr std::size_t line = 64;
+constexpr std::size_t line = cache_line_octets;
 constexpr int attempts = 8;
-constexpr int attempts_without_pause = 4;
-constexpr std::size_t claimed_octets = 1024;
 
 constexpr std::size_t words_of(std::uint32_t octets) noexcept { return (octets + sizeof(Word) - 1) / sizeof(Word); }
 
@@ -63,24 +63,6 @@ constexpr LinkStatus status_of(Word word) noexcept {
   for (const LinkStatus status : {LinkStatus::Valid, LinkStatus::Degraded, LinkStatus::Stopping})
     if (word == coded(status)) return status;
   return LinkStatus::Fault;
-}
-
-// Leaves the line to the writer for a moment, where the processor knows how.
-void relax() noexcept {
-#if defined(__x86_64__)
-  __builtin_ia32_pause();
-#elif defined(__aarch64__)
-  asm volatile("yield");
-#endif
-}
-
-// Asks for a line to be written soon, so that all lines of a sample come at the same time and not one after another.
-void claim(std::byte* place) noexcept {
-#if defined(__x86_64__)
-  asm volatile("prefetchw %0" : : "m"(*place));
-#else
-  __builtin_prefetch(place, 1);
-#endif
 }
 
 }  // namespace
@@ -125,8 +107,7 @@ void LatestWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status
   const auto publish = [this](std::size_t at, Word value) {
     word(memory_, at).store(value, std::memory_order_release);
   };
-  const std::size_t end = link_memory::payload_at + payload_octets_;
-  for (std::size_t at = link_memory::sequence_at; at < end && at < claimed_octets; at += line) claim(memory_ + at);
+  claim_lines(memory_ + link_memory::sequence_at, link_memory::payload_at - link_memory::sequence_at + payload_octets_);
   word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_relaxed);
   publish(link_memory::status_at, coded(status));
   publish(link_memory::count_at, ++count_);
@@ -191,7 +172,7 @@ LinkSample LatestReader::read(MutableOctets payload) noexcept {
       last_sequence_ = sequence;
       return accept(sample, payload);
     }
-    if (attempt >= attempts_without_pause) relax();
+    relax(attempt);
   }
   return last(payload);
 }
@@ -216,7 +197,6 @@ bool LatestReader::copy(std::uint64_t sequence, LinkSample& sample, MutableOctet
 LinkSample LatestReader::last(MutableOctets payload) const noexcept {
   LinkSample sample = last_;
   sample.flow = last_.count == 0 ? Flow::None : Flow::Old;
-  sample.lost = 0;
   if (sample.flow == Flow::Old) std::memcpy(payload.data(), kept_.get(), payload_octets_);
   return sample;
 }

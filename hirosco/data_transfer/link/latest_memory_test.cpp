@@ -156,6 +156,21 @@ TEST_F(RealtimeLink, KeepsItsOldCopyWhenTheWriterDiesInTheMiddle) {
   EXPECT_TRUE(is_sample(seen_, 1));
 }
 
+TEST_F(RealtimeLink, WritesNothingBesideThePayloadWhenReading) {
+  constexpr std::byte untouched{0x5A};
+  std::array<std::byte, 64 + payload_octets + 64> room;
+  for (std::uint64_t n = 1; n < 4; ++n) {
+    room.fill(untouched);
+    write(n);
+    for (const Flow flow : {Flow::New, Flow::Old}) {
+      EXPECT_EQ(reader_.read(MutableOctets{room}.subspan(64, payload_octets)).flow, flow);
+      EXPECT_TRUE(is_sample(Octets{room}.subspan(64, payload_octets), n));
+      for (const Octets beside : {Octets{room}.first(64), Octets{room}.last(64)})
+        EXPECT_TRUE(std::ranges::all_of(beside, [](std::byte octet) { return octet == untouched; }));
+    }
+  }
+}
+
 TEST_F(RealtimeLink, HasNothingWhenTheWriterDiesInItsFirstSample) {
   memory_.word(link_memory::sequence_at).store(1);
   EXPECT_EQ(reader_.read(seen_).flow, Flow::None);
@@ -206,6 +221,19 @@ TEST(RealtimeLinkHeader, IsRefusedInMemoryThatDoesNotFit) {
   EXPECT_EQ(LatestWriter::make(memory.all(), layout_of(0)).error().code, ErrorCode::Mismatch);
   EXPECT_EQ(LatestWriter::make(memory.all(), layout_of(65'537)).error().code, ErrorCode::Mismatch);
   EXPECT_EQ(LatestReader::make({}, layout).error().code, ErrorCode::Mismatch);
+}
+
+TEST(RealtimeLinkHeader, MemoryThatWasUsedBeforeBeginsAnew) {
+  LinkMemory memory{payload_octets};
+  std::ranges::fill(memory.all(), std::byte{0xA5});
+  LatestWriter writer = LatestWriter::make(memory.all(), layout_of(payload_octets)).value();
+  LatestReader reader = LatestReader::make(memory.all(), layout_of(payload_octets)).value();
+  Payload seen{};
+  EXPECT_EQ(reader.read(seen).flow, Flow::None);
+  writer.write(Payload{}, TimePoint{42ns}, LinkStatus::Valid);
+  const LinkSample first = reader.read(seen);
+  EXPECT_EQ(first.flow, Flow::New);
+  EXPECT_EQ(first.count, 1u);
 }
 
 TEST(RealtimeLinkHeader, HasTheFormThatIsWrittenDown) {

@@ -13,7 +13,7 @@ namespace hirosco::supervisor {
 namespace {
 /// Generous: a slow disk alone may hold a telecommand back for seconds (decision 24). No less than it may wait for the disk, so
 /// that none is executed after it was reported as failed.
-constexpr Duration answer_limit = WaitingForDisk::limit;
+constexpr Duration own_answer_limit = WaitingForDisk::limit;
 }  // namespace
 
 void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::optional<double> argument,
@@ -53,7 +53,7 @@ void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_
     return;
   }
   const auto telecommand = pus::TelecommandView::parse(*packet);
-  sent_[telecommand->request_id()] = {std::move(done), craft_.now + answer_limit,
+  sent_[telecommand->request_id()] = {std::move(done), craft_.now + own_answer_limit,
                                       craft_.name_of(apid) + " " + telecommand_text(*telecommand), apid};
   telecommands_.take({.packet = *packet, .origin = Origin::supervisor(), .memory = memory});
 }
