@@ -216,7 +216,11 @@ TEST(RealtimeLinkHeader, IsRefusedWhereItDiffersFromWhatWasAgreed) {
 TEST(RealtimeLinkHeader, IsRefusedInMemoryThatDoesNotFit) {
   LinkMemory memory{payload_octets};
   const LinkLayout layout = layout_of(payload_octets);
-  EXPECT_EQ(LatestWriter::make(memory.all().first(memory.all().size() - 1), layout).error().code, ErrorCode::Mismatch);
+  const auto too_small = memory.all().first(memory.all().size() - 1);
+  for (const Error& error : {LatestWriter::make(too_small, layout).error(), LatestReader::make(too_small, layout).error()}) {
+    EXPECT_EQ(error.code, ErrorCode::Mismatch);
+    EXPECT_EQ(std::string_view{error.text}, "link memory too small, not aligned, or payload size impossible");
+  }
   EXPECT_FALSE(LatestWriter::make(memory.all().subspan(8), layout_of(8)).has_value()) << "not on a line";
   EXPECT_EQ(LatestWriter::make(memory.all(), layout_of(0)).error().code, ErrorCode::Mismatch);
   EXPECT_EQ(LatestWriter::make(memory.all(), layout_of(65'537)).error().code, ErrorCode::Mismatch);
@@ -230,6 +234,10 @@ TEST(RealtimeLinkHeader, MemoryThatWasUsedBeforeBeginsAnew) {
   LatestReader reader = LatestReader::make(memory.all(), layout_of(payload_octets)).value();
   Payload seen{};
   EXPECT_EQ(reader.read(seen).flow, Flow::None);
+  const auto glance = glance_at_link(memory.all());
+  ASSERT_TRUE(glance);
+  EXPECT_EQ(glance->count, 0u);
+  EXPECT_EQ(glance->sampled_at, TimePoint{});
   writer.write(Payload{}, TimePoint{42ns}, LinkStatus::Valid);
   const LinkSample first = reader.read(seen);
   EXPECT_EQ(first.flow, Flow::New);
