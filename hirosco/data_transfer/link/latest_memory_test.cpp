@@ -217,7 +217,8 @@ TEST(RealtimeLinkHeader, IsRefusedInMemoryThatDoesNotFit) {
   LinkMemory memory{payload_octets};
   const LinkLayout layout = layout_of(payload_octets);
   const auto too_small = memory.all().first(memory.all().size() - 1);
-  for (const Error& error : {LatestWriter::make(too_small, layout).error(), LatestReader::make(too_small, layout).error()}) {
+  for (const Error& error :
+       {LatestWriter::make(too_small, layout).error(), LatestReader::make(too_small, layout).error()}) {
     EXPECT_EQ(error.code, ErrorCode::Mismatch);
     EXPECT_EQ(std::string_view{error.text}, "link memory too small, not aligned, or payload size impossible");
   }

@@ -213,12 +213,23 @@ void Telecommands::forward_durable() {
       refuse(*next, FailureCode::NotPermittedNow);
       continue;
     }
+    // Nor does anybody begin to move by what held when it was said: a link may have gone since, or a state.
+    bool releases_stop = false;
+    if (next->releases_stop) {
+      const auto decision =
+          judge(*pus::TelecommandView::parse(next->packet), next->origin);  // it was parsed when it came
+      if (!decision) {
+        reject({.packet = next->packet, .origin = next->origin}, next->request, decision.error());
+        continue;
+      }
+      releases_stop = decision->releases_stop;
+    }
     if (next->starts) {
       start(*next);
       continue;
     }
     forward({next->apid, next->origin, next->packet, next->memory, next->request, next->mode_epoch, false,
-             next->releases_stop, next->fences});
+             releases_stop, next->fences});
   }
 }
 

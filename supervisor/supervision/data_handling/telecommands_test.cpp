@@ -218,6 +218,26 @@ TEST_F(ReleaseTest, OneThatCouldNotBeSentLeavesNoPermissionToAnOlderOneThatWasNo
   EXPECT_TRUE(guard.fenced(arm));
 }
 
+TEST_F(ReleaseTest, WhoseLinkIsGoneWhenItsTelecommandIsOnTheDiskIsNotLetGo) {
+  hold_disk();
+  take(go);
+  parts.graph.let_go(2, hand);
+  let_go();
+  EXPECT_FALSE(may_move());
+  EXPECT_THAT(texts(arm), IsEmpty());
+  craft.tell("and its refusal is written");
+  ASSERT_EQ(refusals().size(), 1u);
+  EXPECT_THAT(refusals()[0], ::testing::StartsWith(words(FailureCode::LinkAbsent)));
+}
+
+TEST_F(ReleaseTest, WhoLeftTheStateThatItWasPermittedInIsNotLetGo) {
+  hold_disk();
+  take(go);
+  set(arm, PreOperational, 2);
+  let_go();
+  EXPECT_FALSE(may_move());
+}
+
 TEST_F(ReleaseTest, WhoClosedItsChannelIsNotLetGo) {
   played[arm].channel.close_subsystem_end();
   parts.reception.read(*craft.member(arm));
