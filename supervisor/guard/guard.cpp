@@ -211,7 +211,8 @@ TimePoint Guard::step(TimePoint now) {
 TimePoint Guard::watched_at(TimePoint now) const noexcept {
   if (!stepped_) return now;
   const Duration passed = now - *stepped_;
-  return watched_ + (passed <= most_unwatched || somebody_went_on(passed) ? passed : most_unwatched);
+  if (passed <= most_unwatched || somebody_went_on(passed)) return watched_ + passed;
+  return watched_ + most_unwatched;
 }
 
 /// Half of the cycles that were due count: while the guard alone does not run, a computer may be busy.

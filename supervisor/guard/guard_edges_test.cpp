@@ -78,6 +78,26 @@ TEST_F(GuardTest, WhatASecondFenceFindsStoppedKeepsTheCycleOfTheFirst) {
   EXPECT_EQ(lives[arm].permit->stopped_at_cycle.load(), cycles);
 }
 
+TEST_F(GuardTest, WhoStandsFencedAndWhoseGateIsDamagedIsFencedAnew) {
+  cycling(arm);
+  run(50ms);
+  guard.fence(arm);
+  PermitPage& page = *lives[arm].permit;
+  const std::uint32_t epoch = page.epoch.load();
+  const auto cycles = page.stopped_at_cycle.load();
+  guard.fence(arm);
+  EXPECT_EQ(page.epoch.load(), epoch) << "whole, it stays as it is";
+  page.go = permission_word(epoch);
+  guard.fence(arm);
+  EXPECT_EQ(page.go.load(), 0u);
+  EXPECT_EQ(page.epoch.load(), epoch + 1);
+  page.epoch = 7;
+  guard.fence(arm);
+  EXPECT_EQ(page.epoch.load(), epoch + 2) << "no device hears of an epoch that it has heard of";
+  EXPECT_EQ(page.stopped_at_cycle.load(), cycles);
+  EXPECT_FALSE(may_move(arm));
+}
+
 TEST_F(GuardTest, ADeviceThatCannotBeOpenedIsSaidSo) {
   Guard second{{.clock = clock, .flows = flows, .on_finding = {}}};
   EXPECT_FALSE(second.add(mission.subsystems[0], false)) << "the first guard has its endnode";

@@ -24,6 +24,20 @@ std::string explanation_of(Subsystem& author, const std::string& text = probe_de
   return rig.explanations.empty() ? "" : rig.explanations.front();
 }
 
+TEST(AuthorsMistakes, ASoftwareInitThatNeverEndsIsTold) {
+  struct Endless : Probe {
+    Result<Step> software_init() override { return again; }
+  } endless;
+  Rig rig{endless, probe_descriptor};
+  const auto request = rig.set_state(State::PreOperational);
+  rig.service();
+  rig.advance(10s + 1ms);
+  rig.settle();
+  EXPECT_THAT(rig.outcome(request), StartsWith("1 3 8:0202"));
+  EXPECT_EQ(rig.state(), State::Offline);
+  EXPECT_THAT(rig.explanations, ElementsAre("PROBE: SoftwareInit failed: time limit"));
+}
+
 TEST(AuthorsMistakes, PublishingAnUndeclaredParameterFailsSoftwareInit) {
   struct Wrong : Probe {
     Result<Step> software_init() override {
