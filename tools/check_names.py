@@ -21,7 +21,6 @@ OUTSIDE = {"node_modules", "__pycache__", "build", "dist"}
 ALLOWED = {
     ("simulation/spacecraft/simulated_ground.hpp", "communication"): "the other end of the ground link (adr 0050)",
     ("tools/hirosco/run.cpp", "communication"): "the variables that tell the ground link its addresses (adr 0054)",
-    ("tools/check_shape.py", "manipulator"): "goes with the exception that it makes there",
 }
 # This tool has to name whom it allows.
 OWN = "tools/check_names.py"
@@ -73,7 +72,7 @@ def framework(every):
 
 def needless(texts, every, words):
     return [f"{path}: may name {name}, but does not" for path, name in ALLOWED
-            if name in every and path != "tools/check_shape.py" and not any(says(line, name, name in words) for line in texts.get(path, "").splitlines())]
+            if name in every and not any(says(line, name, name in words) for line in texts.get(path, "").splitlines())]
 
 
 # `lamp` is a name, `beam` a word, too. The first must be found in each of these, the second in none.

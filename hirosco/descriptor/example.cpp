@@ -13,9 +13,9 @@ int main() {
         "  <ParamRef name=\"GOAL\" id=\"1\" type=\"DUBLE\"/>\n"
         "</Subsystem>\n"};
   };
-  const Reading<Subsystem> reading = read_subsystem("hello.xml", source);
+  const Reading<Subsystem> reading = read_subsystem("light.xml", source);
   for (const Diagnostic& problem : reading.problems) std::fputs(render(problem, source, false).c_str(), stdout);
-  // hello.xml:2:38: error: unknown parameter type 'DUBLE'
+  // light.xml:2:38: error: unknown parameter type 'DUBLE'
   //     2 |   <ParamRef name="GOAL" id="1" type="DUBLE"/>
   //       |                                      ^~~~~ did you mean 'DOUBLE'?
   return reading.problems.size() == 1 ? 0 : 1;
