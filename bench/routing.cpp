@@ -20,7 +20,7 @@
 #include "hirosco/data_transfer/control/socket_channel.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"

@@ -25,7 +25,7 @@ endfunction()
 
 # What an author includes. Whatever else these include is installed with them, and nothing else is.
 hirosco_headers_of(HIROSCO_AUTHOR_HEADERS
-  hirosco/descriptor/read.hpp hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp hirosco/subsystem/author/module.hpp hirosco/subsystem/process/run.hpp
+  hirosco/descriptor/read/read.hpp hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp hirosco/subsystem/author/module.hpp hirosco/subsystem/process/run.hpp
   hirosco/subsystem/author/subsystem.hpp hirosco/subsystem/testing/rig.hpp
   simulation/devices/device_shell.hpp simulation/devices/module.hpp simulation/devices/simulated_device.hpp)
 

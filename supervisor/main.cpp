@@ -15,7 +15,7 @@
 
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/shared_memory.hpp"
@@ -25,10 +25,10 @@
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/keeper/keeper.hpp"
-#include "supervisor/platform/begin_log.hpp"
-#include "supervisor/platform/epoch_file.hpp"
-#include "supervisor/platform/log_store.hpp"
-#include "supervisor/platform/process_launcher.hpp"
+#include "supervisor/platform/launch/process_launcher.hpp"
+#include "supervisor/platform/storage/begin_log.hpp"
+#include "supervisor/platform/storage/epoch_file.hpp"
+#include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/supervisor.hpp"
 
 /// The process shell of the supervisor: sockets, signals, clock and log of the operating system around its steps.

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/subsystem/engine/generic_subsystem.hpp"
 #include "supervisor/guard/guard.hpp"
-#include "supervisor/platform/launcher.hpp"
-#include "supervisor/platform/packet_log.hpp"
+#include "supervisor/platform/launch/launcher.hpp"
+#include "supervisor/platform/storage/packet_log.hpp"
 #include "supervisor/supervision/observer.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/subsystem_handling/member.hpp"

@@ -13,7 +13,7 @@ import xml.etree.ElementTree as xml
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "hirosco/descriptor"
-MODEL = [FOLDER / "subsystem.hpp", FOLDER / "mission.hpp", ROOT / "hirosco/parameter/type.hpp"]
+MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/mission.hpp", ROOT / "hirosco/parameter/type.hpp"]
 COLUMNS = ["schema", "declared", "honoured_by", "in"]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 PLAIN = {"YesNo"}  # its words are those of every language
@@ -150,7 +150,7 @@ def main():
     with (FOLDER / "consumers.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     model = members([bare(path.read_text()) for path in MODEL])
-    tests = "".join(path.read_text() for path in sorted(FOLDER.glob("*_test.cpp")))
+    tests = "".join(path.read_text() for path in sorted(FOLDER.rglob("*_test.cpp")))
     promises = (ROOT / "docs/paper_map.md").read_text()
     readers = "".join(path.read_text() for path in sorted(FOLDER.rglob("*.cpp")) if not path.name.endswith("_test.cpp"))
     found = [*problems(schemas, rows, model, source, tests), *unknown(readers, schemas), *lost(promises)]
@@ -168,11 +168,11 @@ def main():
         ("has several rows", {}, [*rows, rows[0]]),
         ("says nothing", {}, changed("Subsystem/Hang", honoured_by=" ")),
         ("is no file", {}, changed("Subsystem/Hang", **{"in": "supervisor/guard/nobody.cpp"})),
-        ("is no file", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/mission_test.cpp"})),
-        ("outside hirosco/descriptor", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/read_subsystem.cpp"})),
+        ("is no file", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/read/mission_test.cpp"})),
+        ("outside hirosco/descriptor", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/read/read_subsystem.cpp"})),
         ("does not read", {}, changed("Subsystem/Hang", **{"in": "hirosco/xml/reader.cpp"})),
         ("the model has no", {}, changed("Subsystem/Hang", honoured_by="Subsystem::colour")),
-        ("makes no E0999", {}, changed("Subsystem/Hang", honoured_by="E0999", **{"in": "hirosco/descriptor/read_modes.cpp"})),
+        ("makes no E0999", {}, changed("Subsystem/Hang", honoured_by="E0999", **{"in": "hirosco/descriptor/read/read_modes.cpp"})),
     ]
     for wanted, other, table in planted:
         seen = problems(**dict(dict(schemas=schemas, model=model, source=source, tests=tests), **other), rows=table)

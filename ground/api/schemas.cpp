@@ -6,7 +6,7 @@
 
 #include "ground/api/openapi.hpp"
 #include "ground/model/json.hpp"
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 
 namespace hirosco::ground {
 namespace {

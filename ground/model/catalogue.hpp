@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 
 /// What the descriptors of a mission say, arranged as a ground station asks: every number of telemetry is a column

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "ground/model/views.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 
 namespace hirosco::ground {
 namespace {

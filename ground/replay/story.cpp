@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ground/model/json.hpp"
-#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 
 namespace hirosco::ground {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 
 using namespace hirosco::descriptor;
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 
 /// Shared by the tests of this folder.
 namespace hirosco::descriptor::testing {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "supervisor/platform/packet_log.hpp"
+#include "supervisor/platform/storage/packet_log.hpp"
 
 /// The supervisor's log with the faults that a disk has.
 namespace hirosco::campaign {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "simulation/campaign/planned_flight.hpp"
 
 /// hirosco-fly-plan MISSION PLAN FOLDER [PLANT]: flies the plan, with a planted defect where one is named, and leaves

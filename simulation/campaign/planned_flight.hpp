@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "simulation/campaign/campaign_log.hpp"
 #include "simulation/campaign/plan.hpp"
 #include "simulation/campaign/plants.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "simulation/devices/simulated_device.hpp"
 
 namespace hirosco::simulation {

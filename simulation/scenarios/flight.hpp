@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "simulation/spacecraft/spacecraft.hpp"

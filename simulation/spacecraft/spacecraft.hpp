@@ -14,11 +14,11 @@
 #include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/subsystem/engine/generic_subsystem.hpp"
 #include "simulation/devices/simulated_device.hpp"
 #include "simulation/spacecraft/simulated_ground.hpp"
-#include "supervisor/platform/launcher.hpp"
+#include "supervisor/platform/launch/launcher.hpp"
 #include "supervisor/supervisor.hpp"
 
 /// The whole spacecraft in one process on virtual time: the same supervisor and subsystem objects as in the executables,

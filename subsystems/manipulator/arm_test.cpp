@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 #include "subsystems/manipulator/manipulator.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "subsystems/manipulator/manipulator.hpp"
 
 /// What an arm is told by its descriptor: how many joints it has, how far each moves, where home is.

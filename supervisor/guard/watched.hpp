@@ -12,7 +12,7 @@
 #include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
-#include "supervisor/platform/launcher.hpp"
+#include "supervisor/platform/launch/launcher.hpp"
 
 /// What the guard holds of one member, and what it reads from it. Thread: under the guard's mutex.
 namespace hirosco::supervisor {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "supervisor/platform/database.hpp"
-#include "supervisor/platform/packet_log.hpp"
+#include "supervisor/platform/storage/database.hpp"
+#include "supervisor/platform/storage/packet_log.hpp"
 
 using namespace hirosco;
 using namespace hirosco::supervisor;

@@ -10,7 +10,7 @@
 #include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/engine/generic_subsystem.hpp"
-#include "supervisor/platform/member_port.hpp"
+#include "supervisor/platform/launch/member_port.hpp"
 
 namespace hirosco::supervisor {
 

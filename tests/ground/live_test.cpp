@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/descriptor/framework_events.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "tests/ground/station.hpp"
 

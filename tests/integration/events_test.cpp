@@ -6,8 +6,8 @@
 #include <atomic>
 #include <memory>
 
-#include "hirosco/descriptor/framework_events.hpp"
-#include "supervisor/platform/packet_log.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
+#include "supervisor/platform/storage/packet_log.hpp"
 #include "tests/integration/flight.hpp"
 #include "tests/stand_in.hpp"
 

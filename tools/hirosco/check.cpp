@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/xml/reader.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/readiness.hpp"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// The commands behind `hirosco`. Each returns its exit code: 0 ok, 1 finding, 2 usage, 3 environment, 4 internal;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "tools/hirosco/commands.hpp"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "hirosco/pus/words/describe.hpp"
-#include "supervisor/platform/log_store.hpp"
+#include "supervisor/platform/storage/log_store.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <set>
 
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "tools/hirosco/commands.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 
 namespace hirosco::tools {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/service/service_kind.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 
 /// The receiving side of TM[3,25]: values by name from the descriptor, for displays, clients and tests.

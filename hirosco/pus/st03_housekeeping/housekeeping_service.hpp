@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/st01_verification/instructions.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/spsc_ring.hpp"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/utilities/result.hpp"
 

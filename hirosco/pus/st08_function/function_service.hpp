@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/service/arguments.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/utilities/result.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/link/link.hpp"
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/service/service_kind.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 
 /// Packets in words, by the descriptors of a mission: for logs, consoles and tools. Never for decisions.

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/link/link.hpp"
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/layout.hpp"
 #include "hirosco/utilities/octets.hpp"
 

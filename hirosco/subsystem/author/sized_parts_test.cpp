@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 
 /// A subsystem whose descriptor says how many axes it has: parameters, housekeeping, links, device and functions follow.

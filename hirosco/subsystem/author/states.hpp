@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// The ten states as one table (paper 4.2, figure 4; architecture 4). Code, tests and the drawn diagram use this one.

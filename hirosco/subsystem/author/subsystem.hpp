@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/parameter.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/service/service.hpp"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/pus/st05_event/event_service.hpp"
 
 namespace hirosco {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/parameter/write_queue.hpp"
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"

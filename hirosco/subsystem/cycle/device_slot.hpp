@@ -10,8 +10,8 @@
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/layout.hpp"
-#include "hirosco/descriptor/framework_events.hpp"
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
 
 /// What the cycle moves between the author's ports and devices: one slot per device of the chosen configuration. Slots are

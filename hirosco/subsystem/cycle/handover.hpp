@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/layout.hpp"
 
 namespace hirosco {

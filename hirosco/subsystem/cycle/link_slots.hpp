@@ -10,7 +10,7 @@
 
 #include "hirosco/data_transfer/layout.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 #include "hirosco/subsystem/author/ports.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/subsystem/engine/generic_subsystem.hpp"
 
 /// How an author introduces its parts in Software-Init, compared with the descriptor: every difference is collected, so

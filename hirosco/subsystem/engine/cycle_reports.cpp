@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
 #include "hirosco/subsystem/engine/generic_subsystem.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstring>
 
-#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/parameter/number.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
 #include "hirosco/pus/standard_services.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/control/channel.hpp"
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/service/arguments.hpp"
 #include "hirosco/subsystem/author/request_port.hpp"

@@ -3,8 +3,8 @@
 // Safety module: states (docs/safety/modules.csv).
 #include <algorithm>
 
-#include "hirosco/descriptor/framework_events.hpp"
-#include "hirosco/descriptor/framework_parameters.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_parameters.hpp"
 #include "hirosco/subsystem/cycle/layout_difference.hpp"
 #include "hirosco/subsystem/engine/generic_subsystem.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
 
 /// A subsystem that does what a test tells it: one joint, one input link, one actuator, one lamp.

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 
 /// Every corner of the ranges that rokviss declares, flown on the whole spacecraft: what functions, writable parameters and
 /// hands can be combined into, judged in the world's own trace by what the manipulator's descriptor promises (adr 0034).

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "supervisor/supervision/interfaces.hpp"
 
 namespace hirosco::supervisor {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "supervisor/supervision/data_handling/origin.hpp"

@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "hirosco/descriptor/supervisor_events.hpp"
+#include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
 namespace hirosco::supervisor {

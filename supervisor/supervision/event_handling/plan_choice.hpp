@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 
 /// Which plan answers an event (paper 4.3 and 5): the most specific of the mission, else the paper's default.
 namespace hirosco::supervisor {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hirosco/descriptor/supervisor_events.hpp"
+#include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
 #include "supervisor/supervision/procedures/step_kinds.hpp"
 

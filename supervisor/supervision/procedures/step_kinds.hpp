@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "hirosco/descriptor/plan_steps.hpp"
+#include "hirosco/descriptor/model/plan_steps.hpp"
 #include "supervisor/supervision/procedures/steps/configure.hpp"
 #include "supervisor/supervision/procedures/steps/link.hpp"
 #include "supervisor/supervision/procedures/steps/log.hpp"

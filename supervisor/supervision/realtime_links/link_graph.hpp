@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 
 /// The graph of real-time links (paper 4.3): which are up, which networks they form. A link is up for use until one end lets go of
 /// it, and joins its ends until both have: the word of one alone takes nobody out of the reach of a fence (docs/adr/0068).

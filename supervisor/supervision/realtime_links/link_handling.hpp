@@ -12,7 +12,7 @@
 
 #include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/data_transfer/memory/memory.hpp"
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"

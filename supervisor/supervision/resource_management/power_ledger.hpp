@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "hirosco/descriptor/subsystem.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/utilities/time.hpp"
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/subsystem/author/states.hpp"
-#include "supervisor/platform/launcher.hpp"
+#include "supervisor/platform/launch/launcher.hpp"
 
 /// One started subsystem as the supervisor sees it: its port, whether it lives. Whether it moves, and
 /// whether it may move anything, is the guard's.

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "hirosco/descriptor/supervisor_events.hpp"
-#include "supervisor/platform/test_databases.hpp"
+#include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "supervisor/platform/storage/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {

@@ -13,10 +13,10 @@
 #include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/pages/stream_subsystem_port.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "supervisor/platform/stream_member_port.hpp"
+#include "supervisor/platform/launch/stream_member_port.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 #include "supervisor/supervisor.hpp"
 

@@ -15,7 +15,7 @@
 #include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
 #include "supervisor/parts.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"

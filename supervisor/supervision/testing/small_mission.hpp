@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/descriptor/mission.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 
 /// A small mission for the tests of supervision: ARM (10), HAND (11) and CAMERA (12), two links between the first two.

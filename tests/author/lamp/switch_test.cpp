@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hirosco/descriptor/read.hpp>
+#include <hirosco/descriptor/read/read.hpp>
 #include <hirosco/subsystem/testing/rig.hpp>
 
 using namespace hirosco;

@@ -102,7 +102,7 @@ TRY = """\
 
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/device/testing/flow_conformance.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 
 namespace hirosco::testing {
 namespace {

@@ -209,7 +209,7 @@ EDITS = [
 SOURCES = ["hirosco/data_transfer/link/mechanisms.cpp", "hirosco/data_transfer/link/queued_memory.cpp"]
 TRY = """\
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
-#include "hirosco/descriptor/read.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 
 namespace hirosco::testing {
 namespace {

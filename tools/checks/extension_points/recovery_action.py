@@ -34,9 +34,9 @@ EDITS = [
     ("supervisor/supervision/procedures/step_kinds.hpp", '#include "supervisor/supervision/procedures/steps/link.hpp"\n',
      '#include "supervisor/supervision/procedures/steps/kill.hpp"\n#include "supervisor/supervision/procedures/steps/link.hpp"\n'),
     ("supervisor/supervision/procedures/step_kinds.hpp", "step_kinds{", "step_kinds{&steps::kill, "),
-    ("hirosco/descriptor/plan_steps.hpp", '    StepWord{.name = "log"},\n', '    StepWord{.name = "log"},\n    StepWord{.name = "kill"},\n'),
+    ("hirosco/descriptor/model/plan_steps.hpp", '    StepWord{.name = "log"},\n', '    StepWord{.name = "log"},\n    StepWord{.name = "kill"},\n'),
 ]
-SOURCES = ["hirosco/descriptor/read_modes.cpp", "supervisor/supervision/event_handling/reactions.cpp"]
+SOURCES = ["hirosco/descriptor/read/read_modes.cpp", "supervisor/supervision/event_handling/reactions.cpp"]
 TRY = """\
 #include "supervisor/supervision/procedures/step_kinds.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
+
+namespace hirosco::descriptor {
+namespace {
+
+template <class Range, class Key, class Projection>
+auto find_in(const Range& range, const Key& key, Projection projection) noexcept -> decltype(&*range.begin()) {
+  const auto found = std::ranges::find(range, key, projection);
+  return found == range.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const Parameter* Subsystem::find_parameter(std::string_view parameter) const noexcept {
+  return find_in(parameters, parameter, [](const Parameter& p) -> std::string_view { return p.field.name; });
+}
+const Event* Subsystem::find_event(std::string_view event) const noexcept {
+  return find_in(events, event, &Event::name);
+}
+const CustomService* Subsystem::find_service(std::uint8_t type) const noexcept {
+  return find_in(services, type, &CustomService::type);
+}
+const CustomService* Subsystem::find_service(std::string_view service) const noexcept {
+  return find_in(services, service, &CustomService::name);
+}
+const Function* Subsystem::find_request(std::uint8_t service, std::uint8_t subtype) const noexcept {
+  const CustomService* own = find_service(service);
+  return own == nullptr ? nullptr : find_in(own->requests, subtype, &Function::subtype);
+}
+
+const Function* Subsystem::find_function(std::string_view function) const noexcept {
+  return find_in(functions, function, &Function::name);
+}
+const Function* Subsystem::find_named(std::string_view request) const noexcept {
+  if (const Function* function = find_function(request)) return function;
+  for (const CustomService& service : services)
+    if (const Function* found = find_in(service.requests, request, &Function::name)) return found;
+  return nullptr;
+}
+
+std::string_view resolve(Commands& commands, const Subsystem& commanded) {
+  commands.apid = commanded.id;
+  commands.file = commanded.file;
+  commands.requests.clear();
+  for (const std::string& name : commands.functions) {
+    const Function* found = commanded.find_named(name);
+    if (found == nullptr) return name;
+    commands.requests.push_back(*found);
+  }
+  return {};
+}
+
+const Configuration* Subsystem::find_configuration(std::string_view configuration) const noexcept {
+  return find_in(configurations, configuration, &Configuration::name);
+}
+const Configuration* Subsystem::find_configuration(std::uint8_t configuration) const noexcept {
+  return find_in(configurations, configuration, &Configuration::id);
+}
+
+const MissionSubsystem* Mission::find_subsystem(std::string_view subsystem) const noexcept {
+  return find_in(subsystems, subsystem, [](const MissionSubsystem& m) -> std::string_view { return m.subsystem.name; });
+}
+const MissionSubsystem* Mission::find_subsystem(std::uint16_t apid) const noexcept {
+  return find_in(subsystems, apid, [](const MissionSubsystem& m) { return m.subsystem.id; });
+}
+const Mode* Mission::find_mode(std::string_view mode) const noexcept { return find_in(modes, mode, &Mode::name); }
+const MissionLink* Mission::find_link(std::uint8_t link) const noexcept {
+  return find_in(links, link, &MissionLink::id);
+}
+
+double cycle_share(const Mission& mission, const Mode& mode) noexcept {
+  double share = 0;
+  for (const CommissionStep& step : mode.commission) {
+    const auto* member = mission.find_subsystem(step.subsystem);
+    const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
+    if (configuration != nullptr && configuration->sampling.count() > 0)
+      share +=
+          static_cast<double>(configuration->budget.count()) / static_cast<double>(configuration->sampling.count());
+  }
+  return share;
+}
+double cycle_share(const Mission& mission) noexcept {
+  double share = 0;
+  for (const Mode& mode : mission.modes) share = std::max(share, cycle_share(mission, mode));
+  return share;
+}
+
+std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem) {
+  std::vector<std::string_view> names;
+  for (const Device& device : subsystem.devices)
+    if (device.actuator && !device.enable) names.push_back(device.name);
+  return names;
+}
+
+std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference) {
+  const Parameter& parameter = subsystem.parameters.at(reference.parameter);
+  if (reference.member) return {parameter.members.at(*reference.member).field};
+  if (parameter.field.type != Type::Struct) return {parameter.field};
+  std::vector<Field> fields;
+  for (const Parameter::Member& member : parameter.members) fields.push_back(member.field);
+  return fields;
+}
+
+}  // namespace hirosco::descriptor

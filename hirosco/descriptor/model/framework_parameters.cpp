@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/descriptor/model/framework_parameters.hpp"
+
+#include <algorithm>
+
+namespace hirosco::descriptor {
+namespace {
+
+[[nodiscard]] Parameter structure(const char* name, std::uint8_t id, std::vector<Parameter::Member> members) {
+  Parameter made;
+  made.field.name = name;
+  made.field.type = Type::Struct;
+  made.id = id;
+  made.members = std::move(members);
+  return made;
+}
+
+[[nodiscard]] Parameter::Member member(const char* name, std::uint8_t id, Type type, const char* unit = "",
+                                       std::uint16_t count = 1) {
+  Parameter::Member made;
+  made.field.name = name;
+  made.field.type = type;
+  made.field.count = count;
+  made.field.unit = unit;
+  made.id = id;
+  return made;
+}
+
+}  // namespace
+
+std::vector<Parameter> framework_parameters() {
+  using enum Type;
+  return {
+      structure(
+          framework_parameter::cycle_stats, 39,
+          {member("OVERRUNS", 244, Uint32), member("MAX_US", 240, Float, "us"), member("AVG_US", 241, Float, "us")}),
+      structure(framework_parameter::cycle_times, 40,
+                {member("EXECUTION", 240, Uint32, "", 16), member("LATENCY", 241, Uint32, "", 16)}),
+      structure(framework_parameter::link_stats, 41, {member("RECEIVED", 242, Uint32), member("LOST", 243, Uint32)})};
+}
+
+void add_framework_parameters(Subsystem& subsystem) {
+  if (std::ranges::find(subsystem.enumerations, states_enumeration, &Enumeration::name) ==
+      subsystem.enumerations.end()) {
+    Enumeration states{states_enumeration, {}};
+    for (const auto& row : EnumTexts<State>::table)
+      states.texts.push_back({static_cast<std::int64_t>(row.value), std::string{row.text}});
+    subsystem.enumerations.push_back(std::move(states));
+  }
+  for (Parameter& parameter : framework_parameters())
+    if (subsystem.find_parameter(parameter.field.name) == nullptr) subsystem.parameters.push_back(std::move(parameter));
+}
+
+}  // namespace hirosco::descriptor

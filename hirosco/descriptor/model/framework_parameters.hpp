@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "hirosco/descriptor/model/subsystem.hpp"
+
+/// The parameters that every subsystem has without declaring them (docs/adr/0056), and the words for its ten states.
+namespace hirosco::descriptor {
+
+/// Of State; an author's fields may name it, too.
+inline constexpr const char* states_enumeration = "STATES";
+
+namespace framework_parameter {
+/// hirosco::CycleStatistics
+inline constexpr const char* cycle_stats = "CYCLE_STATS";
+/// hirosco::CycleTimes
+inline constexpr const char* cycle_times = "CYCLE_TIMES";
+/// hirosco::LinkStatistics
+inline constexpr const char* link_stats = "LINK_STATS";
+}  // namespace framework_parameter
+
+/// CYCLE_STATS, CYCLE_TIMES and LINK_STATS, with the ids that are theirs where a descriptor gives no other.
+[[nodiscard]] std::vector<Parameter> framework_parameters();
+/// Appends them and STATES; those that are there stay as they are.
+void add_framework_parameters(Subsystem& subsystem);
+
+}  // namespace hirosco::descriptor

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hirosco/descriptor/model/subsystem.hpp"
+#include "hirosco/utilities/result.hpp"
+
+/// The mission descriptor in memory: what is started, connected, permitted and recovered.
+namespace hirosco::descriptor {
+
+/// A parameter begins with other values than its subsystem's descriptor says.
+struct Override {
+  std::string parameter;
+  std::vector<double> values;
+};
+/// "NAME=1 2.5", as a launched subsystem is told.
+[[nodiscard]] std::string to_string(const Override& changed);
+/// The reverse, into `subsystem`. NotFound: no such parameter. OutOfRange: not as many numbers as it has values.
+[[nodiscard]] Result<> apply_override(Subsystem& subsystem, std::string_view text);
+
+/// A device of this instance has another address than its subsystem's descriptor says, in every configuration.
+struct Readdressed {
+  std::string device;
+  std::string address;               ///< empty = the descriptor's
+  std::string enable;                ///< of the second inhibit; empty = the descriptor's
+};
+
+/// Whom this instance commands, where it is not who has the name that its descriptor says.
+struct Redirected {
+  std::string subsystem;             ///< as the descriptor calls it
+  std::string to;                    ///< as the mission does
+};
+
+struct MissionSubsystem {
+  std::string executable;            ///< name of the program, looked up beside the running one and then in PATH
+  Subsystem subsystem;               ///< with what the mission changes applied: name, id, parameters, addresses
+  std::vector<Override> overrides;
+  std::vector<Readdressed> addresses;
+  std::vector<Redirected> redirected;
+  Location at;
+};
+
+/// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs
+/// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address" "DEVICE=address", "--enable" "DEVICE=address",
+/// "--commands" "NAME=12:FILE".
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsystem& member);
+/// One of them, into `subsystem`. NotFound: no such parameter or device, or it has no second inhibit; OutOfRange: the
+/// values do not fit; InvalidArgument: not of this form. All but "--commands", which needs the other's descriptor.
+[[nodiscard]] Result<> apply_change(Subsystem& subsystem, std::string_view word, std::string_view text);
+
+/// A simulated device process standing in for hardware.
+struct SimulatedDevice {
+  std::string name;                  ///< as `hirosco fault` names it
+  std::string executable;
+  std::string subsystem;             ///< whose device it plays
+  std::string device;
+  std::uint64_t seed{1};
+  std::vector<Setting> settings;
+  Location at;
+};
+
+struct MissionLink {
+  std::uint8_t id{};
+  std::string from, provides;        ///< producing subsystem and its set
+  std::string to, requires_;         ///< consuming subsystem and its set
+  Location at;
+};
+
+/// What a mode lets through: functions, services and parameters of one subsystem, or of all ("*").
+struct Permit {
+  std::string subsystem;
+  std::vector<std::string> functions;  ///< "*" = all
+  std::vector<std::uint8_t> services;
+  std::vector<std::string> parameters; ///< that TC[20,3] may set, besides service 20; "*" = all writable ones
+  Location at;
+};
+
+struct CommissionStep {
+  std::string subsystem;
+  std::string configuration;
+  State state{State::Operational};
+  Location at;
+};
+
+struct Mode {
+  std::string name;
+  std::uint8_t id{};
+  std::vector<CommissionStep> commission;  ///< the start list when this is the start mode
+  std::vector<std::uint8_t> establish;     ///< links
+  std::vector<Permit> permits;
+  Location at;
+};
+
+/// One step of a plan: a word of plan_steps.hpp, and a value for each of its attributes in their order.
+struct PlanStep {
+  std::string kind;
+  std::vector<std::int64_t> values{};
+};
+
+/// A recovery plan: the most specific matching one is taken (subsystem, event, severity, mode).
+struct Plan {
+  std::string name;
+  std::vector<Severity> severities;  ///< empty = any
+  std::string subsystem;  ///< empty = any
+  std::string event;  ///< empty = any
+  std::string mode;  ///< empty = any
+  std::vector<PlanStep> steps{};     ///< in this order; empty = log
+  Location at;
+};
+
+struct GroundAddresses {
+  std::string subsystem;  ///< which subsystem carries the ground link; empty = none
+  std::string telemetry{"127.0.0.1:10015"};
+  std::string telecommand{"127.0.0.1:10025"};
+};
+
+struct DatabaseUse {
+  std::string strategy{"sqlite"};  ///< sqlite | ascii
+  std::filesystem::path path;  ///< relative to the working directory
+};
+
+/// What the live line of a terminal shows of the newest housekeeping.
+struct ShownValue {
+  std::string parameter;  ///< "SUBSYSTEM.PARAMETER" or "SUBSYSTEM.STRUCTURE.MEMBER"
+  std::string label;
+  std::string unit;  ///< of the parameter; empty = none
+  std::uint8_t decimals{3};
+};
+
+struct Mission {
+  std::string name;
+  std::uint16_t id{};
+  std::filesystem::path file;
+  Subsystem supervisor;
+  DatabaseUse database;
+  GroundAddresses ground;
+  std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
+  std::vector<MissionSubsystem> subsystems;
+  std::vector<SimulatedDevice> devices;
+  std::vector<MissionLink> links;
+  std::vector<Mode> modes;
+  std::string initial_mode;
+  std::string start_mode;  ///< empty = stay in the initial mode, commission nothing
+  std::vector<Plan> plans;
+  std::vector<ShownValue> console;  ///< in the order of the file
+
+  [[nodiscard]] const MissionSubsystem* find_subsystem(std::string_view subsystem) const noexcept;
+  [[nodiscard]] const MissionSubsystem* find_subsystem(std::uint16_t apid) const noexcept;
+  [[nodiscard]] const Mode* find_mode(std::string_view mode) const noexcept;
+  [[nodiscard]] const MissionLink* find_link(std::uint8_t link) const noexcept;
+};
+
+/// Share of the one processor of all cycles (docs/adr/0007) that the configurations of a mode declare as their budgets.
+[[nodiscard]] double cycle_share(const Mission& mission, const Mode& mode) noexcept;
+/// The greatest of all modes.
+[[nodiscard]] double cycle_share(const Mission& mission) noexcept;
+
+}  // namespace hirosco::descriptor

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "hirosco/descriptor/model/supervisor_events.hpp"
+
+/// What the steps of a recovery plan may be: the words of <Do>, with the attributes of each. What a step does is the
+/// supervisor's (supervision/procedures), which does not compile while it lacks one of these (docs/adr/0057).
+namespace hirosco::descriptor {
+
+struct StepAttribute {
+  enum class Kind : std::uint8_t { Number, SteadyState };
+  std::string_view name;
+  Kind kind{Kind::Number};
+  std::int64_t least{0}, most{0};
+  std::optional<std::int64_t> otherwise{};  ///< empty: it has to be given
+};
+
+struct StepWord {
+  std::string_view name;
+  std::span<const StepAttribute> attributes{};
+  std::string_view answers{};  ///< the only event that it is for; empty: any
+};
+
+namespace detail {
+inline constexpr std::array state_to_command{StepAttribute{.name = "state", .kind = StepAttribute::Kind::SteadyState}};
+inline constexpr std::array restarts_with_limit{
+    StepAttribute{.name = "limit", .least = 1, .most = 100'000, .otherwise = 3},
+    StepAttribute{.name = "within_s", .least = 1, .most = 86'400, .otherwise = 60},
+    StepAttribute{.name = "pause_ms", .least = 0, .most = 60'000, .otherwise = 100}};
+}  // namespace detail
+
+inline constexpr std::array plan_steps{
+    StepWord{.name = "log"},
+    StepWord{.name = "set_state", .attributes = detail::state_to_command},
+    StepWord{.name = "shut_down_network"},
+    StepWord{.name = "restart", .attributes = detail::restarts_with_limit, .answers = event_of_death},
+};
+
+/// Null: there is no such word.
+[[nodiscard]] constexpr const StepWord* find_plan_step(std::string_view name) noexcept {
+  const auto* const found = std::ranges::find(plan_steps, name, &StepWord::name);
+  return found != plan_steps.end() ? found : nullptr;
+}
+
+}  // namespace hirosco::descriptor

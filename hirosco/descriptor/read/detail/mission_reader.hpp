@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/descriptor/model/plan_steps.hpp"
+#include "hirosco/descriptor/read/detail/element_reader.hpp"
+
+namespace hirosco::descriptor::detail {
+
+/// Why the producer's set cannot feed the consumer's; empty when it can.
+[[nodiscard]] std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_);
+
+/// Reads one <Mission> and the subsystem descriptors it names.
+class MissionReader {
+ public:
+  MissionReader(Problems& problems, const FileSource& source) : problems_{problems}, source_{source} {}
+  [[nodiscard]] Mission read(const xml::Element& root);
+  /// Problems of the subsystem files, each file's in its order.
+  [[nodiscard]] std::vector<Diagnostic> take_subsystem_problems();
+  [[nodiscard]] std::vector<Diagnostic> take_subsystem_warnings();
+
+ private:
+  // read_mission.cpp
+  void read_supervisor(const xml::Element& element);
+  void read_database(const xml::Element& element);
+  void read_ground(const xml::Element& element);
+  void read_address(Attributes& attributes, std::string_view name, std::string& into);
+  void read_power(const xml::Element& element);
+  void read_member(const xml::Element& element);
+  /// Name and id of an instance, where they are not the descriptor's.
+  void read_identity(Attributes& attributes, MissionSubsystem& member);
+  void read_override(const xml::Element& element, MissionSubsystem& member, Unique& names);
+  void read_readdressed(const xml::Element& element, MissionSubsystem& member, Unique& names);
+  void read_simulated_device(const xml::Element& element);
+  /// The descriptor that the attribute names; reported when it cannot be taken.
+  [[nodiscard]] std::optional<Subsystem> read_descriptor(Attributes& attributes);
+  void check_endnodes(const Subsystem& subsystem);
+  void check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems);
+  [[nodiscard]] std::string executable(Attributes& attributes);
+
+  // read_commands.cpp
+  void read_redirected(const xml::Element& element, MissionSubsystem& member, Unique& names);
+  /// Whom the members command, once all are known.
+  void resolve_commands();
+  void resolve_one(const MissionSubsystem& member, Commands& commands);
+
+  // read_console.cpp
+  void read_console(const xml::Element& element);
+  void read_shown(const xml::Element& element);
+
+  // read_modes.cpp
+  void read_link(const xml::Element& element);
+  /// "A.SET" split and its subsystem found.
+  [[nodiscard]] const Subsystem* read_end(Attributes& attributes, std::string_view name, std::string& subsystem,
+                                          std::string& set);
+  void check_link(const xml::Element& element, const Subsystem& producer, const Subsystem& consumer,
+                  const MissionLink& link);
+  void read_modes(const xml::Element& element);
+  void read_mode(const xml::Element& element);
+
+  // check_modes.cpp: only what was read without a problem is judged
+  /// What a mode commissions must fit the power budget together.
+  void check_power(const xml::Element& element, const Mode& mode);
+  /// And the one processor of all cycles.
+  void check_cycles(const xml::Element& element, const Mode& mode);
+  /// A mode brings up a link into each set that what it commissions requires.
+  void check_required(const Mode& mode);
+  /// Both ends of a link are commissioned with the sets that it joins.
+  void check_established(const xml::Element& element, const Mode& mode);
+  [[nodiscard]] std::string refuse_link(const Mode& mode, const MissionLink& link) const;
+
+  // read_modes.cpp
+  void read_commission(const xml::Element& element, Mode& mode, Unique& names);
+  void read_establish(const xml::Element& element, Mode& mode, Unique& ids);
+  void read_permit(const xml::Element& element, Mode& mode);
+  void read_recovery(const xml::Element& element);
+  void read_plan(const xml::Element& element);
+  void read_when(const xml::Element& element, Plan& plan);
+  void read_do(const xml::Element& element, Plan& plan);
+  [[nodiscard]] std::int64_t read_value(Attributes& attributes, const StepAttribute& described);
+  void check_answers(const xml::Element& element, const Plan& plan);
+  [[nodiscard]] State read_steady_state(Attributes& attributes, std::string_view name, State fallback);
+  void check_functions(const xml::Attribute& at, const Permit& permit);
+  void check_parameters(const xml::Attribute& at, const Permit& permit);
+
+  /// A subsystem of the mission, with `supervisor` also the supervisor; reported when there is none.
+  [[nodiscard]] const Subsystem* find(const xml::Attribute& at, std::string_view name, bool supervisor);
+  [[nodiscard]] bool whole() const noexcept { return !incomplete_; }
+
+  Problems& problems_;
+  const FileSource& source_;
+  Mission mission_;
+  std::vector<std::vector<Diagnostic>> subsystem_problems_;
+  std::vector<Diagnostic> warnings_;
+  std::vector<std::pair<const xml::Attribute*, std::string>> redirections_;  ///< where, and whose
+  std::size_t doubtful_links_{0};    ///< that were reported: what a mode establishes cannot be judged then
+  bool incomplete_{false};           ///< a subsystem could not be read: names may be missing for that reason only
+  Unique subsystem_names_{"subsystem name", "E0301"};
+  Unique subsystem_ids_{"subsystem id", "E0302"};
+  Unique device_names_{"simulated device", "E0201"};
+  Unique played_{"device", "E0201"};
+  Unique link_ids_{"link id", "E0202"};
+  Unique mode_names_{"mode name", "E0201"};
+  Unique mode_ids_{"mode id", "E0202"};
+  Unique plan_names_{"plan name", "E0201"};
+  std::map<std::pair<Transfer, std::string>, std::string> addresses_;  ///< of devices, and whose they are
+};
+
+}  // namespace hirosco::descriptor::detail

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/model/framework_parameters.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
+#include "hirosco/descriptor/read/detail/element_reader.hpp"
+
+namespace hirosco::descriptor::detail {
+
+/// Octets of a housekeeping report that are left for samples: packet 4096 less headers, checksum and structure id.
+inline constexpr std::size_t max_housekeeping_octets = 4096 - 22 - 2;
+/// Octets of an event's arguments: the same packet less the event's id.
+inline constexpr std::size_t max_event_octets = 4096 - 22 - 2;
+
+/// One <Setting> of a device, or of its simulation.
+void read_setting(const xml::Element& element, Problems& problems, Unique& names, std::vector<Setting>& settings);
+
+/// Reads one <Subsystem>. Declarations first, then what refers to them, whatever their order in the file.
+class SubsystemReader {
+ public:
+  explicit SubsystemReader(Problems& problems) : problems_{problems} {}
+  [[nodiscard]] Subsystem read(const xml::Element& root);
+
+ private:
+  /// What may stand once under <Subsystem> and once under each <Configuration>.
+  struct Services {
+    std::vector<HousekeepingStructure>& housekeeping;
+    std::vector<Provides>& provides;
+    std::vector<Requires>& requires_;
+    Unique& structure_ids;
+    Unique& provided;
+    Unique& required;
+    bool of_configuration{false};
+    std::map<std::string, Location> seen{};
+  };
+
+  // read_subsystem.cpp
+  void read_head(const xml::Element& root);
+  void read_hang(const xml::Element& element);
+  void read_failure(const xml::Element& element);
+  void read_device(const xml::Element& element);
+  void check_octets(const xml::Element& element, const Device& device);
+  void read_stop(Attributes& attributes, Device& device);
+  void read_enable(const xml::Element& element, Device& device);
+  void read_output(const xml::Element& element, Device& device, Unique& names);
+
+  // read_configuration.cpp
+  void read_configuration(const xml::Element& element);
+  void read_budget(Attributes& attributes, Configuration& configuration);
+  void read_device_use(const xml::Element& element, Configuration& configuration, Unique& names);
+  void check_watchdogs(const xml::Element& element, const DeviceUse& use, Duration sampling);
+  [[nodiscard]] Endnode read_endnode(const xml::Element& element);
+  [[nodiscard]] Endnode read_address(Attributes& attributes);
+  /// An address belongs to one device: in all configurations, and its enable endnode to nothing else.
+  void check_addresses();
+  void read_initial(const xml::Element& element, Configuration& configuration);
+
+  // read_parameters.cpp
+  /// True when the element names what every subsystem has: it may give a parameter its id, and is else reported.
+  bool read_built_in(const xml::Element& element);
+  void imply_parameters();
+  void read_enumeration(const xml::Element& element);
+  void read_structure(const xml::Element& element);
+  void read_parameter(const xml::Element& element);
+  void read_member(const xml::Element& element, Parameter& structure, Unique& names);
+  /// A number that comes from outside has a range.
+  void expect_range(const xml::Element& element, std::string_view what);
+  /// Who may set it: writable, protection.
+  void read_access(Attributes& attributes, Parameter& parameter);
+  void claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id);
+  void check_enumerations();
+  /// An argument knows the names of its values.
+  void name_values(std::vector<Function::Argument>& arguments);
+  /// What a field says besides name, type, count and unit.
+  enum class Says { Nothing, Words, Range, WordsAndRange, Argument, Report };
+  [[nodiscard]] Field read_field(Attributes& attributes, Says says);
+  void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
+                        Says says = Says::Nothing);
+  void read_words(Attributes& attributes, Field& field);
+  void check_field_range(Attributes& attributes, Field& field);
+  /// The `name` attribute resolved against the parameters.
+  [[nodiscard]] std::optional<ParameterRef> read_reference(Attributes& attributes, std::string_view user);
+  /// `own`: how many parameters are the author's; members of the others are known by their full name only.
+  void index_references(std::size_t own);
+  [[nodiscard]] std::optional<ParameterRef> resolve(const xml::Attribute& name, std::string_view user);
+  [[nodiscard]] std::string suggest_reference(std::string_view text) const;
+  [[nodiscard]] std::size_t octets_of_reference(const ParameterRef& reference) const;
+
+  // read_custom_service.cpp
+  void read_custom_service(const xml::Element& element);
+  void read_request(const xml::Element& element, CustomService& service, Unique& subtypes);
+  void read_report(const xml::Element& element, CustomService& service, Unique& subtypes, Unique& names);
+
+  // read_commands.cpp
+  void read_commands(const xml::Element& element);
+
+  // read_services.cpp
+  /// Rows for each_child(): the services, read into `services`.
+  [[nodiscard]] std::vector<Child> service_children(Services& services);
+  bool first_service(const xml::Element& element, Services& services);
+  void read_event(const xml::Element& element, const Services& services);
+  void imply_framework_events();
+  void expect_for_all(const xml::Element& element, const Services& services, std::string_view name);
+  void read_function(const xml::Element& element, const Services& services);
+  [[nodiscard]] static std::uint16_t read_states(Attributes& attributes, std::string_view name,
+                                                 std::vector<State> fallback);
+  void read_range_of(Attributes& attributes, Function::Argument& argument, const std::string& function);
+  void check_arguments(const xml::Element& element, const Function& function);
+  void read_fallback(Attributes& attributes, Function::Argument& argument);
+  void read_argument(const xml::Element& element, Function& function, Unique& names);
+  void read_housekeeping(const xml::Element& element, Services& services);
+  void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);
+  void read_provides(const xml::Element& element, Services& services);
+  void read_requires(const xml::Element& element, Services& services);
+  [[nodiscard]] LinkTerms read_terms(Attributes& attributes);
+  [[nodiscard]] CycleLimit read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
+                                      CycleLimit fallback);
+
+  struct EnumerationUse {
+    const xml::Attribute* at;
+    std::string name;
+    Type type;
+  };
+
+  Problems& problems_;
+  Subsystem subsystem_;
+  Unique parameter_names_{"parameter name", "E0201"};
+  Unique parameter_ids_{"parameter id", "E0203"};
+  Unique enumeration_names_{"enumeration name", "E0201"};
+  Unique device_names_{"device name", "E0201"};
+  Unique event_names_{"event name", "E0201"};
+  Unique event_ids_{"event id", "E0202"};
+  Unique failure_names_{"name of a failure", "E0201"};
+  Unique failure_codes_{"failure code", "E0202"};
+  Unique commanded_{"commanded subsystem", "E0201"};
+  Unique function_names_{"function name", "E0201"};
+  Unique service_names_{"service name", "E0201"};
+  Unique service_types_{"service type", "E0202"};
+  Unique configuration_names_{"configuration name", "E0201"};
+  Unique configuration_ids_{"configuration id", "E0202"};
+  Unique structure_ids_{"housekeeping structure id", "E0211"};
+  Unique provided_{"provided set", "E0201"};
+  Unique required_{"required set", "E0201"};
+  std::vector<Provides> provides_;   ///< under <Subsystem>: valid in every configuration
+  std::vector<Requires> requires_;
+  std::size_t configurations_{0};    ///< that the descriptor has
+  std::vector<Parameter> built_in_{framework_parameters()};
+  std::vector<EnumerationUse> enumeration_uses_;
+  std::map<std::uint16_t, std::string> raised_by_;  ///< the function whose argument is first `of` a parameter
+  std::vector<std::pair<const xml::Element*, Event>> framework_severities_;  ///< as the descriptor wants them
+  std::map<std::string, std::vector<ParameterRef>, std::less<>> references_;  ///< by every spelling
+};
+
+}  // namespace hirosco::descriptor::detail

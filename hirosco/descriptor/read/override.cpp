@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/descriptor/read/read.hpp"
+
+namespace hirosco::descriptor {
+
+std::string to_string(const Override& changed) {
+  return fmt::format("{}={}", changed.parameter, fmt::join(changed.values, " "));
+}
+
+Result<> apply_override(Subsystem& subsystem, std::string_view text) {
+  const std::string_view name = text.substr(0, text.find('='));
+  const auto parameter =
+      std::ranges::find_if(subsystem.parameters, [&](const Parameter& p) { return p.field.name == name; });
+  if (parameter == subsystem.parameters.end()) return fail(ErrorCode::NotFound, "no such parameter");
+  std::vector<double> values;
+  const char* const end = text.data() + text.size();
+  for (const char* at = text.data() + name.size(); at != end;) {
+    double value = 0;
+    const auto read = std::from_chars(at + 1, end, value);  // behind '=' or the space
+    if (read.ec != std::errc{}) return fail(ErrorCode::OutOfRange, "not a number");
+    values.push_back(value);
+    at = read.ptr;
+  }
+  if (values.size() != parameter->field.count) return fail(ErrorCode::OutOfRange, "another number of values");
+  parameter->init = std::move(values);
+  return ok();
+}
+
+std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsystem& member) {
+  std::vector<std::pair<std::string, std::string>> changes{
+      {"--as", fmt::format("{}:{}", member.subsystem.name, member.subsystem.id)}};
+  for (const Override& changed : member.overrides) changes.emplace_back("--set", to_string(changed));
+  for (const Readdressed& device : member.addresses) {
+    if (!device.address.empty()) changes.emplace_back("--address", device.device + "=" + device.address);
+    if (!device.enable.empty()) changes.emplace_back("--enable", device.device + "=" + device.enable);
+  }
+  for (const Commands& commands : member.subsystem.commands)
+    if (commands.apid != 0) changes.emplace_back("--commands", to_string(commands));
+  return changes;
+}
+
+namespace {
+
+[[nodiscard]] Result<> rename(Subsystem& subsystem, std::string_view text) {
+  const auto colon = text.rfind(':');
+  if (colon == 0 || colon == text.npos) return fail(ErrorCode::InvalidArgument, "NAME:ID is wanted");
+  const char* const end = text.data() + text.size();
+  std::uint16_t id = 0;
+  const auto read = std::from_chars(text.data() + colon + 1, end, id);
+  if (read.ec != std::errc{} || read.ptr != end) return fail(ErrorCode::InvalidArgument, "NAME:ID is wanted");
+  subsystem.name = text.substr(0, colon);
+  subsystem.id = id;
+  return ok();
+}
+
+}  // namespace
+
+Result<> apply_change(Subsystem& subsystem, std::string_view word, std::string_view text) {
+  if (word == "--as") return rename(subsystem, text);
+  if (word == "--set") return apply_override(subsystem, text);
+  const auto equals = text.find('=');
+  if (equals == text.npos || equals + 1 == text.size() || (word != "--address" && word != "--enable"))
+    return fail(ErrorCode::InvalidArgument, "DEVICE=ADDRESS is wanted");
+  const std::string_view name = text.substr(0, equals);
+  const auto device = std::ranges::find(subsystem.devices, name, &Device::name);
+  if (device == subsystem.devices.end()) return fail(ErrorCode::NotFound, "no such device");
+  if (word == "--enable") {
+    if (!device->enable) return fail(ErrorCode::NotFound, "the device has no second inhibit");
+    device->enable->address = text.substr(equals + 1);
+    return ok();
+  }
+  const auto index = device - subsystem.devices.begin();
+  for (Configuration& configuration : subsystem.configurations)
+    for (DeviceUse& use : configuration.devices)
+      if (use.device == index) use.endnode.address = text.substr(equals + 1);
+  return ok();
+}
+
+}  // namespace hirosco::descriptor

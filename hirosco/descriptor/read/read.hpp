@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/descriptor/model/subsystem.hpp"
+#include "hirosco/utilities/result.hpp"
+
+namespace hirosco::descriptor {
+
+enum class Grade : std::uint8_t {
+  Error,    ///< the descriptor is not taken
+  Warning,  ///< it is, but somebody should know
+};
+
+/// One problem of a descriptor, where it is and what to do about it.
+struct Diagnostic {
+  std::filesystem::path file;
+  Location at;
+  std::string code;                  ///< "E0104": stable, explained in docs/descriptor-errors.md
+  std::string message;               ///< "unknown parameter type 'DUBLE'"
+  std::string hint;                  ///< "did you mean 'DOUBLE'?"; may be empty
+  std::size_t length{1};             ///< characters to underline
+  Grade grade{Grade::Error};
+};
+
+/// Reads whole files; given from outside so that reading is testable without a file system.
+/// Returns the octets, or why there is no such (regular, readable, at most 4 MiB) file: "is a folder".
+using FileSource = std::function<Result<std::string>(const std::filesystem::path&)>;
+[[nodiscard]] FileSource file_system();
+
+template <class T>
+struct Reading {
+  std::optional<T> value;            ///< present only when `problems` is empty
+  std::vector<Diagnostic> problems;  ///< all errors, in file order
+  std::vector<Diagnostic> warnings;  ///< all of them, in file order
+};
+
+/// Reads and checks a subsystem descriptor. `name` is used in the diagnostics.  Realtime: allocates.
+[[nodiscard]] Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source);
+/// Reads and checks a mission with every subsystem it names (paths relative to the mission file).  Realtime: allocates.
+[[nodiscard]] Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source);
+
+/// "NAME=12:FILE", as a launched subsystem is told whom it commands; and the reverse, into `subsystem`. NotFound: it commands
+/// none of that name, or who has the file has no such function; InvalidArgument: not of this form.
+[[nodiscard]] std::string to_string(const Commands& commands);
+[[nodiscard]] Result<> apply_commands(Subsystem& subsystem, std::string_view text, const FileSource& source);
+
+/// file:line:col: error: …, the source line, a caret and the hint (docs: ground habits). `source_line` may be empty.
+[[nodiscard]] std::string render(const Diagnostic& problem, const FileSource& source, bool colour);
+
+}  // namespace hirosco::descriptor

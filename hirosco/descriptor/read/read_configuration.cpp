@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <cmath>
+#include <utility>
+
+#include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+
+namespace hirosco::descriptor::detail {
+namespace {
+
+constexpr std::int64_t least_sampling_us = least_sampling / std::chrono::microseconds{1};
+constexpr std::int64_t max_sampling_us = 3'600'000'000;  // an hour
+constexpr double max_watchdog_ms = 60'000;
+
+/// What is wrong with an address of this form; empty when nothing is.
+std::string_view refuse_address(AddressForm form, std::string_view address) noexcept {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
+  };
+  switch (form) {
+    case AddressForm::HostPort:
+      return classify_address(address) == Address::Malformed ? "host:port is needed, for example 127.0.0.1:5000" : "";
+    case AddressForm::Name:
+      return !address.empty() && address.size() <= 64 && address.front() != '.' && std::ranges::all_of(address, plain)
+                 ? ""
+                 : "a name of 1 to 64 letters, digits, '_', '-' and '.' is needed, no path";
+  }
+  return "";
+}
+
+}  // namespace
+
+void SubsystemReader::read_configuration(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Configuration configuration;
+  configuration.at = place(element.at);
+  configuration.name = attributes.name();
+  configuration.id = attributes.required_integer<std::uint8_t>("id", 1, 255);
+  configuration.priority = attributes.integer_or<int>("priority", 0, greatest_cycle_priority, 0);
+  configuration.sampling = std::chrono::microseconds{
+      attributes.required_integer<std::int64_t>("sampling_us", least_sampling_us, max_sampling_us)};
+  read_budget(attributes, configuration);
+  configuration.power_w = attributes.watts("power_W").value_or(0);
+  configuration.overruns = read_limit(attributes, "overruns", "overruns_reduced", configuration.overruns);
+  configuration.provides = provides_;
+  configuration.requires_ = requires_;
+
+  Unique structure_ids = structure_ids_, provided = provided_, required = required_;
+  Services services{configuration.housekeeping,
+                    configuration.provides,
+                    configuration.requires_,
+                    structure_ids,
+                    provided,
+                    required,
+                    true};
+  Unique devices{"device", "E0201"};
+  auto children = service_children(services);
+  children.push_back({"Device", [&](const auto& child) { read_device_use(child, configuration, devices); }, 255});
+  children.push_back({"Initial", [&](const auto& child) { read_initial(child, configuration); }});
+  each_child(element, problems_, children);
+
+  if (!configuration.name.empty())
+    configuration_names_.add(configuration.name, configuration.at, problems_, element.name.size() + 1);
+  if (configuration.id != 0)
+    configuration_ids_.add(std::to_string(configuration.id), place(element.find("id")->value_at), problems_,
+                           element.find("id")->value.size());
+  subsystem_.configurations.push_back(std::move(configuration));
+}
+
+void SubsystemReader::read_budget(Attributes& attributes, Configuration& configuration) {
+  configuration.budget =
+      std::chrono::microseconds{attributes.integer_or<std::int64_t>("budget_us", 1, max_sampling_us, 0)};
+  if (configuration.sampling == Duration{} || configuration.budget <= configuration.sampling) return;
+  problems_.add(*attributes.optional("budget_us"), "E0227",
+                fmt::format("a cycle of {} us every {} us is an overrun each time", configuration.budget / 1us,
+                            configuration.sampling / 1us),
+                "the budget is at most the sampling period");
+}
+
+void SubsystemReader::read_device_use(const xml::Element& element, Configuration& configuration, Unique& names) {
+  Attributes attributes{element, problems_};
+  DeviceUse use;
+  use.at = place(element.at);
+  const std::string name = attributes.name("name", NameKind::Loose);
+  const auto found = std::ranges::find(subsystem_.devices, name, &Device::name);
+  if (!name.empty() && found == subsystem_.devices.end()) {
+    std::vector<std::string_view> known;
+    for (const Device& device : subsystem_.devices) known.push_back(device.name);
+    problems_.add(*element.find("name"), "E0216", fmt::format("device '{}' is not declared under <Subsystem>", name),
+                  did_you_mean(name, known));
+  } else if (!name.empty()) {
+    use.device = static_cast<std::uint16_t>(found - subsystem_.devices.begin());
+    names.add(name, use.at, problems_, element.name.size() + 1);
+  }
+  use.silence = read_limit(attributes, "silence", "silence_reduced", use.silence);
+  const auto watchdog = [&](std::string_view attribute, std::uint32_t fallback_us) {
+    const auto value_ms = attributes.number(attribute);
+    if (!value_ms) return fallback_us;
+    if (*value_ms >= 0.001 && *value_ms <= max_watchdog_ms)
+      return static_cast<std::uint32_t>(std::lround(*value_ms * 1000));
+    problems_.add(*element.find(attribute), "E0112", fmt::format("{} {} is out of range", attribute, *value_ms),
+                  "0.001 to 60000 ms");
+    return fallback_us;
+  };
+  use.watchdog_us = watchdog("watchdog_ms", use.watchdog_us);
+  use.watchdog_reduced_us = watchdog("watchdog_reduced_ms", std::max(use.watchdog_reduced_us, use.watchdog_us));
+  check_watchdogs(element, use, configuration.sampling);
+  Unique settings{"setting", "E0201"};
+  bool connected = false;
+  each_child(
+      element, problems_,
+      {{"Setting", [&](const xml::Element& child) { read_setting(child, problems_, settings, use.settings); }, 256},
+       {"Endnode",
+        [&](const xml::Element& child) {
+          use.endnode = read_endnode(child);
+          connected = true;
+        },
+        1}});
+  if (!connected) problems_.add(element, "E0106", "<Device> in a configuration needs an <Endnode>");
+  configuration.devices.push_back(std::move(use));
+}
+
+void SubsystemReader::check_watchdogs(const xml::Element& element, const DeviceUse& use, Duration sampling) {
+  const auto least_us = std::min(use.watchdog_us, use.watchdog_reduced_us);
+  if (sampling == Duration{} || std::chrono::microseconds{least_us} > sampling) return;
+  problems_.add(element, "E0229",
+                fmt::format("a watchdog of {} us trips between cycles of {} us", least_us, sampling / 1us),
+                "watchdog_ms and watchdog_reduced_ms are longer than the period; 10 and 50 ms unless they are given");
+}
+
+void read_setting(const xml::Element& element, Problems& problems, Unique& names, std::vector<Setting>& settings) {
+  Attributes attributes{element, problems};
+  std::string name = attributes.name();
+  const auto* value = attributes.required("value");
+  no_children(element, problems);
+  if (name.empty() || value == nullptr) return;
+  if (value->value.size() > 256) problems.add(*value, "E0114", "the value of a setting has at most 256 octets");
+  names.add(name, place(element.at), problems, element.name.size() + 1);
+  settings.push_back({std::move(name), value->value, place(value->value_at)});
+}
+
+Endnode SubsystemReader::read_endnode(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  Endnode endnode = read_address(attributes);
+  if (const auto* order = attributes.optional("byte_order"); order != nullptr && order->value != "native")
+    endnode.byte_order = attributes.one_of("byte_order", ByteOrder::Little);
+  return endnode;
+}
+
+Endnode SubsystemReader::read_address(Attributes& attributes) {
+  Endnode endnode;
+  endnode.at = place(attributes.element().at);
+  if (const auto* transfer = attributes.required("transfer"); transfer != nullptr) {
+    const auto known = attributes.word<Transfer>(*transfer, transfer->value);
+    if (known) endnode.transfer = *known;
+    const FlowMeans* means = known ? find_flow_means(*known) : nullptr;
+    if (known && means == nullptr)
+      problems_.not_built_in(*transfer, transfer->value, are_built_in(standard_flow_means(), &FlowMeans::transfer));
+    const auto* address = attributes.required("address");
+    if (address != nullptr) {
+      endnode.address = address->value;
+      const std::string_view wrong = means != nullptr ? refuse_address(means->form, endnode.address) : "";
+      if (!wrong.empty())
+        problems_.add(*address, "E0217",
+                      fmt::format("{} is no address for {}", in_quotes(endnode.address), transfer->value),
+                      std::string{wrong});
+    }
+  }
+  static_cast<void>(attributes.required("address"));
+  return endnode;
+}
+
+void SubsystemReader::check_addresses() {
+  std::map<std::pair<Transfer, std::string>, std::pair<std::string, Location>> taken;
+  const auto take = [&](const Endnode& endnode, const std::string& user) {
+    if (endnode.address.empty()) return;
+    const auto [before, first] = taken.try_emplace({endnode.transfer, endnode.address}, user, endnode.at);
+    if (first || before->second.first == user) return;
+    problems_.add(
+        endnode.at, "E0222",
+        fmt::format("address {} of {} belongs to {}", in_quotes(endnode.address), user, before->second.first),
+        fmt::format("see {}:{}; each needs its own", before->second.second.line, before->second.second.column));
+  };
+  for (const Device& device : subsystem_.devices)
+    if (device.enable) take(*device.enable, fmt::format("the enable endnode of device '{}'", device.name));
+  for (const Configuration& configuration : subsystem_.configurations)
+    for (const DeviceUse& use : configuration.devices)
+      if (use.device < subsystem_.devices.size())
+        take(use.endnode, fmt::format("device '{}'", subsystem_.devices[use.device].name));
+}
+
+void SubsystemReader::read_initial(const xml::Element& element, Configuration& configuration) {
+  const Attributes none{element, problems_};
+  each_child(element, problems_, {{"ParamRef", [&](const xml::Element& child) {
+                                     Attributes attributes{child, problems_};
+                                     no_children(child, problems_);
+                                     auto reference = read_reference(attributes, "<Initial>");
+                                     const auto* at = attributes.required("value");
+                                     auto values = attributes.numbers("value");
+                                     if (!reference || at == nullptr || values.empty()) return;
+                                     const auto fields = fields_of(subsystem_, *reference);
+                                     std::size_t count = 0;
+                                     for (const Field& field : fields) count += field.count;
+                                     if (values.size() != count)
+                                       return problems_.add(*at, "E0209",
+                                                            fmt::format("'{}' has {} value{}, not {}", reference->text,
+                                                                        count, count == 1 ? "" : "s", values.size()));
+                                     auto next = values.begin();
+                                     for (const Field& field : fields) {
+                                       if (!check_values(problems_, *at, field, {next, next + field.count})) return;
+                                       next += field.count;
+                                     }
+                                     configuration.initial.push_back({std::move(*reference), std::move(values)});
+                                   }}});
+}
+
+}  // namespace hirosco::descriptor::detail

@@ -1,0 +1,368 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+#include "hirosco/descriptor/read/status_rows.hpp"
+#include "hirosco/utilities/os/installation.hpp"
+
+namespace hirosco::descriptor {
+namespace detail {
+namespace {
+
+constexpr std::uint16_t supervisor_id = 1;
+/// A mission stands in missions/NAME/, what it may name in the tree two folders above.
+constexpr int folders_above = 2;
+
+/// A file that comes with HIROSCO, by its name there.
+bool is_shipped(std::string_view text) { return text.starts_with(shipped_prefix); }
+
+/// What is wrong with a path that must stay inside; empty when nothing is.
+std::string_view refuse_path(std::string_view text, int above) {
+  if (is_shipped(text)) return refuse_path(text.substr(shipped_prefix.size()), 0);
+  const std::filesystem::path path{text};
+  if (text.empty() || text.size() > 1024) return "a path of 1 to 1024 octets is needed";
+  if (path.is_absolute() || text.find('\\') != std::string_view::npos) return "the path must be relative";
+  int depth = above;
+  for (const auto& part : path) {
+    if (part == "..") --depth;
+    else if (part != "." && !part.empty()) ++depth;
+    if (depth < 0) return above == 0 ? "the path must stay inside the folder" : "at most two folders up";
+  }
+  return "";
+}
+
+}  // namespace
+
+Mission MissionReader::read(const xml::Element& root) {
+  {
+    Attributes attributes{root, problems_};
+    mission_.name = attributes.name();
+    mission_.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
+  }
+  // What is referred to is read before what refers to it, whatever the order in the file.
+  std::vector<const xml::Element*> grounds, devices, links, modes, recoveries, consoles;
+  const auto later = [](auto& list) { return [&list](const xml::Element& element) { list.push_back(&element); }; };
+  bool supervised = false;
+  each_child(root, problems_,
+             {{"Supervisor",
+               [&](const xml::Element& element) {
+                 read_supervisor(element);
+                 supervised = true;
+               },
+               1},
+              {"Power", [this](const auto& element) { read_power(element); }, 1},
+              {"Subsystem", [this](const auto& element) { read_member(element); }, 255},
+              {"SimulatedDevice", later(devices), 255},
+              {"Links", later(links), 1},
+              {"Modes", later(modes), 1},
+              {"Recovery", later(recoveries), 1},
+              {"Console", later(consoles), 1}});
+  if (!supervised) problems_.add(root, "E0106", "<Mission> needs a <Supervisor>");
+  if (modes.empty()) problems_.add(root, "E0106", "<Mission> needs <Modes>");
+  for (const xml::Element& child : root.children)
+    if (child.name == "Supervisor")
+      for (const xml::Element& ground : child.children)
+        if (ground.name == "Ground") grounds.push_back(&ground);
+  for (const auto* element : grounds) {
+    read_ground(*element);
+    break;
+  }
+  resolve_commands();
+  for (const auto* element : devices) read_simulated_device(*element);
+  for (const auto* element : links) {
+    const Attributes none{*element, problems_};
+    each_child(*element, problems_, {{"Link", [this](const auto& child) { read_link(child); }, 255}});
+  }
+  for (const auto* element : modes) read_modes(*element);
+  for (const auto* element : recoveries) read_recovery(*element);
+  for (const auto* element : consoles) read_console(*element);
+  if (const std::string wrong = give_everybody_a_row(mission_); !wrong.empty())
+    problems_.add(root, "E0328",
+                  fmt::format("the supervisor cannot tell of {} subsystems and {} links in one report",
+                              mission_.subsystems.size(), mission_.links.size()),
+                  wrong);
+  return std::move(mission_);
+}
+
+std::vector<Diagnostic> MissionReader::take_subsystem_problems() {
+  std::vector<Diagnostic> all;
+  for (auto& problems : subsystem_problems_) std::ranges::move(problems, std::back_inserter(all));
+  return all;
+}
+
+std::vector<Diagnostic> MissionReader::take_subsystem_warnings() { return std::move(warnings_); }
+
+void MissionReader::read_supervisor(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  if (auto subsystem = read_descriptor(attributes)) {
+    const xml::Attribute& at = *element.find("descriptor");
+    if (subsystem->id != supervisor_id)
+      problems_.add(at, "E0303", fmt::format("the supervisor has id 1, '{}' has {}", subsystem->name, subsystem->id));
+    subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
+    check_endnodes(*subsystem);
+    mission_.supervisor = std::move(*subsystem);
+  }
+  mission_.database.path = "log/" + (mission_.name.empty() ? std::string{"mission"} : mission_.name) + ".db";
+  each_child(element, problems_,
+             {{"Database", [this](const auto& child) { read_database(child); }, 1},
+              {"Ground", [](const xml::Element&) {}, 1}});
+}
+
+void MissionReader::read_database(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  if (const auto* strategy = attributes.optional("strategy"); strategy != nullptr) {
+    mission_.database.strategy = strategy->value;
+    if (strategy->value != "sqlite" && strategy->value != "ascii")
+      attributes.unknown_word(*strategy, strategy->value, {"sqlite", "ascii"});
+  }
+  const auto* path = attributes.optional("path");
+  if (path == nullptr) return;
+  mission_.database.path = path->value;
+  if (const auto wrong = refuse_path(path->value, 0); !wrong.empty())
+    problems_.add(*path, "E0314", fmt::format("database path {} is not allowed", in_quotes(path->value)),
+                  std::string{wrong});
+}
+
+void MissionReader::read_ground(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  if (const auto* subsystem = attributes.required("subsystem"); subsystem != nullptr) {
+    mission_.ground.subsystem = subsystem->value;
+    // A stop of everything spares it, so nothing that moves may be its own (hazard SF1).
+    if (const Subsystem* carries = find(*subsystem, subsystem->value, false); carries != nullptr)
+      if (const auto acts = std::ranges::find_if(carries->devices, &Device::actuator); acts != carries->devices.end())
+        problems_.add(*subsystem, "E0329",
+                      fmt::format("'{}' carries the ground link, which a stop spares, and has the actuator '{}'",
+                                  carries->name, acts->name),
+                      "give the actuator, or the ground link, to another subsystem");
+  }
+  read_address(attributes, "telemetry", mission_.ground.telemetry);
+  read_address(attributes, "telecommand", mission_.ground.telecommand);
+  if (mission_.ground.telemetry == mission_.ground.telecommand)
+    problems_.add(element, "E0313", "telemetry and telecommand need addresses of their own");
+}
+
+void MissionReader::read_address(Attributes& attributes, std::string_view name, std::string& into) {
+  const auto* address = attributes.optional(name);
+  if (address == nullptr) return;
+  into = address->value;
+  switch (classify_address(address->value)) {
+    case Address::Loopback: return;
+    case Address::Malformed:
+      return problems_.add(*address, "E0217", in_quotes(address->value) + " is no address",
+                           "host:port, for example 127.0.0.1:10015");
+    case Address::Foreign:
+      return problems_.add(*address, "E0313", in_quotes(address->value) + " leaves this computer",
+                           "only loopback addresses are allowed: 127.0.0.1");
+  }
+}
+
+std::string MissionReader::executable(Attributes& attributes) { return attributes.name("executable", NameKind::Loose); }
+
+void MissionReader::read_power(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  if (attributes.required("budget_W") != nullptr) mission_.power_budget_w = attributes.watts("budget_W");
+}
+
+void MissionReader::read_member(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  MissionSubsystem member;
+  member.at = place(element.at);
+  member.executable = executable(attributes);
+  auto subsystem = read_descriptor(attributes);
+  if (!subsystem) return;  // what is set in it cannot be judged
+  member.subsystem = std::move(*subsystem);
+  read_identity(attributes, member);
+  Unique names{"parameter", "E0201"}, devices{"device", "E0201"}, commanded{"commanded subsystem", "E0201"};
+  each_child(element, problems_,
+             {{"Set", [&](const xml::Element& child) { read_override(child, member, names); }, 255},
+              {"Commands", [&](const xml::Element& child) { read_redirected(child, member, commanded); }, 255},
+              {"Device", [&](const xml::Element& child) { read_readdressed(child, member, devices); }, 255}});
+  check_endnodes(member.subsystem);
+  mission_.subsystems.push_back(std::move(member));
+}
+
+void MissionReader::read_identity(Attributes& attributes, MissionSubsystem& member) {
+  Subsystem& subsystem = member.subsystem;
+  const xml::Attribute& descriptor = *attributes.element().find("descriptor");
+  const auto* named = attributes.optional("name");
+  const auto* numbered = attributes.optional("id");
+  if (named != nullptr) subsystem.name = attributes.name();
+  if (numbered != nullptr) subsystem.id = attributes.required_integer<std::uint16_t>("id", 1, 2039);
+  const xml::Attribute& name_at = named != nullptr ? *named : descriptor;
+  const xml::Attribute& id_at = numbered != nullptr ? *numbered : descriptor;
+  subsystem_names_.add(subsystem.name, place(name_at.value_at), problems_, name_at.value.size());
+  if (subsystem.id == supervisor_id)
+    problems_.add(id_at, "E0303", fmt::format("id 1 of '{}' is the supervisor's", subsystem.name));
+  else subsystem_ids_.add(std::to_string(subsystem.id), place(id_at.value_at), problems_, id_at.value.size());
+}
+
+/// Another address for a device of this instance: what it is and how it is carried stays the descriptor's.
+void MissionReader::read_readdressed(const xml::Element& element, MissionSubsystem& member, Unique& names) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const auto* name = attributes.required("name");
+  const auto* address = attributes.optional("address");
+  const auto* enable = attributes.optional("enable");
+  if (name == nullptr) return;
+  if (address == nullptr && enable == nullptr)
+    return problems_.add(element, "E0105", "<Device> of a mission's <Subsystem> needs 'address' or 'enable'");
+  std::vector<std::string_view> known;
+  for (const Device& device : member.subsystem.devices) known.push_back(device.name);
+  names.add(name->value, place(name->value_at), problems_, name->value.size());
+  Readdressed changed{name->value, address != nullptr ? address->value : "", enable != nullptr ? enable->value : ""};
+  for (const auto& [at, word] : {std::pair{address, "--address"}, std::pair{enable, "--enable"}}) {
+    if (at == nullptr) continue;
+    const auto applied = apply_change(member.subsystem, word, name->value + "=" + at->value);
+    if (applied) continue;
+    if (applied.error().code == ErrorCode::NotFound && std::ranges::find(known, name->value) == known.end())
+      return problems_.add(*name, "E0312",
+                           fmt::format("'{}' has no device {}", member.subsystem.name, in_quotes(name->value)),
+                           did_you_mean(name->value, known));
+    problems_.add(*at, "E0217", fmt::format("{}: {}", in_quotes(at->value), applied.error().text));
+  }
+  member.addresses.push_back(std::move(changed));
+}
+
+void MissionReader::read_override(const xml::Element& element, MissionSubsystem& member, Unique& names) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const auto* name = attributes.required("parameter");
+  const auto* value = attributes.required("value");
+  if (name == nullptr || value == nullptr) return;
+  auto& parameters = member.subsystem.parameters;
+  const auto found = std::ranges::find_if(parameters, [&](const Parameter& p) { return p.field.name == name->value; });
+  if (found == parameters.end() || found->field.type == Type::Struct) {
+    std::vector<std::string_view> known;
+    for (const Parameter& parameter : parameters)
+      if (parameter.field.type != Type::Struct) known.push_back(parameter.field.name);
+    problems_.add(
+        *name, "E0204",
+        fmt::format("'{}' has no parameter {} with a value of its own", member.subsystem.name, in_quotes(name->value)),
+        did_you_mean(name->value, known));
+    return;
+  }
+  names.add(name->value, place(name->value_at), problems_, name->value.size());
+  for (const Configuration& configuration : member.subsystem.configurations)
+    for (const Configuration::Initial& initial : configuration.initial)
+      if (&parameters[initial.parameter.parameter] == &*found)
+        return problems_.add(*name, "E0319",
+                             fmt::format("configuration '{}' sets '{}' itself", configuration.name, name->value),
+                             "the value would not last: change it in the descriptor");
+  auto values = read_values(problems_, attributes, "value", found->field);
+  if (values.empty()) return;
+  found->init = values;
+  member.overrides.push_back({name->value, std::move(values)});
+}
+
+std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) {
+  const auto* at = attributes.required("descriptor");
+  if (at == nullptr || !refuse_path(at->value, folders_above).empty()) {
+    incomplete_ = true;
+    if (at != nullptr)
+      problems_.add(*at, "E0314", fmt::format("descriptor path {} is not allowed", in_quotes(at->value)),
+                    std::string{refuse_path(at->value, folders_above)});
+    return std::nullopt;
+  }
+  const bool shipped = is_shipped(at->value);
+  const std::filesystem::path file =
+      (shipped ? std::filesystem::path{at->value} : problems_.file().parent_path() / at->value).lexically_normal();
+  Reading<Subsystem> reading = read_subsystem(file, source_);
+  const bool unreadable = std::ranges::any_of(reading.problems, [](const Diagnostic& d) { return d.code == "E0001"; });
+  if (unreadable)
+    problems_.add(*at, "E0315", fmt::format("descriptor {} {}", in_quotes(at->value), reading.problems.front().message),
+                  shipped ? "nothing of this name comes with HIROSCO" : "the path is relative to the mission file");
+  else if (!reading.problems.empty()) subsystem_problems_.push_back(std::move(reading.problems));
+  std::ranges::move(reading.warnings, std::back_inserter(warnings_));
+  if (!reading.value) incomplete_ = true;
+  return std::move(reading.value);
+}
+
+void MissionReader::check_endnodes(const Subsystem& subsystem) {
+  Problems problems{subsystem.file};
+  for (const Device& device : subsystem.devices)
+    if (device.enable) check_endnode(*device.enable, subsystem.name, problems);
+  for (const Configuration& configuration : subsystem.configurations)
+    for (const DeviceUse& use : configuration.devices) check_endnode(use.endnode, subsystem.name, problems);
+  if (problems.count() != 0) subsystem_problems_.push_back(problems.take());
+}
+
+void MissionReader::check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems) {
+  const FlowMeans* means = find_flow_means(endnode.transfer);
+  if (means != nullptr && means->form == AddressForm::HostPort && classify_address(endnode.address) == Address::Foreign)
+    problems.add(endnode.at, "E0313", in_quotes(endnode.address) + " leaves this computer",
+                 "only loopback addresses are allowed: 127.0.0.1", 8);
+  const auto taken = addresses_.try_emplace({endnode.transfer, endnode.address}, subsystem).first;
+  if (taken->second != subsystem)
+    problems.add(endnode.at, "E0313",
+                 fmt::format("{} is a device's of '{}'", in_quotes(endnode.address), taken->second),
+                 "each device needs an address of its own", 8);
+}
+
+void MissionReader::read_simulated_device(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  SimulatedDevice device;
+  device.at = place(element.at);
+  device.name = attributes.name("name", NameKind::Loose);
+  device.executable = executable(attributes);
+  device.seed = attributes.integer_or<std::uint64_t>("seed", 0, std::numeric_limits<std::int64_t>::max(), 1);
+  const auto* subsystem = attributes.required("subsystem");
+  const auto* played = attributes.required("device");
+  if (subsystem != nullptr) device.subsystem = subsystem->value;
+  if (played != nullptr) device.device = played->value;
+  const Subsystem* owner = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, false);
+  if (owner != nullptr && played != nullptr) {
+    std::vector<std::string_view> known;
+    for (const Device& candidate : owner->devices) known.push_back(candidate.name);
+    if (std::ranges::find(known, played->value) == known.end())
+      problems_.add(*played, "E0312", fmt::format("'{}' has no device {}", owner->name, in_quotes(played->value)),
+                    did_you_mean(played->value, known));
+    else played_.add(device.subsystem + "." + device.device, place(played->value_at), problems_, played->value.size());
+  }
+  Unique settings{"setting", "E0201"};
+  each_child(element, problems_,
+             {{"Setting", [&](const xml::Element& child) { read_setting(child, problems_, settings, device.settings); },
+               256}});
+  if (!device.name.empty()) device_names_.add(device.name, device.at, problems_, element.name.size() + 1);
+  mission_.devices.push_back(std::move(device));
+}
+
+const Subsystem* MissionReader::find(const xml::Attribute& at, std::string_view name, bool supervisor) {
+  if (const auto* member = mission_.find_subsystem(name); member != nullptr) return &member->subsystem;
+  if (supervisor && !name.empty() && mission_.supervisor.name == name) return &mission_.supervisor;
+  if (!whole()) return nullptr;
+  std::vector<std::string_view> known;
+  for (const MissionSubsystem& member : mission_.subsystems) known.push_back(member.subsystem.name);
+  if (supervisor) known.push_back(mission_.supervisor.name);
+  problems_.add(at, "E0304", fmt::format("subsystem {} is not in the mission", in_quotes(name)),
+                did_you_mean(name, known));
+  return nullptr;
+}
+
+}  // namespace detail
+
+Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source) {
+  detail::Problems problems{file};
+  const auto root = detail::read_root(file, source, "Mission", problems);
+  Reading<Mission> reading;
+  if (!root) return {std::nullopt, problems.take(), {}};
+  detail::MissionReader reader{problems, source};
+  Mission mission = reader.read(*root);
+  mission.file = file;
+  reading.problems = problems.take();
+  std::ranges::move(reader.take_subsystem_problems(), std::back_inserter(reading.problems));
+  reading.warnings = problems.take_warnings();
+  std::ranges::move(reader.take_subsystem_warnings(), std::back_inserter(reading.warnings));
+  if (reading.problems.empty()) reading.value = std::move(mission);
+  return reading;
+}
+
+}  // namespace hirosco::descriptor

@@ -1,0 +1,391 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+
+namespace hirosco::descriptor::detail {
+namespace {
+
+constexpr std::int64_t max_count = 4096;
+
+std::string range_text(const Field& field) {
+  return fmt::format("{} to {}", field.minimum ? to_string(*field.minimum) : "-inf",
+                     field.maximum ? to_string(*field.maximum) : "inf");
+}
+
+}  // namespace
+
+bool check_value(Problems& problems, const xml::Attribute& at, const Field& field, const Number& value) {
+  if (is_integer(field.type) && value.real() != std::trunc(value.real())) {
+    problems.add(
+        at, "E0208",
+        fmt::format("{} is not a whole number, '{}' is {}", to_string(value), field.name, to_text(field.type)));
+    return false;
+  }
+  const TypeRange range = range_of(field.type);
+  if (value < range.lowest || value > range.highest) {
+    problems.add(at, "E0208", fmt::format("{} does not fit {}", to_string(value), to_text(field.type)),
+                 fmt::format("{} to {}", to_string(range.lowest), to_string(range.highest)));
+    return false;
+  }
+  if ((field.minimum && value < *field.minimum) || (field.maximum && value > *field.maximum)) {
+    problems.add(at, "E0207", fmt::format("{} is outside the range of '{}'", to_string(value), field.name),
+                 range_text(field));
+    return false;
+  }
+  return true;
+}
+
+bool check_values(Problems& problems, const xml::Attribute& at, const Field& field, const std::vector<double>& values) {
+  return std::ranges::all_of(values, [&](double value) {
+    if (!is_integer(field.type) || std::abs(value) <= max_exact_integer) return check_value(problems, at, field, value);
+    problems.add(at, "E0208", fmt::format("{} does not fit {}", value, to_text(field.type)),
+                 fmt::format("whole numbers up to {}", max_exact_integer));
+    return false;
+  });
+}
+
+std::vector<double> read_values(Problems& problems, Attributes& attributes, std::string_view name, const Field& field) {
+  auto values = attributes.numbers(name);
+  if (values.empty()) return {};
+  const xml::Attribute& at = *attributes.element().find(name);
+  if (values.size() != field.count) {
+    problems.add(at, "E0209",
+                 fmt::format("'{}' has {} value{}, not {}", field.name, field.count, field.count == 1 ? "" : "s",
+                             values.size()));
+    return {};
+  }
+  if (!check_values(problems, at, field, values)) return {};
+  return values;
+}
+
+bool SubsystemReader::read_built_in(const xml::Element& element) {
+  const auto* name = element.find("name");
+  if (name == nullptr) return false;
+  const auto found =
+      std::ranges::find_if(built_in_, [&](const Parameter& parameter) { return parameter.field.name == name->value; });
+  const bool states = element.name == "Enumeration" && name->value == states_enumeration;
+  if (element.name == "Enumeration" ? !states : found == built_in_.end()) return false;
+  if (element.name != "StructRef" || !element.children.empty()) {
+    problems_.add(
+        element, "E0213", fmt::format("{} is built in: every subsystem has it", in_quotes(name->value)),
+        states ? "leave it out, and refer to it all the same"
+               : "leave it out, and refer to it all the same; a <StructRef> without members gives it another id");
+    return true;
+  }
+  Attributes attributes{element, problems_};
+  static_cast<void>(attributes.name());
+  found->id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  no_children(element, problems_);
+  return true;
+}
+
+/// No identity of the author's is one of theirs.
+void SubsystemReader::imply_parameters() {
+  const std::size_t own = subsystem_.parameters.size();
+  const auto check = [this](const Parameter& built_in, const Field& field, std::uint8_t id) {
+    const bool member = std::ranges::any_of(
+        built_in.members, [&](const auto& theirs) { return theirs.field.type == field.type && theirs.id == id; });
+    if (!member && (field.type != Type::Struct || built_in.id != id)) return;
+    problems_.add(field.at, "E0203",
+                  fmt::format("type and id of '{}', {} {}, are those of '{}', which every subsystem has", field.name,
+                              to_text(field.type), id, built_in.field.name),
+                  "type and id together must be unique, members included");
+  };
+  for (const Parameter& built_in : built_in_) {
+    for (const Parameter& parameter : subsystem_.parameters) {
+      check(built_in, parameter.field, parameter.id);
+      for (const Parameter::Member& member : parameter.members) check(built_in, member.field, member.id);
+    }
+  }
+  std::ranges::copy(built_in_, std::back_inserter(subsystem_.parameters));
+  index_references(own);
+}
+
+void SubsystemReader::read_enumeration(const xml::Element& element) {
+  if (read_built_in(element)) return;
+  Attributes attributes{element, problems_};
+  Enumeration enumeration{attributes.name(), {}};
+  if (!enumeration.name.empty())
+    enumeration_names_.add(enumeration.name, place(element.at), problems_, element.name.size() + 1);
+  Unique values{"enumeration value", "E0202"};
+  each_child(element, problems_,
+             {{"Text", [&](const xml::Element& text) {
+                 Attributes inner{text, problems_};
+                 const auto value = inner.required_integer<std::int64_t>(
+                     "value", std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
+                 no_children(text, problems_, true);
+                 if (inner.element().find("value") != nullptr)
+                   values.add(std::to_string(value), place(text.at), problems_, text.name.size() + 1);
+                 if (words(text.text).empty()) problems_.add(text, "E0109", "<Text> is empty");
+                 enumeration.texts.push_back({value, text.text});
+               }}});
+  if (enumeration.texts.empty()) problems_.add(element, "E0106", "<Enumeration> needs at least one <Text>");
+  subsystem_.enumerations.push_back(std::move(enumeration));
+}
+
+void SubsystemReader::read_structure(const xml::Element& element) {
+  if (read_built_in(element)) return;
+  Attributes attributes{element, problems_};
+  Parameter parameter;
+  parameter.field.name = attributes.name();
+  parameter.field.type = Type::Struct;
+  parameter.field.at = place(element.at);
+  if (const auto* type = attributes.optional("type"); type != nullptr && type->value != "STRUCT")
+    problems_.add(*type, "E0104", "the type of a <StructRef> is 'STRUCT', not " + in_quotes(type->value));
+  parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  read_access(attributes, parameter);
+  claim_parameter_id(attributes, Type::Struct, parameter.id);
+  if (!parameter.field.name.empty())
+    parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
+  Unique names{"member name", "E0201"};
+  each_child(element, problems_,
+             {{"ParamRef", [&](const xml::Element& child) { read_member(child, parameter, names); }, 256},
+              {"StructRef", [&](const xml::Element& child) {
+                 problems_.add(child, "E0102", "a structure inside a structure is not possible",
+                               "reference its members one by one");
+               }}});
+  if (parameter.writable())
+    for (const xml::Element& child : element.children) expect_range(child, "member");
+  if (parameter.members.empty()) problems_.add(element, "E0106", "<StructRef> needs at least one <ParamRef>");
+  subsystem_.parameters.push_back(std::move(parameter));
+}
+
+void SubsystemReader::read_member(const xml::Element& element, Parameter& structure, Unique& names) {
+  Attributes attributes{element, problems_};
+  Parameter::Member member;
+  member.field = read_field(attributes, Says::WordsAndRange);
+  member.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  claim_parameter_id(attributes, member.field.type, member.id);
+  no_children(element, problems_);
+  if (!member.field.name.empty()) names.add(member.field.name, place(element.at), problems_, element.name.size() + 1);
+  structure.members.push_back(std::move(member));
+}
+
+void SubsystemReader::read_parameter(const xml::Element& element) {
+  if (read_built_in(element)) return;
+  Attributes attributes{element, problems_};
+  Parameter parameter;
+  parameter.field = read_field(attributes, Says::WordsAndRange);
+  parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  parameter.init = read_values(problems_, attributes, "init", parameter.field);
+  read_access(attributes, parameter);
+  claim_parameter_id(attributes, parameter.field.type, parameter.id);
+  no_children(element, problems_);
+  if (parameter.writable()) expect_range(element, "parameter");
+  const Number zero{0};
+  const bool zero_outside =
+      parameter.field.minimum.value_or(zero) > zero || parameter.field.maximum.value_or(zero) < zero;
+  if (zero_outside && element.find("init") == nullptr)
+    problems_.add(
+        element, "E0207",
+        fmt::format("'{}' begins as 0, outside its range {}", parameter.field.name, range_text(parameter.field)),
+        "add the attribute init");
+  if (!parameter.field.name.empty())
+    parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
+  subsystem_.parameters.push_back(std::move(parameter));
+}
+
+void SubsystemReader::expect_range(const xml::Element& element, std::string_view what) {
+  std::string missing;
+  for (const std::string_view limit : {"minimum", "maximum"})
+    if (element.find(limit) == nullptr) missing += fmt::format("{}{}", missing.empty() ? "" : " and ", limit);
+  if (missing.empty()) return;
+  const auto* name = element.find("name");
+  problems_.add(element, "E0228",
+                fmt::format("{} {} can be set from outside and has no {}", what,
+                            in_quotes(name == nullptr ? std::string_view{} : name->value), missing),
+                "say what it may be, with minimum and maximum");
+}
+
+void SubsystemReader::read_access(Attributes& attributes, Parameter& parameter) {
+  if (const auto* at = attributes.optional("read_only"); at != nullptr)
+    problems_.not_built_in(*at, "leave it out: a parameter is read-only in every state that 'writable' does not name");
+  if (const auto* at = attributes.optional("persistent"); at != nullptr)
+    problems_.not_built_in(*at, "leave it out: values begin with init");
+  parameter.protection = attributes.yes("protection", false);
+  parameter.writable_states = read_states(attributes, "writable", {});
+  const auto* writable = attributes.optional("writable");
+  if (writable != nullptr && parameter.protection)
+    problems_.add(*writable, "E0219", fmt::format("'{}' is a protection and writable", parameter.field.name),
+                  "a protection is raised by its own function only");
+}
+
+void SubsystemReader::claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id) {
+  const xml::Element& element = attributes.element();
+  const xml::Attribute* written = element.find("id");
+  const bool known_type =
+      type == Type::Struct || (element.find("type") != nullptr && from_text<Type>(element.find("type")->value));
+  if (written == nullptr || !known_type || to_integer(written->value) != id) return;
+  parameter_ids_.add(fmt::format("{} {}", to_text(type), id), place(written->value_at), problems_,
+                     written->value.size(), "type and id together must be unique, members included");
+}
+
+Field SubsystemReader::read_field(Attributes& attributes, Says says) {
+  Field field;
+  field.at = place(attributes.element().at);
+  field.name = attributes.name();
+  if (const auto* type = attributes.required("type"); type != nullptr) {
+    field.type = attributes.one_of("type", Type::Double);
+    const bool of_requests = field.type == Type::Bool || field.type == Type::Text;
+    if (field.type == Type::Struct || (of_requests && says != Says::Argument && says != Says::Report)) {
+      problems_.add(*type, "E0104",
+                    fmt::format("'{}' is a type of {} only", type->value,
+                                of_requests ? "a function's arguments and of an own service" : "<StructRef>"));
+      field.type = Type::Double;
+    }
+  }
+  if (field.type == Type::Text) {
+    constexpr std::int64_t most = max_argument_octets - sizeof(std::uint16_t);
+    field.text_octets = attributes.required_integer<std::uint16_t>("octets", 1, most);
+    return field;
+  }
+  field.count = attributes.integer_or<std::uint16_t>("count", 1, max_count, 1);
+  if (field.type == Type::Bool) return field;
+  field.unit = attributes.text("unit");
+  if (field.unit.size() > 32)
+    problems_.add(*attributes.element().find("unit"), "E0114", "a unit has at most 32 octets");
+  const bool all = says == Says::WordsAndRange || says == Says::Argument;
+  if (all || says == Says::Words || says == Says::Report) read_words(attributes, field);
+  if (all || says == Says::Range) check_field_range(attributes, field);
+  return field;
+}
+
+void SubsystemReader::read_words(Attributes& attributes, Field& field) {
+  const auto* use = attributes.optional("enumeration");
+  if (use == nullptr) return;
+  field.enumeration = use->value;
+  enumeration_uses_.push_back({use, use->value, field.type});
+}
+
+void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
+  const auto limit = [&](std::string_view name) {
+    const auto value = attributes.exact(name);
+    if (!value) return value;
+    const bool fits = check_value(problems_, *attributes.element().find(name), field, *value);
+    return fits ? value : std::nullopt;
+  };
+  const auto minimum = limit("minimum");
+  const auto maximum = limit("maximum");
+  field.minimum = minimum;
+  field.maximum = maximum;
+  if (!minimum || !maximum || *minimum <= *maximum) return;
+  problems_.add(*attributes.element().find("minimum"), "E0206",
+                fmt::format("minimum {} is above maximum {}", to_string(*minimum), to_string(*maximum)));
+  field.minimum = field.maximum = std::nullopt;
+}
+
+void SubsystemReader::read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
+                                       Says says) {
+  Attributes attributes{element, problems_};
+  Field field = read_field(attributes, says);
+  no_children(element, problems_);
+  if (!field.name.empty()) names.add(field.name, place(element.at), problems_, element.name.size() + 1);
+  fields.push_back(std::move(field));
+}
+
+void SubsystemReader::check_enumerations() {
+  std::vector<std::string_view> known;
+  for (const Enumeration& enumeration : subsystem_.enumerations) known.push_back(enumeration.name);
+  std::ranges::sort(known);
+  for (const EnumerationUse& use : enumeration_uses_) {
+    if (problems_.full()) return;
+    if (!std::ranges::binary_search(known, use.name))
+      problems_.add(*use.at, "E0210", fmt::format("enumeration {} is not defined", in_quotes(use.name)),
+                    did_you_mean(use.name, known));
+    else if (!is_integer(use.type))
+      problems_.add(*use.at, "E0208", fmt::format("an enumeration needs an integer type, not {}", to_text(use.type)));
+  }
+  for (Function& function : subsystem_.functions) name_values(function.arguments);
+  for (CustomService& service : subsystem_.services) {
+    for (Function& request : service.requests) name_values(request.arguments);
+    for (CustomService::Report& report : service.reports) name_values(report.fields);
+  }
+}
+
+void SubsystemReader::name_values(std::vector<Function::Argument>& arguments) {
+  for (Function::Argument& argument : arguments) {
+    if (argument.field.type == Type::Bool) argument.texts = {{0, "off"}, {1, "on"}};
+    const auto found = std::ranges::find(subsystem_.enumerations, argument.field.enumeration, &Enumeration::name);
+    if (argument.field.enumeration.empty() || found == subsystem_.enumerations.end()) continue;
+    argument.texts = found->texts;
+    const TypeRange range = range_of(argument.field.type);
+    for (const EnumerationText& text : argument.texts)
+      if (Number{text.value} < range.lowest || Number{text.value} > range.highest)
+        problems_.add(argument.field.at, "E0208",
+                      fmt::format("{} of enumeration '{}' does not fit {}", text.value, found->name,
+                                  to_text(argument.field.type)));
+    if (argument.fallback && std::ranges::none_of(argument.texts, [&](const EnumerationText& text) {
+          return *argument.fallback == Value{Number{text.value}};
+        }))
+      problems_.add(
+          argument.field.at, "E0207",
+          fmt::format("the default of '{}' is no value of enumeration '{}'", argument.field.name, found->name));
+  }
+}
+
+std::optional<ParameterRef> SubsystemReader::read_reference(Attributes& attributes, std::string_view user) {
+  const auto* name = attributes.required("name");
+  return name == nullptr ? std::nullopt : resolve(*name, user);
+}
+
+/// A parameter's own name goes before members of that name: it is listed first, and is not ambiguous.
+void SubsystemReader::index_references(std::size_t own) {
+  const auto add = [this](const std::string& text, std::size_t parameter, std::optional<std::uint16_t> member) {
+    references_[text].push_back({text, static_cast<std::uint16_t>(parameter), member, {}});
+  };
+  const auto& parameters = subsystem_.parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) add(parameters[i].field.name, i, std::nullopt);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    for (std::size_t m = 0; m < parameters[i].members.size(); ++m) {
+      const std::string& member = parameters[i].members[m].field.name;
+      if (i < own) add(member, i, static_cast<std::uint16_t>(m));
+      add(parameters[i].field.name + "." + member, i, static_cast<std::uint16_t>(m));
+    }
+}
+
+std::optional<ParameterRef> SubsystemReader::resolve(const xml::Attribute& name, std::string_view user) {
+  const std::string_view text = name.value;
+  const auto found = text.empty() ? references_.end() : references_.find(text);
+  if (found == references_.end()) {
+    problems_.add(name, "E0204", fmt::format("{} refers to {}, which is not defined", user, in_quotes(text)),
+                  suggest_reference(text));
+    return std::nullopt;
+  }
+  const std::vector<ParameterRef>& members = found->second;
+  if (members.size() == 1 || !members.front().member) {
+    ParameterRef reference = members.front();
+    reference.at = place(name.value_at);
+    return reference;
+  }
+  std::string hint = "one of";
+  for (std::size_t i = 0; i < members.size() && i < 8; ++i)
+    hint += fmt::format(" '{}.{}'", subsystem_.parameters[members[i].parameter].field.name, text);
+  problems_.add(name, "E0205", fmt::format("{} refers to {}, a member of several structures", user, in_quotes(text)),
+                hint);
+  return std::nullopt;
+}
+
+std::string SubsystemReader::suggest_reference(std::string_view text) const {
+  std::vector<std::string_view> names;
+  for (const auto& [name, references] : references_) names.push_back(name);
+  std::string hint = did_you_mean(text, names);
+  const std::size_t first = hint.find('\''), last = hint.rfind('\'');
+  if (hint.empty() || first == last) return hint;
+  const ParameterRef& nearest = references_.find(hint.substr(first + 1, last - first - 1))->second.front();
+  const Parameter& parameter = subsystem_.parameters[nearest.parameter];
+  const Field& field = nearest.member ? parameter.members[*nearest.member].field : parameter.field;
+  return hint + fmt::format(" (line {})", field.at.line);
+}
+
+std::size_t SubsystemReader::octets_of_reference(const ParameterRef& reference) const {
+  const Parameter& parameter = subsystem_.parameters[reference.parameter];
+  return reference.member ? parameter.members[*reference.member].field.octets() : parameter.octets();
+}
+
+}  // namespace hirosco::descriptor::detail

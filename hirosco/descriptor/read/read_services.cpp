@@ -1,0 +1,362 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <span>
+#include <utility>
+
+#include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+
+namespace hirosco::descriptor::detail {
+namespace {
+
+constexpr std::int64_t max_cycles = 1'000'000;
+constexpr std::size_t max_arguments = 255;
+constexpr std::size_t max_structures = 256;
+constexpr std::size_t max_sets = 32;
+
+/// Words of a list that no mechanism has.
+template <auto Has>
+void expect_built_in(Attributes& attributes, Problems& problems, std::string_view name) {
+  using E = std::invoke_result_t<decltype(Has), const LinkMechanism&>;
+  const auto* given = attributes.optional(name);
+  if (given == nullptr) return;
+  const auto has = [](const LinkMechanism* mechanism) { return std::invoke(Has, *mechanism); };
+  for (const std::string_view word : words(given->value))
+    if (const auto known = from_text<E>(word);
+        known && std::ranges::find(standard_link_mechanisms(), *known, has) == standard_link_mechanisms().end())
+      problems.not_built_in(*given, word, are_built_in(standard_link_mechanisms(), has));
+}
+
+constexpr std::size_t max_set_fields = 64;
+
+}  // namespace
+
+std::vector<Child> SubsystemReader::service_children(Services& services) {
+  const auto service = [this, &services](auto read) {
+    return [this, &services, read](const xml::Element& element) {
+      Attributes attributes{element, problems_};
+      if (first_service(element, services)) read(element);
+    };
+  };
+  return {{"EventService", service([this, &services](const xml::Element& element) {
+             each_child(element, problems_,
+                        {{"Event", [this, &services](const auto& child) { read_event(child, services); }}});
+           })},
+          {"FunctionService", service([this, &services](const xml::Element& element) {
+             each_child(element, problems_,
+                        {{"Function", [this, &services](const auto& child) { read_function(child, services); }}});
+           })},
+          {"TestService", service([this](const xml::Element& element) { no_children(element, problems_); })},
+          {"HKService", [this, &services](const xml::Element& element) { read_housekeeping(element, services); },
+           max_structures},
+          {"RealTimeLinkService", service([this, &services](const xml::Element& element) {
+             each_child(
+                 element, problems_,
+                 {{"Provides", [this, &services](const auto& child) { read_provides(child, services); }, max_sets},
+                  {"Requires", [this, &services](const auto& child) { read_requires(child, services); }, max_sets}});
+           })}};
+}
+
+bool SubsystemReader::first_service(const xml::Element& element, Services& services) {
+  const auto [before, first] = services.seen.emplace(element.name, place(element.at));
+  if (!first)
+    problems_.add(element, "E0212",
+                  fmt::format("a second <{}>: a subsystem has one instance of each service", element.name),
+                  fmt::format("the first one is in line {}", before->second.line));
+  return first;
+}
+
+void SubsystemReader::read_event(const xml::Element& element, const Services& services) {
+  Attributes attributes{element, problems_};
+  Event event;
+  event.at = place(element.at);
+  event.name = attributes.name();
+  const bool of_framework = element.find("id") == nullptr;
+  event.id = attributes.integer_or<std::uint16_t>("id", 1, framework_event::first - 1, 0);
+  if (attributes.required("severity") != nullptr) event.severity = attributes.one_of("severity", Severity::Info);
+  Unique names{"argument name", "E0201"};
+  each_child(
+      element, problems_,
+      {{"Argument", [&](const xml::Element& child) { read_plain_field(child, event.arguments, names, Says::Words); },
+        max_arguments}});
+  std::size_t octets = 0;
+  for (const Field& argument : event.arguments) octets += argument.octets();
+  if (octets > max_event_octets)
+    problems_.add(element, "E0215", fmt::format("event '{}' takes {} octets in one report", event.name, octets),
+                  fmt::format("at most {}", max_event_octets));
+  expect_for_all(element, services, event.name);
+  if (!event.name.empty()) event_names_.add(event.name, event.at, problems_, element.name.size() + 1);
+  // Without an id it can only be one of the framework's; those are known when the whole descriptor is.
+  if (of_framework) {
+    framework_severities_.push_back({&element, std::move(event)});
+    return;
+  }
+  if (event.id != 0)
+    event_ids_.add(std::to_string(event.id), place(element.find("id")->value_at), problems_,
+                   element.find("id")->value.size());
+  subsystem_.events.push_back(std::move(event));
+}
+
+/// An author may change the severity of a framework's event, nothing else of it.
+void SubsystemReader::imply_framework_events() {
+  const std::size_t own = subsystem_.events.size();
+  add_framework_events(subsystem_);
+  const auto implied = std::span{subsystem_.events}.subspan(own);
+  for (const Event& event : std::span{subsystem_.events}.first(own))
+    if (std::ranges::find(implied, event.name, &Event::name) != implied.end())
+      problems_.add(event.at, "E0213", fmt::format("event '{}' is built in: every subsystem has it", event.name),
+                    "leave it out, or give it a severity only: no id, no arguments", 6);
+  for (const auto& [element, wanted] : framework_severities_) {
+    const auto found = std::ranges::find(implied, wanted.name, &Event::name);
+    if (found == implied.end())
+      problems_.add(*element, "E0105", "<Event> needs the attribute 'id'",
+                    "only an event that every subsystem has is known without it");
+    else if (!wanted.arguments.empty())
+      problems_.add(*element, "E0213", fmt::format("event '{}' is built in with its arguments", wanted.name));
+    else found->severity = wanted.severity;
+  }
+}
+
+void SubsystemReader::read_function(const xml::Element& element, const Services& services) {
+  Attributes attributes{element, problems_};
+  Function function;
+  function.at = place(element.at);
+  function.name = attributes.name("name", NameKind::Function);
+  function.essential = attributes.yes("essential", false);
+  function.states = read_states(attributes, "states", {State::Operational});
+  if (const auto* at = attributes.optional("id"); at != nullptr)
+    problems_.not_built_in(*at, "leave it out: a function is called by its name");
+  Unique names{"argument name", "E0201"};
+  each_child(element, problems_,
+             {{"Argument", [&](const xml::Element& child) { read_argument(child, function, names); }, max_arguments},
+              {"Description",
+               [&](const xml::Element& child) {
+                 no_children(child, problems_, true);
+                 function.description = child.text;
+               },
+               1}});
+  check_arguments(element, function);
+  expect_for_all(element, services, function.name);
+  if (function.name == "SET_STATE" || function.name == "CONFIGURE")
+    problems_.add(*element.find("name"), "E0213",
+                  fmt::format("'{}' is built in: every subsystem has it", function.name));
+  else if (!function.name.empty()) function_names_.add(function.name, function.at, problems_, element.name.size() + 1);
+  subsystem_.functions.push_back(std::move(function));
+}
+
+/// Functions and events are the subsystem's, whatever is configured: nothing may look as if it held in one configuration only.
+void SubsystemReader::expect_for_all(const xml::Element& element, const Services& services, std::string_view name) {
+  if (!services.of_configuration || configurations_ < 2) return;
+  problems_.add(element, "E0230",
+                fmt::format("'{}' stands in one of {} configurations and would hold in all", name, configurations_),
+                "declare it under <Subsystem>; a function that makes no sense now is its author's to refuse");
+}
+
+void SubsystemReader::check_arguments(const xml::Element& element, const Function& function) {
+  std::size_t octets = 0;
+  for (const Function::Argument& argument : function.arguments) octets += argument.field.octets();
+  if (octets > max_argument_octets)
+    problems_.add(element, "E0225", fmt::format("the arguments of function '{}' take {} octets", function.name, octets),
+                  fmt::format("at most {} in one call", max_argument_octets));
+}
+
+std::uint16_t SubsystemReader::read_states(Attributes& attributes, std::string_view name, std::vector<State> fallback) {
+  unsigned states = 0;
+  for (const State state : attributes.list_of<State>(name, std::move(fallback)))
+    states |= 1U << static_cast<unsigned>(state);
+  return static_cast<std::uint16_t>(states);
+}
+
+void SubsystemReader::read_argument(const xml::Element& element, Function& function, Unique& names) {
+  Attributes attributes{element, problems_};
+  Function::Argument argument;
+  if (element.find("of") != nullptr) read_range_of(attributes, argument, function.name);
+  else {
+    argument.field = read_field(attributes, Says::Argument);
+    const bool named = argument.field.type == Type::Bool || !argument.field.enumeration.empty();
+    if (!named && argument.field.type != Type::Text) expect_range(element, "argument");
+  }
+  read_fallback(attributes, argument);
+  no_children(element, problems_);
+  if (!argument.field.name.empty())
+    names.add(argument.field.name, place(element.at), problems_, element.name.size() + 1);
+  function.arguments.push_back(std::move(argument));
+}
+
+void SubsystemReader::read_fallback(Attributes& attributes, Function::Argument& argument) {
+  if (argument.field.type != Type::Text) {
+    if (const auto value = attributes.exact("default"))
+      if (check_value(problems_, *attributes.element().find("default"), argument.field, *value))
+        argument.fallback = *value;
+    return;
+  }
+  const auto* words = attributes.optional("default");
+  if (words == nullptr) return;
+  if (words->value.size() <= argument.field.text_octets) argument.fallback = words->value;
+  else
+    problems_.add(*words, "E0207",
+                  fmt::format("{} is longer than {} octets", in_quotes(words->value), argument.field.text_octets));
+}
+
+/// One range for a number wherever it is set: the argument is one value of the parameter.
+void SubsystemReader::read_range_of(Attributes& attributes, Function::Argument& argument, const std::string& function) {
+  const std::string name = attributes.name();
+  const xml::Attribute& at = *attributes.optional("of");
+  for (const std::string_view own : {"type", "count", "unit", "minimum", "maximum", "enumeration"})
+    if (const auto* given = attributes.optional(own); given != nullptr)
+      problems_.add(place(given->at), "E0220", fmt::format("'{}' has its {} from {}", name, own, in_quotes(at.value)),
+                    fmt::format("leave {} or of out", own), own.size());
+  if (const auto parameter = resolve(at, fmt::format("argument '{}'", name))) {
+    const auto fields = fields_of(subsystem_, *parameter);
+    argument.of = at.value;
+    if (fields.size() != 1)
+      problems_.add(at, "E0221", in_quotes(at.value) + " is a structure", "name one of its members");
+    else if (!fields.front().minimum || !fields.front().maximum)
+      problems_.add(at, "E0221", in_quotes(at.value) + " has no range", "give it minimum and maximum");
+    if (!fields.empty()) argument.field = fields.front();
+    const Parameter& of = subsystem_.parameters[parameter->parameter];
+    const std::string& setter = raised_by_.try_emplace(parameter->parameter, function).first->second;
+    if (of.protection && setter != function)
+      problems_.add(at, "E0219", fmt::format("'{}' is a protection and '{}' sets it already", of.field.name, setter),
+                    "a protection is raised by one function only");
+  }
+  argument.field.name = name;
+  argument.field.count = 1;
+  argument.field.at = place(attributes.element().at);
+}
+
+void SubsystemReader::read_housekeeping(const xml::Element& element, Services& services) {
+  Attributes attributes{element, problems_};
+  HousekeepingStructure structure;
+  structure.at = place(element.at);
+  structure.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
+  structure.interval_cycles = attributes.required_integer<std::uint32_t>("interval", 1, 4'294'967'295);
+  structure.enabled = attributes.yes("enabled", true);
+  const std::string user = fmt::format("HKService {}", structure.id);
+  each_child(element, problems_,
+             {{"SampledOnce",
+               [&](const xml::Element& child) {
+                 const Attributes none{child, problems_};
+                 read_sampled(child, structure.sampled_once, user);
+               },
+               1},
+              {"SampledNREPTimes", [&](const xml::Element& child) {
+                 Attributes inner{child, problems_};
+                 HousekeepingStructure::SampledSet set;
+                 set.repetitions = inner.required_integer<std::uint16_t>("nrep", 1, 65'535);
+                 if (set.repetitions != 0 && structure.interval_cycles % set.repetitions != 0)
+                   problems_.add(*child.find("nrep"), "E0214",
+                                 fmt::format("nrep {} does not divide the interval {}", set.repetitions,
+                                             structure.interval_cycles));
+                 read_sampled(child, set.parameters, user);
+                 structure.sampled_repeatedly.push_back(std::move(set));
+               }}});
+  std::size_t octets = 0;
+  for (const auto& reference : structure.sampled_once) octets += octets_of_reference(reference);
+  for (const auto& set : structure.sampled_repeatedly)
+    for (const auto& reference : set.parameters) octets += set.repetitions * octets_of_reference(reference);
+  if (octets > max_housekeeping_octets)
+    problems_.add(element, "E0215", fmt::format("{} takes {} octets in one report", user, octets),
+                  fmt::format("at most {}", max_housekeeping_octets));
+  if (element.children.empty())
+    problems_.add(element, "E0106", "<HKService> needs <SampledOnce> or <SampledNREPTimes>");
+  if (structure.id != 0)
+    services.structure_ids.add(std::to_string(structure.id), place(element.find("id")->value_at), problems_,
+                               element.find("id")->value.size());
+  services.housekeeping.push_back(std::move(structure));
+}
+
+void SubsystemReader::read_sampled(const xml::Element& element, std::vector<ParameterRef>& into,
+                                   std::string_view user) {
+  each_child(element, problems_, {{"ParamRef", [&](const xml::Element& child) {
+                                     Attributes attributes{child, problems_};
+                                     no_children(child, problems_);
+                                     if (auto reference = read_reference(attributes, user))
+                                       into.push_back(std::move(*reference));
+                                   }}});
+  if (element.children.empty())
+    problems_.add(element, "E0106", fmt::format("<{}> needs at least one <ParamRef>", element.name));
+}
+
+LinkTerms SubsystemReader::read_terms(Attributes& attributes) {
+  LinkTerms terms;
+  terms.methods = attributes.list_of<LinkMethod>("methods", terms.methods);
+  terms.kinds = attributes.list_of<LinkKind>("kind", terms.kinds);
+  expect_built_in<&LinkMechanism::method>(attributes, problems_, "methods");
+  expect_built_in<&LinkMechanism::kind>(attributes, problems_, "kind");
+  const auto* orders = attributes.optional("byte_order");
+  if (orders == nullptr) return terms;
+  if (orders->value != "native") terms.byte_orders = attributes.list_of<ByteOrder>("byte_order", terms.byte_orders);
+  else terms.byte_orders = {std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big};
+  return terms;
+}
+
+CycleLimit SubsystemReader::read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
+                                       CycleLimit fallback) {
+  CycleLimit limit;
+  limit.realtime = attributes.integer_or<std::uint32_t>(realtime, 1, max_cycles, fallback.realtime);
+  // A limit that was raised for real time is not to be tighter without it.
+  limit.reduced =
+      attributes.integer_or<std::uint32_t>(reduced, 1, max_cycles, std::max(fallback.reduced, limit.realtime));
+  return limit;
+}
+
+void SubsystemReader::read_provides(const xml::Element& element, Services& services) {
+  Attributes attributes{element, problems_};
+  Provides set;
+  set.at = place(element.at);
+  set.name = attributes.name();
+  set.terms = read_terms(attributes);
+  const std::string user = fmt::format("set '{}'", set.name);
+  read_sampled(element, set.parameters, user);
+  Unique names{"field name", "E0201"};
+  std::size_t octets = 0, fields = 0;
+  for (const ParameterRef& reference : set.parameters) {
+    octets += octets_of_reference(reference);
+    const auto& members = subsystem_.parameters[reference.parameter].members;
+    fields += reference.member || members.empty() ? 1 : members.size();
+    if (octets > max_link_payload_octets || fields > max_set_fields) break;
+    for (const Field& field : fields_of(subsystem_, reference))
+      if (!field.name.empty() &&
+          !names.add(field.name, reference.at, problems_, reference.text.size(), "fields of a set are matched by name"))
+        break;
+  }
+  if (octets > max_link_payload_octets)
+    problems_.add(element, "E0215", fmt::format("{} takes {} octets or more in one sample", user, octets),
+                  fmt::format("at most {}", max_link_payload_octets));
+  if (fields > max_set_fields)
+    problems_.add(element, "E0215", fmt::format("{} has {} fields or more", user, fields),
+                  fmt::format("at most {}", max_set_fields));
+  if (!set.name.empty()) services.provided.add(set.name, set.at, problems_, element.name.size() + 1);
+  services.provides.push_back(std::move(set));
+}
+
+void SubsystemReader::read_requires(const xml::Element& element, Services& services) {
+  Attributes attributes{element, problems_};
+  Requires set;
+  set.at = place(element.at);
+  set.name = attributes.name();
+  if (attributes.optional("from") != nullptr) set.from = attributes.name("from");
+  set.terms = read_terms(attributes);
+  set.required = attributes.yes("required", true);
+  set.age = read_limit(attributes, "age", "age_reduced", set.age);
+  set.missing = attributes.one_of("missing", MissingPolicy::Inhibit);
+  Unique names{"field name", "E0201"};
+  each_child(element, problems_,
+             {{"Field", [&](const auto& child) { read_plain_field(child, set.fields, names); }, max_set_fields}});
+  if (set.fields.empty()) problems_.add(element, "E0106", "<Requires> needs at least one <Field>");
+  std::size_t octets = 0;
+  for (const Field& field : set.fields) octets += field.octets();
+  if (octets > max_link_payload_octets)
+    problems_.add(element, "E0215", fmt::format("set '{}' takes {} octets in one sample", set.name, octets),
+                  fmt::format("at most {}", max_link_payload_octets));
+  if (!set.name.empty()) services.required.add(set.name, set.at, problems_, element.name.size() + 1);
+  services.requires_.push_back(std::move(set));
+}
+
+}  // namespace hirosco::descriptor::detail

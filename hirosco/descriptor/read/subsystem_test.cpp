@@ -1,0 +1,287 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "hirosco/descriptor/model/framework_parameters.hpp"
+#include "hirosco/descriptor/testing.hpp"
+
+namespace hirosco::descriptor {
+namespace {
+
+using testing::data;
+using testing::read_text;
+using testing::rendered;
+using testing::text_source;
+
+constexpr const char* listing_1 = R"(<StructRef name="CUR_VALUES" id="0" type="STRUCT">
+  <ParamRef name="STATE" id="0" type="INT32" />
+  <ParamRef name="POSITION" id="0" type="DOUBLE" />
+</StructRef>
+
+<ParamRef name="DES_POSITION" id="1" type="DOUBLE" />
+)";
+constexpr const char* listing_2 = R"(<HKService id="4711" interval="500">
+  <SampledOnce>
+    <ParamRef name="CUR_VALUES" />
+  </SampledOnce>
+  <SampledNREPTimes nrep="5">
+    <ParamRef name="DES_POSITION" />
+  </SampledNREPTimes>
+</HKService>
+)";
+
+void expect_paper_model(const std::string& text, bool in_configuration) {
+  const auto reading = read_text(text);
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(text));
+  const Subsystem& subsystem = *reading.value;
+  ASSERT_EQ(subsystem.parameters.size(), 2U + framework_parameters().size());
+  const Parameter& values = subsystem.parameters[0];
+  EXPECT_EQ(values.field.name, "CUR_VALUES");
+  EXPECT_EQ(values.field.type, Type::Struct);
+  ASSERT_EQ(values.members.size(), 2U);
+  EXPECT_EQ(values.members[1].field.type, Type::Double);
+  EXPECT_EQ(values.octets(), 12U);
+  const auto& structures = in_configuration ? subsystem.configurations.at(0).housekeeping : subsystem.housekeeping;
+  ASSERT_EQ(structures.size(), 1U);
+  EXPECT_EQ(structures[0].id, 4711);
+  EXPECT_EQ(structures[0].interval_cycles, 500U);
+  EXPECT_TRUE(structures[0].enabled);
+  ASSERT_EQ(structures[0].sampled_once.size(), 1U);
+  EXPECT_EQ(fields_of(subsystem, structures[0].sampled_once[0]).size(), 2U);
+  ASSERT_EQ(structures[0].sampled_repeatedly.size(), 1U);
+  EXPECT_EQ(structures[0].sampled_repeatedly[0].repetitions, 5);
+  EXPECT_EQ(structures[0].sampled_repeatedly[0].parameters.at(0).parameter, 1);
+}
+
+TEST(SubsystemDescriptor, AcceptsTheListingsOfThePaperDirectlyInsideIt) {
+  expect_paper_model(std::string{"<Subsystem name=\"S\" id=\"10\">\n"} + listing_1 + listing_2 + "</Subsystem>", false);
+}
+
+TEST(SubsystemDescriptor, AcceptsTheListingsOfThePaperInParametersAndConfiguration) {
+  expect_paper_model(std::string{"<Subsystem name=\"S\" id=\"10\"><Parameters>\n"} + listing_1 +
+                         "</Parameters><Configuration name=\"C\" id=\"1\" sampling_us=\"500\">" + listing_2 +
+                         "</Configuration></Subsystem>",
+                     true);
+}
+
+TEST(SubsystemDescriptor, FillsTheWholeModel) {
+  const auto reading = read_subsystem(data / "coronagraph.xml", file_system());
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const Subsystem& robot = *reading.value;
+  EXPECT_EQ(robot.name, "CORONAGRAPH");
+  EXPECT_EQ(robot.id, 10);
+  EXPECT_EQ(robot.description, "Two-joint robot, torque controlled, flexible joints");
+  EXPECT_EQ(robot.file, data / "coronagraph.xml");
+  EXPECT_EQ(robot.enumerations.at(0).texts.at(1).text, "Operational");
+  EXPECT_EQ(robot.parameters.at(0).octets(), 4U + 16 + 16 + 8);
+  const Parameter* goal = robot.find_parameter("DES_POSITION");
+  ASSERT_NE(goal, nullptr);
+  EXPECT_EQ(goal->init, (std::vector<double>{-0.80, 1.60}));
+  EXPECT_EQ(goal->field.minimum, -2.0);
+  EXPECT_EQ(goal->field.unit, "rad");
+  EXPECT_EQ(robot.find_parameter("NONE"), nullptr);
+  EXPECT_EQ(robot.find_event("TORQUE_LIMIT_EXCEEDED")->severity, Severity::Medium);
+  EXPECT_EQ(robot.find_event("TORQUE_LIMIT_EXCEEDED")->arguments.at(1).unit, "N m");
+  EXPECT_EQ(robot.hang.reduced, 200U);
+}
+
+TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  ASSERT_EQ(robot.functions.size(), 4U);
+  const Function* move = robot.find_function("MOVE_TO");
+  EXPECT_TRUE(move->permitted_in(State::Operational));
+  EXPECT_FALSE(move->permitted_in(State::SafeOperational));
+  EXPECT_EQ(move->arguments.at(1).fallback, Value{5.0});
+  EXPECT_EQ(move->arguments.at(0).fallback, std::nullopt);
+  EXPECT_EQ(move->description, "Moves on a straight line in joint space");
+  EXPECT_TRUE(robot.find_function("HOLD")->permitted_in(State::SafeOperational));
+  EXPECT_TRUE(robot.find_function("HOLD")->essential);
+  const auto only = read_subsystem(data / "hello.xml", file_system());
+  ASSERT_TRUE(only.value) << rendered(only.problems, file_system());
+  EXPECT_NE(only.value->find_function("MOVE_TO"), nullptr) << "it stands in the only configuration";
+}
+
+TEST(SubsystemDescriptor, AParameterIsWritableInTheStatesItNamesOnly) {
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  const Parameter& goal = *robot.find_parameter("DES_POSITION");
+  EXPECT_EQ(goal.writable_states, 1U << 3 | 1U << 4);
+  EXPECT_TRUE(goal.writable_in(State::SafeOperational));
+  EXPECT_FALSE(goal.writable_in(State::Operational));
+  EXPECT_FALSE(goal.protection);
+  EXPECT_FALSE(robot.find_parameter("CUR_VALUES")->writable()) << "never, unless it says so";
+  EXPECT_TRUE(robot.find_parameter("TORQUE_LIMIT")->protection);
+}
+
+TEST(SubsystemDescriptor, AnArgumentOfAParameterHasItsRange) {
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  const Function::Argument& limit = robot.find_function("SET_TORQUE_LIMIT")->arguments.at(0);
+  EXPECT_EQ(limit.of, "TORQUE_LIMIT");
+  EXPECT_EQ(limit.field.name, "LIMIT");
+  EXPECT_EQ(limit.field.unit, "N m");
+  EXPECT_EQ(limit.field.minimum, 0);
+  EXPECT_EQ(limit.field.maximum, 15);
+  EXPECT_EQ(limit.fallback, Value{12});
+  const auto reading = read_text(
+      "<Subsystem name=\"S\" id=\"10\"><FunctionService><Function name=\"SET\"><Argument name=\"COLD\" "
+      "of=\"LIMITS\"/></Function></FunctionService><ParamRef name=\"LIMITS\" id=\"1\" type=\"FLOAT\" count=\"3\" "
+      "minimum=\"0\" maximum=\"90\"/></Subsystem>");
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(""));
+  const Field& cold = reading.value->functions.at(0).arguments.at(0).field;
+  EXPECT_EQ(cold.count, 1) << "one value of the array";
+  EXPECT_EQ(cold.type, Type::Float);
+  EXPECT_EQ(cold.maximum, 90);
+}
+
+TEST(SubsystemDescriptor, ArgumentsOfFunctionsHaveEveryTypeAndExactRanges) {
+  const std::string text = R"(<Subsystem name="S" id="10">
+    <Enumeration name="COLOURS"><Text value="-1">red</Text><Text value="7">green</Text></Enumeration>
+    <FunctionService><Function name="PROGRAM">
+      <Argument name="SERIAL" type="UINT64" minimum="1" maximum="18446744073709551615"/>
+      <Argument name="OFFSET" type="INT64" minimum="-9223372036854775808" maximum="9007199254740993"
+                default="9007199254740993"/>
+      <Argument name="COLOUR" type="INT8" enumeration="COLOURS" default="7"/>
+      <Argument name="NOTE" type="TEXT" octets="200" default="so"/>
+      <Argument name="ON" type="BOOL" count="3"/>
+    </Function></FunctionService></Subsystem>)";
+  const auto reading = read_text(text);
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(text));
+  const auto& arguments = reading.value->find_function("PROGRAM")->arguments;
+  ASSERT_EQ(arguments.size(), 5U);
+  EXPECT_EQ(arguments[0].field.maximum, Number{UINT64_MAX});
+  EXPECT_EQ(arguments[1].field.minimum, Number{INT64_MIN});
+  EXPECT_EQ(arguments[1].fallback, Value{std::int64_t{9007199254740993}});
+  ASSERT_EQ(arguments[2].texts.size(), 2U);
+  EXPECT_EQ(arguments[2].texts[1].text, "green");
+  EXPECT_EQ(arguments[3].fallback, Value{"so"});
+  EXPECT_EQ(arguments[3].field.octets(), 202U);
+  EXPECT_EQ(arguments[4].field.type, Type::Bool);
+  EXPECT_EQ(arguments[4].field.count, 3);
+  ASSERT_EQ(arguments[4].texts.size(), 2U);
+}
+
+TEST(SubsystemDescriptor, AnActuatorDeclaresItsStopAndItsSecondInhibit) {
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  const Device& device = robot.devices.at(0);
+  EXPECT_EQ(device.stop, StopKind::Controlled);
+  EXPECT_EQ(device.stop_within, 200ms);
+  ASSERT_TRUE(device.enable);
+  EXPECT_EQ(device.enable->transfer, Transfer::SharedMemory);
+  EXPECT_EQ(device.enable->address, "orbiter-robot-enable");
+  EXPECT_EQ(device.enable->byte_order, ByteOrder::Little);
+  EXPECT_TRUE(actuators_without_enable(robot).empty());
+  const Subsystem stick = read_subsystem(data / "flywheel.xml", file_system()).value.value();
+  EXPECT_EQ(stick.devices.at(0).stop, StopKind::Drop);
+  EXPECT_FALSE(stick.devices.at(0).enable);
+  EXPECT_TRUE(actuators_without_enable(stick).empty()) << "it is no actuator";
+  Subsystem bare = robot;
+  bare.devices.at(0).enable.reset();
+  EXPECT_EQ(actuators_without_enable(bare), std::vector<std::string_view>{"PLATE"});
+}
+
+TEST(SubsystemDescriptor, FillsTheConfiguration) {
+  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  EXPECT_EQ(robot.find_configuration("STANDALONE")->overruns.reduced, 20U);
+  const Configuration* coupled = robot.find_configuration(std::uint8_t{2});
+  ASSERT_NE(coupled, nullptr);
+  EXPECT_EQ(coupled->name, "COUPLED");
+  EXPECT_EQ(coupled->priority, 80);
+  EXPECT_EQ(coupled->sampling, 500us);
+  const Provides& state = coupled->provides.at(0);
+  EXPECT_EQ(state.terms.methods, std::vector{LinkMethod::SharedMemory});
+  EXPECT_EQ(state.parameters.at(0).member, 1);
+  EXPECT_EQ(fields_of(robot, state.parameters.at(1)).at(0).name, "TORQUE") << "an unqualified member";
+  const Requires& stick = coupled->requires_.at(0);
+  EXPECT_FALSE(stick.required);
+  EXPECT_EQ(stick.from, "FLYWHEEL");
+  EXPECT_EQ(stick.age.realtime, 4U);
+  EXPECT_EQ(stick.age.reduced, 40U);
+  EXPECT_EQ(stick.missing, MissingPolicy::Hold);
+  EXPECT_EQ(stick.fields.size(), 2U);
+  const DeviceUse& use = coupled->devices.at(0);
+  EXPECT_EQ(robot.devices.at(use.device).output.at(0).safe, (std::vector<double>{0, 0}));
+  EXPECT_TRUE(robot.devices.at(use.device).actuator);
+  EXPECT_EQ(use.silence.reduced, 60U);
+  EXPECT_EQ(use.watchdog_us, 7500U);
+  EXPECT_EQ(use.watchdog_reduced_us, 40'000U);
+  EXPECT_EQ(use.settings.at(0).value, "4000");
+  EXPECT_EQ(use.endnode.address, "orbiter-robot");
+  EXPECT_EQ(coupled->initial.at(1).values, (std::vector<double>{-0.8, 1.6}));
+}
+
+TEST(SubsystemDescriptor, ALinkServiceOfTheSubsystemHoldsInEveryConfiguration) {
+  const auto reading = read_text(R"(<Subsystem name="S" id="10"><Configuration name="A" id="1" sampling_us="100"/>
+    <Configuration name="B" id="2" sampling_us="100"/><ParamRef name="X" id="1" type="FLOAT"/>
+    <RealTimeLinkService><Provides name="P"><ParamRef name="X"/></Provides></RealTimeLinkService></Subsystem>)");
+  ASSERT_TRUE(reading.value);
+  EXPECT_EQ(reading.value->configurations.at(0).provides.at(0).name, "P");
+  EXPECT_EQ(reading.value->configurations.at(1).provides.at(0).name, "P");
+}
+
+TEST(SubsystemDescriptor, AcceptsTheSmallestUsefulSubsystem) {
+  const auto reading = read_subsystem(data / "hello.xml", file_system());
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  EXPECT_NE(reading.value->find_function("MOVE_TO"), nullptr);
+}
+
+TEST(SubsystemDescriptor, EveryTruncationIsRefused) {
+  std::string text = file_system()(data / "coronagraph.xml").value();
+  while (text.ends_with('\n')) text.pop_back();
+  ASSERT_TRUE(read_text(text).value);
+  for (std::size_t octets = 0; octets < text.size(); ++octets) {
+    const auto reading = read_text(text.substr(0, octets));
+    EXPECT_FALSE(reading.value) << octets;
+    EXPECT_FALSE(reading.problems.empty()) << octets;
+  }
+}
+
+TEST(SubsystemDescriptor, HostileDocumentsAreRefusedWithAPlace) {
+  const auto refused = [](const std::string& text, std::string_view code) {
+    const auto reading = read_text(text);
+    ASSERT_FALSE(reading.problems.empty());
+    EXPECT_EQ(reading.problems[0].code, code);
+    EXPECT_GE(reading.problems[0].at.line, 1);
+  };
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "<Subsystem>";
+  refused(deep, "E0004");
+  refused("<Subsystem name=\"" + std::string(16U << 20, 'x') + "\"/>", "E0004");
+  refused("<Subsystem name=\"\xC3\"/>", "E0002");
+  refused(std::string("<Subsystem\0/>", 13), "E0002");
+  refused("<!DOCTYPE Subsystem [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;\">]><Subsystem name=\"&b;\"/>", "E0003");
+}
+
+TEST(SubsystemDescriptor, CountsAreBounded) {
+  const auto configurations = [](int count) {
+    std::string text = "<Subsystem name=\"S\" id=\"1\">";
+    for (int i = 1; i <= count; ++i) {
+      const std::string id = std::to_string(i);
+      text += "<Configuration name=\"C" + id + "\" id=\"" + id + "\" sampling_us=\"100\"/>";
+    }
+    return text + "</Subsystem>";
+  };
+  EXPECT_TRUE(read_text(configurations(64)).value);
+  EXPECT_EQ(read_text(configurations(65)).problems.at(0).code, "E0107");
+  const auto provided = [](int members) {
+    std::string text = "<Subsystem name=\"S\" id=\"1\"><StructRef name=\"A\" id=\"0\">";
+    for (int i = 1; i <= members; ++i) {
+      const std::string id = std::to_string(i);
+      text += "<ParamRef name=\"M" + id + "\" id=\"" + id + "\" type=\"INT8\"/>";
+    }
+    return text +
+           "</StructRef><RealTimeLinkService><Provides name=\"P\"><ParamRef name=\"A\"/></Provides>"
+           "</RealTimeLinkService></Subsystem>";
+  };
+  EXPECT_TRUE(read_text(provided(64)).value);
+  EXPECT_EQ(read_text(provided(65)).problems.at(0).code, "E0215");
+}
+
+TEST(SubsystemDescriptor, ManyProblemsEndTheReading) {
+  std::string text = "<Subsystem name=\"S\" id=\"1\">";
+  for (int i = 0; i < 40'000; ++i) text += "<ParamRef name=\"X\" id=\"1\" type=\"INTT8\"/>";
+  EXPECT_EQ(read_text(text + "</Subsystem>").problems.size(), 200U);
+}
+
+}  // namespace
+}  // namespace hirosco::descriptor

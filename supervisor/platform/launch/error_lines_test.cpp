@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/platform/launch/error_lines.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace hirosco::supervisor {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+TEST(ErrorLines, ShowControlCharactersAsText) {
+  EXPECT_EQ(shown("red \x1b[31m bell \a tab\t end \xc3"), "red \\x1b[31m bell \\x07 tab  end \\xc3");
+}
+
+TEST(ErrorLines, OfATalkativeSpeakerAreLimitedAndCountedExactlyAndNobodyElsesAre) {
+  LineLimit limit{20};
+  int admitted = 0;
+  for (int i = 0; i < 2'000'000; ++i) admitted += limit.admit("LOUD") ? 1 : 0;
+  EXPECT_EQ(admitted, 20);
+  EXPECT_TRUE(limit.admit("QUIET"));
+  EXPECT_THAT(limit.turn(), ElementsAre(Pair("LOUD", 1'999'980U)));
+  EXPECT_TRUE(limit.admit("LOUD")) << "the next turn is a new one";
+  EXPECT_TRUE(limit.turn().empty());
+}
+
+TEST(ErrorLines, AreBoundedInLengthAndPutTogetherFromPieces) {
+  LineCutter cutter;
+  std::vector<std::string> lines;
+  const auto line = [&](std::string_view text) { lines.emplace_back(text); };
+  cutter.take("one\ntw", line);
+  cutter.take("o\n\nrest", line);
+  cutter.end(line);
+  EXPECT_THAT(lines, ElementsAre("one", "two", "rest"));
+  lines.clear();
+  cutter.take(std::string(1'000'000, 'x') + "\nnext\n", line);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].size(), LineCutter::longest + 3);
+  EXPECT_EQ(lines[1], "next");
+}
+
+TEST(ErrorLines, AreNamedAfterWhoWroteThemToTheLastOne) {
+  std::vector<std::string> printed;
+  {
+    ErrorLines lines{[&](const std::string& line) { printed.push_back(line); }};
+    auto arm = lines.open("ARM");
+    auto hand = lines.open("HAND");
+    ASSERT_TRUE(arm && hand);
+    ASSERT_EQ(::write(arm->get(), "sensor \x1b broken\n", 16), 16);
+    ASSERT_EQ(::write(hand->get(), "no end", 6), 6);
+    arm->reset();
+    hand->reset();
+  }
+  EXPECT_THAT(printed, testing::UnorderedElementsAre("ARM: sensor \\x1b broken\n", "HAND: no end\n"));
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "hirosco/data_transfer/memory/memory.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+#include "supervisor/platform/launch/member_port.hpp"
+
+/// How subsystems come to life (architecture, rule 3). Real: one process each; simulated: objects of one process.
+namespace hirosco::supervisor {
+
+/// Processor time of the loops of a process, its cycle left out.
+struct LoopTime {
+  Duration service{};   ///< had by its service loop
+  Duration realtime{};  ///< had by all loops that have real-time priority
+  bool waits{false};    ///< its service loop could run at this moment
+};
+
+/// What can be done to a started process whatever it does itself. After its end nothing happens any more.
+/// Realtime: system calls, bounded. Thread: any.
+class ProcessGrip {
+ public:
+  virtual ~ProcessGrip() = default;
+  /// All its threads lose real-time priority: who waited for the processor gets it.
+  virtual void take_realtime() noexcept = 0;
+  /// The same, but its cycle keeps what it has.
+  virtual void take_loops_realtime() noexcept = 0;
+  /// What was taken is given back to each thread that had it and has none now.
+  virtual void give_realtime() noexcept = 0;
+  [[nodiscard]] virtual LoopTime loop_time() noexcept = 0;
+  /// Processor time that all its threads have had so far.
+  [[nodiscard]] virtual Duration processor_time() noexcept = 0;
+  virtual void kill() noexcept = 0;
+};
+
+/// What the supervisor holds of a started subsystem.
+struct LaunchedSubsystem {
+  std::unique_ptr<MemberPort> port;  ///< for the boxes of the supervisor
+  Mapping vital;                     ///< for the guard, which needs nothing of the port; read
+  Mapping permit;                    ///< the same; written
+  std::uint32_t process{0};          ///< names it to the launcher
+  std::shared_ptr<ProcessGrip> grip; ///< null where a process cannot be gripped
+};
+
+/// How a subsystem's process ended.
+struct ProcessEnd {
+  bool by_signal{false};
+  int value{0};                      ///< exit code or signal
+};
+
+/// Thread: the supervisor's.
+class ProcessLauncher {
+ public:
+  virtual ~ProcessLauncher() = default;
+  [[nodiscard]] virtual Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) = 0;
+  /// Empty while it runs.
+  [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
+  virtual void kill(std::uint32_t process) = 0;
+  /// Memory that a process has in RAM, 0 = the supervisor's own; 0 where it has no process of its own or has ended.
+  /// Allocates nothing.
+  [[nodiscard]] virtual std::uint32_t resident_kb(std::uint32_t /*process*/) noexcept { return 0; }
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/platform/launch/process_launcher.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sched.h>
+#include <signal.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
+#include "hirosco/utilities/os/installation.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+// Descriptor numbers in the new process.
+constexpr int channel_number = 3;
+constexpr int vital_number = 4;
+constexpr int permit_number = 5;
+
+[[nodiscard]] FileDescriptor open_statm(const std::string& process) {
+  return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
+}
+
+/// How the cycle's thread is called (hirosco/subsystem/process/run.cpp).
+constexpr std::string_view cycle_name = "cycle";
+
+/// What the system tells of one thread in /proc/PID/task/TID/stat.
+struct ThreadStatus {
+  std::string_view name;
+  bool runs{false};  ///< or could
+  bool realtime{false};
+  Duration had{};
+};
+
+[[nodiscard]] std::optional<ThreadStatus> read_status(std::string_view line) noexcept {
+  // "TID (NAME) STATE ..."; the name may hold anything.
+  const auto begin = line.find('('), end = line.rfind(')');
+  if (begin == std::string_view::npos || end == std::string_view::npos || end < begin || line.size() < end + 4)
+    return std::nullopt;
+  ThreadStatus status;
+  status.name = line.substr(begin + 1, end - begin - 1);
+  status.runs = line[end + 2] == 'R';
+  line.remove_prefix(end + 3);
+  std::int64_t ticks = 0;
+  constexpr int user = 14, system = 15, priority = 40;
+  for (int field = 4; field <= priority && !line.empty(); ++field) {
+    line.remove_prefix(1);
+    std::int64_t number = 0;
+    const auto read = std::from_chars(line.data(), line.data() + line.size(), number);
+    line.remove_prefix(static_cast<std::size_t>(read.ptr - line.data()));
+    if (field == user || field == system) ticks += number;
+    if (field == priority) status.realtime = number > 0;
+  }
+  static const std::int64_t ticks_per_s = ::sysconf(_SC_CLK_TCK);
+  status.had = Duration{std::chrono::seconds{1}} * ticks / ticks_per_s;
+  return status;
+}
+
+/// Works on a process by its handles, so never on another one that got its number later. Takes nothing from the heap.
+class LinuxGrip final : public ProcessGrip {
+ public:
+  explicit LinuxGrip(Process process) : process_{std::move(process)} {
+    if (::clock_getcpuclockid(process_.pid(), &clock_) != 0) clock_ = CLOCK_MONOTONIC_COARSE;
+    tasks_.reset(
+        ::open(("/proc/" + std::to_string(process_.pid()) + "/task").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  }
+  void take_realtime() noexcept override {
+    // Or the others would not have the processor until its grace is over.
+    if (!take(Cycle::LosesToo)) kill();
+  }
+  void take_loops_realtime() noexcept override { static_cast<void>(take(Cycle::Keeps)); }
+  void give_realtime() noexcept override {
+    for (std::size_t i = 0; i < taken_count_; ++i) {
+      const Thread& thread = taken_[i];
+      const int now = ::sched_getscheduler(thread.id);
+      // It may have ended since, or have been given priority anew.
+      if (!status_of(thread.id) || now < 0 || (now & ~SCHED_RESET_ON_FORK) != SCHED_OTHER) continue;
+      sched_param parameters{};
+      parameters.sched_priority = thread.priority;
+      static_cast<void>(::sched_setscheduler(thread.id, thread.policy, &parameters));
+    }
+    taken_count_ = 0;
+  }
+  LoopTime loop_time() noexcept override {
+    LoopTime time;
+    each_thread([&](int thread) {
+      const auto status = status_of(thread);
+      const bool service = thread == process_.pid();
+      if (!status || (!service && status->cycle)) return;
+      if (service) time.service = status->had;
+      if (service) time.waits = status->runs;
+      if (status->realtime) time.realtime += status->had;
+    });
+    return time;
+  }
+  Duration processor_time() noexcept override {
+    timespec time{};
+    if (clock_ == CLOCK_MONOTONIC_COARSE || ::clock_gettime(clock_, &time) != 0) return {};
+    return std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
+  }
+  void kill() noexcept override { static_cast<void>(process_.send_signal(SIGKILL)); }
+
+ private:
+  enum class Cycle { LosesToo, Keeps };
+  struct Thread {
+    int id{0};
+    int policy{0};
+    int priority{0};
+  };
+  struct Status {
+    bool cycle{false};
+    bool runs{false};
+    bool realtime{false};
+    Duration had{};
+  };
+  [[nodiscard]] bool runs() noexcept { return process_.send_signal(0).has_value(); }
+
+  void each_thread(auto&& with) noexcept {
+    if (::lseek(tasks_.get(), 0, SEEK_SET) != 0) return;
+    alignas(dirent64) std::array<char, 2048> entries;
+    for (;;) {
+      const auto octets = ::getdents64(tasks_.get(), entries.data(), entries.size());
+      if (octets <= 0) return;
+      for (std::ptrdiff_t at = 0; at < octets;) {
+        const auto* entry = reinterpret_cast<const dirent64*>(entries.data() + at);
+        at += entry->d_reclen;
+        int thread = 0;
+        const std::string_view name{entry->d_name};
+        std::from_chars(name.data(), name.data() + name.size(), thread);
+        if (thread > 0) with(thread);
+      }
+    }
+  }
+
+  [[nodiscard]] std::optional<Status> status_of(int thread) noexcept {
+    std::array<char, 32> path{};
+    const auto end = std::to_chars(path.data(), path.data() + 16, thread).ptr;
+    std::ranges::copy(std::string_view{"/stat"}, end);
+    const FileDescriptor file{::openat(tasks_.get(), path.data(), O_RDONLY | O_CLOEXEC)};
+    std::array<char, 512> text;
+    const auto octets = file ? ::read(file.get(), text.data(), text.size()) : 0;
+    if (octets <= 0) return std::nullopt;
+    const auto status = read_status({text.data(), static_cast<std::size_t>(octets)});
+    if (!status) return std::nullopt;
+    return Status{status->name == cycle_name, status->runs, status->realtime, status->had};
+  }
+
+  /// False: the system refused it.
+  [[nodiscard]] bool take(Cycle cycle) noexcept {
+    if (!runs()) return true;
+    bool taken = true;
+    each_thread([&](int thread) {
+      if (cycle == Cycle::Keeps && thread != process_.pid()) {
+        const auto status = status_of(thread);
+        if (!status || status->cycle) return;
+      }
+      const int policy = std::max(::sched_getscheduler(thread), 0);
+      sched_param before{};
+      static_cast<void>(::sched_getparam(thread, &before));
+      const sched_param ordinary{};
+      // What the thread has of this flag an ordinary user may not take away.
+      const int kept = policy & SCHED_RESET_ON_FORK;
+      if (::sched_setscheduler(thread, SCHED_OTHER | kept, &ordinary) != 0) taken = taken && errno == ESRCH;
+      else if (before.sched_priority > 0 && taken_count_ < taken_.size())
+        taken_[taken_count_++] = {thread, policy, before.sched_priority};
+    });
+    return taken;
+  }
+
+  Process process_;
+  FileDescriptor tasks_;
+  clockid_t clock_{};
+  std::array<Thread, 32> taken_{};  ///< who had more than that has it back with its next configuration only
+  std::size_t taken_count_{0};
+};
+
+/// A page in memory of its own, constructed in place.
+template <class Page>
+[[nodiscard]] Result<std::pair<MemoryHandle, Mapping>> make_page(SealedMemory& memory, const char* name) {
+  HIROSCO_TRY_LET(MemoryHandle handle, memory.create(name, sizeof(Page)));
+  HIROSCO_TRY_LET(Mapping mapping, memory.map(handle, Access::ReadWrite));
+  ::new (mapping.octets.data()) Page;
+  return std::pair{std::move(handle), std::move(mapping)};
+}
+
+}  // namespace
+
+Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process) {
+  FileDescriptor handle{::fcntl(process.handle().get(), F_DUPFD_CLOEXEC, 0)};
+  if (!handle) return fail(ErrorCode::SystemFailure, "hold of a process", errno);
+  HIROSCO_TRY_LET(Process second, Process::adopt(process.pid(), std::move(handle)));
+  return std::make_shared<LinuxGrip>(std::move(second));
+}
+
+Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
+  std::filesystem::path& program = programs_[subsystem.executable];
+  if (program.empty()) program = find_program(subsystem.executable);
+  if (program.empty()) return fail(ErrorCode::NotFound, "its executable is neither beside this program nor in PATH");
+  HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
+  HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
+  // Its counts go on where those of the process before it ended (decision 8b).
+  auto& before = vital_[subsystem.subsystem.name];
+  if (before.octets.size() >= sizeof(VitalPage))
+    reinterpret_cast<VitalPage*>(vital.second.octets.data())->counters =
+        reinterpret_cast<const VitalPage*>(before.octets.data())->counters;
+  before = vital.second;
+  // The subsystem reads what gates its actuators; from now on nobody can map it otherwise (hazard SF13).
+  HIROSCO_TRY(memory_.seal_writers(permit.first));
+  HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair());
+  ProcessStart start;
+  start.executable = program.string();
+  start.arguments = {"--descriptor", subsystem.subsystem.file.string(), "--channel", std::to_string(channel_number),
+                     "--vital",      std::to_string(vital_number),      "--permit",  std::to_string(permit_number)};
+  for (const auto& [word, text] : descriptor::changes_of(subsystem))
+    start.arguments.insert(start.arguments.end(), {word, text});
+  start.inherited = {{ends.second.get(), channel_number},
+                     {SealedMemory::descriptor(vital.first), vital_number},
+                     {SealedMemory::descriptor(permit.first), permit_number}};
+  // What it writes to its standard error is shown with its name, within limits.
+  const auto errors = errors_.open(subsystem.subsystem.name);
+  if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
+  auto spawned = Process::spawn(start);
+  if (!spawned) {
+    program.clear();  // it may be elsewhere by now
+    return fail(spawned.error());
+  }
+  Process process = std::move(*spawned);
+  auto grip = grip_of(process);
+  if (!grip) {
+    // One that nobody could end is not let go at all.
+    static_cast<void>(process.send_signal(SIGKILL));
+    return fail(grip.error());
+  }
+  LaunchedSubsystem launched;
+  launched.vital = std::move(vital.second);
+  launched.permit = std::move(permit.second);
+  launched.port = std::make_unique<LocalMemberPort>(std::make_unique<SocketChannel>(std::move(ends.first)),
+                                                    launched.vital, launched.permit);
+  launched.process = next_++;
+  launched.grip = std::move(*grip);
+  memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
+  if (!memory_use_[0]) memory_use_[0] = open_statm("self");
+  processes_.emplace(launched.process, std::move(process));
+  return launched;
+}
+
+std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
+  const auto found = processes_.find(process);
+  if (found == processes_.end()) return ProcessEnd{};
+  const auto status = found->second.poll();
+  if (!status || !*status) return std::nullopt;
+  const ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
+  processes_.erase(found);
+  memory_use_.erase(process);
+  return end;
+}
+
+void SystemLauncher::kill(std::uint32_t process) {
+  if (const auto found = processes_.find(process); found != processes_.end())
+    static_cast<void>(found->second.send_signal(SIGKILL));
+}
+
+std::uint32_t SystemLauncher::resident_kb(std::uint32_t process) noexcept {
+  const auto found = memory_use_.find(process);
+  if (found == memory_use_.end()) return 0;
+  std::array<char, 128> text;
+  const auto octets = ::pread(found->second.get(), text.data(), text.size(), 0);
+  if (octets <= 0) return 0;
+  // "size resident shared ...", in pages.
+  const std::string_view line{text.data(), static_cast<std::size_t>(octets)};
+  const auto blank = line.find(' ');
+  std::uint64_t pages = 0;
+  if (blank != std::string_view::npos) std::from_chars(line.data() + blank + 1, line.data() + line.size(), pages);
+  static const auto page_octets = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return static_cast<std::uint32_t>(pages * page_octets / 1024);
+}
+
+void SystemLauncher::kill_all() {
+  for (auto& [number, process] : processes_) static_cast<void>(process.send_signal(SIGKILL));
+}
+
+bool SystemLauncher::any_running() {
+  for (auto entry = processes_.begin(); entry != processes_.end();) {
+    const auto status = entry->second.poll();
+    entry = !status || status->has_value() ? processes_.erase(entry) : std::next(entry);
+  }
+  return !processes_.empty();
+}
+
+int SystemLauncher::wait_descriptor(std::uint32_t process) {
+  const auto found = processes_.find(process);
+  return found != processes_.end() ? found->second.handle().get() : -1;
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "hirosco/data_transfer/memory/sealed_memory.hpp"
+#include "hirosco/utilities/os/process.hpp"
+#include "supervisor/platform/launch/error_lines.hpp"
+#include "supervisor/platform/launch/launcher.hpp"
+
+namespace hirosco::supervisor {
+
+/// What can be done to it whatever it does, kept beside whoever else holds it. SystemFailure: no descriptor is left.
+[[nodiscard]] Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process);
+
+/// Starts each subsystem as a process of its own that inherits its end of the control channel and its two pages; who is
+/// who is proven by the inherited socket (decision 2).  Thread: the supervisor's.
+class SystemLauncher final : public ProcessLauncher {
+ public:
+  [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
+  void kill(std::uint32_t process) override;
+  [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override;
+  /// Ends what still runs: nobody would be left to do it.
+  void kill_all();
+  /// True while a process that was started still runs.
+  [[nodiscard]] bool any_running();
+  /// Readable when the process has ended; -1 when unknown.
+  [[nodiscard]] int wait_descriptor(std::uint32_t process);
+
+ private:
+  SealedMemory memory_;
+  ErrorLines errors_;
+  std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
+  std::map<std::uint32_t, Process> processes_;
+  std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
+  /// Where each executable was found: a disk is not searched again in flight, where it might hang.
+  std::map<std::string, std::filesystem::path, std::less<>> programs_;
+  std::uint32_t next_{1};
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/platform/launch/process_launcher.hpp"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "hirosco/utilities/os/thread.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+/// A process whose service loop shares its priority with others, and whose cycle has one of its own; both rest until its end.
+pid_t start_realtime() {
+  std::array<int, 2> ready{};
+  if (::pipe(ready.data()) != 0) return -1;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    auto cycle = Thread::start("cycle", [&] {
+      static_cast<void>(set_fifo_priority(1));
+      static_cast<void>(!::write(ready[1], "", 1));
+      for (;;) ::pause();
+    });
+    static_cast<void>(set_shared_priority(1));
+    static_cast<void>(!::write(ready[1], "", 1));
+    for (;;) ::pause();
+  }
+  for (char begun = 0, i = 0; i < 2; ++i) static_cast<void>(!::read(ready[0], &begun, 1));
+  for (const int end : ready) ::close(end);
+  return child;
+}
+
+/// The cycle of such a process.
+int cycle_of(pid_t process) {
+  for (const auto& task : std::filesystem::directory_iterator{"/proc/" + std::to_string(process) + "/task"}) {
+    const int thread = std::stoi(task.path().filename().string());
+    if (thread != process) return thread;
+  }
+  return -1;
+}
+
+struct Scheduling {
+  int policy{-1};
+  int priority{-1};
+  bool operator==(const Scheduling&) const = default;
+};
+
+Scheduling scheduling_of(int thread) {
+  sched_param parameters{};
+  static_cast<void>(::sched_getparam(thread, &parameters));
+  return {::sched_getscheduler(thread) & ~SCHED_RESET_ON_FORK, parameters.sched_priority};
+}
+
+/// 0: all is as it should be.
+int take_realtime_from_another() {
+  const pid_t child = start_realtime();
+  const auto process = Process::adopt(child);
+  if (!process) return 1;
+  const auto grip = grip_of(*process);
+  if (!grip) return 2;
+  const int cycle = cycle_of(child);
+  const Scheduling service_before = scheduling_of(child), cycle_before = scheduling_of(cycle);
+  constexpr Scheduling ordinary{SCHED_OTHER, 0};
+  int wrong = 0;
+  (*grip)->take_loops_realtime();
+  if (scheduling_of(child) != ordinary) wrong = 3;
+  if (scheduling_of(cycle) != cycle_before) wrong = 4;
+  (*grip)->take_realtime();
+  if (scheduling_of(child) != ordinary || scheduling_of(cycle) != ordinary) wrong = 5;
+  int status = 0;
+  if (::waitpid(child, &status, WNOHANG) != 0) return 6;  // it lives on: it has its grace
+  (*grip)->give_realtime();
+  if (scheduling_of(child) != service_before || scheduling_of(cycle) != cycle_before) wrong = 7;
+  (*grip)->take_realtime();
+  if (scheduling_of(child) != ordinary || scheduling_of(cycle) != ordinary) wrong = 8;
+  (*grip)->kill();
+  ::waitpid(child, &status, 0);
+  return wrong;
+}
+
+TEST(ProcessGrip, TakesRealTimeAsRoot) { EXPECT_EQ(take_realtime_from_another(), 0); }
+
+TEST(ProcessGrip, TakesRealTimeAsAnOrdinaryUserWhoMayHaveIt) {
+  const pid_t user = ::fork();
+  if (user == 0) {
+    const rlimit most{.rlim_cur = 1, .rlim_max = 1};
+    constexpr uid_t nobody = 65'534;
+    static_cast<void>(::setrlimit(RLIMIT_RTPRIO, &most));
+    if (::getuid() == 0 && (::setgid(nobody) != 0 || ::setuid(nobody) != 0)) ::_exit(9);
+    ::_exit(take_realtime_from_another());
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(user, &status, 0), user);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+/// A process that counts in a thread of this name, and rests in its first, or counts there.
+pid_t start_busy(const char* name, int most) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::atomic<int> count{0};
+  const auto busy = [&] {
+    while (count < most) ++count;
+    for (;;) ::pause();
+  };
+  auto other = name != nullptr ? Thread::start(name, busy) : Result<Thread>{Thread{}};
+  if (name == nullptr) busy();
+  for (;;) ::pause();
+}
+
+TEST(ProcessGrip, TellsWhatTheServiceLoopHasHadAndWhetherItCouldRun) {
+  for (const char* name : {static_cast<const char*>(nullptr), "worker", "cycle"}) {
+    const pid_t child = start_busy(name, std::numeric_limits<int>::max());
+    const auto process = Process::adopt(child);
+    ASSERT_TRUE(process);
+    const auto grip = grip_of(*process).value();
+    while (grip->processor_time() < 50ms) ::sched_yield();
+    const LoopTime time = grip->loop_time();
+    if (name == nullptr) {
+      EXPECT_TRUE(time.waits);
+      EXPECT_GT(time.service, 10ms);
+    } else {
+      EXPECT_FALSE(time.waits) << name;
+      EXPECT_EQ(time.service / 30ms, 0) << name;
+    }
+    EXPECT_EQ(time.realtime, 0ms) << "none of them has any";
+    grip->kill();
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_FALSE(grip->loop_time().waits) << "it is gone";
+  }
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

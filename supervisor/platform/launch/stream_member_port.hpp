@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "hirosco/subsystem/pages/page_words.hpp"
+#include "supervisor/platform/launch/member_port.hpp"
+
+namespace hirosco::supervisor {
+
+/// A member that shares no memory with the supervisor: everything goes over a stream of octets, whose other end is a
+/// StreamSubsystemPort. Its pages are copies of this side, for the guard, too. A fence leaves with the next step, ahead of every
+/// message; a member that hears nothing for a second stops by itself, and so does one whose stream is closed.
+class StreamMemberPort final : public MemberPort {
+ public:
+  /// `stream` does not block.
+  explicit StreamMemberPort(FileDescriptor stream);
+  void beat(std::uint64_t heartbeat, TimePoint now) override;
+
+  /// For LaunchedSubsystem.
+  [[nodiscard]] Mapping vital_page() const { return wire_->vital(); }
+  [[nodiscard]] Mapping permit_page() const { return wire_->permit(); }
+
+ private:
+  struct Pages {
+    VitalPage vital;
+    PermitPage permit;
+  };
+  struct Wire {
+    explicit Wire(FileDescriptor stream);
+    [[nodiscard]] Mapping vital() const;
+    [[nodiscard]] Mapping permit() const;
+    std::shared_ptr<Pages> pages;  ///< the guard may look at them a little longer than there is a stream
+    SupervisorWords words;
+    StreamChannel channel;
+  };
+  explicit StreamMemberPort(std::unique_ptr<Wire> wire);
+  std::unique_ptr<Wire> wire_;
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/platform/storage/ascii_database.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <concepts>
+#include <deque>
+#include <fstream>
+#include <set>
+#include <utility>
+
+namespace hirosco::supervisor {
+
+namespace {
+
+/// A line holds at most a whole packet in hexadecimal and some 300 letters beside it.
+constexpr std::size_t max_line = 2 * Database::max_packet_octets + 1024;
+constexpr std::size_t checksum_letters = 10;  // " #" and eight digits
+constexpr std::string_view hex_digits = "0123456789abcdef";
+
+constexpr auto crc32_table = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t octet = 0; octet < 256; ++octet) {
+    std::uint32_t crc = octet;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB8'8320U : 0U);
+    table[octet] = crc;
+  }
+  return table;
+}();
+
+std::uint32_t crc32(std::string_view text) {
+  std::uint32_t crc = 0xFFFF'FFFFU;
+  for (char letter : text) crc = (crc >> 8) ^ crc32_table[(crc ^ static_cast<std::uint8_t>(letter)) & 0xFFU];
+  return ~crc;
+}
+
+void add_hexadecimal(std::string& line, std::uint32_t value) {
+  for (int shift = 28; shift >= 0; shift -= 4) line += hex_digits[(value >> shift) & 0xFU];
+}
+
+std::string_view take_word(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find(' '), rest.size());
+  const std::string_view word = rest.substr(0, end);
+  rest.remove_prefix(std::min(end + 1, rest.size()));
+  return word;
+}
+
+template <std::integral T>
+bool take_number(std::string_view& rest, T& number) {
+  const std::string_view word = take_word(rest);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc{} && end == word.data() + word.size() && !word.empty();
+}
+
+bool take_octets(std::string_view& rest, std::vector<std::byte>& octets) {
+  const std::string_view word = take_word(rest);
+  if (word == "-") return true;
+  if (word.empty() || word.size() % 2 != 0) return false;
+  octets.reserve(word.size() / 2);
+  for (std::size_t i = 0; i < word.size(); i += 2) {
+    const std::size_t high = hex_digits.find(word[i]);
+    const std::size_t low = hex_digits.find(word[i + 1]);
+    if (high == std::string_view::npos || low == std::string_view::npos) return false;
+    octets.push_back(static_cast<std::byte>(high << 4 | low));
+  }
+  return true;
+}
+
+/// No space and no right are told apart from an error after which nobody knows what the file holds.
+ErrorCode code_of(int reason) {
+  if (reason == ENOSPC || reason == EDQUOT) return ErrorCode::ResourceExhausted;
+  const bool forbidden = reason == EACCES || reason == EPERM || reason == EROFS || reason == ENOENT ||
+                         reason == ENOTDIR || reason == EISDIR || reason == EMFILE || reason == ENFILE;
+  return forbidden ? ErrorCode::NotPermitted : ErrorCode::SystemFailure;
+}
+
+Result<> write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return fail(code_of(errno), "writing the log file", errno);
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return ok();
+}
+
+/// A new file is only safe once its folder is.
+Result<> sync_folder_of(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return fail(ErrorCode::SystemFailure, "opening the folder of the log file", errno);
+  const int outcome = ::fsync(descriptor);
+  const int reason = errno;
+  ::close(descriptor);
+  if (outcome != 0) return fail(ErrorCode::SystemFailure, "fsync of the folder of the log file", reason);
+  return ok();
+}
+
+bool ends_inside_a_line(int descriptor) {
+  const off_t size = ::lseek(descriptor, 0, SEEK_END);
+  char last{'\n'};
+  return size > 0 && ::pread(descriptor, &last, 1, size - 1) == 1 && last != '\n';
+}
+
+}  // namespace
+
+std::string ascii_line(const LogRecord& record) {
+  std::string line = std::to_string(record.number) + ' ' + time_text(record.run) + ' ' + time_text(record.stored) +
+                     ' ' + std::to_string(record.monotonic.time_since_epoch().count()) + ' ' +
+                     std::string{to_text(record.kind)} + ' ' + std::to_string(record.source) + ' ' +
+                     std::to_string(record.peer) + ' ' + std::to_string(record.lost) + ' ';
+  if (record.packet.empty()) line += '-';
+  for (std::byte octet : record.packet) {
+    line += hex_digits[std::to_integer<std::size_t>(octet) >> 4];
+    line += hex_digits[std::to_integer<std::size_t>(octet) & 0xFU];
+  }
+  line.append(" ").append(record.note.view());
+  const std::uint32_t checksum = crc32(line);
+  line += " #";
+  add_hexadecimal(line, checksum);
+  return line;
+}
+
+Result<LogRecord> record_from_ascii(std::string_view line) {
+  const auto malformed = [](const char* what) { return fail(ErrorCode::Malformed, what); };
+  if (line.size() < checksum_letters) return malformed("log line is cut");
+  std::string_view rest = line.substr(0, line.size() - checksum_letters);
+  std::string checksum = " #";
+  add_hexadecimal(checksum, crc32(rest));
+  if (line.substr(rest.size()) != checksum) return malformed("log line differs from its checksum");
+
+  LogRecord record;
+  std::int64_t monotonic{};
+  if (!take_number(rest, record.number)) return malformed("number of a log line");
+  HIROSCO_TRY_LET(record.run, time_from_text(take_word(rest)));
+  HIROSCO_TRY_LET(record.stored, time_from_text(take_word(rest)));
+  if (!take_number(rest, monotonic)) return malformed("monotonic time of a log line");
+  record.monotonic = TimePoint{Duration{monotonic}};
+  const auto kind = from_text<LogKind>(take_word(rest));
+  if (!kind) return malformed("kind of a log line");
+  record.kind = *kind;
+  if (!take_number(rest, record.source) || !take_number(rest, record.peer) || !take_number(rest, record.lost))
+    return malformed("parties of a log line");
+  if (!take_octets(rest, record.packet)) return malformed("packet of a log line");
+  record.note = Note{rest};
+  return record;
+}
+
+Result<std::unique_ptr<Database>> AsciiDatabase::open(const std::filesystem::path& path, DatabaseAccess access) {
+  if (access == DatabaseAccess::Read) {
+    if (!std::filesystem::is_regular_file(path)) return fail(ErrorCode::NotFound, "no such log file");
+    return std::unique_ptr<Database>(new AsciiDatabase{path, -1, false});
+  }
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0640);
+  if (descriptor < 0) return fail(code_of(errno), "opening the log file", errno);
+  std::unique_ptr<Database> database{new AsciiDatabase{path, descriptor, ends_inside_a_line(descriptor)}};
+  HIROSCO_TRY(sync_folder_of(path));
+  return database;
+}
+
+AsciiDatabase::~AsciiDatabase() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<> AsciiDatabase::do_append(std::span<const LogRecord> batch) {
+  if (descriptor_ < 0) return fail(ErrorCode::NotPermitted, "this log is open for reading only");
+  text_.clear();
+  if (torn_end_) text_ += '\n';
+  for (const LogRecord& record : batch) text_.append(ascii_line(record)) += '\n';
+  HIROSCO_TRY(write_all(descriptor_, text_));
+  if (::fdatasync(descriptor_) != 0) return fail(ErrorCode::SystemFailure, "fdatasync of the log file", errno);
+  torn_end_ = false;
+  return ok();
+}
+
+Result<LogPage> AsciiDatabase::do_read(const LogQuery& query) {
+  std::ifstream file{path_};
+  if (!file) return fail(ErrorCode::NotFound, "no such log file");
+  LogPage page;
+  std::deque<LogRecord> found;
+  std::set<std::pair<OnboardTime, std::uint64_t>> seen;
+  std::vector<char> buffer(max_line + 1);
+  while (file.getline(buffer.data(), std::ssize(buffer)) || file.gcount() > 0) {
+    if (file.fail() && !file.eof()) {  // longer than any line of ours
+      file.clear();
+      file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+      ++page.damaged;
+      continue;
+    }
+    const std::string_view line{buffer.data()};
+    if (line.empty()) continue;
+    auto record = record_from_ascii(line);
+    if (!record) {
+      ++page.damaged;
+      continue;
+    }
+    if (!matches(*record, query) || !seen.emplace(record->run, record->number).second) continue;
+    found.push_back(std::move(*record));
+    if (found.size() <= query.last) continue;
+    seen.erase({found.front().run, found.front().number});
+    found.pop_front();
+  }
+  page.records.assign(std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
+  return page;
+}
+
+}  // namespace hirosco::supervisor

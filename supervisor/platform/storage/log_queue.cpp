@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+// Safety module: log writer (docs/safety/modules.csv).
+#include "supervisor/platform/storage/log_queue.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+
+namespace hirosco::supervisor {
+
+namespace {
+/// The share of the ring of telecommands and events that only events and actions may use: a quarter.
+constexpr std::size_t reserve_divisor = 4;
+
+bool may_use_reserve(LogKind kind) {
+  return kind == LogKind::Event || kind == LogKind::Action || kind == LogKind::Switched;
+}
+}  // namespace
+
+bool may_be_lost(const LogEntry& entry) noexcept {
+  if (entry.kind == LogKind::Telemetry) return true;
+  if (entry.kind != LogKind::Event) return false;
+  const PacketLabel label = label_of(entry.packet);
+  // TM[5,1] info and TM[5,2] low; an event without a packet is the supervisor's own and is kept.
+  return label.service == 5 && (label.subtype == 1 || label.subtype == 2);
+}
+
+LogRecord& LogBatch::add(std::size_t packet_octets) {
+  assert(!full());
+  LogRecord& record = records_[used_++];
+  record.lost = 0;
+  record.packet.resize(packet_octets);
+  octets_ += packet_octets;
+  return record;
+}
+
+void LogBatch::clear() noexcept {
+  used_ = 0;
+  octets_ = 0;
+}
+
+LogQueue::Ring::Ring(std::size_t records, std::size_t octets)
+    : headers_(std::max<std::size_t>(records, 1)), octets_(std::max<std::size_t>(octets, 1)) {}
+
+bool LogQueue::Ring::fits(std::size_t octets, std::size_t divisor) const noexcept {
+  const auto usable = [divisor](std::size_t all) { return divisor == 0 ? all : all - all / divisor; };
+  return size() < usable(headers_.size()) && used_octets_ + octets <= usable(octets_.size());
+}
+
+void LogQueue::Ring::push(const Header& header, Octets packet) noexcept {
+  headers_[back_++ % headers_.size()] = header;
+  const std::size_t start = (first_octet_ + used_octets_) % octets_.size();
+  const std::size_t first_part = std::min(packet.size(), octets_.size() - start);
+  std::ranges::copy(packet.first(first_part), octets_.begin() + static_cast<std::ptrdiff_t>(start));
+  std::ranges::copy(packet.subspan(first_part), octets_.begin());
+  used_octets_ += packet.size();
+}
+
+void LogQueue::Ring::read_front(MutableOctets packet) const noexcept {
+  const std::size_t first_part = std::min(packet.size(), octets_.size() - first_octet_);
+  const Octets all{octets_};
+  std::ranges::copy(all.subspan(first_octet_, first_part), packet.begin());
+  std::ranges::copy(all.first(packet.size() - first_part), packet.begin() + static_cast<std::ptrdiff_t>(first_part));
+}
+
+void LogQueue::Ring::pop() noexcept {
+  const std::size_t octets = front().octets;
+  ++front_;
+  first_octet_ = (first_octet_ + octets) % octets_.size();
+  used_octets_ -= octets;
+}
+
+LogQueue::LogQueue(const Limits& limits, OnboardTime run)
+    : run_{run},
+      telemetry_{limits.telemetry_records, limits.telemetry_octets},
+      vital_{limits.vital_records, limits.vital_octets} {}
+
+std::uint64_t LogQueue::push(const LogEntry& entry, OnboardTime stored, TimePoint monotonic) {
+  const std::uint64_t number = ++last_number_;
+  if (!make_room(entry)) {
+    miss(number, stored, monotonic);
+    ++refused_;
+    return 0;
+  }
+  Ring& ring = may_be_lost(entry) ? telemetry_ : vital_;
+  ring.push({.number = number,
+             .stored = stored,
+             .monotonic = monotonic,
+             .kind = entry.kind,
+             .source = entry.source,
+             .peer = entry.peer,
+             .note = entry.note,
+             .octets = entry.packet.size()},
+            entry.packet);
+  return number;
+}
+
+bool LogQueue::make_room(const LogEntry& entry) {
+  const std::size_t octets = entry.packet.size();
+  if (octets > Database::max_packet_octets) return false;
+  if (!may_be_lost(entry)) return vital_.fits(octets, may_use_reserve(entry.kind) ? 0 : reserve_divisor);
+  if (!telemetry_.could_ever_fit(octets)) return false;
+  while (!telemetry_.fits(octets, 0)) {
+    const Header& oldest = telemetry_.front();
+    miss(oldest.number, oldest.stored, oldest.monotonic);
+    ++lost_;
+    telemetry_.pop();
+  }
+  return true;
+}
+
+void LogQueue::miss(std::uint64_t number, OnboardTime stored, TimePoint monotonic) {
+  if (!gap_) gap_ = Gap{.first = number, .last = number, .lost = 0, .stored = stored, .monotonic = monotonic};
+  // A refused record may be followed by the loss of an older one.
+  if (number < gap_->first) {
+    gap_->first = number;
+    gap_->stored = stored;
+    gap_->monotonic = monotonic;
+  }
+  gap_->last = std::max(gap_->last, number);
+  ++gap_->lost;
+}
+
+std::uint64_t LogQueue::next_waiting() const noexcept {
+  std::uint64_t next = gap_ ? gap_->first : none;
+  if (telemetry_.size() != 0) next = std::min(next, telemetry_.front().number);
+  if (vital_.size() != 0) next = std::min(next, vital_.front().number);
+  return next;
+}
+
+void LogQueue::take(LogBatch& batch, std::size_t count, std::uint64_t up_to) {
+  for (; count > 0 && !batch.full(); --count) {
+    const std::uint64_t next = next_waiting();
+    if (next == none || next > up_to) return;
+    if (gap_ && gap_->first == next) take_gap(batch);
+    else if (vital_.size() != 0 && vital_.front().number == next) take_from(vital_, batch);
+    else take_from(telemetry_, batch);
+  }
+}
+
+void LogQueue::take_gap(LogBatch& batch) {
+  LogRecord& record = batch.add(0);
+  record.run = run_;
+  record.number = gap_->first;
+  record.stored = gap_->stored;
+  record.monotonic = gap_->monotonic;
+  record.kind = LogKind::Gap;
+  record.source = 0;
+  record.peer = 0;
+  record.lost = gap_->lost;
+  record.note = Note{"no room before the database, up to number " + std::to_string(gap_->last)};
+  gap_.reset();
+}
+
+void LogQueue::take_from(Ring& ring, LogBatch& batch) {
+  const Header& header = ring.front();
+  LogRecord& record = batch.add(header.octets);
+  record.run = run_;
+  record.number = header.number;
+  record.stored = header.stored;
+  record.monotonic = header.monotonic;
+  record.kind = header.kind;
+  record.source = header.source;
+  record.peer = header.peer;
+  record.note = header.note;
+  ring.read_front(record.packet);
+  ring.pop();
+}
+
+}  // namespace hirosco::supervisor
