@@ -170,7 +170,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
       {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .on_finding = [&] { guard_found->notify(); }}};
   Supervisor supervisor{
       {.mission = mission,
-       .platform = {.clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = {}},
+       .platform =
+           {.clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .wakes = true, .explain = {}},
        .launcher = launcher,
        .guard = guard,
        .log = log,

@@ -12,6 +12,8 @@ namespace {
 /// How often processes, hangs and time limits are looked at: the supervisor's own cycle.
 constexpr Duration watch_period = Guard::observation_period;
 constexpr Duration ground_pace = 1ms;
+/// What came for the supervisor itself behind its turn waits so long, as for somebody who must not be let spin.
+constexpr Duration own_pace = 1ms;
 }  // namespace
 
 Supervisor::Supervisor(const Parts& parts) : parts_{std::make_unique<SupervisorParts>(parts)} {}
@@ -50,6 +52,7 @@ TimePoint Supervisor::step(TimePoint now) {
   parts_->shutdown.enforce(now);
   parts_->telemetry.serve_ground();  // all that this step had to say, together
   if (parts_->telemetry.ground().waiting()) wake = std::min(wake, now + ground_pace);
+  if (parts_->own.has_work()) wake = std::min(wake, now + own_pace);
   return std::min(wake, next_watch_);
 }
 

@@ -121,6 +121,10 @@ class Communication final : public Subsystem, private communication::GroundTraff
     count(now);
   }
 
+  [[nodiscard]] ServiceWake service_wake() const override {
+    return transport_ && !closing_since_ ? transport_->wake() : ServiceWake{};
+  }
+
   void telemetry(Octets packet) override {
     if (transport_) transport_->telemetry(packet);
   }

@@ -21,6 +21,8 @@ class GroundTransport {
   /// Queues a packet for every telemetry client.
   virtual void telemetry(Octets packet) = 0;
   [[nodiscard]] virtual const communication::LinkCounters& counters() const = 0;
+  /// When `step` is to be called besides.
+  [[nodiscard]] virtual ServiceWake wake() const { return {}; }
 };
 /// Opens a transport that hands telecommands to `traffic`; called when the configuration is applied.
 using OpenGroundTransport =

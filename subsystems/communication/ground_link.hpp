@@ -154,6 +154,8 @@ class GroundClients {
   /// Offers what waits, one packet of each client in turn, to `traffic`; at most `packets_per_turn`. True when it ended
   /// because nothing waits any more.
   bool hand_over(GroundTraffic& traffic, TimePoint now);
+  /// Somebody's packets have not been taken yet.
+  [[nodiscard]] bool packets_wait() const noexcept { return waiting_ != 0; }
   /// Whole packets that nobody has taken yet.
   [[nodiscard]] std::size_t waiting_packets() const noexcept;
   /// Queues a packet for every client of the telemetry port. ResourceExhausted: longer than the backlog.

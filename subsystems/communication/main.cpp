@@ -19,6 +19,12 @@ class TcpTransport final : public GroundTransport {
   [[nodiscard]] std::size_t finish(TimePoint now) override { return server_->finish(now); }
   void telemetry(Octets packet) override { static_cast<void>(server_->telemetry(packet)); }
   [[nodiscard]] const communication::LinkCounters& counters() const override { return server_->counters(); }
+  /// What waits for the supervisor is offered to it again every millisecond: it does not say when it has room.
+  [[nodiscard]] ServiceWake wake() const override {
+    ServiceWake wake{.descriptor = server_->descriptor()};
+    if (server_->clients().packets_wait()) wake.pace = 1ms;
+    return wake;
+  }
 
  private:
   std::unique_ptr<communication::TcpServer> server_;

@@ -39,6 +39,8 @@ class OwnSubsystem final : private Subsystem {
   void enter_mode(std::uint32_t epoch) noexcept { permit_->mode_epoch.store(epoch, std::memory_order_release); }
   /// The same two steps as everybody's, here in one thread; returns when the next is due at the latest.
   TimePoint step(TimePoint now);
+  /// There is something to do for it, or something of it to read, since its last step.
+  [[nodiscard]] bool has_work() const noexcept { return !channels_.empty() || engine_.has_reports(); }
 
   /// An event of its descriptor by name.
   void announce(std::string_view event, std::initializer_list<double> arguments = {}) {

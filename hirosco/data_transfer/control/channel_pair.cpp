@@ -88,6 +88,13 @@ ChannelPair::~ChannelPair() = default;
 
 Channel& ChannelPair::supervisor_end() noexcept { return state_->supervisor; }
 Channel& ChannelPair::subsystem_end() noexcept { return state_->subsystem; }
+bool ChannelPair::empty() const noexcept {
+  const auto nothing_in = [](Queue& queue) {
+    const std::scoped_lock lock{queue.mutex};
+    return queue.messages.empty();
+  };
+  return nothing_in(state_->down) && nothing_in(state_->up);
+}
 void ChannelPair::close_supervisor_end() noexcept { state_->supervisor.close(); }
 void ChannelPair::close_subsystem_end() noexcept { state_->subsystem.close(); }
 

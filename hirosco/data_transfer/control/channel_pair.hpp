@@ -23,6 +23,9 @@ class ChannelPair {
   [[nodiscard]] Channel& supervisor_end() noexcept;
   [[nodiscard]] Channel& subsystem_end() noexcept;
 
+  /// Neither end has anything to read.
+  [[nodiscard]] bool empty() const noexcept;
+
   /// What the death of a side's process does: the other end reads what was sent, then Unavailable.
   void close_supervisor_end() noexcept;
   void close_subsystem_end() noexcept;

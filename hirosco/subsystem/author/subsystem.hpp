@@ -43,6 +43,13 @@ struct Cycle {
   bool active{false};                ///< Operational and not inhibited: what is put out reaches the actuators
 };
 
+/// What an author's work in the service loop waits for.
+struct ServiceWake {
+  int descriptor{-1};  ///< when it is readable, once in a millisecond at most; -1: none. Stays the author's.
+  Duration pace{std::chrono::milliseconds{
+      10}};  ///< and after so long at the latest: 1 ms to 10 ms, what is beyond is taken as the end
+};
+
 /// Base of every subsystem. Steady nodes run in the cycle: noexcept, no allocation, no lock, no I/O. Everything else
 /// runs in the service loop.
 class Subsystem {
@@ -71,6 +78,9 @@ class Subsystem {
   virtual Result<Step> software_deinit() { return done; }
   /// Every step of the service loop, in all states: work that is not real-time.
   virtual void service(TimePoint) {}
+  /// When `service` is called besides; asked for after each call. Not overridden: every 10 ms at least, and after each message
+  /// and report.
+  [[nodiscard]] virtual ServiceWake service_wake() const { return {}; }
   /// Telemetry that the supervisor routes to this subsystem (the communication subsystem's ground link).
   virtual void telemetry(Octets) {}
 

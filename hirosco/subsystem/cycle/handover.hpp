@@ -94,6 +94,10 @@ struct Handover {
   [[nodiscard]] std::uint64_t lost_events() const noexcept {
     return events.dropped() + lost_remarks.load(std::memory_order_relaxed);
   }
+  /// A moment's view.  Thread: any.
+  [[nodiscard]] bool reports_wait() const noexcept {
+    return answers.used() != 0 || events.used() != 0 || housekeeping.used() != 0;
+  }
   [[nodiscard]] std::uint64_t dropped() const noexcept {
     return lost_answers() + lost_events() + housekeeping.dropped();
   }

@@ -14,7 +14,8 @@
 namespace hirosco {
 namespace {
 
-/// The service loop's pace while a cycle runs or a transition is under way, and otherwise. Messages wake it at once.
+/// The service loop's pace while a transition is under way or a cycle runs whose reports wake nobody, and otherwise. Messages wake
+/// it at once.
 constexpr Duration busy_pace = 1ms;
 constexpr Duration idle_pace = 10ms;
 constexpr int messages_per_step = 64;
@@ -104,8 +105,9 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
   backlog_.flush(channel_);
   tell_losses(now);
   vital_.service_steps.fetch_add(1, std::memory_order_relaxed);
-  const bool busy = way_.has_value() || wanted_.load(std::memory_order_relaxed) || !backlog_.empty();
-  return now + (busy ? busy_pace : idle_pace);
+  const bool looks = wanted_.load(std::memory_order_relaxed) && !platform_.wakes;
+  const bool busy = way_.has_value() || looks || !backlog_.empty();
+  return now + (busy ? busy_pace : std::clamp(author_.service_wake().pace, busy_pace, idle_pace));
 }
 
 void GenericSubsystem::receive_messages() {

@@ -41,6 +41,9 @@ struct Platform {
   MemoryProvider& memory;
   FlowFactory& flows;
   bool realtime{true};               ///< SCHED_FIFO is granted; false: the reduced limits hold (decision 21)
+  /// Whoever drives the service loop steps it when the cycle has something to report (has_reports()), so that it need not look every
+  /// millisecond while a cycle runs (adr 0071).
+  bool wakes{false};
   /// Explains to a developer why something was refused (standard error, a test's list). Service loop only.
   std::function<void(std::string_view)> explain{};
   LinkMechanisms links{standard_link_mechanisms()};
@@ -77,6 +80,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   /// False while what the supervisor sends has to wait for the supervisor to take what was said: its channel is not to wake
   /// the service loop for being readable, only for being writable.  Thread: service.
   [[nodiscard]] bool reads() const noexcept { return backlog_.answers_have_room(); }
+  /// What the author's work in the service loop waits for.  Thread: service.
+  [[nodiscard]] ServiceWake service_wake() const { return author_.service_wake(); }
+  /// The cycle has reported what the service loop has not taken yet.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool has_reports() const noexcept { return handover_.reports_wait(); }
 
   /// What the cycle thread is to do.
   struct Demand {

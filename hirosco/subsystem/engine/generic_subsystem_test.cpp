@@ -402,6 +402,50 @@ TEST_F(GenericSubsystemTest, HousekeepingOfThePapersListingsComesByteForByte) {
   EXPECT_EQ(rig.reports(3, 25).size(), 2u);
 }
 
+// --- who is woken does not look (adr 0071) -------------------------------------------------------------------------------
+
+struct WokenTest : ::testing::Test {
+  Probe probe;
+  Rig rig{probe, probe_descriptor, true, true};
+  Duration rests() {
+    const TimePoint now = rig.clock.now();
+    return rig.subsystem.service_step(now) - now;
+  }
+};
+
+TEST_F(WokenTest, AServiceLoopWhoseCycleWakesItRestsLongBesideARunningCycle) {
+  rig.bring_to(State::Operational);
+  EXPECT_EQ(rests(), 10ms);
+  Probe another;
+  Rig looking{another, probe_descriptor};
+  looking.bring_to(State::Operational);
+  EXPECT_EQ(looking.subsystem.service_step(looking.clock.now()), looking.clock.now() + 1ms);
+}
+
+TEST_F(WokenTest, WhateverTheCycleReportsIsSomethingToWakeFor) {
+  rig.bring_to(State::Operational);
+  EXPECT_FALSE(rig.subsystem.has_reports());
+  probe.raises = true;
+  rig.cycle();
+  EXPECT_TRUE(rig.subsystem.has_reports()) << "an event";
+  probe.raises = false;
+  rig.service();
+  EXPECT_FALSE(rig.subsystem.has_reports());
+  rig.call("SET_GOAL", {1.0});
+  rig.service();
+  rig.cycle();
+  EXPECT_TRUE(rig.subsystem.has_reports()) << "how a function ended";
+  rig.service();
+  rig.cycle(1000);
+  EXPECT_TRUE(rig.subsystem.has_reports()) << "housekeeping";
+}
+
+TEST_F(WokenTest, ATransitionIsStillLookedAtEveryMillisecond) {
+  probe.nodes[State::SoftwareInit].again = 3;
+  rig.set_state(State::PreOperational);
+  EXPECT_EQ(rests(), 1ms);
+}
+
 TEST_F(GenericSubsystemTest, AnAuthorsEventCarriesItsArguments) {
   rig.bring_to(State::Operational);
   probe.raises = true;

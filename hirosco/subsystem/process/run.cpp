@@ -84,11 +84,36 @@ struct Options {
   return {};
 }
 
+/// By which the cycle wakes the service loop: rung once until it is heard, so that a service loop that gets no processor costs the cycle
+/// one system call, not one in each cycle.
+class Bell {
+ public:
+  [[nodiscard]] static Result<Bell> make() {
+    HIROSCO_TRY_LET(auto event, WakeEvent::create());
+    return Bell{std::move(event)};
+  }
+  [[nodiscard]] int descriptor() const noexcept { return event_.descriptor(); }
+  /// Realtime: one system call that does not wait. Thread: cycle.
+  void ring() noexcept {
+    if (!rung_->exchange(true, std::memory_order_acq_rel)) event_.notify();
+  }
+  /// What was reported before the bell was rung is seen after this.  Thread: service.
+  void hear() noexcept {
+    event_.clear();
+    static_cast<void>(rung_->exchange(false, std::memory_order_acq_rel));
+  }
+
+ private:
+  explicit Bell(WakeEvent event) : event_{std::move(event)} {}
+  WakeEvent event_;
+  std::unique_ptr<std::atomic<bool>> rung_{std::make_unique<std::atomic<bool>>(false)};
+};
+
 /// The cycle thread: sleeps to absolute times while a cycle is wanted, rests on a semaphore otherwise.
 class CycleThread {
  public:
-  explicit CycleThread(GenericSubsystem& subsystem, const Clock& clock, bool realtime)
-      : subsystem_{subsystem}, clock_{clock}, realtime_{realtime} {}
+  CycleThread(GenericSubsystem& subsystem, const Clock& clock, Bell& bell, bool realtime)
+      : subsystem_{subsystem}, clock_{clock}, bell_{bell}, realtime_{realtime} {}
   [[nodiscard]] Result<> start() {
     HIROSCO_TRY_LET(thread_, Thread::start("cycle", [this] { run(); }, cycle_stack_octets));
     return ok();
@@ -128,6 +153,7 @@ class CycleThread {
       const auto demand = subsystem_.cycle_demand();
       if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) break;
       planned = subsystem_.cycle_step(planned);
+      if (subsystem_.has_reports()) bell_.ring();
       ++cycles_;
     }
     heap_uses_ += no_heap.count().allocations + no_heap.count().frees;
@@ -135,6 +161,7 @@ class CycleThread {
 
   GenericSubsystem& subsystem_;
   const Clock& clock_;
+  Bell& bell_;
   bool realtime_;
   Semaphore wanted_{0};
   std::atomic<bool> ending_{false};
@@ -143,12 +170,68 @@ class CycleThread {
   Thread thread_;
 };
 
+/// What the service loop waits for between two steps.
+class ServiceWait {
+ public:
+  ServiceWait(const Clock& clock, int channel, Bell& bell) : clock_{clock}, channel_{channel}, bell_{bell} {
+    static_cast<void>(waits_.add(channel_));
+    static_cast<void>(waits_.add(bell_.descriptor()));
+  }
+  /// What is not read would end every wait: at real-time priority that takes the processor from who has to read us.
+  void read_channel(bool reads) {
+    if (reads == reading_) return;
+    static_cast<void>(waits_.change(channel_, reads ? Interest::Read : Interest::Write));
+    reading_ = reads;
+  }
+  /// Until there is something to do, `wake` at the latest.
+  void wait(TimePoint wake, int authors) {
+    for (;;) {
+      const TimePoint now = clock_.now();
+      follow(authors, now);
+      const TimePoint until = authors_ < 0 && authors >= 0 ? std::min(wake, authors_from_) : wake;
+      const auto ready = waits_.wait(std::max(until - now, Duration{0}));
+      if (ready)
+        for (const Ready& entry : *ready) take(entry);
+      if (!ready || !ready->empty() || clock_.now() >= wake) return;
+    }
+  }
+
+ private:
+  /// The author's descriptor is looked at once in this time: one that stays readable must not keep a real-time loop from resting.
+  static constexpr Duration authors_pace = 1ms;
+
+  void follow(int authors, TimePoint now) {
+    if (authors_ >= 0 && authors_ != authors) waits_.remove(std::exchange(authors_, -1));
+    if (authors_ >= 0 || authors < 0 || now < authors_from_) return;
+    if (waits_.add(authors)) authors_ = authors;
+    else authors_from_ = now + authors_pace;
+  }
+  void take(const Ready& entry) {
+    const int descriptor = entry.descriptor;
+    if (descriptor == authors_) {
+      waits_.remove(std::exchange(authors_, -1));
+      authors_from_ = clock_.now() + authors_pace;
+    } else if (descriptor == bell_.descriptor()) {
+      bell_.hear();
+    } else if (entry.hung_up) {
+      // A supervisor that is gone would end every wait from now on: at real-time priority that takes the processor.
+      waits_.remove(descriptor);
+    }
+  }
+
+  const Clock& clock_;
+  int channel_;
+  Bell& bell_;
+  WaitSet waits_;
+  bool reading_{true};
+  int authors_{-1};  ///< waited for now; -1: there is none, or not yet again
+  TimePoint authors_from_{};
+};
+
 /// `program` names itself where it has to say something.
 void serve(const char* program, GenericSubsystem& subsystem, const Clock& clock, const SocketChannel& channel,
-           CycleThread& cycle) {
-  WaitSet waits;
-  static_cast<void>(waits.add(channel.wait_descriptor()));
-  bool reading = true;
+           CycleThread& cycle, Bell& bell) {
+  ServiceWait waits{clock, channel.wait_descriptor(), bell};
   bool cycling = false;
   bool told_version = false;
   std::uint32_t ticket = 0;
@@ -164,16 +247,8 @@ void serve(const char* program, GenericSubsystem& subsystem, const Clock& clock,
     if ((demand.wanted && !cycling) || demand.ticket != ticket) cycle.wake();
     cycling = demand.wanted;
     ticket = demand.ticket;
-    if (const bool reads = subsystem.reads(); reads != reading) {
-      // What is not read would end every wait: at real-time priority that takes the processor from who has to read us.
-      static_cast<void>(waits.change(channel.wait_descriptor(), reads ? Interest::Read : Interest::Write));
-      reading = reads;
-    }
-    const auto ready = waits.wait(std::max(wake - clock.now(), Duration{0}));
-    if (!ready) continue;
-    // A supervisor that is gone would end every wait from now on: at real-time priority that takes the processor.
-    for (const Ready& entry : *ready)
-      if (entry.hung_up) waits.remove(entry.descriptor);
+    waits.read_channel(subsystem.reads());
+    waits.wait(wake, subsystem.service_wake().descriptor);
   }
 }
 
@@ -220,9 +295,12 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     static_cast<void>(set_shared_priority(service_priority));
   }
   const Platform platform{
-      .clock = clock, .memory = memory, .flows = flows, .realtime = realtime, .explain = [](std::string_view text) {
-        std::fputs(fmt::format("{}\n", text).c_str(), stderr);
-      }};
+      .clock = clock,
+      .memory = memory,
+      .flows = flows,
+      .realtime = realtime,
+      .wakes = true,
+      .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); }};
   const auto author = make();
   GenericSubsystem subsystem{*author,
                              std::move(*reading.value),
@@ -230,12 +308,17 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
                              channel,
                              *reinterpret_cast<VitalPage*>(vital.octets.data()),
                              *reinterpret_cast<const PermitPage*>(permit.octets.data())};
-  CycleThread cycle{subsystem, clock, realtime};
+  auto bell = Bell::make();
+  if (!bell) {
+    fmt::print(stderr, "{}: {} (errno {})\n", argv[0], bell.error().text, bell.error().value);
+    return exit_environment;
+  }
+  CycleThread cycle{subsystem, clock, *bell, realtime};
   if (const auto started = cycle.start(); !started) {
     fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
     return exit_environment;
   }
-  serve(argv[0], subsystem, clock, channel, cycle);
+  serve(argv[0], subsystem, clock, channel, cycle, *bell);
   cycle.end();
   cycle.tell_heap_uses(argv[0]);
   return 0;

@@ -8,7 +8,9 @@
 #include <array>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
+#include "hirosco/utilities/os/wait_set.hpp"
 
 namespace hirosco {
 namespace {
@@ -40,7 +43,9 @@ struct BuiltApart : ::testing::Test {
     supervisor = std::move(ends.first);
     subsystem = std::move(ends.second);
   }
-  [[noreturn]] void run() {
+  [[noreturn]] void run(const std::function<std::unique_ptr<Subsystem>()>& make = [] {
+    return std::make_unique<Idle>();
+  }) {
     const std::string file = ::testing::TempDir() + "built_apart.xml";
     std::ofstream{file} << testing::probe_descriptor;
     const auto number = [](int descriptor) { return std::to_string(descriptor); };
@@ -55,8 +60,7 @@ struct BuiltApart : ::testing::Test {
                                    number(SealedMemory::descriptor(permit_memory))};
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
-    std::_Exit(
-        run_subsystem(static_cast<int>(arguments.size()), arguments.data(), [] { return std::make_unique<Idle>(); }));
+    std::_Exit(run_subsystem(static_cast<int>(arguments.size()), arguments.data(), make));
   }
 };
 
@@ -78,6 +82,67 @@ TEST_F(BuiltApart, AMessageOfAnotherVersionIsRefusedByNameOnce) {
       run(), ::testing::ExitedWithCode(0),
       "^started: the supervisor's control channel is of version 2, this program's of version 1: build both from "
       "one hirosco\n$");
+}
+
+/// Counts how often its work is called while its descriptor has something, and while it has nothing.
+class Waiting final : public Subsystem {
+ public:
+  explicit Waiting(int calls) : calls_left_{calls} {}
+  static constexpr int good = 7;
+  static constexpr int bad = 8;
+
+ protected:
+  ServiceWake service_wake() const override { return {.descriptor = event_.descriptor()}; }
+
+ private:
+  /// After so many calls beside a descriptor that is readable all the time: how long they took at least.
+  void service(TimePoint now) override {
+    if (!began_) {
+      began_ = now;
+      event_.notify();
+    }
+    if (--calls_left_ >= 0) return;
+    // Two more than the pauses between them: the first call, and the one after the supervisor had let go.
+    std::_Exit(now - *began_ >= 1ms * (first_calls_ - 2) ? good : bad);
+  }
+  int calls_left_;
+  int first_calls_{calls_left_};
+  std::optional<TimePoint> began_;
+  WakeEvent event_{WakeEvent::create().value()};
+};
+
+using ServiceWakeTest = BuiltApart;
+
+TEST_F(ServiceWakeTest, WhoLeavesItsDescriptorReadableIsCalledNoMoreThanOnceInAMillisecond) {
+  EXPECT_EXIT(run([] { return std::make_unique<Waiting>(25); }), ::testing::ExitedWithCode(Waiting::good), "");
+}
+
+/// Calls in a span with something in its descriptor, and in one as long with nothing.
+class Compared final : public Subsystem {
+ protected:
+  ServiceWake service_wake() const override { return {.descriptor = event_.descriptor()}; }
+
+ private:
+  void service(TimePoint now) override {
+    if (!until_) {
+      until_ = now + 100ms;
+      event_.notify();
+    }
+    ++calls_[heard_ ? 1 : 0];
+    if (now < *until_) return;
+    if (heard_) std::_Exit(calls_[0] > 3 * calls_[1] ? Waiting::good : Waiting::bad);
+    heard_ = true;
+    event_.clear();
+    until_ = now + 100ms;
+  }
+  bool heard_{false};
+  std::array<int, 2> calls_{};
+  std::optional<TimePoint> until_;
+  WakeEvent event_{WakeEvent::create().value()};
+};
+
+TEST_F(ServiceWakeTest, WhatItsDescriptorBringsIsNotLeftUntilThePaceIsOver) {
+  EXPECT_EXIT(run([] { return std::make_unique<Compared>(); }), ::testing::ExitedWithCode(Waiting::good), "");
 }
 
 }  // namespace

@@ -42,16 +42,17 @@ descriptor::Subsystem read_descriptor(const std::string& text, const std::vector
   return commanding;
 }
 
-Rig::Rig(Subsystem& author, const std::string& descriptor_text, bool realtime)
-    : Rig{author, read_descriptor(descriptor_text), realtime} {}
+Rig::Rig(Subsystem& author, const std::string& descriptor_text, bool realtime, bool wakes)
+    : Rig{author, read_descriptor(descriptor_text), realtime, wakes} {}
 
-Rig::Rig(Subsystem& author, descriptor::Subsystem described, bool realtime)
+Rig::Rig(Subsystem& author, descriptor::Subsystem described, bool realtime, bool wakes)
     : subsystem{author,
                 std::move(described),
                 {.clock = clock,
                  .memory = memory,
                  .flows = flows,
                  .realtime = realtime,
+                 .wakes = wakes,
                  .explain = [this](std::string_view text) { explanations.emplace_back(text); }},
                 channels.subsystem_end(),
                 vital,

@@ -56,8 +56,9 @@ class Rig {
  public:
   static constexpr std::uint16_t source = 7;
 
-  Rig(Subsystem& author, const std::string& descriptor_text, bool realtime = true);
-  Rig(Subsystem& author, descriptor::Subsystem described, bool realtime = true);
+  /// `wakes`: the test steps the service loop when the cycle has something to report (Platform::wakes).
+  Rig(Subsystem& author, const std::string& descriptor_text, bool realtime = true, bool wakes = false);
+  Rig(Subsystem& author, descriptor::Subsystem described, bool realtime = true, bool wakes = false);
 
   // --- stepping -----------------------------------------------------------------------------------------------------
   /// One step of the service loop; collects what the subsystem sent. The supervisor's heart beats unless it is silent.
