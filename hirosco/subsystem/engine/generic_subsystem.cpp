@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/parameter/number.hpp"
@@ -76,7 +77,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
   author_.framework_ = this;
   cycle_.functions().resize(descriptor_.functions.size());
   vital_.realtime.store(platform_.realtime ? 1 : 0, std::memory_order_relaxed);
-  heartbeat_seen_ = platform_.clock.now();
+  watched_supervisor_at_ = platform_.clock.now();
   if (const auto started = author_.offline(); !started) mistake(started.error().text);
 }
 
@@ -159,11 +160,10 @@ pus::FailureNotice GenericSubsystem::wrong_state() const {
 
 void GenericSubsystem::watch_supervisor(TimePoint now) {
   const std::uint64_t heartbeat = permit_.heartbeat.load(std::memory_order_acquire);
-  if (heartbeat != last_heartbeat_) {
-    last_heartbeat_ = heartbeat;
-    heartbeat_seen_ = now;
-  }
-  if (!supervisor_lost_ && now - heartbeat_seen_ <= supervisor_silence_limit) return;
+  // While the whole computer stood nobody was silent: of what passes between two looks only so much counts.
+  supervisor_silent_for_ += std::min(now - std::exchange(watched_supervisor_at_, now), most_silence_a_look);
+  if (std::exchange(last_heartbeat_, heartbeat) != heartbeat) supervisor_silent_for_ = Duration{0};
+  if (!supervisor_lost_ && supervisor_silent_for_ <= supervisor_silence_limit) return;
   if (way_) return;
   if (state_ == State::Offline) {
     finished_ = supervisor_lost_;

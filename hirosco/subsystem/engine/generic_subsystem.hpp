@@ -264,7 +264,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::array<std::uint64_t, 6> told_losses_{};
   TimePoint losses_told_at_{};
   std::uint64_t last_heartbeat_{0};
-  TimePoint heartbeat_seen_{};
+  TimePoint watched_supervisor_at_{};
+  Duration supervisor_silent_for_{};  ///< since its heartbeat moved last, in watched time
   bool supervisor_lost_{false};
   bool finished_{false};
 };

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <ranges>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
@@ -367,15 +369,23 @@ TEST(SupervisorGone, AtOfflineThereIsNothingLeftToDo) {
   EXPECT_TRUE(rig.subsystem.finished());
 }
 
+/// So many looks of the service loop, that far apart.
+void look(Rig& rig, int count, Duration apart) {
+  for (int i = 0; i < count; ++i) {
+    rig.advance(apart);
+    rig.service();
+  }
+}
+
 TEST(SupervisorGone, ASilentOneMayComeBackSoErrorOperationalIsKept) {
   Probe probe;
   Rig rig{probe, probe_descriptor};
   rig.bring_to(State::Operational);
   rig.supervisor_silent = true;
-  rig.advance(2s);
-  rig.service();
+  rig.service();  // its last heartbeat is seen
+  look(rig, 20, 100ms);
   EXPECT_EQ(rig.state(), State::Operational);
-  rig.advance(1ms);
+  look(rig, 1, 1ms);
   rig.settle();
   EXPECT_EQ(rig.state(), State::ErrorOperational);
   EXPECT_FALSE(rig.subsystem.finished());
@@ -388,9 +398,54 @@ TEST(SupervisorGone, ASilentOneDoesNotDisturbASafeState) {
   Rig rig{probe, probe_descriptor};
   rig.bring_to(State::SafeOperational);
   rig.supervisor_silent = true;
-  rig.advance(10s);
+  look(rig, 100, 100ms);
   rig.settle();
   EXPECT_EQ(rig.state(), State::SafeOperational);
+}
+
+TEST(SupervisorGone, APauseOfTheWholeComputerTakesNobodyOutOfOperational) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  rig.bring_to(State::Operational);
+  rig.supervisor_silent = true;  // it stood, too: its heartbeat is where it was
+  look(rig, 1, 10s);
+  rig.settle();
+  EXPECT_EQ(rig.state(), State::Operational);
+  rig.supervisor_silent = false;
+  for (int pause = 0; pause < 20; ++pause) {
+    look(rig, 1, 10s);
+    EXPECT_EQ(rig.state(), State::Operational) << pause;
+  }
+}
+
+/// However far apart its looks are, as many of them as the limit has find the silence, and not one fewer.
+TEST(SupervisorGone, OfTheTimeBetweenTwoLooksNoMoreCountsThanTheBound) {
+  for (const Duration apart : std::initializer_list<Duration>{50ms, 100ms, 200ms, 201ms, 1s, 3h}) {
+    Probe probe;
+    Rig rig{probe, probe_descriptor};
+    rig.bring_to(State::Operational);
+    rig.supervisor_silent = true;
+    rig.service();  // its last heartbeat is seen
+    const auto counted = std::min<Duration>(apart, 200ms);
+    look(rig, static_cast<int>(Duration{2s} / counted), apart);
+    EXPECT_EQ(rig.state(), State::Operational) << apart.count();
+    look(rig, 1, apart);
+    rig.settle();
+    EXPECT_EQ(rig.state(), State::ErrorOperational) << apart.count();
+  }
+}
+
+TEST(SupervisorGone, ASignOfItBeginsItsLimitAnew) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  rig.bring_to(State::Operational);
+  for (int round = 0; round < 3; ++round) {
+    rig.supervisor_silent = true;
+    look(rig, 20, 100ms);
+    rig.supervisor_silent = false;
+    look(rig, 1, 100ms);
+  }
+  EXPECT_EQ(rig.state(), State::Operational);
 }
 
 }  // namespace

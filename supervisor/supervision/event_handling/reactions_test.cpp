@@ -49,11 +49,44 @@ TEST_F(ReactionsTest, AnEventOfMediumSeverityMakesItsSubsystemSafeAndNobodyElse)
   EXPECT_TRUE(was_told("plan default: ARM to SafeOperational because of HOT"));
 }
 
+TEST_F(ReactionsTest, WhoIsMadeSafeIsInhibitedAtOnceThoughItNeverObeys) {
+  parts.graph.set_up(1, true);
+  event(arm, hot, Severity::Medium);
+  EXPECT_EQ(played[arm].permit->go.load(), 0U);
+  EXPECT_EQ(played[arm].permit->stop.load(), 1U);
+  EXPECT_FALSE(guard.fenced(hand));
+  wait(WaitingForDisk::limit);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_TRUE(was_told("ARM SET_STATE 4: no answer"));
+  EXPECT_EQ(played[arm].permit->go.load(), 0U);
+  EXPECT_TRUE(guard.fenced(hand)) << "the plan failed, and its network goes down";
+}
+
+TEST_F(ReactionsTest, WhoObeyedIsBroughtToOperationalAgainInTheOrdinaryWay) {
+  event(arm, hot, Severity::Medium);
+  obey(arm);
+  EXPECT_TRUE(guard.fenced(arm)) << "until it is let go";
+  EXPECT_FALSE(craft.member(arm)->recovering);
+  parts.own_telecommands.command(arm, "SET_STATE", static_cast<double>(Operational), nullptr);
+  parts.telecommands.forward_durable();
+  EXPECT_THAT(texts(arm), ElementsAre(to(Operational)));
+  EXPECT_FALSE(guard.fenced(arm));
+  EXPECT_NE(played[arm].permit->go.load(), 0U);
+}
+
+TEST_F(ReactionsTest, WhatWasPermittedBeforeAPlanDoesNotLetGoWhomItHasStopped) {
+  const std::uint64_t before = guard.fences(arm);
+  event(arm, hot, Severity::Medium);
+  obey(arm);
+  EXPECT_FALSE(guard.release(arm, before));
+}
+
 TEST_F(ReactionsTest, WhoDoesNotActNeedsNotBeMadeSafe) {
   set(arm, SafeOperational);
   event(arm, hot, Severity::Medium);
   EXPECT_THAT(texts(arm), IsEmpty());
   EXPECT_FALSE(was_told("because of HOT"));
+  EXPECT_FALSE(guard.fenced(arm));
 }
 
 TEST_F(ReactionsTest, AnEventOfHighSeverityStopsTheNetworkBeforeAnythingIsSent) {

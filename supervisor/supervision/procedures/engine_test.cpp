@@ -158,5 +158,41 @@ TEST_F(EngineTest, WhatAnEngineHasBegunGoesOnWithoutIt) {
   EXPECT_THAT(ends, ElementsAre("end"));
 }
 
+/// Where a plan takes its subject from what it does, and only there, the actuators do not wait for who is to obey.
+TEST_F(EngineTest, AStateOfAPlanFencesItsSubjectAndNobodyElseBeforeItIsSentAndNoOtherStateDoes) {
+  start_all(Operational);
+  parts.graph.set_up(1, true);
+  bool fenced = false;
+  desk.on_command = [&] { fenced = guard.fenced(arm); };
+  for (int is = 0; is < 10; ++is)
+    for (int wanted = 0; wanted < 10; ++wanted)
+      for (const char* plan : {"", "test"}) {
+        const auto state = static_cast<State>(is), target = static_cast<State>(wanted);
+        set(arm, state);
+        for (const std::uint16_t apid : {arm, hand}) ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+        ProcedureStep planned = to_state(arm, target);
+        planned.occasion.plan = plan;
+        start({{planned}});
+        const bool to_do = target != SafeOperational || state == Operational;
+        const bool stops = *plan != '\0' && target != Operational && to_do;
+        EXPECT_EQ(fenced, stops) << to_text(state) << " to " << to_text(target) << " by plan '" << plan << "'";
+        EXPECT_EQ(played[arm].permit->go.load() == 0, stops);
+        EXPECT_FALSE(guard.fenced(hand)) << "a network is what shut_down_network is for";
+      }
+  EXPECT_EQ(desk.sent.size(), 200U);
+}
+
+TEST_F(EngineTest, AStepThatLetsItsSubjectGoDoesNotTakeTheFenceFromALaterOneOfThePlan) {
+  start_all(Operational);
+  ProcedureStep up = to_state(arm, Operational), down = to_state(arm, SafeOperational);
+  up.occasion.plan = down.occasion.plan = "test";
+  start({{up}, {down}});
+  EXPECT_TRUE(guard.fenced(arm)) << "of the later step";
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  desk.answer(true);
+  EXPECT_THAT(desk.sent, ElementsAre("10 SET_STATE 5", "10 SET_STATE 4"));
+  EXPECT_TRUE(guard.fenced(arm));
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -59,6 +59,16 @@ bool LinkGraph::is_up(std::uint8_t link) const noexcept {
   return std::ranges::any_of(edges_, [&](const Edge& edge) { return edge.link == link && edge.up; });
 }
 
+bool LinkGraph::holds(std::uint8_t link, std::uint16_t apid) const noexcept {
+  return std::ranges::any_of(edges_, [&](const Edge& edge) {
+    return edge.link == link && ((edge.from == apid && edge.from_holds) || (edge.to == apid && edge.to_holds));
+  });
+}
+
+bool LinkGraph::is_held(std::uint8_t link) const noexcept {
+  return std::ranges::any_of(edges_, [&](const Edge& edge) { return edge.link == link && edge.joins(); });
+}
+
 std::size_t LinkGraph::up_count() const noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(edges_, &Edge::up));
 }

@@ -32,6 +32,10 @@ class LinkGraph {
   };
   [[nodiscard]] std::vector<HalfHeld> half_held() const;
   [[nodiscard]] bool is_up(std::uint8_t link) const noexcept;
+  /// Whether this end of it has not let go yet.
+  [[nodiscard]] bool holds(std::uint8_t link, std::uint16_t apid) const noexcept;
+  /// Whether either end has not: it joins them still.
+  [[nodiscard]] bool is_held(std::uint8_t link) const noexcept;
   [[nodiscard]] std::size_t up_count() const noexcept;
   [[nodiscard]] std::size_t defined_count() const noexcept { return edges_.size(); }
   /// The real-time network of a subsystem: all that are transitively connected to it by links that are up or that one end

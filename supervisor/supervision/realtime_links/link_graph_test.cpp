@@ -93,6 +93,25 @@ TEST_F(LinkGraphTest, ALinkOfNoUseIsHeldByBothUntilTheySayOtherwise) {
   EXPECT_THAT(network_of(14), ElementsAre(14, 15));
 }
 
+TEST_F(LinkGraphTest, ALinkIsHeldAsLongAsOneEndHoldsIt) {
+  for (const auto& [first, second] : {std::pair{12, 13}, std::pair{13, 12}}) {
+    const auto holds = [&](int apid) { return graph.holds(3, static_cast<std::uint16_t>(apid)); };
+    EXPECT_FALSE(graph.is_held(3));
+    graph.set_up(3, true);
+    EXPECT_TRUE(holds(first) && holds(second));
+    EXPECT_FALSE(holds(11)) << "who is no end of it";
+    let_go(3, first);
+    EXPECT_FALSE(holds(first));
+    EXPECT_TRUE(holds(second) && graph.is_held(3));
+    let_go(3, second);
+    EXPECT_FALSE(holds(second) || graph.is_held(3));
+  }
+  graph.set_up(3, true);
+  graph.forget(3);
+  EXPECT_FALSE(graph.is_held(3));
+  EXPECT_FALSE(graph.is_held(9));
+}
+
 TEST_F(LinkGraphTest, WhoIsGoneIsJoinedToNobody) {
   for (const int link : {1, 3, 4}) graph.set_up(static_cast<std::uint8_t>(link), true);
   graph.let_go(1, 12);

@@ -26,7 +26,7 @@ constexpr Duration stage_limit = 2s;
 
 bool LinkHandling::establish(std::uint8_t id, TimePoint now, Done done) {
   const auto* link = mission_.find_link(id);
-  if (link == nullptr || graph_.is_up(id) || handshakes_.contains(id)) return false;
+  if (link == nullptr || graph_.is_up(id) || handshakes_.contains(id) || releases(id)) return false;
   const auto* from = mission_.find_subsystem(link->from);
   const auto* to = mission_.find_subsystem(link->to);
   if (from == nullptr || to == nullptr) return false;
@@ -42,14 +42,16 @@ bool LinkHandling::establish(std::uint8_t id, TimePoint now, Done done) {
   return true;
 }
 
-bool LinkHandling::release(std::uint8_t link, Done done) {
-  if (!graph_.is_up(link) || releases_.contains(link)) return false;
+bool LinkHandling::release(std::uint8_t link, ReleaseDone done) {
+  // One that a single end still holds may be released again: an earlier release may have ended without that end.
+  if (!graph_.is_held(link) || releases(link) || handshakes_.contains(link)) return false;
   const auto* described = mission_.find_link(link);
   releases_[link].done = std::move(done);
   const std::array data{std::byte{link}};
   // The consumer first, so that it never sees a producer that left.
-  operator_.send_link_command(mission_.find_subsystem(described->to)->subsystem.id, st128::detach, data, {});
-  operator_.send_link_command(mission_.find_subsystem(described->from)->subsystem.id, st128::detach, data, {});
+  for (const std::string& name : {described->to, described->from})
+    if (const std::uint16_t end = mission_.find_subsystem(name)->subsystem.id; graph_.holds(link, end))
+      operator_.send_link_command(end, st128::detach, data, {});
   return true;
 }
 
@@ -94,7 +96,7 @@ void LinkHandling::detached(std::uint8_t link, std::uint16_t from) {
   const auto found = handshakes_.find(link);
   if (found == handshakes_.end()) down(link, "detached by " + std::to_string(from));
   graph_.let_go(link, from);
-  if (found == handshakes_.end()) return;
+  if (found == handshakes_.end()) return end_releases();
   // Reports of one subsystem come in order: a producer that attached in this handshake and detached since has left it.
   // Before that the report is a late one of the link's earlier life.
   const Handshake& handshake = found->second;
@@ -183,12 +185,21 @@ std::optional<LinkGlance> LinkHandling::glance(std::uint8_t link) const noexcept
 }
 
 void LinkHandling::down(std::uint8_t link, const std::string& why) {
-  if (graph_.is_up(link)) {
-    graph_.set_up(link, false);
-    views_.erase(link);
-    operator_.link_changed(*mission_.find_link(link), false, why);
+  if (!graph_.is_up(link)) return;
+  graph_.set_up(link, false);
+  views_.erase(link);
+  operator_.link_changed(*mission_.find_link(link), false, why);
+}
+
+void LinkHandling::end_releases() {
+  std::vector<ReleaseDone> ended;
+  for (auto entry = releases_.begin(); entry != releases_.end();) {
+    const bool over = !graph_.is_held(entry->first);
+    if (over) ended.push_back(std::move(entry->second.done));
+    entry = over ? releases_.erase(entry) : std::next(entry);
   }
-  if (auto release = releases_.extract(link); !release.empty() && release.mapped().done) release.mapped().done(true);
+  for (const ReleaseDone& done : ended)
+    if (done) done(Released::ByBoth);
 }
 
 bool LinkHandling::is_end_of(std::uint8_t link, std::uint16_t apid) const {
@@ -200,6 +211,9 @@ bool LinkHandling::is_end_of(std::uint8_t link, std::uint16_t apid) const {
 }
 
 void LinkHandling::failed(std::uint16_t apid, std::uint8_t subtype, std::uint8_t link, const std::string& why) {
+  // Who has let go since refuses nothing: it has nothing left to let go of.
+  if (const auto release = releases_.find(link); release != releases_.end())
+    release->second.refused |= subtype == st128::detach && graph_.holds(link, apid);
   const auto found = handshakes_.find(link);
   if (found == handshakes_.end()) return;
   Handshake& handshake = found->second;
@@ -219,6 +233,7 @@ void LinkHandling::forget(std::uint16_t apid) {
   for (const std::uint8_t link : broken) give_up(link, "a partner is gone", apid);
   for (const std::uint8_t link : graph_.links_of(apid)) down(link, "subsystem " + std::to_string(apid) + " is gone");
   graph_.forget_all_of(apid);
+  end_releases();
 }
 
 void LinkHandling::step(TimePoint now) {
@@ -227,16 +242,17 @@ void LinkHandling::step(TimePoint now) {
     if (!handshake.failure.empty()) over[link] = handshake.failure;
     else if (now > handshake.deadline) over[link] = "time limit of the handshake";
   for (const auto& [link, why] : over) give_up(link, why);
-  std::vector<Done> unanswered;
+  end_releases();
+  std::vector<Release> failed;
   for (auto entry = releases_.begin(); entry != releases_.end();) {
     Release& release = entry->second;
     if (release.deadline == TimePoint{}) release.deadline = now + stage_limit;
-    const bool late_now = now > release.deadline;
-    if (late_now) unanswered.push_back(std::move(release.done));
-    entry = late_now ? releases_.erase(entry) : std::next(entry);
+    const bool ends = release.refused || now > release.deadline;
+    if (ends) failed.push_back(std::move(release));
+    entry = ends ? releases_.erase(entry) : std::next(entry);
   }
-  for (const Done& done : unanswered)
-    if (done) done(false);
+  for (const Release& each : failed)
+    if (each.done) each.done(each.refused ? Released::Refused : Released::Unanswered);
 }
 
 }  // namespace hirosco::supervisor

@@ -32,28 +32,34 @@ class LinkOperator {
 
 class LinkHandling {
  public:
-  /// Called once with the outcome of an establish or release.
+  /// Called once with the outcome of an establish.
   using Done = std::function<void(bool success)>;
+  /// How a release ended: nobody holds the link any more, an end refused to let go, or one said nothing in its time.
+  enum class Released : std::uint8_t { ByBoth, Refused, Unanswered };
+  using ReleaseDone = std::function<void(Released)>;
 
   LinkHandling(const descriptor::Mission& mission, LinkGraph& graph, MemoryProvider& memory, LinkMechanisms mechanisms,
                LinkOperator& supervisor)
       : mission_{mission}, memory_{memory}, mechanisms_{mechanisms}, operator_{supervisor}, graph_{graph} {}
 
   [[nodiscard]] const LinkGraph& graph() const noexcept { return graph_; }
-  /// Begins the handshake. False: unknown link, already up, or a handshake of it is under way.
+  /// Begins the handshake. False: unknown link, already up, being released, or a handshake of it is under way.
   [[nodiscard]] bool establish(std::uint8_t link, TimePoint now, Done done);
-  /// Takes a link down at both ends. False: it is not up, or being taken down already.
-  [[nodiscard]] bool release(std::uint8_t link, Done done);
+  /// Takes a link down at whichever end holds it, and ends when none does. False: nobody holds it, it is being taken down
+  /// already, or a handshake of it is under way.
+  [[nodiscard]] bool release(std::uint8_t link, ReleaseDone done);
+  /// A release of it is under way.
+  [[nodiscard]] bool releases(std::uint8_t link) const { return releases_.contains(link); }
   /// How a link does. Empty: it is not up, nothing was produced yet, or it cannot be seen.
   [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept;
   /// Reports of service 128.
   void handle(std::uint16_t from, const pus::TelemetryView& report);
-  /// What was sent for a handshake, TC[128,subtype], did not reach its addressee or failed there: the handshake ends with the
+  /// What was sent for a handshake or a release, TC[128,subtype], did not reach its addressee or failed there: it ends with the
   /// next step().
   void failed(std::uint16_t apid, std::uint8_t subtype, std::uint8_t link, const std::string& why);
   /// A subsystem is gone without reporting: all its links are down.
   void forget(std::uint16_t apid);
-  /// Time limits of handshakes.
+  /// Time limits of handshakes and releases, and releases whose ends have gone without a word.
   void step(TimePoint now);
 
  private:
@@ -78,6 +84,8 @@ class LinkHandling {
   /// Ends a handshake; `without`: the partner that needs no word of it because it refused, left or died.
   void give_up(std::uint8_t link, const std::string& why, std::uint16_t without = 0);
   void down(std::uint8_t link, const std::string& why);
+  /// Those whose link nobody holds any more, however that came about.
+  void end_releases();
   [[nodiscard]] bool is_end_of(std::uint8_t link, std::uint16_t apid) const;
 
   const descriptor::Mission& mission_;
@@ -88,8 +96,9 @@ class LinkHandling {
   std::map<std::uint8_t, Handshake> handshakes_;
   std::map<std::uint8_t, std::unique_ptr<LinkView>> views_;  ///< of links that are up
   struct Release {
-    Done done;
+    ReleaseDone done;
     TimePoint deadline{};  ///< set by the first step() after it was asked for
+    bool refused{false};  ///< by an end that holds on
   };
   std::map<std::uint8_t, Release> releases_;
   std::uint32_t epoch_{0};

@@ -19,6 +19,7 @@ using testing::camera;
 using ::testing::ElementsAre;
 using testing::hand;
 using ::testing::IsEmpty;
+using enum LinkHandling::Released;
 
 /// Writes down what link handling does: "11<-1" is TC[128,1] to subsystem 11, "+" behind it memory beside the packet.
 struct Operator final : LinkOperator {
@@ -45,6 +46,7 @@ struct LinkHandlingTest : ::testing::Test {
   LinkGraph graph{mission};
   LinkHandling links{mission, graph, memory, standard_link_mechanisms(), supervisor};
   std::vector<bool> ends;
+  std::vector<LinkHandling::Released> released;
   TimePoint now{};
   const st128::Offer offer{.set = "HAND_STATE", .period = 1ms, .terms = {}, .fields = {{"ANGLE", Type::Double, 2}}};
   const st128::Agreement agreement{
@@ -53,6 +55,9 @@ struct LinkHandlingTest : ::testing::Test {
 
   LinkHandling::Done done() {
     return [this](bool success) { ends.push_back(success); };
+  }
+  LinkHandling::ReleaseDone on_release() {
+    return [this](LinkHandling::Released how) { released.push_back(how); };
   }
   void report(std::uint16_t from, std::uint8_t subtype, Octets data) {
     std::array<std::byte, 4096> buffer{};
@@ -268,27 +273,109 @@ TEST_F(LinkHandlingTest, TheDeathOfAPartnerTakesItsLinksDown) {
   EXPECT_EQ(supervisor.changes.back(), "2 down: subsystem 11 is gone");
 }
 
-TEST_F(LinkHandlingTest, ReleaseDetachesTheConsumerFirst) {
-  advance(4);
-  supervisor.take();
-  ends.clear();
-  ASSERT_TRUE(links.release(2, done()));
+struct ReleaseOfALink : LinkHandlingTest {
+  void SetUp() override {
+    advance(4);
+    supervisor.take();
+    ASSERT_TRUE(links.release(2, on_release()));
+    links.step(now);
+  }
+  void leaves(std::uint16_t end) { detaches(end, end == arm ? Role::Consumer : Role::Producer); }
+};
+
+TEST_F(ReleaseOfALink, DetachesTheConsumerFirst) {
   EXPECT_THAT(supervisor.take(), ElementsAre("10<-4", "11<-4"));
-  EXPECT_FALSE(links.release(2, done()));
-  detaches(arm, Role::Consumer);
-  EXPECT_FALSE(links.graph().is_up(2));
-  detaches(hand, Role::Producer);
-  EXPECT_THAT(ends, ElementsAre(true));
-  EXPECT_FALSE(links.release(2, done()));
+  EXPECT_FALSE(links.release(2, on_release()));
 }
 
-TEST_F(LinkHandlingTest, AReleaseThatNobodyAnswersFails) {
-  advance(4);
-  ends.clear();
-  ASSERT_TRUE(links.release(2, done()));
+TEST_F(ReleaseOfALink, EndsWhenBothEndsHaveLetGoAndNotBefore) {
+  for (const auto& [first, second] : {std::pair{arm, hand}, std::pair{hand, arm}}) {
+    leaves(first);
+    links.step(now);
+    EXPECT_FALSE(links.graph().is_up(2)) << "of no use from now on";
+    EXPECT_THAT(released, IsEmpty());
+    leaves(first);
+    EXPECT_THAT(released, IsEmpty()) << "the same one twice";
+    leaves(second);
+    EXPECT_THAT(released, ElementsAre(ByBoth));
+    EXPECT_FALSE(links.release(2, on_release())) << "there is nothing left to release";
+    released.clear();
+    advance(4);
+    ASSERT_TRUE(links.release(2, on_release()));
+  }
+}
+
+TEST_F(ReleaseOfALink, EndsWithTheDeathOfEitherEnd) {
+  for (const std::uint16_t dead : {arm, hand})
+    for (const bool other_let_go : {false, true}) {
+      if (other_let_go) leaves(dead == arm ? hand : arm);
+      links.forget(camera);
+      EXPECT_THAT(released, IsEmpty());
+      links.forget(dead);
+      EXPECT_THAT(released, ElementsAre(ByBoth)) << dead << other_let_go;
+      released.clear();
+      advance(4);
+      ASSERT_TRUE(links.release(2, on_release()));
+    }
+}
+
+TEST_F(ReleaseOfALink, EndsWithTheNextStepWhereTheGraphHasForgottenTheLink) {
+  leaves(hand);
+  graph.forget(2);
+  EXPECT_THAT(released, IsEmpty());
   links.step(now);
+  EXPECT_THAT(released, ElementsAre(ByBoth));
+}
+
+TEST_F(ReleaseOfALink, FailsOnceAnEndThatHoldsOnRefuses) {
+  leaves(arm);
+  links.failed(arm, st128::detach, 2, "it has let go already");
+  links.failed(hand, st128::detach, 1, "of another link");
+  links.failed(hand, st128::attach, 2, "of an earlier handshake");
+  links.step(now);
+  EXPECT_THAT(released, IsEmpty());
+  links.failed(hand, st128::detach, 2, "unknown identifier");
+  EXPECT_THAT(released, IsEmpty()) << "not before the step: who asked for it may not have its answer yet";
+  links.step(now);
+  EXPECT_THAT(released, ElementsAre(Refused));
+}
+
+TEST_F(ReleaseOfALink, FailsAtItsTimeLimitWhicheverEndSaysNothing) {
+  for (const std::vector<std::uint16_t>& left : {std::vector<std::uint16_t>{}, {arm}, {hand}}) {
+    for (const std::uint16_t end : left) leaves(end);
+    links.step(now + 2s);
+    EXPECT_THAT(released, IsEmpty());
+    links.step(now + 2s + 1ns);
+    EXPECT_THAT(released, ElementsAre(Unanswered));
+    for (const std::uint16_t end : {arm, hand}) leaves(end);
+    EXPECT_EQ(released.size(), 1U) << "late answers end nothing twice";
+    released.clear();
+    advance(4);
+    ASSERT_TRUE(links.release(2, on_release()));
+    links.step(now);
+  }
+}
+
+TEST_F(ReleaseOfALink, MayBeAskedForAgainOfTheEndThatStillHoldsOn) {
+  leaves(arm);
   links.step(now + 1min);
-  EXPECT_THAT(ends, ElementsAre(false));
+  EXPECT_THAT(released, ElementsAre(Unanswered));
+  supervisor.take();
+  ASSERT_TRUE(links.release(2, on_release()));
+  EXPECT_THAT(supervisor.take(), ElementsAre("11<-4"));
+  leaves(hand);
+  EXPECT_THAT(released, ElementsAre(Unanswered, ByBoth));
+}
+
+TEST_F(ReleaseOfALink, NoHandshakeOfItBeginsBeforeItHasEndedNorAReleaseInAHandshake) {
+  EXPECT_FALSE(links.establish(2, now, done()));
+  leaves(arm);
+  EXPECT_TRUE(links.releases(2));
+  EXPECT_FALSE(links.establish(2, now, done())) << "the other end would refuse it";
+  links.step(now + 1min);
+  EXPECT_FALSE(links.releases(2));
+  EXPECT_TRUE(links.establish(2, now, done()));
+  EXPECT_FALSE(links.release(2, on_release()));
 }
 
 TEST_F(LinkHandlingTest, OnlyAnEndOfTheLinkCanReportItDetached) {
@@ -310,11 +397,13 @@ TEST_F(LinkHandlingTest, AProducerThatLeavesBeforeTheConsumerCameEndsTheHandshak
   EXPECT_THAT(ends, ElementsAre(false));
 }
 
-/// Both ends report their detachment; the second report may come when the link is already made anew.
+/// Both ends report their detachment; the second report may come when its release has failed and the link is made anew.
 TEST_F(LinkHandlingTest, ALateReportOfTheEarlierLifeDoesNotEndANewHandshake) {
   advance(4);
   ASSERT_TRUE(links.release(2, {}));
   detaches(arm, Role::Consumer);
+  links.step(now);
+  links.step(now + 1min);
   advance(1);
   detaches(hand, Role::Producer);
   agrees();

@@ -7,17 +7,22 @@
 namespace hirosco::supervisor {
 
 void Links::provide() {
-  own_.on_function("LINK", [this](double link, Call call) -> Outcome {
-    const bool begun = handling_.establish(static_cast<std::uint8_t>(link), craft_.now, [this, call](bool success) {
+  own_.on_function("LINK", [this](double number, Call call) -> Outcome {
+    const auto link = static_cast<std::uint8_t>(number);
+    if (handling_.releases(link))
+      return refused(pus::FailureCode::WrongStatus, "an end has not let go since UNLINK of link", link);
+    const bool begun = handling_.establish(link, craft_.now, [this, call](bool success) {
       if (success) own_.finish(call);
       else own_.abort(call, pus::FailureCode::ExecutionError);
     });
     return begun ? running : refused(pus::FailureCode::WrongStatus);
   });
   own_.on_function("UNLINK", [this](double link, Call call) -> Outcome {
-    const bool begun = handling_.release(static_cast<std::uint8_t>(link), [this, call](bool success) {
-      if (success) own_.finish(call);
-      else own_.abort(call, pus::FailureCode::Timeout);
+    using enum LinkHandling::Released;
+    const bool begun = handling_.release(static_cast<std::uint8_t>(link), [=, this](LinkHandling::Released how) {
+      if (how == ByBoth) return own_.finish(call);
+      const auto code = how == Refused ? pus::FailureCode::ExecutionError : pus::FailureCode::Timeout;
+      own_.abort(call, code, "an end has not let go of link", static_cast<std::int64_t>(link));
     });
     return begun ? running : refused(pus::FailureCode::WrongStatus);
   });
@@ -30,9 +35,9 @@ void Links::hear(std::uint16_t from, const pus::TelemetryView& report) {
 /// Whom a fence reaches ends with what it is for: who has left a link by the way of its states is joined to nobody by it, though
 /// the other end holds on to its memory until its own configuration ends, or never says that it has let go.
 void Links::watch(TimePoint now) {
-  handling_.step(now);
   for (const LinkGraph::HalfHeld& half : graph_.half_held())
     if (has_left(half.gone, half.link) || has_left(half.holder, half.link)) graph_.forget(half.link);
+  handling_.step(now);
 }
 
 bool Links::has_left(std::uint16_t apid, std::uint8_t link) const {

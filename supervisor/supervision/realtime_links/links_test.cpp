@@ -77,11 +77,80 @@ TEST_F(LinksTest, UnlinkEndsWhenBothHaveLetGo) {
   EXPECT_THAT(texts(arm), ElementsAre("TC[128,4]"));
   EXPECT_THAT(texts(hand), ElementsAre("TC[128,4]"));
   says(arm, st128::detached, st128::Role::Consumer);
+  parts.links.watch(clock.now());
+  own_step();
+  own_step();
+  EXPECT_EQ(own_end, "") << "one of them still holds it";
+  EXPECT_FALSE(parts.graph.is_up(2));
   says(hand, st128::detached, st128::Role::Producer);
   own_step();
   own_step();
   EXPECT_EQ(own_end, "done");
-  EXPECT_FALSE(parts.graph.is_up(2));
+}
+
+/// UNLINK of link 2 under way, and ARM has let go of it.
+struct HalfOfAnUnlink : LinksTest {
+  void SetUp() override {
+    LinksTest::SetUp();
+    bring_up();
+    own_end.clear();
+    EXPECT_EQ(call_own("UNLINK", 2), "");
+    detach = received(hand).front().request;
+    static_cast<void>(texts(arm));
+    says(arm, st128::detached, st128::Role::Consumer);
+  }
+  /// How it has ended by now.
+  std::string end() {
+    parts.links.watch(clock.now());
+    own_step();
+    own_step();
+    return std::exchange(own_end, {});
+  }
+  std::uint32_t detach{};
+};
+
+TEST_F(HalfOfAnUnlink, EndsWhenTheOtherEndIsOfflineThoughItSaidNothing) {
+  EXPECT_EQ(end(), "");
+  set(hand, Offline);
+  EXPECT_EQ(end(), "done");
+}
+
+TEST_F(HalfOfAnUnlink, EndsWhenTheOtherEndIsConfiguredForSomethingElse) {
+  set(hand, PreOperational, 2);
+  EXPECT_EQ(end(), "done");
+}
+
+TEST_F(HalfOfAnUnlink, EndsWhenTheOtherEndDies) {
+  ends[played[hand].process] = {.by_signal = true, .value = 9};
+  parts.processes.watch(clock.now());
+  EXPECT_EQ(end(), "done");
+}
+
+TEST_F(HalfOfAnUnlink, FailsWhenTheOtherEndRefuses) {
+  verify(hand, detach, 4, pus::FailureCode::UnknownIdentifier);
+  EXPECT_EQ(end(), to_text(pus::FailureCode::ExecutionError));
+}
+
+TEST_F(HalfOfAnUnlink, FailsInTimeWhenTheOtherEndSaysNothing) {
+  EXPECT_EQ(end(), "");
+  wait(2100ms);
+  EXPECT_EQ(end(), to_text(pus::FailureCode::Timeout));
+}
+
+TEST_F(HalfOfAnUnlink, RefusesALinkMeanwhileAndSaysWhy) {
+  std::string how;
+  parts.own_telecommands.command(supervisor_apid, "LINK", 2,
+                                 [&](bool success, const std::string& why) { how = success ? "done" : why; });
+  for (int step = 0; step < 50 && how.empty(); ++step) own_step();
+  EXPECT_EQ(how, to_text(pus::FailureCode::WrongStatus));
+  const auto reason = pus::reason_in(Octets{last_routed[1]}.subspan(6));
+  ASSERT_TRUE(reason);
+  EXPECT_EQ(reason->text, "an end has not let go since UNLINK of link");
+  EXPECT_EQ(reason->number, 2);
+  says(hand, st128::detached, st128::Role::Producer);
+  EXPECT_EQ(end(), "done");
+  bring_up();
+  EXPECT_EQ(own_end, "done");
 }
 
 TEST_F(LinksTest, WhatIsNotUpCannotBeTakenDown) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct PlayedDesk final : CommandDesk {
     std::string text = std::to_string(apid);
     text.append(1, ' ').append(function);
     if (argument) text.append(1, ' ').append(std::to_string(static_cast<int>(*argument)));
+    if (on_command) on_command();
     sent.push_back(text);
     answers.push_back(std::move(done));
     if (at_once) answers.back()(*at_once, "at once");
@@ -32,6 +34,7 @@ struct PlayedDesk final : CommandDesk {
   std::vector<std::string> sent;
   std::vector<CommandDone> answers;
   std::optional<bool> at_once;
+  std::function<void()> on_command{};  ///< looks at what holds when something is sent
 };
 
 }  // namespace hirosco::supervisor::testing
