@@ -65,7 +65,7 @@ void Supervisor::keeper_stands_still() {
 }
 
 bool Supervisor::finished() const noexcept { return parts_->shutdown.finished(); }
-bool Supervisor::succeeded() const noexcept { return !parts_->craft.failed; }
+bool Supervisor::succeeded() const noexcept { return !parts_->craft.failed(); }
 bool Supervisor::commissioned() const noexcept { return parts_->commissioning.succeeded(); }
 std::string Supervisor::waiting_for() const {
   return parts_->craft.shutting_down ? parts_->shutdown.waiting_for() : parts_->commissioning.waiting_for();

@@ -47,8 +47,14 @@ struct Craft {
   std::uint32_t mode_epoch{1};
   TimePoint now{};
   bool shutting_down{false};
-  bool failed{false};  ///< commissioning failed, or something that the end is not orderly without
   bool restoring_ground_link{false};
+
+  /// Commissioning failed, or something that the end is not orderly without: nothing takes that back.
+  void fail() noexcept { failed_ = true; }
+  [[nodiscard]] bool failed() const noexcept { return failed_; }
+
+ private:
+  bool failed_{false};
 };
 
 }  // namespace hirosco::supervisor

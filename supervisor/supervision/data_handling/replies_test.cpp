@@ -250,11 +250,11 @@ TEST_F(RepliesTest, WhoHasFailedOrIsOnItsWayDownCommandsNobodyButTowardsSafety) 
     ask();
     EXPECT_THAT(texts(arm), ElementsAre("MOVE_TO")) << static_cast<int>(state);
   }
-  craft.member(hand)->recovering = Severity::Low;
+  craft.member(hand)->recovery.plan_begins(Severity::Low);
   ask();
   EXPECT_THAT(texts(arm), IsEmpty());
-  craft.member(hand)->recovered(Severity::Low);
-  craft.member(hand)->going_down = true;
+  craft.member(hand)->recovery.plan_ended(Severity::Low);
+  ASSERT_TRUE(craft.member(hand)->recovery.goes_down());
   ask();
   EXPECT_THAT(texts(arm), IsEmpty());
 }

@@ -132,14 +132,14 @@ std::expected<Permitted, FailureNotice> Telecommands::judge(const pus::Telecomma
   if (craft_.shutting_down) return std::unexpected{FailureNotice{FailureCode::NotPermittedNow}};
   // What a recovery has stopped is not released by a command that crosses it, nor who cannot hear it.
   if (const Member* addressee = std::as_const(craft_).member(telecommand.apid());
-      addressee != nullptr && addressee->alive() && (addressee->recovering || addressee->closed_at))
+      addressee != nullptr && addressee->alive() && (addressee->recovery.running() || addressee->closed_at))
     return std::unexpected{FailureNotice{FailureCode::WrongState}};
   return decision;
 }
 
 bool Telecommands::is_sound(std::uint16_t apid) const {
   const Member* member = std::as_const(craft_).member(apid);
-  if (member == nullptr || member->recovering || member->going_down) return false;
+  if (member == nullptr || member->recovery.running()) return false;
   const auto state = member->state();
   using enum descriptor::State;
   return state == PreOperational || state == SafeOperational || state == Operational;

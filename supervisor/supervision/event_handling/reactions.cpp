@@ -63,7 +63,7 @@ void Reactions::react(Member& origin, std::string_view event, Severity told) {
   const auto [severity, steps] = answer_to(origin, event, told);
   if (steps.empty()) return;
   // One plan at a time for a subsystem; only something worse overrides it.
-  if (origin.recovering && *origin.recovering >= severity && !is_loss(event)) return;
+  if (origin.recovery.outweighs(severity) && !is_loss(event)) return;
   begin(origin, severity, steps, [this, apid = origin.apid()](const ProcedureEnd& end) {
     Member* subject = craft_.member(apid);
     if (end.success || !subject->alive()) return;
@@ -92,14 +92,12 @@ void Reactions::begin(Member& subject, Severity severity, const Stage& steps,
                       std::function<void(const ProcedureEnd&)> finished) {
   const bool holds = std::ranges::any_of(
       steps, [](const ProcedureStep& each) { return each.kind->holds == StepKind::Holds::Subject; });
-  if (holds) subject.recovering = severity;
+  if (holds) subject.recovery.plan_begins(severity);
   Procedure procedure;
   for (const ProcedureStep& each : steps) procedure.stages.push_back({each});
   procedure.finished = [this, apid = subject.apid(), severity, holds,
                         finished = std::move(finished)](const ProcedureEnd& end) {
-    // One that goes down with its network is not recovered by the end of something else.
-    Member* again = craft_.member(apid);
-    if (holds && !again->going_down) again->recovered(severity);
+    if (holds) craft_.member(apid)->recovery.plan_ended(severity);
     if (finished) finished(end);
   };
   Engine{means_}.start(std::move(procedure));
@@ -115,9 +113,9 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
   if (craft_.shutting_down || std::ranges::none_of(reaction.steps, acts)) return;
   craft_.tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event},
               supervisor_apid);
-  if (means_.commissioning.cancel("plan " + std::string{reaction.plan})) craft_.failed = true;
+  if (means_.commissioning.cancel("plan " + std::string{reaction.plan})) craft_.fail();
   for (Member& subject : craft_.members) {
-    if (!subject.alive() || craft_.is_ground_link(subject) || subject.recovering) continue;
+    if (!subject.alive() || craft_.is_ground_link(subject) || subject.recovery.running()) continue;
     const Stage steps = steps_for(subject, reaction, event, {std::string{reaction.plan}});
     if (!steps.empty()) begin(subject, severity, steps, nullptr);
   }

@@ -66,7 +66,7 @@ TEST_F(ReactionsTest, WhoObeyedIsBroughtToOperationalAgainInTheOrdinaryWay) {
   event(arm, hot, Severity::Medium);
   obey(arm);
   EXPECT_TRUE(guard.fenced(arm)) << "until it is let go";
-  EXPECT_FALSE(craft.member(arm)->recovering);
+  EXPECT_FALSE(craft.member(arm)->recovery.running());
   parts.own_telecommands.command(arm, "SET_STATE", static_cast<double>(Operational), nullptr);
   parts.telecommands.forward_durable();
   EXPECT_THAT(texts(arm), ElementsAre(to(Operational)));
@@ -104,8 +104,8 @@ TEST_F(ReactionsTest, EachOfANetworkGoesItsOwnWayDown) {
   event(arm, burning, Severity::High);
   obey(hand);
   EXPECT_TRUE(was_told("HAND is Offline"));
-  EXPECT_FALSE(craft.member(hand)->recovering);
-  EXPECT_TRUE(craft.member(arm)->recovering) << "it has not answered";
+  EXPECT_FALSE(craft.member(hand)->recovery.running());
+  EXPECT_TRUE(craft.member(arm)->recovery.running()) << "it has not answered";
   completed(arm, 8);
   EXPECT_THAT(texts(arm), ElementsAre(to(Offline))) << "whatever became of the first step";
 }
@@ -160,12 +160,12 @@ TEST_F(ReactionsTest, TheStepsOfAPlanAreTakenOneAfterTheOther) {
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].text, to(ErrorOperational));
   verify(arm, sent[0].request, 7);
-  EXPECT_TRUE(craft.member(arm)->recovering);
+  EXPECT_TRUE(craft.member(arm)->recovery.running());
   sent = received(arm);
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].text, to(PostOperational));
   verify(arm, sent[0].request, 7);
-  EXPECT_FALSE(craft.member(arm)->recovering);
+  EXPECT_FALSE(craft.member(arm)->recovery.running());
 }
 
 TEST_F(ReactionsTest, AStopThatIsTheLastStepOfAPlanIsDoneAtOnceAllTheSame) {

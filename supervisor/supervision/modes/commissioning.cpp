@@ -14,7 +14,7 @@ void Commissioning::start(std::function<void()> failed) {
   engine_.start({.stages = way.stages(), .finished = [this, failed = std::move(failed)](const ProcedureEnd& end) {
                    if (!end.success) {
                      craft_.tell("supervisor cannot start: " + end.text(), supervisor_apid);
-                     craft_.failed = true;
+                     craft_.fail();
                      return failed();
                    }
                    if (const auto* start_mode = craft_.mission.find_mode(craft_.mission.start_mode))
@@ -46,7 +46,7 @@ void Commissioning::ended(const descriptor::Mode& start_mode, const std::string&
   succeeded_ = missing.empty();
   if (succeeded_) return craft_.tell("commissioned: mode " + craft_.mode->name);
   craft_.tell("commissioning stopped: " + missing);
-  craft_.failed = true;
+  craft_.fail();
 }
 
 bool Commissioning::cancel(std::string_view why) {

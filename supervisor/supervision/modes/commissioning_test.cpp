@@ -43,7 +43,7 @@ TEST_F(CommissioningTest, TheSupervisorComesFirstThenAllMembersStageByStageThenT
                                      "10 SET_STATE 4", "12 SET_STATE 4", "10 SET_STATE 5", "1 SET_MODE 1"));
   EXPECT_TRUE(commissioning.succeeded());
   EXPECT_TRUE(was_told("commissioned: mode open"));
-  EXPECT_FALSE(craft.failed);
+  EXPECT_FALSE(craft.failed());
 }
 
 TEST_F(CommissioningTest, WhoWasTakenDownAfterItsOwnStepIsMissed) {
@@ -53,7 +53,7 @@ TEST_F(CommissioningTest, WhoWasTakenDownAfterItsOwnStepIsMissed) {
   answer_all();
   EXPECT_FALSE(commissioning.succeeded());
   EXPECT_TRUE(was_told("commissioning stopped: CAMERA is not SafeOperational"));
-  EXPECT_TRUE(craft.failed);
+  EXPECT_TRUE(craft.failed());
 }
 
 TEST_F(CommissioningTest, AMemberThatFailsEndsIt) {
@@ -63,7 +63,7 @@ TEST_F(CommissioningTest, AMemberThatFailsEndsIt) {
   answer_all();
   EXPECT_FALSE(commissioning.running());
   EXPECT_TRUE(was_told("no hardware"));
-  EXPECT_TRUE(craft.failed);
+  EXPECT_TRUE(craft.failed());
   EXPECT_EQ(failures, 0) << "the others can be commanded";
 }
 

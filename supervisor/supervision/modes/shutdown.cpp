@@ -80,7 +80,7 @@ void Shutdown::enforce(TimePoint now) {
     for (Member& member : craft_.members)
       if (member.alive()) craft_.launcher.kill(member.process());
     engine_.cancel();
-    craft_.failed = true;
+    craft_.fail();
     end();
   }
 }

@@ -36,7 +36,7 @@ TEST_F(ShutdownTest, WhoActsIsMadeSafeFirstThenAllGoDownAndTheGroundLinkLast) {
   obey(camera);
   over();
   EXPECT_TRUE(parts.shutdown.finished());
-  EXPECT_FALSE(craft.failed);
+  EXPECT_FALSE(craft.failed());
   for (const Member& member : craft.members) EXPECT_FALSE(member.alive());
 }
 
@@ -58,7 +58,7 @@ TEST_F(ShutdownTest, WhoDoesNotAnswerIsEndedAfterFiveSecondsAndTheFlightIsNotOrd
   wait(1ms);
   over();
   EXPECT_TRUE(parts.shutdown.finished());
-  EXPECT_TRUE(craft.failed);
+  EXPECT_TRUE(craft.failed());
   EXPECT_THAT(killed, ElementsAre(arm + 1000U, hand + 1000U, camera + 1000U));
 }
 

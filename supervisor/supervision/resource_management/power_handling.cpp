@@ -75,12 +75,13 @@ void PowerHandling::shed_load() {
   const auto stays_mw = [&] {
     std::uint32_t sum_mw = ledger_.held_mw(supervisor_apid);
     for (const Member& subject : craft_.members)
-      if (!subject.going_down) sum_mw += ledger_.held_mw(subject.apid());
+      if (!subject.recovery.going_down()) sum_mw += ledger_.held_mw(subject.apid());
     return sum_mw;
   };
   for (auto subject = craft_.members.rbegin(); subject != craft_.members.rend() && stays_mw() > ledger_.budget_mw();
        ++subject) {
-    if (craft_.is_ground_link(*subject) || subject->going_down || ledger_.held_mw(subject->apid()) == 0) continue;
+    if (craft_.is_ground_link(*subject) || subject->recovery.going_down() || ledger_.held_mw(subject->apid()) == 0)
+      continue;
     reactions_.react(*subject, "LOAD_SHED", Severity::High);
   }
 }

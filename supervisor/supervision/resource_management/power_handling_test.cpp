@@ -32,18 +32,18 @@ TEST_F(PowerHandlingTest, OfABudgetThatNoLongerHoldsTheLastOfTheMissionIsShedFir
   set(arm, SafeOperational, 2);
   lower_to(90);
   EXPECT_TRUE(guard.fenced(hand));
-  EXPECT_TRUE(craft.member(hand)->going_down);
-  EXPECT_FALSE(craft.member(arm)->going_down) << "what is left fits";
+  EXPECT_TRUE(craft.member(hand)->recovery.going_down());
+  EXPECT_FALSE(craft.member(arm)->recovery.going_down()) << "what is left fits";
   lower_to(10);
-  EXPECT_TRUE(craft.member(arm)->going_down);
-  EXPECT_FALSE(craft.member(camera)->going_down);
+  EXPECT_TRUE(craft.member(arm)->recovery.going_down());
+  EXPECT_FALSE(craft.member(camera)->recovery.going_down());
 }
 
 TEST_F(PowerHandlingTest, NothingIsShedWhileTheFlightEnds) {
   start_all(SafeOperational);
   craft.shutting_down = true;
   lower_to(1);
-  EXPECT_FALSE(craft.member(hand)->going_down);
+  EXPECT_FALSE(craft.member(hand)->recovery.going_down());
 }
 
 }  // namespace

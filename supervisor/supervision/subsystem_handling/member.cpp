@@ -6,8 +6,7 @@ namespace hirosco::supervisor {
 
 void Member::started(LaunchedSubsystem launched) {
   launched_ = std::move(launched);
-  recovering.reset();
-  going_down = false;
+  recovery.started();
   closed_at.reset();
   refused = unreadable = unreadable_told = 0;
   why_unreadable = {};

@@ -10,6 +10,7 @@
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
+#include "supervisor/supervision/subsystem_handling/recovery.hpp"
 
 /// One started subsystem as the supervisor sees it: its port, whether it lives. Whether it moves, and
 /// whether it may move anything, is the guard's.
@@ -38,16 +39,8 @@ class Member {
   /// Once in each step of the supervisor.
   void beat(std::uint64_t heartbeat, TimePoint now);
 
-  /// A recovery that runs for it: a second event of the same or lower severity does not start another.
-  std::optional<descriptor::Severity> recovering;
-  /// On its way to Offline with its network; a second reason does not command it again.
-  bool going_down{false};
-  /// The end of a recovery. One of lower severity that something worse has overridden does not end that.
-  void recovered(descriptor::Severity severity) noexcept {
-    if (recovering != severity) return;
-    recovering.reset();
-    going_down = false;
-  }
+  /// What it is in the middle of.
+  Recovery recovery;
   /// Since when its channel is closed. A process that ends closes it a moment before its handle says so; one that
   /// lives on without it can be neither commanded nor heard.
   std::optional<TimePoint> closed_at;

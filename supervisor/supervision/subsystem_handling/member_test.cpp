@@ -124,12 +124,12 @@ TEST_F(MemberTest, ItsStatisticsAreEachWordOfItsVitalPage) {
 
 TEST_F(MemberTest, ADeadOneIsGoneWithItsPages) {
   start();
-  member.recovering = descriptor::Severity::High;
+  member.recovery.plan_begins(descriptor::Severity::High);
   member.died();
   EXPECT_FALSE(member.alive());
   EXPECT_EQ(member.state(), std::nullopt);
   start();
-  EXPECT_EQ(member.recovering, std::nullopt);
+  EXPECT_FALSE(member.recovery.running());
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ void Processes::start_all() {
   for (Member& member : craft_.members) {
     const std::string& name = member.descriptor().name;
     launch(member);
-    if (!member.alive()) craft_.failed = true;
+    if (!member.alive()) craft_.fail();
     for (const auto device : descriptor::actuators_without_enable(member.descriptor()))
       craft_.tell(name + "'s " + std::string{device} + " has no second inhibit: that it has stopped is known from " +
                       name + " only",

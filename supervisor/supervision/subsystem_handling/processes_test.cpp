@@ -126,7 +126,7 @@ TEST_F(ProcessesTest, AStartThatFailsIsTriedAgainWithAPauseThatDoubles) {
     EXPECT_TRUE(craft.member(apid)->alive()) << craft.name_of(apid);
   }
   EXPECT_TRUE(was_told("cannot start HAND: new process"));
-  EXPECT_FALSE(craft.failed);
+  EXPECT_FALSE(craft.failed());
 }
 
 /// ARM is down for good: its plan, which starts nobody, is over.
@@ -250,7 +250,7 @@ TEST_F(WhoStaysDown, AndIsStartedByItsPlanMeanwhileIsNotStartedTwice) {
 TEST_F(ProcessesTest, AFlightWhoseFirstStartsFailIsNotOrderly) {
   starts_that_fail = 1;
   parts.processes.start_all();
-  EXPECT_TRUE(craft.failed);
+  EXPECT_TRUE(craft.failed());
 }
 
 TEST_F(ProcessesTest, OneWhoseDevicesTheGuardCannotInhibitDoesNotFlyUntilItCan) {
@@ -267,7 +267,7 @@ TEST_F(ProcessesTest, OneWhoseDevicesTheGuardCannotInhibitDoesNotFlyUntilItCan) 
   EXPECT_EQ(played.count(hand), 0u);
   EXPECT_TRUE(craft.member(arm)->alive());
   EXPECT_TRUE(was_told("cannot hold the second inhibit of HAND's devices: "));
-  EXPECT_TRUE(craft.failed);
+  EXPECT_TRUE(craft.failed());
   EXPECT_FALSE(parts.processes.start(hand));
   EXPECT_EQ(played.count(hand), 0u);
   other->reset();

@@ -40,9 +40,9 @@ void bring_down(const Member& member, const Means& means) {
   const std::uint16_t apid = member.apid();
   const auto to_offline = [apid, means](const ProcedureEnd&) {
     Member* again = means.craft.member(apid);
-    if (!again->alive() || again->state() == State::Offline) return again->recovered(descriptor::Severity::High);
+    if (!again->alive() || again->state() == State::Offline) return again->recovery.came_down();
     Engine{means}.start(to(apid, State::Offline, [apid, means](const ProcedureEnd& end) {
-      means.craft.member(apid)->recovered(descriptor::Severity::High);
+      means.craft.member(apid)->recovery.came_down();
       means.craft.tell(means.craft.name_of(apid) + (end.success ? " is Offline" : " did not reach Offline: " + end.why),
                        apid);
     }));
@@ -60,12 +60,11 @@ void shut_down(const ProcedureStep& step, const Means& means, const CommandDone&
   const auto members = members_of(step, means);
   const std::string plan = "plan " + step.occasion.plan;
   means.craft.tell(plan + ": network {" + names(members, means.craft) + "} to ErrorOperational and down", step.subject);
-  if (means.commissioning.cancel(plan)) means.craft.failed = true;
+  if (means.commissioning.cancel(plan)) means.craft.fail();
   for (const std::uint16_t apid : members) {
     Member* member = means.craft.member(apid);
     if (member == nullptr || !member->alive()) continue;
-    member->recovering = descriptor::Severity::High;
-    if (!std::exchange(member->going_down, true)) bring_down(*member, means);
+    if (member->recovery.goes_down()) bring_down(*member, means);
   }
   done(true, {});
 }
