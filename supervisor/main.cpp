@@ -25,7 +25,7 @@
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/keeper/keeper.hpp"
-#include "supervisor/platform/launch/process_launcher.hpp"
+#include "supervisor/platform/launch/system_launcher.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/epoch_file.hpp"
 #include "supervisor/platform/storage/log_store.hpp"

@@ -13,7 +13,7 @@
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
-#include "supervisor/supervision/event_handling/stop_outcome.hpp"
+#include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
 #include "supervisor/supervision/modes/modes.hpp"
 #include "supervisor/supervision/modes/shutdown.hpp"
@@ -36,7 +36,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count} {
     // No cycle, no queue and no state of the supervisor's own holds these up.
-    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { stop_outcome.safe_all(request); });
+    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.safe_all(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
     telecommands.starts_with([this](std::uint16_t apid) { return processes.start(apid); });
   }
@@ -47,7 +47,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
     links.provide();
     log_watch.provide();
     power.provide();
-    stop_outcome.provide();
+    safe_all.provide();
     shutdown.provide();
   }
   void show() noexcept override { housekeeping.show(); }
@@ -77,11 +77,11 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Shutdown shutdown{{means, own, commissioning, telecommands}};
   // event handling
   Reactions reactions{means, own};
-  StopOutcome stop_outcome{craft, own, own_telecommands, commissioning};
+  SafeAll safe_all{craft, own, own_telecommands, commissioning};
   // subsystem handling, status
   GroundLinkCare ground_link{means, commissioning};
   Processes processes{
-      {craft, own, reception, reactions, stop_outcome, links, telecommands, own_telecommands, ground_link, restarts}};
+      {craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link, restarts}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
   std::array<Watch*, 9> watches{&processes, &ground_link,  &housekeeping,     &power,  &links,
                                 &log_watch, &telecommands, &own_telecommands, &replies};

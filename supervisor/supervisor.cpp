@@ -40,7 +40,7 @@ TimePoint Supervisor::step(TimePoint now) {
   parts_->ground_route.begin_step(now);
   for (Member& member : craft.members) parts_->reception.read(member);
   parts_->processes.watch_closed();
-  parts_->stop_outcome.follow();
+  parts_->safe_all.follow();
   parts_->telecommands.forward_durable();
   TimePoint wake = parts_->own.step(now);
   parts_->reception.read_own();

@@ -16,17 +16,19 @@ constexpr std::size_t most_findings = 1024;
 
 }  // namespace
 
-Watched* Guard::find(std::uint16_t apid) noexcept { return const_cast<Watched*>(std::as_const(*this).find(apid)); }
+GuardedMember* Guard::find(std::uint16_t apid) noexcept {
+  return const_cast<GuardedMember*>(std::as_const(*this).find(apid));
+}
 
-const Watched* Guard::find(std::uint16_t apid) const noexcept {
-  const auto found = std::ranges::find(members_, apid, &Watched::apid);
+const GuardedMember* Guard::find(std::uint16_t apid) const noexcept {
+  const auto found = std::ranges::find(members_, apid, &GuardedMember::apid);
   return found != members_.end() ? &*found : nullptr;
 }
 
 // --- the supervisor's loop ---------------------------------------------------------------------------------------------
 
 Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) {
-  Watched member;
+  GuardedMember member;
   member.described = &described;
   member.spared = spared;
   member.epoch = parts_.first_epoch;
@@ -43,7 +45,7 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
   const LockGuard lock{mutex_};
   findings_.reserve(most_findings);
   members_.push_back(std::move(member));
-  for (Watched& each : members_) each.had_then.resize(members_.size());
+  for (GuardedMember& each : members_) each.had_then.resize(members_.size());
   return ok();
 }
 
@@ -54,7 +56,7 @@ bool Guard::holds(std::uint16_t apid) const {
 
 void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   const LockGuard lock{mutex_};
-  Watched* member = find(apid);
+  GuardedMember* member = find(apid);
   if (member == nullptr || launched.vital.octets.size() < sizeof(VitalPage) ||
       launched.permit.octets.size() < sizeof(PermitPage))
     return;
@@ -63,7 +65,7 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->vital = reinterpret_cast<const VitalPage*>(launched.vital.octets.data());
   member->permit = reinterpret_cast<PermitPage*>(launched.permit.octets.data());
   member->grip = launched.grip;
-  member->taken = Watched::Taken::Nothing;
+  member->taken = GuardedMember::Taken::Nothing;
   // A device may have heard of every epoch of the process before.
   member->permit->epoch.store(++member->epoch, std::memory_order_release);
   member->released = member->seen_operational = false;
@@ -76,7 +78,7 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
 
 void Guard::forget(std::uint16_t apid) {
   const LockGuard lock{mutex_};
-  Watched* member = find(apid);
+  GuardedMember* member = find(apid);
   if (member == nullptr) return;
   member->fence();
   member->vital = nullptr;
@@ -102,24 +104,24 @@ void Guard::find_out(GuardFinding::Kind kind, std::uint16_t apid) {
 
 void Guard::fence(std::uint16_t apid) {
   const LockGuard lock{mutex_};
-  if (Watched* member = find(apid)) member->fence();
+  if (GuardedMember* member = find(apid)) member->fence();
 }
 
 std::uint64_t Guard::fences(std::uint16_t apid) const {
   const LockGuard lock{mutex_};
-  const Watched* member = find(apid);
+  const GuardedMember* member = find(apid);
   return member != nullptr ? member->fences : 0;
 }
 
 bool Guard::fenced(std::uint16_t apid) const {
   const LockGuard lock{mutex_};
-  const Watched* member = find(apid);
+  const GuardedMember* member = find(apid);
   return member != nullptr && member->permit != nullptr && member->permit->stop.load(std::memory_order_acquire) != 0;
 }
 
 bool Guard::release(std::uint16_t apid, std::uint64_t seen_fences) {
   const LockGuard lock{mutex_};
-  Watched* member = find(apid);
+  GuardedMember* member = find(apid);
   if (member == nullptr || member->permit == nullptr || member->fences != seen_fences || member->doomed) return false;
   // What is being stopped is let go again once it has stopped; what it did then is no matter of that stop any more.
   const bool stopping = stops_ended_ != stops_ && !member->spared;
@@ -141,7 +143,7 @@ std::uint64_t Guard::stop_all(GuardFinding::Kind why) {
 
 std::uint64_t Guard::stop_all() {
   const LockGuard lock{mutex_};
-  for (Watched& member : members_) {
+  for (GuardedMember& member : members_) {
     if (member.spared) continue;
     if (member.released) {
       member.stopped.reset();
@@ -153,7 +155,7 @@ std::uint64_t Guard::stop_all() {
   if (stops_ended_ == stops_) {
     stop_begun_ = parts_.clock.now();
     stop_watched_ = watched_at(stop_begun_);
-    for (Watched& member : members_) {
+    for (GuardedMember& member : members_) {
       member.stop_killed = false;
       member.stopped.reset();
       for (WatchedDevice& device : member.devices) device.stopped.reset();
@@ -166,7 +168,7 @@ std::optional<std::vector<StopAnswer>> Guard::stop_outcome(std::uint64_t stop) c
   const LockGuard lock{mutex_};
   if (stop > stops_ended_) return std::nullopt;
   std::vector<StopAnswer> answers;
-  for (const Watched& member : members_) {
+  for (const GuardedMember& member : members_) {
     if (member.spared) continue;
     const std::string& name = member.described->subsystem.name;
     for (const WatchedDevice& device : member.devices)
@@ -179,7 +181,7 @@ std::optional<std::vector<StopAnswer>> Guard::stop_outcome(std::uint64_t stop) c
 std::uint32_t Guard::highest_epoch() const {
   const LockGuard lock{mutex_};
   std::uint32_t highest = parts_.first_epoch;
-  for (const Watched& member : members_) highest = std::max(highest, member.epoch);
+  for (const GuardedMember& member : members_) highest = std::max(highest, member.epoch);
   return highest;
 }
 
@@ -194,7 +196,7 @@ TimePoint Guard::step(TimePoint now) {
     next_observation_ = watched_ + observation_period;
     observe(watched_);
   }
-  for (Watched& member : members_) {
+  for (GuardedMember& member : members_) {
     member.end_permission(watched_);
     for (WatchedDevice& device : member.devices) {
       device.hear();
@@ -217,7 +219,7 @@ TimePoint Guard::watched_at(TimePoint now) const noexcept {
 
 /// Half of the cycles that were due count: while the guard alone does not run, a computer may be busy.
 bool Guard::somebody_went_on(Duration passed) const noexcept {
-  return std::ranges::any_of(members_, [&](const Watched& member) {
+  return std::ranges::any_of(members_, [&](const GuardedMember& member) {
     const Duration sampling = member.sampling();
     if (sampling <= Duration{0} || member.vital->cycling.load(std::memory_order_acquire) == 0) return false;
     const auto went = member.vital->cycles.load(std::memory_order_acquire) - member.cycles;
@@ -237,12 +239,12 @@ void Guard::watch_supervisor(TimePoint now) {
   if (supervisor_still_ || now - *beat_seen_ < supervisor_limit) return;
   // Nobody permits, plans or tells any more: what moves is stopped, the ground link included.
   supervisor_still_ = true;
-  for (Watched& member : members_) member.fence();
+  for (GuardedMember& member : members_) member.fence();
   find_out(GuardFinding::Kind::SupervisorStill, 0);
 }
 
 void Guard::observe(TimePoint now) {
-  for (Watched& member : members_) {
+  for (GuardedMember& member : members_) {
     if (member.vital == nullptr || member.doomed) continue;
     if (member.damaged()) {
       doom(member, GuardFinding::Kind::PageDamaged, now);
@@ -253,7 +255,7 @@ void Guard::observe(TimePoint now) {
   }
 }
 
-void Guard::observe_cycle(Watched& member, TimePoint now) {
+void Guard::observe_cycle(GuardedMember& member, TimePoint now) {
   if (member.vital->cycling.load(std::memory_order_acquire) == 0) {
     member.still = 0;
     return;
@@ -269,16 +271,16 @@ void Guard::observe_cycle(Watched& member, TimePoint now) {
   if (member.still < member.hang_limit()) return;
   // A cycle that goes on and does not see what it is permitted looks somewhere else (hazard SF13).
   if (moves) return doom(member, GuardFinding::Kind::PageDamaged, now);
-  Watched& culprit = spinner(member);
-  for (Watched& other : members_) other.still = 0;  // who waited for the processor starts anew
+  GuardedMember& culprit = spinner(member);
+  for (GuardedMember& other : members_) other.still = 0;  // who waited for the processor starts anew
   doom(culprit, GuardFinding::Kind::CycleHangs, now);
 }
 
 /// All cycles of a node share one processor (adr 0007): of those that stand still it is the one that has had it.
-Watched& Guard::spinner(Watched& standing) {
-  Watched* most = &standing;
+GuardedMember& Guard::spinner(GuardedMember& standing) {
+  GuardedMember* most = &standing;
   double most_share = 0;
-  for (Watched& member : members_) {
+  for (GuardedMember& member : members_) {
     if (member.still == 0 || member.vital == nullptr || member.doomed || !member.grip) continue;
     const Duration had = member.grip->processor_time() - member.processor_time;
     const double share =
@@ -292,7 +294,7 @@ Watched& Guard::spinner(Watched& standing) {
   return most_share >= spins ? *most : standing;
 }
 
-void Guard::observe_service(Watched& member, TimePoint now) {
+void Guard::observe_service(GuardedMember& member, TimePoint now) {
   const std::uint64_t steps = member.vital->service_steps.load(std::memory_order_acquire);
   if (steps == 0) return;  // it has not begun
   if (steps != std::exchange(member.service_steps, steps)) {
@@ -311,7 +313,7 @@ void Guard::observe_service(Watched& member, TimePoint now) {
   member.asked_who_runs.reset();
 }
 
-void Guard::look_who_runs(Watched& standing, TimePoint now) noexcept {
+void Guard::look_who_runs(GuardedMember& standing, TimePoint now) noexcept {
   standing.asked_who_runs = now;
   for (std::size_t i = 0; i < members_.size(); ++i)
     standing.had_then[i] = members_[i].grip ? members_[i].grip->loop_time() : LoopTime{};
@@ -319,7 +321,7 @@ void Guard::look_who_runs(Watched& standing, TimePoint now) noexcept {
 
 /// A service loop that wants the processor and does not get it stands still for no fault of its own: the loops that have had it
 /// instead lose their real-time priority. One that waits for something else, or runs, has nobody else to blame.
-bool Guard::was_starved(Watched& standing, TimePoint now) {
+bool Guard::was_starved(GuardedMember& standing, TimePoint now) {
   if (!standing.grip) return false;
   const auto share = [span = now - *standing.asked_who_runs](Duration had, Duration before) {
     return static_cast<double>((had - before).count()) / static_cast<double>(std::max(span, period).count());
@@ -330,33 +332,33 @@ bool Guard::was_starved(Watched& standing, TimePoint now) {
   if (!own.waits || share(own.service, standing.had_then[at].service) > hardly) return false;
   bool starved = false;
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    Watched& other = members_[i];
+    GuardedMember& other = members_[i];
     if (i == at || other.vital == nullptr || other.doomed || !other.grip) continue;
     if (share(other.grip->loop_time().realtime, standing.had_then[i].realtime) < mostly) continue;
     starved = true;
     // One that has lost it once and has it again took it by itself: it is ended.
-    if (other.taken != Watched::Taken::Nothing) {
+    if (other.taken != GuardedMember::Taken::Nothing) {
       doom(other, GuardFinding::Kind::Starves, now);
       continue;
     }
-    other.take_realtime(Watched::Taken::Loops);
+    other.take_realtime(GuardedMember::Taken::Loops);
     find_out(GuardFinding::Kind::Starves, other.apid());
   }
   return starved;
 }
 
-void Guard::doom(Watched& member, GuardFinding::Kind why, TimePoint now) {
+void Guard::doom(GuardedMember& member, GuardFinding::Kind why, TimePoint now) {
   member.fence();
   // One that merely stands (SIGSTOP) keeps its priority: it takes nothing from anybody.
   const Duration had = member.grip ? member.grip->processor_time() - member.processor_time : Duration{};
   if (member.grip && (why != GuardFinding::Kind::CycleHangs || had >= observation_period))
-    member.take_realtime(Watched::Taken::All);
+    member.take_realtime(GuardedMember::Taken::All);
   member.doomed = now + grace;
   member.doom = why;
   find_out(why, member.apid());
 }
 
-void Guard::judge_doomed(Watched& member, TimePoint now) {
+void Guard::judge_doomed(GuardedMember& member, TimePoint now) {
   bool back = false;
   switch (member.doom) {
     case GuardFinding::Kind::CycleHangs:
@@ -385,7 +387,7 @@ void Guard::follow_stop(TimePoint now) {
   // How long a stop took is told in real time; who is given how long goes by what was watched.
   const Duration since = watched_ - stop_watched_;
   bool waiting = false;
-  for (Watched& member : members_) {
+  for (GuardedMember& member : members_) {
     if (member.spared || member.settled == stops_) continue;
     if (member.has_stopped()) {
       if (!member.stopped) member.stopped = now - stop_begun_;

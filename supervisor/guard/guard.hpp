@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "hirosco/utilities/os/mutex.hpp"
-#include "supervisor/guard/watched.hpp"
+#include "supervisor/guard/guarded_member.hpp"
 
 /// What stops actuators, apart from everything else of the supervisor (docs/adr/0018): it holds every permit page and the
 /// second inhibit of every device that has one, watches that cycles and service loops move, takes the processor from one
@@ -90,8 +90,8 @@ class Guard {
   TimePoint step(TimePoint now);
 
  private:
-  [[nodiscard]] Watched* find(std::uint16_t apid) noexcept;
-  [[nodiscard]] const Watched* find(std::uint16_t apid) const noexcept;
+  [[nodiscard]] GuardedMember* find(std::uint16_t apid) noexcept;
+  [[nodiscard]] const GuardedMember* find(std::uint16_t apid) const noexcept;
   void find_out(GuardFinding::Kind kind, std::uint16_t apid);
   /// The time that all judgements go by: what the guard has watched. While nobody ran (the host was stopped) nobody can be blamed for
   /// standing still, so of a longer time between two steps little counts, unless some cycle went on meanwhile.
@@ -99,18 +99,18 @@ class Guard {
   [[nodiscard]] bool somebody_went_on(Duration passed) const noexcept;
   void watch_supervisor(TimePoint now);
   void observe(TimePoint now);
-  void observe_cycle(Watched& member, TimePoint now);
-  void observe_service(Watched& member, TimePoint now);
-  [[nodiscard]] Watched& spinner(Watched& standing);
-  void look_who_runs(Watched& standing, TimePoint now) noexcept;
-  [[nodiscard]] bool was_starved(Watched& standing, TimePoint now);
-  void doom(Watched& member, GuardFinding::Kind why, TimePoint now);
-  void judge_doomed(Watched& member, TimePoint now);
+  void observe_cycle(GuardedMember& member, TimePoint now);
+  void observe_service(GuardedMember& member, TimePoint now);
+  [[nodiscard]] GuardedMember& spinner(GuardedMember& standing);
+  void look_who_runs(GuardedMember& standing, TimePoint now) noexcept;
+  [[nodiscard]] bool was_starved(GuardedMember& standing, TimePoint now);
+  void doom(GuardedMember& member, GuardFinding::Kind why, TimePoint now);
+  void judge_doomed(GuardedMember& member, TimePoint now);
   void follow_stop(TimePoint now);
 
   Parts parts_;
   mutable Mutex mutex_;
-  std::vector<Watched> members_;
+  std::vector<GuardedMember> members_;
   std::vector<GuardFinding> findings_;
   std::atomic<std::uint64_t> beats_{0};
   std::uint64_t seen_beats_{0};

@@ -13,7 +13,7 @@ from campaign import Campaign, parse  # noqa: E402
 
 SUPERVISION = "supervisor/supervision"
 TELECOMMANDS, REACTIONS = f"{SUPERVISION}/data_handling/telecommands.cpp", f"{SUPERVISION}/event_handling/reactions.cpp"
-STOPS, SHUTDOWN = f"{SUPERVISION}/event_handling/stop_outcome.cpp", f"{SUPERVISION}/modes/shutdown.cpp"
+STOPS, SHUTDOWN = f"{SUPERVISION}/event_handling/safe_all.cpp", f"{SUPERVISION}/modes/shutdown.cpp"
 REFUSED = "return refused(pus::FailureCode::ExecutionError);"
 CHOSEN = "HIROSCO_PLANTED_FINDING"  # which of them a flight has
 # {finding: (invariant, [(file, as it is, as it was where the finding is chosen)])}
@@ -51,7 +51,7 @@ PLANTS = {
          'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event')]),
     # Nothing raised the epoch on the way up: a device that had latched on the way down stayed so.
     "SF14": ("I10", [
-        ("supervisor/guard/watched.cpp", "  permit->release();",
+        ("supervisor/guard/guarded_member.cpp", "  permit->release();",
          '  if (planted("SF14")) {\n    permit->stop.store(0);\n    permit->go.store(permission_word(epoch));\n'
          "  } else {\n    permit->release();\n  }")]),
     # Nobody remembered what the dead had been asked.

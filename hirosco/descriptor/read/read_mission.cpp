@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/descriptor/model/status_rows.hpp"
 #include "hirosco/descriptor/read/detail/mission_reader.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
-#include "hirosco/descriptor/read/status_rows.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::descriptor {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/descriptor/read/status_rows.hpp"
+#include "hirosco/descriptor/model/status_rows.hpp"
 
 #include <fmt/format.h>
 

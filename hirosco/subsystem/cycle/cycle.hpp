@@ -22,7 +22,7 @@
 /// samples housekeeping, writes links and devices.
 namespace hirosco {
 
-/// Cycle statistics as a parameter of every subsystem: CYCLE_STATS (descriptor/framework_parameters.hpp).
+/// Cycle statistics as a parameter of every subsystem: CYCLE_STATS (descriptor/model/framework_parameters.hpp).
 struct CycleStatistics {
   std::uint32_t overruns{0};
   float max_us{0.0F};  ///< longest execution since the configuration was applied

@@ -14,7 +14,7 @@
 
 #include "supervisor/platform/storage/ascii_database.hpp"
 #include "supervisor/platform/storage/sqlite_database.hpp"
-#include "supervisor/platform/storage/test_folder.hpp"
+#include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
 namespace {

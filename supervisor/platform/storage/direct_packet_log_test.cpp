@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "supervisor/platform/storage/packet_log.hpp"
-#include "supervisor/platform/storage/test_databases.hpp"
+#include "supervisor/platform/storage/testing/test_databases.hpp"
 
 namespace hirosco::supervisor {
 namespace {

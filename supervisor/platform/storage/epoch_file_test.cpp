@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "supervisor/platform/storage/test_folder.hpp"
+#include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
 namespace {

@@ -12,7 +12,8 @@
 
 namespace hirosco::supervisor {
 
-/// What somebody asks to be logged; the log adds number and times.
+/// What somebody asks to be logged; the log adds number and times. Records wait here; telecommands that wait until theirs is on the
+/// disk do so in supervision/data_handling/waiting_for_disk.hpp.
 struct LogEntry {
   LogKind kind{LogKind::Telemetry};
   std::uint16_t source{};
@@ -51,7 +52,7 @@ class LogQueue {
   struct Limits {
     std::size_t telemetry_records{16'384};
     std::size_t telemetry_octets{8 << 20};
-    std::size_t vital_records{8192};    ///< the last quarter is kept for events and actions: a flood of
+    std::size_t vital_records{8192};  ///< the last quarter is kept for events and actions: a flood of
     std::size_t vital_octets{4 << 20};  ///< telecommands cannot drown what the supervisor has to say
   };
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();

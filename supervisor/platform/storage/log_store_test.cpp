@@ -11,7 +11,7 @@
 #include "hirosco/utilities/os/clock.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
-#include "supervisor/platform/storage/test_folder.hpp"
+#include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
 namespace {

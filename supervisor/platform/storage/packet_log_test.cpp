@@ -12,8 +12,8 @@
 
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
-#include "supervisor/platform/storage/test_databases.hpp"
-#include "supervisor/platform/storage/test_folder.hpp"
+#include "supervisor/platform/storage/testing/test_databases.hpp"
+#include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
 namespace {

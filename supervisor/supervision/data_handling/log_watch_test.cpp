@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/log_watch.hpp"
 
-#include "supervisor/platform/storage/test_databases.hpp"
+#include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 
-#include "supervisor/platform/storage/test_databases.hpp"
+#include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {
@@ -164,7 +164,7 @@ TEST_F(TelecommandsTest, AStopIsCarriedOutAndReportedToWhoSaidItUnderWhateverSou
       // Who was told to stop has.
       for (auto& [apid, member] : played) member.vital->cycling = 0;
       for (int step = 0; step < 2; ++step, wait(10ms)) static_cast<void>(guard.step(clock.now()));
-      parts.stop_outcome.follow();
+      parts.safe_all.follow();
       Ear ear;
       Telemetry listening{craft, parts.own, parts.traffic, parts.ground_route, {&ear}};
       static_cast<void>(parts.own.step(clock.now()));

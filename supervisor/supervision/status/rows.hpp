@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "hirosco/descriptor/read/status_rows.hpp"
+#include "hirosco/descriptor/model/status_rows.hpp"
 #include "hirosco/parameter/sized.hpp"
 
 /// What ground is told of each of us and of each link: one structure, one row (housekeeping 4702).

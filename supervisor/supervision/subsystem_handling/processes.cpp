@@ -8,7 +8,7 @@
 #include "supervisor/supervision/data_handling/reception.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
-#include "supervisor/supervision/event_handling/stop_outcome.hpp"
+#include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/realtime_links/links.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 
@@ -110,10 +110,10 @@ void Processes::take_guard_findings() {
     if (Member* subject = craft_.member(finding.apid); subject != nullptr) {
       hear_of(*subject, finding.kind);
     } else if (finding.kind == StopAsked) {
-      parts_.stop_outcome.asked();
+      parts_.safe_all.asked();
     } else if (finding.kind == SupervisorStill) {
       parts_.own.announce("SUPERVISOR_STILL");
-      parts_.stop_outcome.after_stop("the supervisor itself stood still");
+      parts_.safe_all.after_stop("the supervisor itself stood still");
     }
   }
 }

@@ -14,7 +14,7 @@ class Links;
 class OwnTelecommands;
 class Reactions;
 class Reception;
-class StopOutcome;
+class SafeAll;
 class Telecommands;
 
 /// Starts the processes of the subsystems, sees them end or hang, and starts them again (paper 4.3 subsystem handling).
@@ -26,7 +26,7 @@ class Processes final : public Watch {
     OwnSubsystem& own;
     Reception& reception;
     Reactions& reactions;
-    StopOutcome& stop_outcome;
+    SafeAll& safe_all;
     Links& links;
     Telecommands& telecommands;
     OwnTelecommands& desk;

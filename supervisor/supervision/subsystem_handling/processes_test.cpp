@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
-#include "supervisor/platform/storage/test_databases.hpp"
+#include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {

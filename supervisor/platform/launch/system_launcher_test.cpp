@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/platform/launch/process_launcher.hpp"
+#include "supervisor/platform/launch/system_launcher.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

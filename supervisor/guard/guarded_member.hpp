@@ -52,7 +52,7 @@ struct WatchedDevice {
   void tell(bool enabled, std::uint32_t epoch) noexcept;
 };
 
-struct Watched {
+struct GuardedMember {
   /// What of its real-time priority the guard has taken; it has all of it back with its next release.
   enum class Taken : std::uint8_t { Nothing, Loops, All };
 

@@ -17,9 +17,9 @@ class Commissioning;
 
 /// SAFE_ALL, however it was asked for: the guard stops everything, the states follow, and what became of it is told by who
 /// was to stop. Thread: the supervisor's; the stop itself is the guard's.
-class StopOutcome {
+class SafeAll {
  public:
-  StopOutcome(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Commissioning& commissioning)
+  SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Commissioning& commissioning)
       : craft_{craft}, own_{own}, desk_{desk}, commissioning_{commissioning} {}
 
   void provide();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/event_handling/stop_outcome.hpp"
+#include "supervisor/supervision/event_handling/safe_all.hpp"
 
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
@@ -12,7 +12,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using enum descriptor::State;
 
-struct StopOutcomeTest : PartsTest {
+struct SafeAllTest : PartsTest {
   void answered() {
     for (const TimePoint end = clock.now() + 1s; clock.now() < end; wait(Guard::period)) {
       guard.beat();
@@ -23,28 +23,28 @@ struct StopOutcomeTest : PartsTest {
       }
       static_cast<void>(guard.step(clock.now()));
     }
-    parts.stop_outcome.follow();
+    parts.safe_all.follow();
   }
 };
 
-TEST_F(StopOutcomeTest, TheStatesFollowOfWhoActsButNotOfTheGroundLink) {
+TEST_F(SafeAllTest, TheStatesFollowOfWhoActsButNotOfTheGroundLink) {
   start_all(Operational);
   set(hand, SafeOperational);
-  parts.stop_outcome.asked();
+  parts.safe_all.asked();
   EXPECT_THAT(texts(arm), ElementsAre(to(SafeOperational)));
   EXPECT_THAT(texts(hand), IsEmpty());
   EXPECT_THAT(texts(camera), IsEmpty());
   EXPECT_TRUE(was_told("stop by signal or local socket: every actuator inhibited"));
 }
 
-TEST_F(StopOutcomeTest, TheGuardHasStoppedEverythingBeforeAnythingIsSent) {
+TEST_F(SafeAllTest, TheGuardHasStoppedEverythingBeforeAnythingIsSent) {
   start_all(Operational);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
-  parts.stop_outcome.asked();
+  parts.safe_all.asked();
   EXPECT_TRUE(guard.fenced(arm));
 }
 
-TEST_F(StopOutcomeTest, ItWaitsForNoStateOfTheSupervisorItself) {
+TEST_F(SafeAllTest, ItWaitsForNoStateOfTheSupervisorItself) {
   start_all(Operational);
   ASSERT_EQ(parts.own.state(), Offline);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
@@ -54,10 +54,10 @@ TEST_F(StopOutcomeTest, ItWaitsForNoStateOfTheSupervisorItself) {
   EXPECT_TRUE(was_told("SAFE_ALL: every actuator inhibited"));
 }
 
-TEST_F(StopOutcomeTest, WhatBecameOfItIsToldWhenAllHaveStopped) {
+TEST_F(SafeAllTest, WhatBecameOfItIsToldWhenAllHaveStopped) {
   start_all(SafeOperational);
-  parts.stop_outcome.asked();
-  parts.stop_outcome.follow();
+  parts.safe_all.asked();
+  parts.safe_all.follow();
   EXPECT_FALSE(was_told("everything has stopped"));
   answered();
   EXPECT_TRUE(was_told("everything has stopped"));

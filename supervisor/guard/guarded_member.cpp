@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 // Safety module: fence (docs/safety/modules.csv).
-#include "supervisor/guard/watched.hpp"
+#include "supervisor/guard/guarded_member.hpp"
 
 #include <algorithm>
 #include <array>
@@ -50,14 +50,14 @@ void WatchedDevice::tell(bool enabled, std::uint32_t epoch) noexcept {
 
 // --- what a member's pages say -----------------------------------------------------------------------------------------
 
-std::optional<State> Watched::state() const noexcept {
+std::optional<State> GuardedMember::state() const noexcept {
   if (vital == nullptr) return std::nullopt;
   const std::uint32_t number = vital->state.load(std::memory_order_acquire);
   if (number > static_cast<std::uint32_t>(State::SoftwareDeinit)) return std::nullopt;
   return static_cast<State>(number);
 }
 
-bool Watched::damaged() const noexcept {
+bool GuardedMember::damaged() const noexcept {
   constexpr auto relaxed = std::memory_order_relaxed;
   // What it demands and how often it cycles follows from its configuration: one that nobody declared is none.
   const std::uint32_t id = vital->configuration.load(relaxed);
@@ -71,14 +71,14 @@ bool Watched::damaged() const noexcept {
          vital->realtime.load(relaxed) > 1 || !known || !gate;
 }
 
-Duration Watched::sampling() const noexcept {
+Duration GuardedMember::sampling() const noexcept {
   if (vital == nullptr) return {};
   const auto id = static_cast<std::uint8_t>(vital->configuration.load(std::memory_order_relaxed));
   const auto* configured = described->subsystem.find_configuration(id);
   return configured != nullptr ? configured->sampling : Duration{};
 }
 
-std::uint32_t Watched::hang_limit() const noexcept {
+std::uint32_t GuardedMember::hang_limit() const noexcept {
   const bool realtime = vital->realtime.load(std::memory_order_relaxed) != 0 && taken != Taken::All;
   const std::uint32_t limit = realtime ? described->subsystem.hang.realtime : described->subsystem.hang.reduced;
   return std::max(limit, static_cast<std::uint32_t>(slow_steps * sampling() / guard_observation_period));
@@ -86,13 +86,13 @@ std::uint32_t Watched::hang_limit() const noexcept {
 
 // --- its permission ----------------------------------------------------------------------------------------------------
 
-bool Watched::stands_fenced() const noexcept {
+bool GuardedMember::stands_fenced() const noexcept {
   constexpr auto relaxed = std::memory_order_relaxed;
   return !released && permit != nullptr && permit->stop.load(relaxed) != 0 && permit->go.load(relaxed) == 0 &&
          permit->epoch.load(relaxed) == epoch;
 }
 
-void Watched::fence() noexcept {
+void GuardedMember::fence() noexcept {
   ++fences;
   // Who stands fenced stays so: a further epoch, or a further answer to wait for, would only put off its word that it has stopped.
   if (stands_fenced()) return;
@@ -107,7 +107,7 @@ void Watched::fence() noexcept {
   for (WatchedDevice& device : devices) device.fenced_at_sequence = device.sequence;
 }
 
-void Watched::release(TimePoint now) noexcept {
+void GuardedMember::release(TimePoint now) noexcept {
   // Who may move has the priority that its limits are made for.
   if (taken != Taken::Nothing) grip->give_realtime();
   taken = Taken::Nothing;
@@ -119,7 +119,7 @@ void Watched::release(TimePoint now) noexcept {
   released_at = now;
 }
 
-void Watched::end_permission(TimePoint now) noexcept {
+void GuardedMember::end_permission(TimePoint now) noexcept {
   if (!released) return;
   const bool operational = state() == State::Operational;
   seen_operational = seen_operational || operational;
@@ -129,7 +129,7 @@ void Watched::end_permission(TimePoint now) noexcept {
   if (permit != nullptr) permit->go.store(0, std::memory_order_release);
 }
 
-void Watched::take_realtime(Taken what) noexcept {
+void GuardedMember::take_realtime(Taken what) noexcept {
   if (what == Taken::All) grip->take_realtime();
   else grip->take_loops_realtime();
   taken = std::max(taken, what);
@@ -137,13 +137,13 @@ void Watched::take_realtime(Taken what) noexcept {
 
 // --- a stop ------------------------------------------------------------------------------------------------------------
 
-bool Watched::has_stopped() const noexcept {
+bool GuardedMember::has_stopped() const noexcept {
   if (!devices.empty())
     return std::ranges::all_of(devices, [](const WatchedDevice& device) { return device.stopped.has_value(); });
   return says_stopped();
 }
 
-bool Watched::says_stopped() const noexcept {
+bool GuardedMember::says_stopped() const noexcept {
   if (vital == nullptr) return true;  // there is no process that could move anything
   const auto now = state();
   if (!now) return false;  // what a damaged page says is nothing
@@ -154,12 +154,12 @@ bool Watched::says_stopped() const noexcept {
   return rests || (knows && inhibited);
 }
 
-bool Watched::to_blame() const noexcept {
+bool GuardedMember::to_blame() const noexcept {
   const auto moves = [](const WatchedDevice& device) { return device.knows() && !device.stopped; };
   return !says_stopped() || std::ranges::any_of(devices, moves);
 }
 
-Duration Watched::stop_limit() const noexcept {
+Duration GuardedMember::stop_limit() const noexcept {
   Duration longest{};
   for (const WatchedDevice& device : devices) longest = std::max(longest, device.stop_within);
   // Its own word comes with its cycle.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/event_handling/stop_outcome.hpp"
+#include "supervisor/supervision/event_handling/safe_all.hpp"
 
 #include <string>
 
@@ -8,23 +8,23 @@
 
 namespace hirosco::supervisor {
 
-void StopOutcome::provide() {
+void SafeAll::provide() {
   own_.on_function("SAFE_ALL", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
 }
 
-void StopOutcome::safe_all(const pus::Request& request) {
+void SafeAll::safe_all(const pus::Request& request) {
   pending_.push_back({craft_.guard.stop_all(), request});
   own_.verification().accepted(request);
   own_.verification().started(request);
   after_stop("SAFE_ALL");
 }
 
-void StopOutcome::asked() {
+void SafeAll::asked() {
   pending_.push_back({craft_.guard.stop_all(), std::nullopt});
   after_stop("stop by signal or local socket");
 }
 
-void StopOutcome::after_stop(std::string_view why) {
+void SafeAll::after_stop(std::string_view why) {
   craft_.tell(std::string{why} + ": every actuator inhibited", supervisor_apid);
   // Commissioning would lift the fences again with its next step.
   commissioning_.cancel(why);
@@ -35,7 +35,7 @@ void StopOutcome::after_stop(std::string_view why) {
   }
 }
 
-void StopOutcome::follow() {
+void SafeAll::follow() {
   for (auto pending = pending_.begin(); pending != pending_.end();) {
     const auto answers = craft_.guard.stop_outcome(pending->stop);
     if (!answers) return;
@@ -44,7 +44,7 @@ void StopOutcome::follow() {
   }
 }
 
-void StopOutcome::tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers) {
+void SafeAll::tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers) {
   pus::FailureNotice notice{pus::FailureCode::DeviceError};
   bool all = true;
   for (const StopAnswer& answer : answers) {
