@@ -52,7 +52,8 @@ TimePoint Supervisor::step(TimePoint now) {
   parts_->shutdown.enforce(now);
   parts_->telemetry.serve_ground();  // all that this step had to say, together
   if (parts_->telemetry.ground().waiting()) wake = std::min(wake, now + ground_pace);
-  if (parts_->own.has_work()) wake = std::min(wake, now + own_pace);
+  // Where nothing wakes, it is looked at as often anyway.
+  if (craft.platform.wakes && parts_->own.has_work()) wake = std::min(wake, now + own_pace);
   return std::min(wake, next_watch_);
 }
 
