@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
+#include "hirosco/data_transfer/link/loaned_memory.hpp"
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
+#include "hirosco/data_transfer/link/testing/loan_conformance.hpp"
 
 namespace hirosco::testing {
 namespace {
@@ -14,6 +16,10 @@ std::string mechanism_name(const ::testing::TestParamInfo<const LinkMechanism*>&
 INSTANTIATE_TEST_SUITE_P(BuiltIn, LinkConformance,
                          ::testing::ValuesIn(standard_link_mechanisms().begin(), standard_link_mechanisms().end()),
                          mechanism_name);
+
+const LoanedMemory loaned_memory;
+INSTANTIATE_TEST_SUITE_P(Loaned, LinkConformance, ::testing::Values(&loaned_memory), mechanism_name);
+INSTANTIATE_TEST_SUITE_P(Loaned, LoanConformance, ::testing::Values(&loaned_memory), mechanism_name);
 
 TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
   for (const LinkMechanism* mechanism : standard_link_mechanisms())
