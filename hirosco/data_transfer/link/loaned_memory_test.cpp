@@ -365,12 +365,14 @@ Looks look_at(int wanted, int most) {
       std::this_thread::yield();
       continue;
     }
-    // Of every second look the rest comes late, so that the producer is met everywhere in the place, and comes behind it.
-    const std::uint64_t laps = look % 2 == 0 ? 0 : 1 + static_cast<std::uint64_t>(look) / 2 % 5;
+    // Of most looks the rest comes late: with three publications behind it the producer is at work in this very place.
+    constexpr std::array<std::uint64_t, 5> late{0, 3, 3, 3, 5};
+    const std::uint64_t laps = late[static_cast<std::size_t>(look) % late.size()];
     const std::size_t half = static_cast<std::size_t>(look) * 37 % seen.size();
     for (std::size_t i = 0; i < half; ++i) seen[i] = word_in(place, i).load(std::memory_order_acquire);
-    while (memory.word(loaned_memory::newest_at).load(std::memory_order_relaxed) < sample.count + laps)
-      std::this_thread::yield();
+    for (int waited = 0; memory.word(loaned_memory::newest_at).load(std::memory_order_relaxed) < sample.count + laps;
+         ++waited)
+      if (waited % 10'000 == 9'999) std::this_thread::yield();  // on a busy machine it may need this very processor
     for (std::size_t i = half; i < seen.size(); ++i) seen[i] = word_in(place, i).load(std::memory_order_acquire);
     if (!reader.whole()) {
       ++looks.lapped;
@@ -389,10 +391,10 @@ Looks look_at(int wanted, int most) {
 }
 
 TEST(LoanedLinkStress, NoTornSampleIsWholeAndALappedOneIsTold) {
-  const Looks looks = look_at<TrueLender>(100, 1'000'000);
+  const Looks looks = look_at<TrueLender>(50, 1'000'000);
   EXPECT_EQ(looks.torn, 0);
-  EXPECT_GE(looks.whole, 100);
-  EXPECT_GE(looks.lapped, 100);
+  EXPECT_GE(looks.whole, 50);
+  EXPECT_GE(looks.lapped, 50);
 }
 
 TEST(LoanedLinkStress, CatchesALenderThatDoesNotMarkItsWork) {

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
 #include <string>
+#include <vector>
 
-#include "hirosco/data_transfer/link/loaned_memory.hpp"
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
 #include "hirosco/data_transfer/link/testing/loan_conformance.hpp"
 
@@ -17,9 +19,14 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, LinkConformance,
                          ::testing::ValuesIn(standard_link_mechanisms().begin(), standard_link_mechanisms().end()),
                          mechanism_name);
 
-const LoanedMemory loaned_memory;
-INSTANTIATE_TEST_SUITE_P(Loaned, LinkConformance, ::testing::Values(&loaned_memory), mechanism_name);
-INSTANTIATE_TEST_SUITE_P(Loaned, LoanConformance, ::testing::Values(&loaned_memory), mechanism_name);
+std::vector<const LinkMechanism*> lending_mechanisms() {
+  std::vector<const LinkMechanism*> found;
+  std::ranges::copy_if(standard_link_mechanisms(), std::back_inserter(found),
+                       [](const LinkMechanism* mechanism) { return mechanism->kind() == LinkKind::Loaned; });
+  return found;
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, LoanConformance, ::testing::ValuesIn(lending_mechanisms()), mechanism_name);
 
 TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
   for (const LinkMechanism* mechanism : standard_link_mechanisms())
