@@ -75,9 +75,9 @@ class LoanInput final : private HasFields<T>, public LinkInputPort {
 
  public:
   LoanInput() noexcept : LinkInputPort{HasFields<T>::fields(), {}} {}
-  /// The newest sample as of the beginning of this cycle, where its producer made it; null before the first and without a
-  /// link. The producer makes the place anew when it has published at least twice since: what was read of it counts when
-  /// whole() says so afterwards. A look may last several cycles, as long as its link is attached.  Realtime: wait-free.
+  /// The newest sample as of the beginning of this cycle, in its producer's place; null: none yet, or no link. The place
+  /// is made anew after two more publications at least: what was read counts when whole() says so afterwards, and in a
+  /// later cycle whole() is asked before reading on: a link that is gone took its memory along.  Realtime: wait-free.
   [[nodiscard]] const T* look() noexcept {
     return loans() == nullptr ? nullptr : reinterpret_cast<const T*>(loans()->look().data());
   }
