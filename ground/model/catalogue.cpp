@@ -35,8 +35,8 @@ Catalogue::Catalogue(descriptor::Mission mission) : mission_{std::move(mission)}
 
 void Catalogue::add_columns(const descriptor::Subsystem& subsystem) {
   const auto add = [&](const std::string& name, const descriptor::Field& field) {
-    for (std::uint16_t i = 0; i < field.count; ++i) {
-      const std::string element = element_name(name, field, i);
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      const std::string element = element_name(name, field, static_cast<std::uint16_t>(i));
       column_index_.emplace(element, columns_.size());
       const auto real = [](const std::optional<Number>& limit) {
         return limit ? std::optional{limit->real()} : std::nullopt;
@@ -85,8 +85,9 @@ void Catalogue::add_places(const descriptor::Subsystem& subsystem,
     const std::string name = subsystem.name + "." + parameter.field.name;
     const bool structure = parameter.field.type == Type::Struct;
     for (const auto& field : descriptor::fields_of(subsystem, reference))
-      for (std::uint16_t i = 0; i < field.count; ++i) {
-        const auto column = find_column(element_name(structure ? name + "." + field.name : name, field, i));
+      for (std::uint32_t i = 0; i < field.count; ++i) {
+        const auto column =
+            find_column(element_name(structure ? name + "." + field.name : name, field, static_cast<std::uint16_t>(i)));
         if (column) report.places.push_back({*column, offset});
         offset += octets_of(field.type);
       }

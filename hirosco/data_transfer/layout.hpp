@@ -16,8 +16,30 @@ namespace hirosco {
 /// by its members' fields; Type::Struct itself has no octets and is passed over.
 struct LayoutField {
   Type type{Type::Uint8};
-  std::uint16_t count{1};
+  std::uint32_t count{1};
   std::size_t native_offset{0};
+};
+
+/// Where values come to lie as members of one C++ aggregate: each at a multiple of its type's octets, the whole filled up to
+/// a multiple of the largest.  Realtime: bounded.
+class NaturalLayout {
+ public:
+  /// `count` values of `type` behind the ones before; where they begin.
+  std::size_t add(Type type, std::size_t count) noexcept {
+    const std::size_t each = octets_of(type);
+    const std::size_t at = up_to(each);
+    end_ = at + each * count;
+    alignment_ = each > alignment_ ? each : alignment_;
+    return at;
+  }
+  [[nodiscard]] std::size_t octets() const noexcept { return up_to(alignment_); }
+
+ private:
+  [[nodiscard]] std::size_t up_to(std::size_t multiple) const noexcept {
+    return multiple == 0 ? end_ : (end_ + multiple - 1) / multiple * multiple;
+  }
+  std::size_t end_{0};
+  std::size_t alignment_{1};
 };
 
 /// Octets that the fields fill on the wire, one after another without gaps.  Realtime: bounded by the fields.

@@ -78,6 +78,26 @@ TEST(Layout, PassesOverAStructureItself) {
   EXPECT_EQ(out[0], std::byte{9});
 }
 
+TEST(Layout, OfAnAggregateIsThatOfCpp) {
+  struct Mixed {
+    std::uint8_t a;
+    std::array<double, 2> b;
+    std::array<std::uint16_t, 3> c;
+    std::uint32_t d;
+    std::uint8_t e;
+  };
+  NaturalLayout layout;
+  EXPECT_EQ(layout.octets(), 0u);
+  EXPECT_EQ(layout.add(Type::Uint8, 1), offsetof(Mixed, a));
+  EXPECT_EQ(layout.octets(), 1u);
+  EXPECT_EQ(layout.add(Type::Double, 2), offsetof(Mixed, b));
+  EXPECT_EQ(layout.add(Type::Uint16, 3), offsetof(Mixed, c));
+  EXPECT_EQ(layout.add(Type::Uint32, 1), offsetof(Mixed, d));
+  EXPECT_EQ(layout.add(Type::Uint8, 1), offsetof(Mixed, e));
+  EXPECT_EQ(layout.octets(), sizeof(Mixed));
+  EXPECT_EQ(layout.add(Type::Struct, 1), 37u) << "a structure is its members";
+}
+
 TEST(Layout, KnowsWhenOneCopyDoes) {
   const std::array<LayoutField, 2> dense{LayoutField{Type::Double, 2, 0}, LayoutField{Type::Uint32, 2, 16}};
   EXPECT_TRUE(wire_is_native(dense, std::endian::native));

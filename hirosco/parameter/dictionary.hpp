@@ -24,7 +24,7 @@ namespace hirosco {
 struct SpecField {
   std::string name;
   Type type{Type::Double};
-  std::uint16_t count{1};
+  std::uint32_t count{1};
 };
 
 /// A parameter as its descriptor declares it.

@@ -30,9 +30,9 @@ namespace {
 
 }  // namespace
 
-bool ObjectFields::set_length(std::size_t field, std::uint16_t count, MutableOctets object) noexcept {
+bool ObjectFields::set_length(std::size_t field, std::uint32_t count, MutableOctets object) noexcept {
   if (field >= own_.size() || own_[field].most == 0) return false;
-  own_[field].count = std::min(count, own_[field].most);
+  own_[field].count = std::min<std::uint32_t>(count, own_[field].most);
   fit(object);
   return true;
 }
@@ -42,7 +42,8 @@ void ObjectFields::fit(MutableOctets object) const noexcept {
     if (field.most == 0) continue;
     const std::size_t beyond = octets_of(field.type) * (field.most - field.count);
     std::memset(object.data() + field.offset + field.octets(), 0, beyond);
-    std::memcpy(object.data() + field.length_offset, &field.count, sizeof field.count);
+    const auto length = static_cast<std::uint16_t>(field.count);  // at most `most`
+    std::memcpy(object.data() + field.length_offset, &length, sizeof length);
   }
 }
 
@@ -52,7 +53,7 @@ std::string cpp_text(const NativeField& field) {
   return field.count == 1 ? text : "std::array<" + text + ", " + std::to_string(field.count) + ">";
 }
 
-std::string descriptor_text(Type type, std::uint16_t count) {
+std::string descriptor_text(Type type, std::uint32_t count) {
   std::string text{to_text(type)};
   return count == 1 ? text : text + "[" + std::to_string(count) + "]";
 }

@@ -23,13 +23,13 @@ namespace hirosco {
 /// One value or array as it lies in memory.
 struct NativeField {
   Type type{};
-  std::uint16_t count{1};
+  std::uint32_t count{1};
   std::size_t offset{0};
   std::uint16_t most{0};            ///< of a Sized: its N, and `count` is the descriptor's, 0 until that is known
   std::size_t length_offset{0};     ///< of a Sized: where its length lies
   [[nodiscard]] constexpr std::size_t octets() const noexcept { return octets_of(type) * count; }
   /// Whether `declared` elements of a type are what this field holds, or can hold.
-  [[nodiscard]] constexpr bool takes(Type wanted, std::uint16_t declared) const noexcept {
+  [[nodiscard]] constexpr bool takes(Type wanted, std::uint32_t declared) const noexcept {
     return type == wanted && (most == 0 ? declared == count : declared >= 1 && declared <= most);
   }
   friend constexpr bool operator==(const NativeField&, const NativeField&) = default;
@@ -185,8 +185,8 @@ template <FieldType F>
   if constexpr (requires { Traits::most; }) {
     return {type_of<typename Traits::Element>(), 0, offset, Traits::most, offset + F::length_offset()};
   } else {
-    static_assert(Traits::count >= 1 && Traits::count <= 0xFFFF, "an array has 1 to 65535 elements");
-    return {type_of<typename Traits::Element>(), static_cast<std::uint16_t>(Traits::count), offset};
+    static_assert(Traits::count >= 1 && Traits::count <= 16U << 20, "an array has 1 to 16 Mi elements");
+    return {type_of<typename Traits::Element>(), static_cast<std::uint32_t>(Traits::count), offset};
   }
 }
 
@@ -249,7 +249,7 @@ class ObjectFields {
       : fields_{own.empty() ? fields : own}, own_{own} {}
   [[nodiscard]] std::span<const NativeField> all() const noexcept { return fields_; }
   /// Gives a Sized field the length that its descriptor declares and fits the object to it; false for any other field.
-  bool set_length(std::size_t field, std::uint16_t count, MutableOctets object) noexcept;
+  bool set_length(std::size_t field, std::uint32_t count, MutableOctets object) noexcept;
   /// Gives the Sized members of an object that was stored into their lengths back.  Realtime: bounded.
   void fit(MutableOctets object) const noexcept;
 
@@ -287,6 +287,6 @@ class HasFields {
 /// The C++ spelling of a field, for messages: `std::array<double, 2>`, `Sized<double, 7>`.
 [[nodiscard]] std::string cpp_text(const NativeField& field);
 /// The descriptor's spelling: `DOUBLE[2]`.
-[[nodiscard]] std::string descriptor_text(Type type, std::uint16_t count);
+[[nodiscard]] std::string descriptor_text(Type type, std::uint32_t count);
 
 }  // namespace hirosco

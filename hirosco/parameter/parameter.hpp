@@ -27,7 +27,7 @@ class ParameterCell {
 
   [[nodiscard]] std::span<const NativeField> fields() const noexcept { return fields_.all(); }
   /// Gives a Sized field its length.  Thread: the service loop's, before a cycle runs.
-  void set_length(std::size_t field, std::uint16_t count) noexcept {
+  void set_length(std::size_t field, std::uint32_t count) noexcept {
     if (fields_.set_length(field, count, live_)) commit();
   }
   [[nodiscard]] bool is_struct() const noexcept { return is_struct_; }

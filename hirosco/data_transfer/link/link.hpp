@@ -20,11 +20,16 @@ namespace hirosco {
 
 /// How samples travel.
 enum class LinkMethod : std::uint8_t { SharedMemory = 1, Udp = 2, Tcp = 3, Unix = 4, Dds = 5, Tipc = 6 };
-/// Which samples a consumer gets: the newest one, or every one in order.
-enum class LinkKind : std::uint8_t { Latest = 1, Queued = 2 };
+/// Which samples a consumer gets: the newest one, every one in order, or the newest large one, which is made and looked at
+/// in the link's own memory.
+enum class LinkKind : std::uint8_t { Latest = 1, Queued = 2, Loaned = 3 };
 
-/// Octets of one sample, at most.
+/// Octets of one sample, at most: of one that is copied, and of one that is lent.
 inline constexpr std::uint32_t max_link_payload_octets = 65'536;
+inline constexpr std::uint32_t max_loaned_payload_octets = 16U << 20;
+[[nodiscard]] constexpr std::uint32_t max_payload_octets(LinkKind kind) noexcept {
+  return kind == LinkKind::Loaned ? max_loaned_payload_octets : max_link_payload_octets;
+}
 
 /// Written by the producer beside each sample. What no producer wrote is read as Fault: no damage of the word turns a
 /// fault into something to rely on (hazard SF19).
@@ -33,7 +38,7 @@ enum class LinkStatus : std::uint32_t { None = 0, Valid = 1, Degraded = 2, Stopp
 /// What both sides agreed on and find again at the other end.
 struct LinkLayout {
   std::uint32_t epoch{};  ///< of the handshake that made this link
-  std::uint32_t payload_octets{};  ///< of one sample, 1 .. max_link_payload_octets
+  std::uint32_t payload_octets{};  ///< of one sample, 1 .. max_payload_octets(kind)
   std::uint64_t layout_hash{};  ///< of the agreed fields, byte order and kind
   Duration period{};  ///< of the producer
 };
@@ -74,6 +79,35 @@ class LinkReader {
   virtual LinkSample read(MutableOctets payload) noexcept = 0;
 };
 
+/// The producer's end of a link that lends: a sample is made where its consumers look at it, and nothing is copied.
+/// Realtime: wait-free; never waits for a consumer. Thread: one.
+class LoanWriter {
+ public:
+  virtual ~LoanWriter() = default;
+  /// A place of exactly the agreed size that nobody looks at as the newest, on a cache line; the same one until it is
+  /// published. What stands in it is of an earlier sample, or zero.
+  [[nodiscard]] virtual MutableOctets lend() noexcept = 0;
+  /// Makes the lent place the newest sample. Counts from 1. Nothing when nothing is lent.
+  virtual void publish(TimePoint sampled_at, LinkStatus status) noexcept = 0;
+  /// Changes the status without a new sample (stopping, fault).
+  virtual void set_status(LinkStatus status) noexcept = 0;
+};
+
+/// A consumer's end of a link that lends. It keeps no copy: the producer makes the place that is looked at anew when it
+/// has published at least twice since and lends again, and whole() tells so.
+/// Realtime: wait-free (bounded retries); never waits for the producer. Thread: one.
+class LoanReader {
+ public:
+  virtual ~LoanReader() = default;
+  /// Tells the newest sample, as LinkReader::read does, and leaves what is looked at alone.
+  virtual LinkSample newest() noexcept = 0;
+  /// The sample that newest() told last, where it lies; empty before the first. What is read of it may be torn, and holds
+  /// nothing to rely on, until whole() was asked after the reading.
+  [[nodiscard]] virtual Octets look() noexcept = 0;
+  /// Whether all that was read since look() is of that one sample.
+  [[nodiscard]] virtual bool whole() const noexcept = 0;
+};
+
 /// A look at a link from outside: no sample is read, no reader's count moves.  Realtime: wait-free. Thread: one.
 class LinkView {
  public:
@@ -101,6 +135,15 @@ class LinkMechanism {
                                                                     const LinkLayout& layout) const = 0;
   [[nodiscard]] virtual Result<std::unique_ptr<LinkView>> look(MemoryProvider& provider,
                                                                const MemoryHandle& shared) const = 0;
+  /// Of kind Loaned: as produce() and consume(), ends that copy nothing. NotPermitted: of another kind.
+  [[nodiscard]] virtual Result<std::unique_ptr<LoanWriter>> lend(MemoryProvider&, const MemoryHandle&,
+                                                                 const LinkLayout&) const {
+    return fail(ErrorCode::NotPermitted, "such a link lends nothing");
+  }
+  [[nodiscard]] virtual Result<std::unique_ptr<LoanReader>> borrow(MemoryProvider&, const MemoryHandle&,
+                                                                   const LinkLayout&) const {
+    return fail(ErrorCode::NotPermitted, "such a link lends nothing");
+  }
 };
 
 /// The mechanisms of a platform.
@@ -120,7 +163,7 @@ struct EnumTexts<LinkMethod> {
 template <>
 struct EnumTexts<LinkKind> {
   using enum LinkKind;
-  static constexpr auto table = enum_table<LinkKind>({{Latest, "latest"}, {Queued, "queued"}});
+  static constexpr auto table = enum_table<LinkKind>({{Latest, "latest"}, {Queued, "queued"}, {Loaned, "loaned"}});
 };
 
 }  // namespace hirosco

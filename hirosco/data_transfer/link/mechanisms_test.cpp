@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
 #include <string>
+#include <vector>
 
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
+#include "hirosco/data_transfer/link/testing/loan_conformance.hpp"
 
 namespace hirosco::testing {
 namespace {
@@ -14,6 +18,15 @@ std::string mechanism_name(const ::testing::TestParamInfo<const LinkMechanism*>&
 INSTANTIATE_TEST_SUITE_P(BuiltIn, LinkConformance,
                          ::testing::ValuesIn(standard_link_mechanisms().begin(), standard_link_mechanisms().end()),
                          mechanism_name);
+
+std::vector<const LinkMechanism*> lending_mechanisms() {
+  std::vector<const LinkMechanism*> found;
+  std::ranges::copy_if(standard_link_mechanisms(), std::back_inserter(found),
+                       [](const LinkMechanism* mechanism) { return mechanism->kind() == LinkKind::Loaned; });
+  return found;
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, LoanConformance, ::testing::ValuesIn(lending_mechanisms()), mechanism_name);
 
 TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
   for (const LinkMechanism* mechanism : standard_link_mechanisms())

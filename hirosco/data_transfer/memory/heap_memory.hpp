@@ -10,7 +10,7 @@ namespace hirosco {
 /// Realtime: allocates. Thread: any.
 class HeapMemory final : public MemoryProvider {
  public:
-  static constexpr std::size_t max_octets = 16U << 20;
+  static constexpr std::size_t max_octets = 128U << 20;
   [[nodiscard]] Result<MemoryHandle> create(const char* name, std::size_t octets) override;
   /// NotPermitted: writable after seal_writers. InvalidArgument: the handle is not one of a HeapMemory.
   [[nodiscard]] Result<Mapping> map(const MemoryHandle& handle, Access access) override;

@@ -58,7 +58,7 @@ struct Enumeration {
 struct Field {
   std::string name;
   Type type{Type::Double};
-  std::uint16_t count{1};            ///< array length; 1 = a single value
+  std::uint32_t count{1};            ///< array length; 1 = a single value
   std::string unit;                  ///< SI, as text; empty = none
   std::optional<Number> minimum;     ///< inclusive, in `unit`
   std::optional<Number> maximum;     ///< inclusive, in `unit`
@@ -167,13 +167,16 @@ struct LinkTerms {
   std::vector<LinkMethod> methods{LinkMethod::SharedMemory};
   std::vector<ByteOrder> byte_orders{ByteOrder::Little};
   std::vector<LinkKind> kinds{LinkKind::Latest};
+  /// Samples are lent, not copied; then there is no other kind and no byte order but the machine's (adr 0070).
+  [[nodiscard]] bool lent() const noexcept { return kinds.front() == LinkKind::Loaned; }
 };
 
-/// A set of parameters that a configuration provides over a real-time link.
+/// A set of data that a configuration provides over a real-time link: parameters, or fields of its own where it is lent.
 struct Provides {
   std::string name;
   LinkTerms terms;
   std::vector<ParameterRef> parameters;
+  std::vector<Field> fields;  ///< of a lent set, as they lie side by side in its sample
   Location at;
 };
 

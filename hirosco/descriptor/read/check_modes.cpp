@@ -36,12 +36,16 @@ std::string mismatch(const Subsystem& producer, const Provides& provides, const 
   std::vector<Field> offered;
   for (const ParameterRef& reference : provides.parameters)
     std::ranges::move(fields_of(producer, reference), std::back_inserter(offered));
+  const bool lent = provides.terms.lent() && requires_.terms.lent();
+  if (provides.terms.lent()) offered = provides.fields;
   for (const Field& wanted : requires_.fields) {
     const auto found = std::ranges::find(offered, wanted.name, &Field::name);
     if (found == offered.end()) return fmt::format("field '{}' is not in the provided set", wanted.name);
     if (found->type != wanted.type || found->count != wanted.count || found->unit != wanted.unit)
       return fmt::format("field '{}': {} against {}", wanted.name, describe(*found), describe(wanted));
   }
+  if (lent && !std::ranges::equal(offered, requires_.fields, {}, &Field::name, &Field::name))
+    return "a lent set has the same fields in the same order at both ends";
   if (!share(provides.terms.methods, requires_.terms.methods)) return "no common method";
   if (!share(provides.terms.byte_orders, requires_.terms.byte_orders)) return "no common byte order";
   if (!share(provides.terms.kinds, requires_.terms.kinds)) return "no common kind";

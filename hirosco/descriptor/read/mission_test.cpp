@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "hirosco/descriptor/read/detail/mission_reader.hpp"
 #include "hirosco/descriptor/testing.hpp"
 
 namespace hirosco::descriptor {
@@ -391,6 +392,29 @@ TEST(MissionErrors, AnAddressBelongsToOneSubsystem) {
     EXPECT_EQ(reading.problems[0].code, "E0313");
     EXPECT_EQ(reading.problems[0].message, "'" + std::string{robots} + "' is a device's of 'CORONAGRAPH'");
   }
+}
+
+TEST(MissionErrors, ALentSetHasTheSameFieldsInTheSameOrderAtBothEnds) {
+  constexpr std::string_view a = R"(<Field name="A" type="UINT8" count="70000" unit="m"/>)",
+                             b = R"(<Field name="B" type="UINT64"/>)",
+                             wide = R"(<Field name="A" type="UINT16" count="70000" unit="m"/>)";
+  const auto why = [&](std::string_view provided, std::string_view required, std::string_view kind = "loaned") {
+    std::string text =
+        R"(<Subsystem name="S" id="10"><Configuration name="C" id="1" sampling_us="100"><RealTimeLinkService>)";
+    text.append(R"(<Provides name="P" kind="loaned">)").append(provided).append("</Provides>");
+    text.append(R"(<Requires name="R" kind=")").append(kind).append("\">").append(required).append("</Requires>");
+    const auto reading = testing::read_text(text + "</RealTimeLinkService></Configuration></Subsystem>");
+    if (!reading.value) return rendered(reading.problems, file_system());
+    const Configuration& configuration = reading.value->configurations.front();
+    return detail::mismatch(*reading.value, configuration.provides.front(), configuration.requires_.front());
+  };
+  const std::string both = std::string{a} + std::string{b}, reverse = std::string{b} + std::string{a};
+  EXPECT_EQ(why(both, both), "");
+  EXPECT_EQ(why(both, reverse), "a lent set has the same fields in the same order at both ends");
+  EXPECT_EQ(why(both, a), "a lent set has the same fields in the same order at both ends");
+  EXPECT_EQ(why(a, both), "field 'B' is not in the provided set");
+  EXPECT_EQ(why(wide, a), "field 'A': UINT16[70000] m against UINT8[70000] m");
+  EXPECT_EQ(why(both, b, "latest"), "no common kind");
 }
 
 TEST(MissionErrors, EveryTruncationIsRefused) {

@@ -12,6 +12,7 @@ namespace hirosco::descriptor::detail {
 namespace {
 
 constexpr std::int64_t max_count = 4096;
+constexpr std::int64_t max_lent_count = max_loaned_payload_octets;
 
 std::string range_text(const Field& field) {
   return fmt::format("{} to {}", field.minimum ? to_string(*field.minimum) : "-inf",
@@ -245,7 +246,7 @@ Field SubsystemReader::read_field(Attributes& attributes, Says says) {
     field.text_octets = attributes.required_integer<std::uint16_t>("octets", 1, most);
     return field;
   }
-  field.count = attributes.integer_or<std::uint16_t>("count", 1, max_count, 1);
+  field.count = attributes.integer_or<std::uint32_t>("count", 1, says == Says::Lent ? max_lent_count : max_count, 1);
   if (field.type == Type::Bool) return field;
   field.unit = attributes.text("unit");
   if (field.unit.size() > 32)

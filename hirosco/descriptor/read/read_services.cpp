@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "hirosco/data_transfer/layout.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 
@@ -290,9 +291,21 @@ LinkTerms SubsystemReader::read_terms(Attributes& attributes) {
   expect_built_in<&LinkMechanism::method>(attributes, problems_, "methods");
   expect_built_in<&LinkMechanism::kind>(attributes, problems_, "kind");
   const auto* orders = attributes.optional("byte_order");
+  constexpr auto native = std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big;
+  if (std::ranges::find(terms.kinds, LinkKind::Loaned) != terms.kinds.end()) {
+    if (terms.kinds.size() != 1)
+      problems_.add(*attributes.optional("kind"), "E0231", "a set that is lent is of no other kind besides",
+                    "kind=\"loaned\", and a second set for who needs a copy");
+    if (orders != nullptr && orders->value != "native")
+      problems_.add(*orders, "E0231", "a lent sample has the byte order of the machine",
+                    "byte_order=\"native\", or leave it out");
+    terms.kinds = {LinkKind::Loaned};
+    terms.byte_orders = {native};
+    return terms;
+  }
   if (orders == nullptr) return terms;
   if (orders->value != "native") terms.byte_orders = attributes.list_of<ByteOrder>("byte_order", terms.byte_orders);
-  else terms.byte_orders = {std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big};
+  else terms.byte_orders = {native};
   return terms;
 }
 
@@ -312,6 +325,13 @@ void SubsystemReader::read_provides(const xml::Element& element, Services& servi
   set.at = place(element.at);
   set.name = attributes.name();
   set.terms = read_terms(attributes);
+  if (!set.name.empty()) services.provided.add(set.name, set.at, problems_, element.name.size() + 1);
+  if (set.terms.lent()) {
+    read_lent(element, set.fields);
+    check_lent(element, set.name, set.fields);
+    services.provides.push_back(std::move(set));
+    return;
+  }
   const std::string user = fmt::format("set '{}'", set.name);
   read_sampled(element, set.parameters, user);
   Unique names{"field name", "E0201"};
@@ -332,8 +352,27 @@ void SubsystemReader::read_provides(const xml::Element& element, Services& servi
   if (fields > max_set_fields)
     problems_.add(element, "E0215", fmt::format("{} has {} fields or more", user, fields),
                   fmt::format("at most {}", max_set_fields));
-  if (!set.name.empty()) services.provided.add(set.name, set.at, problems_, element.name.size() + 1);
   services.provides.push_back(std::move(set));
+}
+
+/// What is lent is too large for the dictionary: it has fields of its own.
+void SubsystemReader::read_lent(const xml::Element& element, std::vector<Field>& fields) {
+  Unique names{"field name", "E0201"};
+  each_child(element, problems_,
+             {{"Field", [&](const auto& child) { read_plain_field(child, fields, names, Says::Lent); }, max_set_fields},
+              {"ParamRef", [&](const xml::Element& child) {
+                 problems_.add(child, "E0231", "a set that is lent has fields of its own, no parameters",
+                               "<Field name=\"...\" type=\"...\" count=\"...\"/>, or another kind");
+               }}});
+  if (fields.empty()) problems_.add(element, "E0106", "<Provides> that is lent needs at least one <Field>");
+}
+
+void SubsystemReader::check_lent(const xml::Element& element, std::string_view name, const std::vector<Field>& fields) {
+  NaturalLayout layout;
+  for (const Field& field : fields) layout.add(field.type, field.count);
+  if (layout.octets() > max_loaned_payload_octets)
+    problems_.add(element, "E0215", fmt::format("set '{}' takes {} octets in one sample", name, layout.octets()),
+                  fmt::format("at most {}", max_loaned_payload_octets));
 }
 
 void SubsystemReader::read_requires(const xml::Element& element, Services& services) {
@@ -346,13 +385,15 @@ void SubsystemReader::read_requires(const xml::Element& element, Services& servi
   set.required = attributes.yes("required", true);
   set.age = read_limit(attributes, "age", "age_reduced", set.age);
   set.missing = attributes.one_of("missing", MissingPolicy::Inhibit);
+  const Says says = set.terms.lent() ? Says::Lent : Says::Nothing;
   Unique names{"field name", "E0201"};
   each_child(element, problems_,
-             {{"Field", [&](const auto& child) { read_plain_field(child, set.fields, names); }, max_set_fields}});
+             {{"Field", [&](const auto& child) { read_plain_field(child, set.fields, names, says); }, max_set_fields}});
   if (set.fields.empty()) problems_.add(element, "E0106", "<Requires> needs at least one <Field>");
+  if (set.terms.lent()) check_lent(element, set.name, set.fields);
   std::size_t octets = 0;
   for (const Field& field : set.fields) octets += field.octets();
-  if (octets > max_link_payload_octets)
+  if (!set.terms.lent() && octets > max_link_payload_octets)
     problems_.add(element, "E0215", fmt::format("set '{}' takes {} octets in one sample", set.name, octets),
                   fmt::format("at most {}", max_link_payload_octets));
   if (!set.name.empty()) services.required.add(set.name, set.at, problems_, element.name.size() + 1);

@@ -17,7 +17,7 @@ namespace {
   if (found == supervisor.parameters.end()) return {};
   if (rows > most_status_rows) return fmt::format("{} has {} rows, at most {}", structure, rows, most_status_rows);
   for (auto& column : found->members)
-    column.field.count = std::max(column.field.count, static_cast<std::uint16_t>(rows));
+    column.field.count = std::max(column.field.count, static_cast<std::uint32_t>(rows));
   return {};
 }
 

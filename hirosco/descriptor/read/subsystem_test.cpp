@@ -219,6 +219,23 @@ TEST(SubsystemDescriptor, ALinkServiceOfTheSubsystemHoldsInEveryConfiguration) {
   EXPECT_EQ(reading.value->configurations.at(1).provides.at(0).name, "P");
 }
 
+TEST(SubsystemDescriptor, ALentSetHasLargeFieldsOfItsOwnAndTheByteOrderOfTheMachine) {
+  const auto reading = read_text(R"(<Subsystem name="S" id="10"><Configuration name="A" id="1" sampling_us="100"/>
+    <RealTimeLinkService><Provides name="P" kind="loaned" byte_order="native"><Field name="N" type="UINT64"/>
+    <Field name="X" type="UINT8" count="1048576" unit="1"/></Provides>
+    <Requires name="R" kind="loaned"><Field name="X" type="FLOAT" count="4194304"/></Requires></RealTimeLinkService></Subsystem>)");
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const Provides& provides = reading.value->configurations.at(0).provides.at(0);
+  EXPECT_TRUE(provides.terms.lent());
+  EXPECT_TRUE(provides.parameters.empty());
+  ASSERT_EQ(provides.fields.size(), 2U);
+  EXPECT_EQ(provides.fields.at(1).count, 1'048'576U);
+  EXPECT_EQ(provides.fields.at(1).unit, "1");
+  const Requires& wanted = reading.value->configurations.at(0).requires_.at(0);
+  EXPECT_EQ(wanted.terms.byte_orders, provides.terms.byte_orders);
+  EXPECT_EQ(wanted.fields.at(0).count, 4'194'304U);
+}
+
 TEST(SubsystemDescriptor, AcceptsTheSmallestUsefulSubsystem) {
   const auto reading = read_subsystem(data / "hello.xml", file_system());
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());

@@ -69,8 +69,8 @@ class ArgumentReader {
   /// False when values were read that the octets did not have.
   [[nodiscard]] bool good() const noexcept { return reader_.good(); }
   /// Of the argument that is next.
-  [[nodiscard]] std::uint16_t count() const noexcept {
-    return next_ < declared_.size() ? declared_[next_].field.count : std::uint16_t{0};
+  [[nodiscard]] std::uint32_t count() const noexcept {
+    return next_ < declared_.size() ? declared_[next_].field.count : std::uint32_t{0};
   }
   /// Values of all that is left.
   [[nodiscard]] std::size_t remaining() const noexcept;

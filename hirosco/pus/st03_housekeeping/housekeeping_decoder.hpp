@@ -31,7 +31,7 @@ class HousekeepingDecoder {
   struct Entry {
     HousekeepingValue prototype;
     Type type{};
-    std::uint16_t count{1};
+    std::uint32_t count{1};
   };
   struct Layout {
     std::vector<Entry> once;

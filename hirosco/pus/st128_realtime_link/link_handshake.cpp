@@ -3,11 +3,14 @@
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <concepts>
 #include <initializer_list>
 #include <optional>
 #include <string_view>
 #include <utility>
+
+#include "hirosco/data_transfer/layout.hpp"
 
 namespace hirosco::pus::st128 {
 namespace {
@@ -21,8 +24,15 @@ constexpr std::size_t max_choices = 16;          ///< methods, byte orders or ki
 constexpr std::size_t max_fields = 255;
 constexpr std::size_t max_text = 255;
 
-[[nodiscard]] std::size_t octets_of(const OfferedField& field) noexcept {
-  return hirosco::octets_of(field.type) * field.count;
+/// Of one sample: packed, or as C++ lays an aggregate that is lent.
+[[nodiscard]] std::size_t octets_of(const std::vector<OfferedField>& fields, LinkKind kind) noexcept {
+  NaturalLayout natural;
+  std::size_t packed = 0;
+  for (const auto& field : fields) {
+    natural.add(field.type, field.count);
+    packed += hirosco::octets_of(field.type) * field.count;
+  }
+  return kind == LinkKind::Loaned ? natural.octets() : packed;
 }
 
 [[nodiscard]] bool is_value_type(Type type) noexcept { return hirosco::octets_of(type) != 0; }
@@ -75,7 +85,7 @@ template <class E>
 }
 
 [[nodiscard]] std::optional<Refusal> check_fields(const std::vector<OfferedField>& producer,
-                                                  const std::vector<OfferedField>& consumer) {
+                                                  const std::vector<OfferedField>& consumer, LinkKind kind) {
   const auto refusal = [](const OfferedField& field, const std::string& reason) {
     return Refusal{static_cast<std::uint8_t>(Item::Field), "field " + field.name + ": " + reason};
   };
@@ -84,9 +94,11 @@ template <class E>
     if (offered == producer.end()) return refusal(wanted, "consumer " + text_of(wanted) + ", producer has none");
     if (*offered != wanted) return refusal(wanted, "consumer " + text_of(wanted) + ", producer " + text_of(*offered));
   }
-  std::size_t payload = 0;
-  for (const auto& field : producer) payload += octets_of(field);
-  if (payload == 0 || payload > max_link_payload_octets)
+  // What is lent nobody scatters: both sides see the same octets.
+  if (kind == LinkKind::Loaned && producer != consumer)
+    return Refusal{static_cast<std::uint8_t>(Item::Field), "fields of a lent sample: the same ones in the same order"};
+  const std::size_t payload = octets_of(producer, kind);
+  if (payload == 0 || payload > max_payload_octets(kind))
     return Refusal{static_cast<std::uint8_t>(Item::Field), "payload of " + std::to_string(payload) + " octets"};
   return std::nullopt;
 }
@@ -239,9 +251,7 @@ class Reader {
     duration(agreement.producer_period);
     duration(agreement.consumer_period);
     fields(agreement.fields);
-    std::size_t payload = 0;
-    for (const auto& field : agreement.fields) payload += octets_of(field);
-    require(payload <= max_link_payload_octets);
+    require(octets_of(agreement.fields, agreement.kind) <= max_payload_octets(agreement.kind));
   }
   void require(bool condition) noexcept { good_ = good_ && condition; }
   [[nodiscard]] bool good() const noexcept { return good_ && in_.good(); }
@@ -259,11 +269,7 @@ class Reader {
 
 }  // namespace
 
-std::uint32_t Agreement::payload_octets() const noexcept {
-  std::size_t sum = 0;
-  for (const auto& field : fields) sum += octets_of(field);
-  return static_cast<std::uint32_t>(sum);
-}
+std::uint32_t Agreement::payload_octets() const noexcept { return static_cast<std::uint32_t>(octets_of(fields, kind)); }
 
 std::uint64_t Agreement::layout_hash() const noexcept {
   Hash hash;
@@ -271,7 +277,7 @@ std::uint64_t Agreement::layout_hash() const noexcept {
   for (const auto& field : fields) {
     hash.add(field.name);
     hash.add(static_cast<std::uint64_t>(field.type), 1);
-    hash.add(field.count, 2);
+    hash.add(field.count, 4);
   }
   hash.add(static_cast<std::uint64_t>(byte_order), 1);
   hash.add(static_cast<std::uint64_t>(kind), 1);
@@ -284,8 +290,12 @@ std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& 
   const auto order =
       first_common(Item::ByteOrder, "byte order", producer.terms.byte_orders, consumer.terms.byte_orders);
   if (!order) return std::unexpected{order.error()};
+  constexpr auto native = std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big;
+  if (way->second == LinkKind::Loaned && *order != native)
+    return refuse(Item::ByteOrder, "byte order: a lent sample has the machine's, not " + std::string{to_text(*order)});
   if (auto refusal = check_rates(producer.period, consumer.period)) return std::unexpected{*std::move(refusal)};
-  if (auto refusal = check_fields(producer.fields, consumer.fields)) return std::unexpected{*std::move(refusal)};
+  if (auto refusal = check_fields(producer.fields, consumer.fields, way->second))
+    return std::unexpected{*std::move(refusal)};
   return Agreement{way->first, *order, way->second, producer.period, consumer.period, producer.fields};
 }
 

@@ -47,7 +47,7 @@ enum class Role : std::uint8_t { Producer = 1, Consumer = 2 };
 struct OfferedField {
   std::string name;
   Type type{};
-  std::uint16_t count{1};
+  std::uint32_t count{1};
   friend bool operator==(const OfferedField&, const OfferedField&) = default;
 };
 
@@ -66,8 +66,9 @@ struct Agreement {
   LinkKind kind{};
   Duration producer_period{};
   Duration consumer_period{};
-  std::vector<OfferedField> fields;  ///< the producer's, packed in this order on the link
-  [[nodiscard]] std::uint32_t payload_octets() const noexcept;
+  std::vector<OfferedField>
+      fields;  ///< the producer's in their order: packed, or of a lent sample as in a C++ aggregate
+  [[nodiscard]] std::uint32_t payload_octets() const noexcept;  ///< of a lent sample as a C++ aggregate has them
   [[nodiscard]] std::uint64_t layout_hash() const noexcept;  ///< FNV-1a 64 over fields, order, kind
 };
 
@@ -82,7 +83,8 @@ using Carried = std::function<bool(LinkMethod, LinkKind)>;
 
 /// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
 /// consumer has too; an integer ratio of the rates either way; every field the consumer requires present with the same
-/// name, type and count (the producer may have more). Method and kind are chosen together, by what can be carried. Pure.
+/// name, type and count (the producer may have more). Method and kind are chosen together, by what can be carried. A lent
+/// sample has the same fields in the same order on both sides, and the byte order of the machine. Pure.
 [[nodiscard]] std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer,
                                                           const Carried& carried);
 

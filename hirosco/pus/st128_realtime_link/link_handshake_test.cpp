@@ -19,6 +19,7 @@ constexpr auto little = ByteOrder::Little;
 constexpr auto big = ByteOrder::Big;
 constexpr auto latest = LinkKind::Latest;
 constexpr auto queued = LinkKind::Queued;
+constexpr auto loaned = LinkKind::Loaned;
 
 struct Side {
   std::vector<LinkMethod> methods{shm};
@@ -111,6 +112,27 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
       {{.fields = {}}, {.fields = {}}, "4: payload of 0 octets"},
       {{.fields = {{"BIG", Type::Double, 8193}}}, {.fields = {}}, "4: payload of 65544 octets"},
       {{.fields = {{"BIG", Type::Double, 8192}}}, {.fields = {}}, "shared_memory little latest 1000/1000"},
+      // Lent: the same fields in the same order, the machine's byte order, a limit of its own.
+      {{.kinds = {loaned}}, {.kinds = {loaned}}, "shared_memory little loaned 1000/1000"},
+      {{.kinds = {loaned}}, {.kinds = {latest}}, "2: kind: consumer latest, producer loaned"},
+      {{.orders = {big}, .kinds = {loaned}},
+       {.orders = {big}, .kinds = {loaned}},
+       "1: byte order: a lent sample has the machine's, not big"},
+      {{.kinds = {loaned}, .fields = position_and_torque},
+       {.kinds = {loaned}, .fields = position},
+       "4: fields of a lent sample: the same ones in the same order"},
+      {{.kinds = {loaned}, .fields = position_and_torque},
+       {.kinds = {loaned}, .fields = {position_and_torque[1], position_and_torque[0]}},
+       "4: fields of a lent sample: the same ones in the same order"},
+      {{.kinds = {loaned}, .fields = {{"BIG", Type::Uint8, 1U << 24}}},
+       {.kinds = {loaned}, .fields = {{"BIG", Type::Uint8, 1U << 24}}},
+       "shared_memory little loaned 1000/1000"},
+      {{.kinds = {loaned}, .fields = {{"BIG", Type::Uint8, (1U << 24) + 1}}},
+       {.kinds = {loaned}, .fields = {{"BIG", Type::Uint8, (1U << 24) + 1}}},
+       "4: payload of 16777217 octets"},
+      {{.kinds = {loaned}, .fields = {{"BIG", Type::Double, 0xFFFF'FFFF}}},
+       {.kinds = {loaned}, .fields = {{"BIG", Type::Double, 0xFFFF'FFFF}}},
+       "4: payload of 34359738360 octets"},
       // Several reasons: the first in the order of the terms is told.
       {{.methods = {LinkMethod::Udp}, .orders = {big}, .period_us = 3000},
        {.period_us = 2000},
@@ -167,6 +189,23 @@ TEST(LinkAgreement, HasAHashThatAllOfItsLayoutChanges) {
   EXPECT_EQ(changed([](Agreement& a) { a.method = LinkMethod::Udp; }), hash) << "the way is no part of the layout";
 }
 
+TEST(LinkAgreement, ALentSampleLiesAsCppLaysIt) {
+  struct Sample {
+    std::uint8_t a;
+    double b;
+    std::array<std::uint16_t, 3> c;
+    std::uint8_t d;
+  };
+  Agreement lent{
+      shm, little, loaned,
+      1ms, 1ms,    {{"A", Type::Uint8, 1}, {"B", Type::Double, 1}, {"C", Type::Uint16, 3}, {"D", Type::Uint8, 1}}};
+  EXPECT_EQ(lent.payload_octets(), sizeof(Sample));
+  const auto hash = lent.layout_hash();
+  lent.kind = latest;
+  EXPECT_EQ(lent.payload_octets(), 16u) << "packed";
+  EXPECT_NE(lent.layout_hash(), hash);
+}
+
 TEST(LinkMessages, HaveTheOctetsWrittenHere) {
   Bytes buffer(256);
   const Offer offer{"AB", 1ms, {{shm, LinkMethod::Udp}, {little}, {latest}}, {{"P", Type::Double, 2}}};
@@ -183,7 +222,7 @@ TEST(LinkMessages, HaveTheOctetsWrittenHere) {
             "01"
             "0150"
             "0a"
-            "0002");
+            "00000002");
   const auto refused = write_refusal(buffer, 7, {4, "field P"});
   EXPECT_EQ(to_hex(Octets{buffer}.first(refused.value())),
             "07"

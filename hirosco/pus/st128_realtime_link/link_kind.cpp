@@ -10,7 +10,7 @@ constexpr Part word(std::string_view name) noexcept { return {.name = name, .for
 constexpr Part link[]{number("LINK", Type::Uint8)};
 constexpr Part link_end[]{number("LINK", Type::Uint8), number("ROLE", Type::Uint8)};
 constexpr Part choice[]{number("CHOICE", Type::Uint8)};
-constexpr Part field[]{word("FIELD"), number("TYPE", Type::Uint8), number("COUNT", Type::Uint16)};
+constexpr Part field[]{word("FIELD"), number("TYPE", Type::Uint8), number("COUNT", Type::Uint32)};
 constexpr Part asked[]{number("LINK", Type::Uint8), word("SET")};
 constexpr Part offered[]{number("LINK", Type::Uint8),
                          word("SET"),

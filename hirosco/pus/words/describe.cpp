@@ -34,7 +34,7 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
     text.append("'").append(words).append("'");
     return;
   }
-  for (std::uint16_t i = 0; i < field.count; ++i) {
+  for (std::uint32_t i = 0; i < field.count; ++i) {
     const Number value = read_number(reader, field.type);
     if (i != 0) text.append(",");
     const auto enumeration =
@@ -184,7 +184,7 @@ class ShapeWords {
     }
     std::string text;
     for (const auto& field : last_->fields)
-      for (std::uint16_t i = 0; i < field.count; ++i)
+      for (std::uint32_t i = 0; i < field.count; ++i)
         text.append(text.empty() ? "" : ",").append(number_text(get_number(reader_, field.type)));
     return text;
   }

@@ -31,17 +31,21 @@ class LinkInputPort {
   [[nodiscard]] std::uint64_t received() const noexcept { return received_; }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
   [[nodiscard]] std::span<const NativeField> layout() const noexcept { return layout_.all(); }
+  /// Whether it looks at samples that are lent, and keeps none.
+  [[nodiscard]] bool lent() const noexcept { return native_.empty(); }
 
  protected:
   LinkInputPort(ObjectFields layout, MutableOctets native) noexcept : layout_{layout}, native_{native} {}
   LinkInputPort(const LinkInputPort&) = delete;
   LinkInputPort& operator=(const LinkInputPort&) = delete;
   ~LinkInputPort() = default;
+  [[nodiscard]] LoanReader* loans() const noexcept { return loans_; }
 
  private:
   friend class LinkInputSlot;
   ObjectFields layout_;
   MutableOctets native_;
+  LoanReader* loans_{nullptr};  ///< of the attached link, where it lends
   bool valid_{false};
   std::uint32_t age_cycles_{0};
   LinkStatus status_{LinkStatus::None};
@@ -61,6 +65,66 @@ class LinkInput final : private HasFields<T>, public LinkInputPort {
 
  private:
   T value_{};
+};
+
+/// A required set whose samples are lent (kind="loaned"): images, point clouds. T: as of LinkInput, with arrays of fixed length only.
+template <class T>
+class LoanInput final : private HasFields<T>, public LinkInputPort {
+  static_assert(!HasFields<T>::sized, "a lent sample has arrays of fixed length only");
+  static_assert(ParameterStructure<T>, "a lent sample is an aggregate with one member per <Field>");
+
+ public:
+  LoanInput() noexcept : LinkInputPort{HasFields<T>::fields(), {}} {}
+  /// The newest sample as of the beginning of this cycle, in its producer's place; null: none yet, or no link. The place
+  /// is made anew after two more publications at least: what was read counts when whole() says so afterwards, and in a
+  /// later cycle whole() is asked before reading on: a link that is gone took its memory along.  Realtime: wait-free.
+  [[nodiscard]] const T* look() noexcept {
+    return loans() == nullptr ? nullptr : reinterpret_cast<const T*>(loans()->look().data());
+  }
+  /// Whether all that was read since look() is of that one sample. Ask before acting on it.  Realtime: wait-free.
+  [[nodiscard]] bool whole() const noexcept { return loans() != nullptr && loans()->whole(); }
+};
+
+/// A provided set whose samples are lent, as the cycle sees it.  Thread: the cycle.
+class LoanOutputPort {
+ public:
+  [[nodiscard]] std::span<const NativeField> layout() const noexcept { return layout_; }
+  /// Hands the lent place on as a new sample at the end of this cycle, with its time and status; nothing when none is lent.
+  /// Realtime: wait-free.
+  void publish() noexcept { ready_ = lent_; }
+
+ protected:
+  explicit LoanOutputPort(std::span<const NativeField> layout) noexcept : layout_{layout} {}
+  LoanOutputPort(const LoanOutputPort&) = delete;
+  LoanOutputPort& operator=(const LoanOutputPort&) = delete;
+  ~LoanOutputPort() = default;
+  [[nodiscard]] std::byte* place() noexcept {
+    if (loans_ == nullptr) return nullptr;
+    lent_ = true;
+    return loans_->lend().data();
+  }
+
+ private:
+  friend class LinkOutputSlot;
+  std::span<const NativeField> layout_;
+  LoanWriter* loans_{nullptr};  ///< of the link that was attached first
+  bool lent_{false};
+  bool ready_{false};
+};
+
+/// T: an aggregate with one member per <Field> of the <Provides kind="loaned"> element, in their order, with arrays of fixed
+/// length only. Each link has memory of its own: the one that was attached first lends, into the others the framework
+/// copies the sample at the end of the cycle.
+template <class T>
+class LoanOutput final : private HasFields<T>, public LoanOutputPort {
+  static_assert(!HasFields<T>::sized, "a lent sample has arrays of fixed length only");
+  static_assert(ParameterStructure<T>, "a lent sample is an aggregate with one member per <Field>");
+
+ public:
+  LoanOutput() noexcept : LoanOutputPort{HasFields<T>::fields().all()} {}
+  /// Where the next sample is made; null when no link is attached. The same place until it is published or its link is gone:
+  /// ask anew in each cycle. It holds an earlier sample, or zeros.  Realtime: wait-free.
+  [[nodiscard]] T* lend() noexcept { return reinterpret_cast<T*>(place()); }
 };
 
 /// A device, as the cycle sees it.  Thread: the cycle.

@@ -65,7 +65,11 @@ void CycleLoop::prepare(CyclePlan plan) {
   for (IncomingLink& page : parts_.vital.incoming) page.link.store(0, std::memory_order_relaxed);
 }
 
-void CycleLoop::release() { plan_ = {}; }
+void CycleLoop::release() {
+  for (LinkInputSlot& input : plan_.inputs) input.release();
+  for (LinkOutputSlot& output : plan_.outputs) output.release();
+  plan_ = {};
+}
 
 TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const TimePoint started = parts_.clock.now();

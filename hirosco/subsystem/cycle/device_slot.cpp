@@ -51,7 +51,7 @@ constexpr std::uint32_t longest_introduction = 40;
     const std::size_t start = payload.size();
     payload.resize(start + output.field.octets());
     OctetWriter writer{MutableOctets{payload}.subspan(start), order};
-    for (std::uint16_t i = 0; i < output.field.count; ++i)
+    for (std::uint32_t i = 0; i < output.field.count; ++i)
       put_number(writer, output.field.type, i < output.safe.size() ? output.safe[i] : 0.0);
   }
   return payload;

@@ -374,7 +374,7 @@ TEST_F(Links, APartnerThatLeftAndCameBackIsAttachedUnderItsLaterEpoch) {
 
 TEST_F(Links, AFieldOfAnotherTypeUnderTheSameNameIsRefused) {
   auto fields = hand_fields;
-  fields.front().count = static_cast<std::uint16_t>(fields.front().count + 1);
+  ++fields.front().count;
   std::string outcome;
   rig.attach(1, Role::Consumer, "HAND", fields, &outcome);
   EXPECT_EQ(outcome, "1 4:010700");

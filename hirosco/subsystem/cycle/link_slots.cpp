@@ -4,6 +4,8 @@
 #include "hirosco/subsystem/cycle/link_slots.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 namespace hirosco {
 namespace {
@@ -13,10 +15,17 @@ constexpr std::uint32_t longest_age = 1'000'000'000;
 
 }  // namespace
 
+void set_status(AttachedLink& link, LinkStatus status) noexcept {
+  link.told = status;
+  if (link.lender != nullptr) link.lender->set_status(status);
+  else link.writer->set_status(status);
+}
+
 LinkInputSlot::LinkInputSlot(const descriptor::Requires& terms, LinkInputPort* port, bool realtime) noexcept
     : terms_{&terms}, port_{port}, age_limit_{realtime ? terms.age.realtime : terms.age.reduced} {
   for (std::size_t i = 0; i < terms.fields.size(); ++i)
     port_->layout_.set_length(i, terms.fields[i].count, port_->native_);
+  port_->loans_ = nullptr;
   port_->valid_ = false;
   port_->age_cycles_ = 0;
   port_->status_ = LinkStatus::None;
@@ -26,6 +35,11 @@ LinkInputSlot::LinkInputSlot(const descriptor::Requires& terms, LinkInputPort* p
 Result<> LinkInputSlot::plan(AttachedLink& link) const {
   link.scatter.clear();
   link.wire_offset.clear();
+  const bool lent = link.agreement.kind == LinkKind::Loaned;
+  if (lent != port_->lent())
+    return fail(ErrorCode::Mismatch, "the agreement lends and the port copies, or the reverse");
+  if (lent && link.agreement.fields.size() != terms_->fields.size())
+    return fail(ErrorCode::Mismatch, "the agreement has other fields than the lent set");
   for (std::size_t wanted = 0; wanted < terms_->fields.size(); ++wanted) {
     std::size_t offset = 0;
     const auto found = std::ranges::find_if(link.agreement.fields, [&](const pus::st128::OfferedField& field) {
@@ -37,6 +51,10 @@ Result<> LinkInputSlot::plan(AttachedLink& link) const {
     const NativeField& place = port_->layout()[wanted];
     if (found->type != place.type || found->count != place.count)
       return fail(ErrorCode::Mismatch, "the agreement has a required field with another type");
+    if (lent) {
+      if (found - link.agreement.fields.begin() == static_cast<std::ptrdiff_t>(wanted)) continue;
+      return fail(ErrorCode::Mismatch, "the agreement has the fields of the lent set in another order");
+    }
     link.scatter.push_back({place.type, place.count, place.offset});
     link.wire_offset.push_back(offset);
   }
@@ -45,6 +63,7 @@ Result<> LinkInputSlot::plan(AttachedLink& link) const {
 
 void LinkInputSlot::attach(AttachedLink* link) noexcept {
   link_ = link;
+  port_->loans_ = link->borrower.get();
   port_->age_cycles_ = 0;
   // What an earlier link brought must not pass for a sample of this one.
   port_->count_ = 0;
@@ -58,6 +77,7 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
 void LinkInputSlot::detach(const AttachedLink* link) noexcept {
   if (link_ != link) return;
   link_ = nullptr;
+  port_->loans_ = nullptr;
   port_->valid_ = false;
   port_->status_ = LinkStatus::None;
 }
@@ -67,7 +87,8 @@ void LinkInputSlot::read(TimePoint now) noexcept {
     port_->valid_ = false;
     return;
   }
-  const LinkSample sample = link_->reader->read(link_->payload);
+  // What is lent stays where it is: there is nothing to scatter.
+  const LinkSample sample = port_->lent() ? link_->borrower->newest() : link_->reader->read(link_->payload);
   if (sample.flow == Flow::New) {
     for (std::size_t i = 0; i < link_->scatter.size(); ++i) {
       const LayoutField& field = link_->scatter[i];
@@ -102,8 +123,11 @@ void LinkInputSlot::tell(IncomingLink& page) const noexcept {
 }
 
 LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms,
-                               Dictionary& dictionary)
-    : terms_{&terms} {
+                               Dictionary& dictionary, LoanOutputPort* port)
+    : terms_{&terms}, port_{port} {
+  for (const descriptor::Field& field : terms.fields) fields_.push_back({field.name, field.type, field.count});
+  lend_first();
+  if (terms.terms.lent()) return;
   for (const descriptor::ParameterRef& reference : terms.parameters) {
     const ParameterCell* cell = dictionary.cell(reference.parameter);
     const auto& layout = cell->fields();
@@ -121,16 +145,50 @@ LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const des
 }
 
 void LinkOutputSlot::attach(AttachedLink* link) noexcept {
-  link->next = first_;
-  first_ = link;
+  AttachedLink** end = &first_;
+  while (*end != nullptr) end = &(*end)->next;
+  link->next = nullptr;
+  *end = link;
+  lend_first();
 }
 
 void LinkOutputSlot::detach(AttachedLink* link) noexcept {
   for (AttachedLink** place = &first_; *place != nullptr; place = &(*place)->next)
     if (*place == link) {
       *place = link->next;
+      lend_first();
       return;
     }
+}
+
+void LinkOutputSlot::release() noexcept {
+  first_ = nullptr;
+  lend_first();
+}
+
+/// What was being made in the memory of a link that is gone went with it.
+void LinkOutputSlot::lend_first() noexcept {
+  LoanWriter* const first = first_ != nullptr ? first_->lender.get() : nullptr;
+  if (port_ == nullptr || port_->loans_ == first) return;
+  port_->loans_ = first;
+  port_->lent_ = port_->ready_ = false;
+}
+
+/// Each link has memory of its own: what was made in that of the first is copied into the others before it is handed on.
+void LinkOutputSlot::hand_on(TimePoint now, LinkStatus status) noexcept {
+  const bool ready = std::exchange(port_->ready_, false);
+  if (ready) port_->lent_ = false;
+  for (AttachedLink* link = first_; link != nullptr; link = link->next) {
+    if (ready && link != first_) {
+      const MutableOctets made = first_->lender->lend();
+      std::memcpy(link->lender->lend().data(), made.data(), made.size());
+      link->lender->publish(now, status);
+      link->told = status;
+    } else if (!ready && link->told != status) set_status(*link, status);
+  }
+  if (!ready || first_ == nullptr) return;
+  first_->lender->publish(now, status);
+  first_->told = status;
 }
 
 void LinkOutputSlot::encode_for(std::endian order) noexcept {
@@ -143,6 +201,7 @@ void LinkOutputSlot::encode_for(std::endian order) noexcept {
 }
 
 void LinkOutputSlot::write(TimePoint now, LinkStatus status) noexcept {
+  if (port_ != nullptr) return hand_on(now, status);
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     bool encoded = false;
     for (AttachedLink* link = first_; link != nullptr; link = link->next) {

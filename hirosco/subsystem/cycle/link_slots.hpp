@@ -26,6 +26,9 @@ struct AttachedLink {
   pus::st128::Agreement agreement;
   std::unique_ptr<LinkWriter> writer;    ///< producer
   std::unique_ptr<LinkReader> reader;    ///< consumer
+  std::unique_ptr<LoanWriter> lender;    ///< instead of `writer`, where samples are lent
+  std::unique_ptr<LoanReader> borrower;  ///< instead of `reader`
+  LinkStatus told{LinkStatus::None};     ///< producer that lends: as consumers know it
   AttachedLink* next{nullptr};           ///< producer: of the same set; the cycle's
   std::vector<LayoutField> scatter;      ///< consumer: where each agreed field goes in the port, size 0 = unused
   std::vector<std::size_t> wire_offset;  ///< consumer: of each entry of `scatter`
@@ -34,6 +37,9 @@ struct AttachedLink {
   std::uint32_t producer_cycles_per_sample{1};  ///< own cycles that one sample of a slower producer may take
 };
 
+/// Tells consumers, of the producer's end.
+void set_status(AttachedLink& link, LinkStatus status) noexcept;
+
 /// A required set of real-time data.
 class LinkInputSlot {
  public:
@@ -41,11 +47,14 @@ class LinkInputSlot {
   [[nodiscard]] const descriptor::Requires& terms() const noexcept { return *terms_; }
   [[nodiscard]] LinkInputPort* port() const noexcept { return port_; }
   [[nodiscard]] bool attached() const noexcept { return link_ != nullptr; }
-  /// Prepares the scatter list of a link for the port. Mismatch: the agreement lacks a field.
+  /// Prepares the scatter list of a link for the port. Mismatch: the agreement lacks a field, or, of what is lent, has any
+  /// other field; it lends and the port copies, or the other way round.
   [[nodiscard]] Result<> plan(AttachedLink& link) const;
   void attach(AttachedLink* link) noexcept;
   /// Lets go of this link; of another one it keeps hold.
   void detach(const AttachedLink* link) noexcept;
+  /// The port outlives all links.
+  void release() noexcept { detach(link_); }
   /// Reads the link into the port, in the cycle that started at `now`.
   void read(TimePoint now) noexcept;
   /// Tells how the link does.
@@ -65,13 +74,17 @@ class LinkInputSlot {
 };
 
 /// A provided set of real-time data. A set may have any number of consumers, one link each: what they get is encoded once.
+/// A lent set has a port: its samples are made in the memory of the link that was attached first.
 class LinkOutputSlot {
  public:
-  LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms, Dictionary& dictionary);
+  LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms, Dictionary& dictionary,
+                 LoanOutputPort* port = nullptr);
   [[nodiscard]] const descriptor::Provides& terms() const noexcept { return *terms_; }
   [[nodiscard]] const std::vector<pus::st128::OfferedField>& fields() const noexcept { return fields_; }
   void attach(AttachedLink* link) noexcept;
   void detach(AttachedLink* link) noexcept;
+  /// The port outlives all links.
+  void release() noexcept;
   void write(TimePoint now, LinkStatus status) noexcept;
 
  private:
@@ -83,12 +96,15 @@ class LinkOutputSlot {
   std::vector<pus::st128::OfferedField> fields_;
   std::vector<Source> sources_;
   void encode_for(std::endian order) noexcept;
+  void hand_on(TimePoint now, LinkStatus status) noexcept;
+  void lend_first() noexcept;
   [[nodiscard]] MutableOctets payload(std::endian order) noexcept {
     return payloads_[order == std::endian::big ? 1 : 0];
   }
 
   std::array<std::vector<std::byte>, 2> payloads_;  ///< little and big endian
-  AttachedLink* first_{nullptr};
+  AttachedLink* first_{nullptr};  ///< in the order in which they were attached
+  LoanOutputPort* port_;
 };
 
 }  // namespace hirosco

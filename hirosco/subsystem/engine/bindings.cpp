@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/subsystem/cycle/layout_difference.hpp"
 #include "hirosco/subsystem/engine/generic_subsystem.hpp"
 
 /// How an author introduces its parts in Software-Init, compared with the descriptor: every difference is collected, so
@@ -85,7 +86,26 @@ void GenericSubsystem::require_link(std::string_view set, LinkInputPort& port) {
   const auto sets = descriptor::required_sets(descriptor_);
   if (std::ranges::find(sets, set) == sets.end())
     mistake("require_link: no configuration requires a set '" + std::string{set} + "'");
+  for (const auto& configuration : descriptor_.configurations)
+    for (const descriptor::Requires& wanted : configuration.requires_) {
+      if (wanted.name != set || !wanted.terms.lent() || !port.lent()) continue;
+      if (const auto difference = layout_difference(port.layout(), wanted.fields); !difference.empty())
+        mistake("require_link " + wanted.name + ": " + difference);
+    }
   link_ports_[std::string{set}] = &port;
+}
+
+void GenericSubsystem::lend_link(std::string_view set, LoanOutputPort& port) {
+  bool known = false;
+  for (const auto& configuration : descriptor_.configurations)
+    for (const descriptor::Provides& lent : configuration.provides) {
+      if (lent.name != set || !lent.terms.lent()) continue;
+      known = true;
+      if (const auto difference = layout_difference(port.layout(), lent.fields); !difference.empty())
+        mistake("lend_link " + lent.name + ": " + difference);
+    }
+  if (!known) mistake("lend_link: no configuration lends a set '" + std::string{set} + "'");
+  lent_ports_[std::string{set}] = &port;
 }
 
 void GenericSubsystem::use_device(std::string_view name, DevicePortBase& port,
@@ -121,6 +141,10 @@ void GenericSubsystem::check_introduction() {
     if (event.id < descriptor::framework_event::first && !uses_all_events_ &&
         std::ranges::find(used_events_, event.id) == used_events_.end())
       mistake("event declared but never used: " + event.name);
+  for (const auto& configuration : descriptor_.configurations)
+    for (const descriptor::Provides& lent : configuration.provides)
+      if (lent.terms.lent() && !lent_ports_.contains(lent.name))
+        mistake("set lent but without a place to make it, lend_link: " + lent.name);
   check_settings();
   for (const CustomService* service : own_services_)
     for (std::string& problem : service->problems()) mistake(std::move(problem));
@@ -135,6 +159,7 @@ void GenericSubsystem::forget_introduction() {
   for (CustomService* service : own_services_) service->release();
   used_events_.clear();
   link_ports_.clear();
+  lent_ports_.clear();
   device_ports_.clear();
   cycle_.functions().assign(descriptor_.functions.size(), {});
 }

@@ -242,7 +242,7 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
   if (!dictionary_.accepts(*index, -1, value)) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
   OctetReader reader{value};
   const auto in_range = [&](const descriptor::Field& field) {
-    for (std::uint16_t i = 0; i < field.count; ++i) {
+    for (std::uint32_t i = 0; i < field.count; ++i) {
       const Number number = read_number(reader, field.type);
       if (!(number == number)) return false;
       if (field.minimum && number < *field.minimum) return false;

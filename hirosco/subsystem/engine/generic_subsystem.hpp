@@ -115,6 +115,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   // --- for Subsystem ----------------------------------------------------------------------------------------------
   void publish(std::string_view name, ParameterCell& parameter);
   void require_link(std::string_view set, LinkInputPort& port);
+  void lend_link(std::string_view set, LoanOutputPort& port);
   void use_device(std::string_view name, DevicePortBase& port, std::span<const std::string_view> settings);
   void provide(CustomService& service);
   void use_event(EventPort& event);
@@ -227,6 +228,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::vector<CustomService*> own_services_;
 
   std::map<std::string, LinkInputPort*, std::less<>> link_ports_;
+  std::map<std::string, LoanOutputPort*, std::less<>> lent_ports_;
   std::map<std::string, DevicePortBase*, std::less<>> device_ports_;
   struct LinkEnd {
     std::unique_ptr<AttachedLink> link;

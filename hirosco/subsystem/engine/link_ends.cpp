@@ -71,14 +71,24 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
     if (slot == plan.outputs.end()) return fail(ErrorCode::NotFound, "no such provided set");
     // Another configuration may be in force than the one that negotiated; the cycle writes these fields unchecked.
     if (agreement.fields != slot->fields()) return fail(ErrorCode::Mismatch, "the agreement is not of this set");
-    HIROSCO_TRY_LET(link->writer, mechanism->produce(platform_.memory, memory, layout));
+    if ((agreement.kind == LinkKind::Loaned) != slot->terms().terms.lent())
+      return fail(ErrorCode::Mismatch, "the agreement lends and the set is copied, or the reverse");
+    if (agreement.kind == LinkKind::Loaned) {
+      HIROSCO_TRY_LET(link->lender, mechanism->lend(platform_.memory, memory, layout));
+    } else {
+      HIROSCO_TRY_LET(link->writer, mechanism->produce(platform_.memory, memory, layout));
+    }
     end.slot = static_cast<std::uint16_t>(slot - plan.outputs.begin());
   } else {
     const auto slot = std::ranges::find_if(plan.inputs, [&](const auto& s) { return s.terms().name == request.set; });
     if (slot == plan.inputs.end()) return fail(ErrorCode::NotFound, "no such required set");
-    HIROSCO_TRY_LET(link->reader, mechanism->consume(platform_.memory, memory, layout));
-    link->payload.resize(layout.payload_octets);
     HIROSCO_TRY(slot->plan(*link));
+    if (agreement.kind == LinkKind::Loaned) {
+      HIROSCO_TRY_LET(link->borrower, mechanism->borrow(platform_.memory, memory, layout));
+    } else {
+      HIROSCO_TRY_LET(link->reader, mechanism->consume(platform_.memory, memory, layout));
+      link->payload.resize(layout.payload_octets);
+    }
     const auto ratio = agreement.producer_period / std::max(agreement.consumer_period, Duration{1});
     link->producer_cycles_per_sample = static_cast<std::uint32_t>(std::max<std::int64_t>(ratio, 1));
     end.slot = static_cast<std::uint16_t>(slot - plan.inputs.begin());

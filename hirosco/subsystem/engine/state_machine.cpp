@@ -137,7 +137,7 @@ Result<Step> GenericSubsystem::leave_cycle() {
 void GenericSubsystem::end_configuration() {
   for (const auto& [link, end] : link_ends_) {
     // An announced end is not a stale link: consumers make themselves safe without an alarm.
-    if (end.role == pus::st128::Role::Producer) end.link->writer->set_status(LinkStatus::Stopping);
+    if (end.role == pus::st128::Role::Producer) set_status(*end.link, LinkStatus::Stopping);
     link_service_.report_detached(link, end.role);
   }
   for (auto& [link, end] : link_ends_) leaving_links_.push_back(std::move(end.link));
@@ -287,11 +287,25 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     if (port == link_ports_.end()) return mismatch("no port for the required set " + wanted.name);
     if (const auto difference = layout_difference(port->second->layout(), wanted.fields); !difference.empty())
       return mismatch("required set " + wanted.name + ": " + difference);
+    if (port->second->lent() != wanted.terms.lent())
+      return mismatch(
+          "required set " + wanted.name +
+          (wanted.terms.lent() ? ": is lent, its port is no LoanInput" : ": is copied, its port is no LinkInput"));
     plan.inputs.emplace_back(wanted, port->second, platform_.realtime);
     const auto set = std::ranges::find(sets, wanted.name) - sets.begin();
     plan.input_stale_events.push_back(descriptor::framework_event::set_stale(static_cast<std::size_t>(set)));
   }
-  for (const auto& provided : configuration.provides) plan.outputs.emplace_back(descriptor_, provided, dictionary_);
+  for (const auto& provided : configuration.provides) {
+    LoanOutputPort* port = nullptr;
+    if (provided.terms.lent()) {
+      const auto found = lent_ports_.find(provided.name);
+      if (found == lent_ports_.end()) return mismatch("no port for the lent set " + provided.name);
+      port = found->second;
+      if (const auto difference = layout_difference(port->layout(), provided.fields); !difference.empty())
+        return mismatch("lent set " + provided.name + ": " + difference);
+    }
+    plan.outputs.emplace_back(descriptor_, provided, dictionary_, port);
+  }
   for (const auto& use : configuration.devices) {
     const descriptor::Device& device = descriptor_.devices[use.device];
     const auto port = device_ports_.find(device.name);

@@ -31,6 +31,7 @@ Outcome::Outcome(const Result<>& result) noexcept
 void Subsystem::provide(CustomService& service) { framework_->provide(service); }
 void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
 void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
+void Subsystem::lend_link(std::string_view set, LoanOutputPort& port) { framework_->lend_link(set, port); }
 void Subsystem::use_event(EventPort& event) { framework_->use_event(event); }
 void Subsystem::use_request(RequestPort& request, RequestHandler handler, Duration patience) {
   framework_->use_request(request, std::move(handler), patience);

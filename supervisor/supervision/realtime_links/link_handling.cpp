@@ -114,7 +114,7 @@ void LinkHandling::offered(Handshake& handshake, const st128::Offer& offer) {
 
 void LinkHandling::agreed(Handshake& handshake, const st128::Agreement& agreement) {
   const std::uint32_t payload = agreement.payload_octets();
-  if (payload == 0 || payload > max_link_payload_octets)
+  if (payload == 0 || payload > max_payload_octets(agreement.kind))
     return give_up(handshake.link->id, "payload size out of range");
   const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, agreement.method, agreement.kind);
   if (mechanism == nullptr) return give_up(handshake.link->id, "no mechanism here carries " + terms_text(agreement));

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/link/loaned_memory.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
@@ -139,6 +140,16 @@ TEST_F(LinkHandlingTest, ALinkIsLookedAtWhileItIsUpAndTellsWhatItsProducerWrote)
   EXPECT_EQ(links.glance(2)->sampled_at, TimePoint{5ms});
   links.forget(hand);
   EXPECT_FALSE(links.glance(2)) << "nobody looks into what was given back";
+}
+
+TEST_F(LinkHandlingTest, ALinkThatLendsGetsTheMemoryOfItsFourPlaces) {
+  advance(1);
+  st128::Agreement lent = agreement;
+  lent.kind = LinkKind::Loaned;
+  lent.fields = {{"NUMBER", Type::Uint64, 1}, {"PIXEL", Type::Uint8, 1'000'000}};
+  say(hand, st128::agreement, st128::write_agreement, lent);
+  ASSERT_TRUE(supervisor.last_memory);
+  EXPECT_TRUE(memory.verify(supervisor.last_memory, loaned_memory_octets(1'000'008), false));
 }
 
 TEST_F(LinkHandlingTest, WhatNoMechanismCarriesIsNotAttached) {

@@ -142,13 +142,14 @@ TEST_P(LinkConformance, ThereIsNoSecondProducer) {
 }
 
 TEST_P(LinkConformance, ImpossibleSamplesAreRefused) {
-  for (const std::uint32_t octets : {0u, max_link_payload_octets + 1, 0xFFFF'FFFFu}) {
+  const std::uint32_t most = max_payload_octets(GetParam()->kind());
+  for (const std::uint32_t octets : {0u, most + 1, 0xFFFF'FFFFu}) {
     LinkLayout impossible = layout;
     impossible.payload_octets = octets;
     EXPECT_FALSE(GetParam()->establish(memory_, impossible)) << octets;
   }
   LinkLayout largest = layout;
-  largest.payload_octets = max_link_payload_octets;
+  largest.payload_octets = most;
   EXPECT_TRUE(GetParam()->establish(memory_, largest));
 }
 

@@ -79,7 +79,7 @@ class SubsystemReader {
   /// An argument knows the names of its values.
   void name_values(std::vector<Function::Argument>& arguments);
   /// What a field says besides name, type, count and unit.
-  enum class Says { Nothing, Words, Range, WordsAndRange, Argument, Report };
+  enum class Says { Nothing, Words, Range, WordsAndRange, Argument, Report, Lent };
   [[nodiscard]] Field read_field(Attributes& attributes, Says says);
   void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
                         Says says = Says::Nothing);
@@ -119,6 +119,8 @@ class SubsystemReader {
   void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);
   void read_provides(const xml::Element& element, Services& services);
   void read_requires(const xml::Element& element, Services& services);
+  void read_lent(const xml::Element& element, std::vector<Field>& fields);
+  void check_lent(const xml::Element& element, std::string_view name, const std::vector<Field>& fields);
   [[nodiscard]] LinkTerms read_terms(Attributes& attributes);
   [[nodiscard]] CycleLimit read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
                                       CycleLimit fallback);
