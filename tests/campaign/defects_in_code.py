@@ -110,11 +110,11 @@ DEFECTS = [
     # What a subsystem sent and nobody could read closed its channel, and it was killed.
     Defect("SF9 damage is a loss", RECEPTION, "if (is_damage(found.error().code)) continue;",
            "if (is_damage(found.error().code)) {\n        if (!PLANTED) continue;\n        member.refused = most_refused;\n      }",
-           "supervisor_test", "ReceptionTest.DamageIsCountedAndWhatFollowsIsRead"),
+           "supervisor_test", "ReceptionTest.WhoseMessageTheChannelCannotReadIsHeardOnAndNeitherClosedNorStopped"),
     # Who was judged gone went on moving until it was killed.
     Defect("SF9 gone and not fenced", RECEPTION, "      craft_.guard.fence(member.apid());",
            "      if (!PLANTED) craft_.guard.fence(member.apid());",
-           "supervisor_test", "ReceptionTest.WhoCanBeNeitherCommandedNorHeardIsStoppedAtOnce"),
+           "supervisor_test", "ProcessesTest.WhoClosesItsChannelFencesNobodyWhomItsPlanLetsGoOn"),
     # A mode was entered whose members were dead.
     Defect("SF15 mode of the dead", f"{SUPERVISION}/modes/modes.cpp", "[&](const auto& step) { return lives(step); }",
            "[&](const auto& step) { return lives(step) || PLANTED; }",
