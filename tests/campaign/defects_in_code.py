@@ -24,7 +24,7 @@ from plants_in_code import CHOSEN, HEADER  # noqa: E402
 
 COPY = ROOT / "build" / "defects" / "sources"
 BUILD = COPY / "build" / "release"
-TEST_LIMIT_S = 300
+TEST_LIMIT_S = 120
 
 SUPERVISION, CYCLE = "supervisor/supervision", "hirosco/subsystem/cycle/cycle.cpp"
 GUARD, MANIPULATOR = "supervisor/guard/guard.cpp", "subsystems/manipulator/manipulator.cpp"
