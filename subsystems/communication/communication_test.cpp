@@ -21,8 +21,9 @@ std::string descriptor_text() {
   return text.str();
 }
 
-/// A link with so many packets that nobody takes.
+/// A link with so many packets that nobody takes, and what it has counted.
 struct Link {
+  communication::LinkCounters counters;
   std::size_t waiting{0};
   bool open{false};
   int finished{0};
@@ -38,24 +39,43 @@ class Transport final : public GroundTransport {
     return link_.waiting;
   }
   void telemetry(Octets) override {}
-  [[nodiscard]] const communication::LinkCounters& counters() const override { return counters_; }
+  [[nodiscard]] const communication::LinkCounters& counters() const override { return link_.counters; }
 
  private:
   Link& link_;
-  communication::LinkCounters counters_;
 };
 
-struct ClosedLink : ::testing::Test {
+struct OpenLink : ::testing::Test {
   Link link;
   std::unique_ptr<Subsystem> author{
       make_communication([this](communication::GroundTraffic&) -> Result<std::unique_ptr<GroundTransport>> {
         return std::make_unique<Transport>(link);
       })};
   Rig rig{*author, descriptor_text()};
+
+  void SetUp() override { rig.bring_to(State::SafeOperational); }
+};
+
+TEST_F(OpenLink, TellsEachConnectionThatTheSpacecraftEndsWithItsReasonAndNoOther) {
+  using enum communication::CloseReason;
+  for (const auto reason : {PeerClosed, Version, NotTelecommand, Length, Incomplete, Slow, Evicted, SocketError}) {
+    rig.forget_telemetry();
+    const auto number = static_cast<std::size_t>(reason);
+    link.counters.closed[number] += 2;
+    rig.advance(200ms);
+    rig.settle();
+    // The id of CLIENT_CUT, the reason, how many.
+    const std::vector<std::string> told{"00cb0" + std::to_string(number) + "00000002"};
+    const bool own_wish = reason == PeerClosed || reason == SocketError;
+    EXPECT_EQ(rig.reports(5, 2), own_wish ? std::vector<std::string>{} : told) << number;
+  }
+}
+
+struct ClosedLink : OpenLink {
   testing::Sent way_down;
 
   void SetUp() override {
-    rig.bring_to(State::SafeOperational);
+    OpenLink::SetUp();
     way_down = rig.set_state(State::Offline);
   }
   static constexpr std::uint16_t dropped = 204;

@@ -61,6 +61,16 @@ TEST(ShippedMissions, EveryNumberFromOutsideHasARange) {
   EXPECT_EQ(numbers.without_range, "");
 }
 
+/// Asked of what is shipped: permission takes the word of the descriptor for it, and a log that stands still refuses all else.
+TEST(ShippedMissions, WhatStopsOrEndsTheFlightOrReplacesTheLogWaitsForNoDisk) {
+  for (const auto& [file, mission] : shipped_missions())
+    for (const char* name : {"SAFE_ALL", "SHUTDOWN", "SET_DATABASE"}) {
+      const Function* function = mission.supervisor.find_function(name);
+      ASSERT_NE(function, nullptr) << file << " " << name;
+      EXPECT_TRUE(function->essential) << file << " " << name;
+    }
+}
+
 TEST(ShippedMissions, AProtectionIsSetByOneFunctionAtMostAndByNoTelecommandForParameters) {
   for (const auto& [file, mission] : shipped_missions())
     for (const auto& member : mission.subsystems)

@@ -185,16 +185,22 @@ TEST(Rings, FullOfAnAuthorsEventsAndProgressLoseNoAnswerAndTellWhatTheyLost) {
 }
 
 TEST(Rings, FullOfAnAuthorsEventsStillTellThatADeviceIsLost) {
-  Talkative author;
-  Rig rig{author, probe_descriptor};
-  rig.bring_to(State::PreOperational, 3);
-  author.events = 5'000;
-  rig.set_state(State::SafeOperational);
-  rig.service();
-  rig.cycle(6);
-  rig.service();
-  EXPECT_EQ(rig.heard(testing::arm_lost), 1);
-  EXPECT_EQ(rig.events(testing::arm_lost), 1);
+  // Remarks have half of the ring, what an author calls severe has all of it.
+  for (const std::string severity : {"low", "high"}) {
+    Talkative author;
+    std::string text = probe_descriptor;
+    const std::string own_event = R"(name="OWN" id="7" severity=")";
+    text.replace(text.find(own_event), own_event.size() + 3, own_event + severity);
+    Rig rig{author, text};
+    rig.bring_to(State::PreOperational, 3);
+    author.events = 5'000;
+    rig.set_state(State::SafeOperational);
+    rig.service();
+    rig.cycle(6);
+    rig.settle();
+    EXPECT_EQ(rig.heard(testing::arm_lost), 1) << severity;
+    EXPECT_EQ(rig.events(testing::arm_lost), 1) << severity;
+  }
 }
 
 TEST(Rings, KeepAnswersAndEventsInTheOrderInWhichTheCycleMadeThem) {

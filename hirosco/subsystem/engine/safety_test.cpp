@@ -167,6 +167,23 @@ TEST_F(Devices, NoFlippedBitOfAFencedPermitPageReachesAnActuator) {
   }
 }
 
+TEST_F(Devices, NoFlippedBitOfAFencedPermitPageLetsAnEntryIntoOperationalThatWasOnItsWayReachAnActuator) {
+  bring_up(State::SafeOperational);
+  for (std::size_t bit = 0; bit < sizeof(PermitPage) * 8; ++bit) {
+    rig.permit.release();
+    rig.set_state(State::Operational);
+    rig.service();  // what it was permitted is before the cycle
+    rig.permit.fence();
+    auto* octet = reinterpret_cast<unsigned char*>(&rig.permit) + bit / 8;
+    const auto before = *octet;
+    *octet ^= static_cast<unsigned char>(1U << bit % 8);
+    for (int i = 0; i < 2; ++i) EXPECT_NE(exchange().mode, DeviceMode::Active) << "bit " << bit;
+    *octet = before;
+    ASSERT_EQ(rig.state(), State::Operational);
+    go(State::SafeOperational);
+  }
+}
+
 TEST_F(Devices, OperationalIsRefusedWhileTheStopFlagIsSet) {
   bring_up(State::SafeOperational);
   rig.permit.fence();

@@ -42,6 +42,18 @@ TEST_F(LogWatchTest, ThatTheLogFailsIsSaidOnceAndThatItWorksAgain) {
   EXPECT_EQ(times_told("log storage works"), 1U);
 }
 
+TEST_F(LogWatchTest, ALogThatFailsIsAnEventOnceThoughItsStoreKnowsOfNoTrouble) {
+  parts.own.start(craft.mode_epoch);
+  own_step();
+  log.switch_to(std::make_unique<BreakingDatabase>(0, open_database(DatabaseStrategy::Memory, {}).value()));
+  craft.tell("a line");
+  for (int i = 0; i < 3; ++i) {
+    look();
+    own_step();
+  }
+  EXPECT_EQ(times_told("SUPERVISOR medium LOG_STORE"), 1U);
+}
+
 TEST_F(LogWatchTest, ATroubleOfTheStoreIsSaidOnceWithItsCauseAndTheNextOnlyASecondLater) {
   auto hold = std::make_shared<HeldDatabase::Hold>();
   log.switch_to(std::make_unique<HeldDatabase>(hold, open_database(DatabaseStrategy::Memory, {}).value()));

@@ -94,6 +94,36 @@ TEST_F(ReceptionTest, WhoCanBeNeitherCommandedNorHeardIsStoppedAtOnce) {
   EXPECT_FALSE(guard.fenced(arm));
 }
 
+/// One message could not be read; those behind it can.
+struct DamagedChannel final : Channel {
+  explicit DamagedChannel(std::unique_ptr<Channel> rest) : rest_{std::move(rest)} {}
+  Result<> send(const Message& message) override { return rest_->send(message); }
+  Result<Found> receive(MessageBuffer& buffer) override {
+    if (std::exchange(damaged_, false)) return fail(ErrorCode::Malformed, "message of the control channel");
+    return rest_->receive(buffer);
+  }
+
+ private:
+  std::unique_ptr<Channel> rest_;
+  bool damaged_{true};
+};
+
+TEST_F(ReceptionTest, WhoseMessageTheChannelCannotReadIsHeardOnAndNeitherClosedNorStopped) {
+  Member& member = *craft.member(hand);
+  auto launched = launch(member.described()).value();
+  auto rest = std::make_unique<PlayedMember::End>(played[hand].channel);
+  launched.port = std::make_unique<LocalMemberPort>(std::make_unique<DamagedChannel>(std::move(rest)), launched.vital,
+                                                    launched.permit);
+  guard.adopt(hand, launched);
+  member.started(std::move(launched));
+  ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  report(hand, 17, 2, {});
+  EXPECT_EQ(unreadable(hand), 1U);
+  EXPECT_THAT(routed_services, ElementsAre(17));
+  EXPECT_EQ(member.closed_at, std::nullopt);
+  EXPECT_FALSE(guard.fenced(hand));
+}
+
 /// The operating system has taken its socket.
 struct LostChannel final : Channel {
   explicit LostChannel(int& looked) : looked_{looked} {}
