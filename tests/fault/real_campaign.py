@@ -67,7 +67,9 @@ class Trial:
         craft.fault("joystick", "hand", "cartesian", 0.015, 0, 0.5)
         time.sleep(self.random.uniform(0.6, 1.2))
         self.baseline = self.taken()
+        self.up_since = craft.count()
         for step in self.steps:
+            self.still_up()
             self.begin = craft.count()
             step()
             self.bring_up()
@@ -75,6 +77,11 @@ class Trial:
         held = self.taken()
         expect(held <= self.baseline + 2, f"I7: {held} descriptors where {self.baseline} were")
         expect(craft.end() in (0, 1, 5), f"exit code, {craft.errors}")
+
+    def still_up(self):
+        """Nothing of its own may take the craft down between a bring-up and the next fault: that fault would find nobody to stop."""
+        down = [line.told for line in self.craft.told(self.up_since) if ": network {" in line.told]
+        expect(not down, f"before the next fault: {down[:1]}", Unready)
 
     def taken(self):
         return len(list(pathlib.Path(f"/proc/{self.craft.pid_of('hirosco-supervisor')}/fd").iterdir()))
@@ -220,6 +227,7 @@ class Trial:
                 expect(back.at_s - line.at_s < 2.0, f"{line.told.split()[0]} was back after 2 s only")
                 self.took("back after its death", back.at_s - line.at_s)
         time.sleep(0.5)
+        self.up_since = craft.count()
         craft.bring_up(self.do)
         self.reach = -self.reach
         craft.fault("joystick", "hand", "cartesian", 0, self.reach, 0.5)
