@@ -11,6 +11,7 @@ Not here, with the reason:
 - two flights on one log: whole flights, tests/endtoend/instances_test.py;
 - the HTTP interface: a whole station, tests/ground/api_test.cpp and attack_test.py;
 - failing malloc or threads: the whole process ends, hirosco/utilities/os/last_words_test.cpp;
+- on-board time that goes by the calendar: nobody may step that of the computer, hirosco/utilities/os/clock_test.cpp gives an epoch;
 - words declared and not in force: lists, tools/check_declared.py.
 plants_in_code.py has some of those here once more, found by flights.
 """
