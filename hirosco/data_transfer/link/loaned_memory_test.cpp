@@ -234,6 +234,13 @@ TEST_F(LoanedLink, DamageOfAnyWordLeadsNowhereElseIsNewAtMostOnceAndIsOverWithTh
   EXPECT_TRUE(memory_.beside_is_untouched());
 }
 
+TEST_F(LoanedLink, DamageBeforeTheFirstSampleIsNoSample) {
+  memory_.word(loaned_memory::sequence_at(0)).store(1);
+  EXPECT_EQ(reader_.newest().flow, Flow::None);
+  EXPECT_TRUE(reader_.look().empty());
+  EXPECT_FALSE(reader_.whole());
+}
+
 TEST_F(LoanedLink, AProducerOfMaliceMovesNoConsumerOutOfTheMemory) {
   // Both words that a consumer believes together, so that it takes any count there is.
   for (std::uint64_t bit = 1; bit < 64; ++bit) {

@@ -186,7 +186,7 @@ void LinkOutputSlot::hand_on(TimePoint now, LinkStatus status) noexcept {
       link->told = status;
     } else if (!ready && link->told != status) set_status(*link, status);
   }
-  if (!ready || first_ == nullptr) return;
+  if (!ready) return;  // what is ready was made in the memory of the first, which is there still
   first_->lender->publish(now, status);
   first_->told = status;
 }

@@ -296,14 +296,8 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     plan.input_stale_events.push_back(descriptor::framework_event::set_stale(static_cast<std::size_t>(set)));
   }
   for (const auto& provided : configuration.provides) {
-    LoanOutputPort* port = nullptr;
-    if (provided.terms.lent()) {
-      const auto found = lent_ports_.find(provided.name);
-      if (found == lent_ports_.end()) return mismatch("no port for the lent set " + provided.name);
-      port = found->second;
-      if (const auto difference = layout_difference(port->layout(), provided.fields); !difference.empty())
-        return mismatch("lent set " + provided.name + ": " + difference);
-    }
+    // Software-Init has refused a lent set without its place, or with one of another layout.
+    LoanOutputPort* const port = provided.terms.lent() ? lent_ports_.find(provided.name)->second : nullptr;
     plan.outputs.emplace_back(descriptor_, provided, dictionary_, port);
   }
   for (const auto& use : configuration.devices) {
