@@ -37,9 +37,6 @@ struct Loans {
   static constexpr int attempts = 8;
 
   static constexpr std::size_t in_lines(std::size_t octets) noexcept { return (octets + line - 1) / line * line; }
-  static constexpr std::size_t words_of(std::size_t octets) noexcept {
-    return (octets + sizeof(Word) - 1) / sizeof(Word);
-  }
   static std::size_t place_at(std::uint64_t count, std::uint32_t payload_octets) noexcept {
     return loaned_memory::payload_at + count % loaned_memory::places * in_lines(payload_octets);
   }
@@ -110,7 +107,7 @@ Result<LoanedWriter> LoanedWriter::make(MutableOctets memory, const LinkLayout& 
   };
   // All of it, so that no place brings a page fault into the cycle.
   for (std::size_t at = 0; at < loaned_memory_octets(layout.payload_octets); at += sizeof(Loans::Word)) set(at, 0);
-  for (std::uint64_t place = 0; place < places; ++place) set(status_at(place), Loans::coded(LinkStatus::None));
+  set(status_at(0), Loans::coded(LinkStatus::None));  // what is read before the first sample
   set(version_epoch_at, Loans::version_epoch(layout));
   set(payload_octets_at, layout.payload_octets);
   set(layout_hash_at, layout.layout_hash);
@@ -245,7 +242,9 @@ class CopyingWriter final : public LinkWriter {
 class CopyingReader final : public LinkReader {
  public:
   CopyingReader(LoanedReader borrower, const LinkLayout& layout)
-      : borrower_{std::move(borrower)}, kept_(Loans::words_of(layout.payload_octets)), arriving_(kept_.size()) {}
+      : borrower_{std::move(borrower)},
+        kept_(Loans::in_lines(layout.payload_octets) / sizeof(Loans::Word)),
+        arriving_(kept_.size()) {}
   LinkSample read(MutableOctets payload) noexcept override {
     for (int attempt = 0; attempt < Loans::attempts; ++attempt) {
       LinkSample found = borrower_.newest();

@@ -107,6 +107,17 @@ TEST_F(LoanedLink, AGlanceTellsTheNewestSample) {
   EXPECT_FALSE(glance_at_loans(memory_.all().first(loaned_memory::payload_at - 1)));
   EXPECT_FALSE(glance_at_loans({}));
   EXPECT_FALSE(glance_at_loans(memory_.all().subspan(8))) << "not on a line";
+  for (const std::uint64_t other : {loaned_memory::magic - 1, loaned_memory::magic + 1}) {
+    memory_.word(loaned_memory::magic_at).store(other);
+    EXPECT_FALSE(glance_at_loans(memory_.all())) << "another memory";
+  }
+}
+
+TEST_F(LoanedLink, WhatWasPublishedBeforeTheFirstLookIsNotLost) {
+  for (std::uint64_t n = 1; n <= 3; ++n) publish(n);
+  EXPECT_EQ(reader_.newest().lost, 0u);
+  for (std::uint64_t n = 4; n <= 6; ++n) publish(n);
+  EXPECT_EQ(reader_.newest().lost, 2u);
 }
 
 TEST_F(LoanedLink, AConsumerWritesNothingIntoTheMemory) {
@@ -136,7 +147,9 @@ TEST(LoanedLinkHeader, IsRefusedWhereItDiffersFromWhatWasAgreed) {
   other.layout_hash ^= 1;
   EXPECT_STREQ(LoanedReader::make(memory.all(), other).error().text, "link layout");
   memory.word(loaned_memory::version_epoch_at).store((loaned_memory::version + 1) << 32 | agreed.epoch);
-  EXPECT_STREQ(LoanedReader::make(memory.all(), agreed).error().text, "link version");
+  const Error other_version = LoanedReader::make(memory.all(), agreed).error();
+  EXPECT_STREQ(other_version.text, "link version");
+  EXPECT_EQ(other_version.value, static_cast<std::int64_t>(loaned_memory::version + 1));
 }
 
 TEST(LoanedLinkHeader, IsRefusedInMemoryThatDoesNotFit) {
@@ -288,6 +301,49 @@ TEST(LoanedLinkInSealedMemory, OneMebiOctetIsLookedAtWhereItWasMade) {
   }
   EXPECT_TRUE(is_sample(place, 1 + loaned_memory::places));
   EXPECT_FALSE(reader->whole());
+}
+
+TEST(LoanedLinkInSealedMemory, WhoCopiesHasLostNothingBeforeItsFirstSample) {
+  const LinkLayout layout = layout_of(payload_octets);
+  SealedMemory provider;
+  const LoanedMemory mechanism;
+  const MemoryHandle shared = mechanism.establish(provider, layout).value();
+  const auto writer = mechanism.lend(provider, shared, layout).value();
+  const auto reader = mechanism.consume(provider, shared, layout).value();
+  constexpr std::byte untouched{0x5A};
+  std::vector<std::byte> copy(payload_octets, untouched);
+  EXPECT_EQ(reader->read(copy).flow, Flow::None);
+  EXPECT_EQ(std::ranges::count(copy, untouched), payload_octets);
+  for (std::uint64_t n = 1; n <= 3; ++n) {
+    fill(writer->lend(), n);
+    writer->publish(TimePoint{1us}, LinkStatus::Valid);
+  }
+  const LinkSample first = reader->read(copy);
+  EXPECT_EQ(first.count, 3u);
+  EXPECT_EQ(first.lost, 0u);
+  for (int n = 4; n <= 6; ++n) {
+    static_cast<void>(writer->lend());
+    writer->publish(TimePoint{1us}, LinkStatus::Valid);
+  }
+  EXPECT_EQ(reader->read(copy).lost, 2u);
+  const LinkSample again = reader->read(copy);
+  EXPECT_EQ(again.flow, Flow::Old);
+  EXPECT_EQ(again.lost, 0u);
+}
+
+TEST(LoanedLinkInSealedMemory, WhatEndsWithinAWordIsCopiedToItsLastOctetAndNoFurther) {
+  constexpr std::uint32_t octets = 13;
+  const LinkLayout layout = layout_of(octets);
+  SealedMemory provider;
+  const LoanedMemory mechanism;
+  const MemoryHandle shared = mechanism.establish(provider, layout).value();
+  const auto writer = mechanism.produce(provider, shared, layout).value();
+  const auto reader = mechanism.consume(provider, shared, layout).value();
+  std::vector<std::byte> made(octets), copy(octets);
+  for (std::size_t i = 0; i < made.size(); ++i) made[i] = static_cast<std::byte>(i + 1);
+  writer->write(made, TimePoint{1us}, LinkStatus::Valid);
+  ASSERT_EQ(reader->read(copy).flow, Flow::New);
+  EXPECT_EQ(copy, made);
 }
 
 TEST(LoanedLinkInSealedMemory, OtherKindsLendNothing) {
