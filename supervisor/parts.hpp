@@ -36,7 +36,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count} {
     // No cycle, no queue and no state of the supervisor's own holds these up.
-    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.safe_all(request); });
+    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
     telecommands.starts_with([this](std::uint16_t apid) { return processes.start(apid); });
   }

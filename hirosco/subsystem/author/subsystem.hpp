@@ -45,9 +45,10 @@ struct Cycle {
 
 /// What an author's work in the service loop waits for.
 struct ServiceWake {
-  int descriptor{-1};  ///< when it is readable, once in a millisecond at most; -1: none. Stays the author's.
-  Duration pace{std::chrono::milliseconds{
-      10}};  ///< and after so long at the latest: 1 ms to 10 ms, what is beyond is taken as the end
+  /// Waited for until it is readable, and looked at once in a millisecond at most; -1: none. Stays the author's.
+  int descriptor{-1};
+  /// The longest rest between two calls: from 1 to 10 ms, what is beyond counts as the nearer of the two.
+  Duration pace = std::chrono::milliseconds{10};
 };
 
 /// Base of every subsystem. Steady nodes run in the cycle: noexcept, no allocation, no lock, no I/O. Everything else

@@ -12,7 +12,7 @@ void SafeAll::provide() {
   own_.on_function("SAFE_ALL", []() -> Outcome { return refused(pus::FailureCode::ExecutionError); });
 }
 
-void SafeAll::safe_all(const pus::Request& request) {
+void SafeAll::carry_out(const pus::Request& request) {
   pending_.push_back({craft_.guard.stop_all(), request});
   own_.verification().accepted(request);
   own_.verification().started(request);

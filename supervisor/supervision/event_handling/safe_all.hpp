@@ -24,7 +24,7 @@ class SafeAll {
 
   void provide();
   /// SAFE_ALL, carried out where it is received.
-  void safe_all(const pus::Request& request);
+  void carry_out(const pus::Request& request);
   /// A signal or the local socket asked for a stop.
   void asked();
   /// Everything was stopped already: nothing starts it again, and the states follow.
