@@ -69,7 +69,8 @@ class Guard {
   [[nodiscard]] std::vector<GuardFinding> take_findings();
 
   // --- any thread ---------------------------------------------------------------------------------------------------
-  /// Actuators inhibited at its next cycle, and at its devices.
+  /// Actuators inhibited: on its permit page at once, which its next cycle reads, and at the devices that have a second inhibit
+  /// within two steps of this guard. A device without one has its own watchdog for a cycle that does not read any more.
   void fence(std::uint16_t apid);
   /// How often it was fenced: what was permitted before must not lift a later fence.
   [[nodiscard]] std::uint64_t fences(std::uint16_t apid) const;

@@ -16,6 +16,10 @@
 
 /// The real-time link as a contract (paper 4.1): whoever makes, uses or watches a link knows what stands here and no mechanism
 /// by name. A mechanism is a class beside this file and a row in `mechanisms.cpp`.
+///
+/// A sample's way: parameters -> LinkOutputSlot::write (`subsystem/cycle/link_slots.cpp`) -> LinkWriter -> shared memory ->
+/// LinkReader -> LinkInputSlot::read -> the author's LinkInput. Both ends are attached by `subsystem/engine/link_ends.cpp`;
+/// the handshake before it is led by `supervisor/supervision/realtime_links/link_handling.cpp`.
 namespace hirosco {
 
 /// How samples travel.

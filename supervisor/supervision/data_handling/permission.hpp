@@ -15,8 +15,10 @@
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
 
-/// The one decision whether a telecommand may be executed (paper 4.3: by state and mode). Pure: what is asked before
-/// sending and what is decided on sending are the same function.
+/// Whether a telecommand may be executed, by sender, state, mode and what its addressee needs (paper 4.3): rules in a table, and
+/// nothing else is looked at. `Telecommands::judge()` asks them, and besides whether the sender may speak under that name and is
+/// sound, and whether a recovery or the end of the flight forbids it; it is what a question before sending and the sending
+/// itself ask alike. Floods are refused after that (`refuse_flood`), what an old mode permitted by who receives it.
 namespace hirosco::supervisor {
 
 /// What the decision looks at besides the telecommand.
@@ -35,11 +37,11 @@ struct Situation {
 };
 
 struct Permitted {
-  bool essential{false};             ///< forwarded first, logged after (decision 24)
-  bool releases_stop{false};         ///< SET_STATE(Operational): lifts the addressee's stop flag
-  bool starts{false};                ///< SET_STATE(Offline) to who is down: the supervisor starts its process
-  bool stops_the_craft{false};       ///< SAFE_ALL: carried out whoever says it, under whatever source id
-  double reserves_w{0};              ///< SET_STATE(SafeOperational): what the addressee may draw from now on
+  bool essential{false};  ///< forwarded first, logged after (decision 24)
+  bool releases_stop{false};  ///< SET_STATE(Operational): lifts the addressee's stop flag
+  bool starts{false};  ///< SET_STATE(Offline) to who is down: the supervisor starts its process
+  bool stops_the_craft{false};  ///< SAFE_ALL: carried out whoever says it, under whatever source id
+  double reserves_w{0};  ///< SET_STATE(SafeOperational): what the addressee may draw from now on
 };
 
 /// Who is down answers nothing; what brings it up again is said with the refusal.
