@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/log_watch.hpp"
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
@@ -17,6 +18,7 @@
 #include "supervisor/supervision/modes/commissioning.hpp"
 #include "supervisor/supervision/modes/modes.hpp"
 #include "supervisor/supervision/modes/shutdown.hpp"
+#include "supervisor/supervision/modes/under_way.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/realtime_links/links.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
@@ -38,6 +40,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
+    telecommands.answers(pus::st129::mode_question,
+                         [this](const pus::Request& asked, Octets data) { modes.preview(asked, data); });
     telecommands.starts_with([this](std::uint16_t apid) { return processes.start(apid); });
   }
 
@@ -71,15 +75,16 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Links links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
   // modes and procedures
-  Means means{craft, own_telecommands, graph, restarts, commissioning};
-  Modes modes{craft, own};
+  Means means{craft, own_telecommands, graph, restarts, under_way};
   Commissioning commissioning{means};
-  Shutdown shutdown{{means, own, commissioning, telecommands}};
+  Modes modes{{means, own, power.ledger(), commissioning}};
+  UnderWay under_way{commissioning, modes};
+  Shutdown shutdown{{means, own, under_way, telecommands}};
   // event handling
   Reactions reactions{means, own};
-  SafeAll safe_all{craft, own, own_telecommands, commissioning};
+  SafeAll safe_all{craft, own, own_telecommands, under_way};
   // subsystem handling, status
-  GroundLinkCare ground_link{means, commissioning};
+  GroundLinkCare ground_link{means, under_way};
   Processes processes{
       {craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link, restarts}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};

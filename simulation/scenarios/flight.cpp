@@ -115,6 +115,10 @@ CommandOutcome Flight::configure(std::string_view subsystem, std::string_view co
   return craft_->command(subsystem, "CONFIGURE", {static_cast<double>(described->id)});
 }
 
+CommandOutcome Flight::enter_mode(std::string_view mode) {
+  return craft_->command(mission_->supervisor.name, "ENTER_MODE", {static_cast<double>(mission_->find_mode(mode)->id)});
+}
+
 CommandOutcome Flight::set_mode(std::string_view mode) {
   return craft_->command(mission_->supervisor.name, "SET_MODE", {static_cast<double>(mission_->find_mode(mode)->id)});
 }

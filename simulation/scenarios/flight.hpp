@@ -83,7 +83,10 @@ class Flight {
   }
   CommandOutcome set_state(std::string_view subsystem, State state);
   CommandOutcome configure(std::string_view subsystem, std::string_view configuration);
+  /// The whole craft into this mode.
   CommandOutcome set_mode(std::string_view mode);
+  /// What it permits, and nobody moves.
+  CommandOutcome enter_mode(std::string_view mode);
   /// Sends octets as they are and returns the first report of service 1 on them that is a failure or a completion.
   struct Verdict {
     std::uint8_t subtype{0};

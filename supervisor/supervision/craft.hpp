@@ -44,6 +44,7 @@ struct Craft {
   Observer& observer;
   std::vector<Member> members;
   const descriptor::Mode* mode;
+  const descriptor::Mode* changing_to{nullptr};  ///< while a change of mode is under way (docs/adr/0075)
   std::uint32_t mode_epoch{1};
   TimePoint now{};
   bool shutting_down{false};

@@ -43,8 +43,10 @@ class Accounts {
 class Undertaking {
  public:
   virtual ~Undertaking() = default;
-  /// False: it is over already.
+  /// For a recovery. False: it is over already.
   virtual bool cancel(std::string_view why) = 0;
+  /// Every actuator is stopped, and whoever did it takes the states along.
+  virtual void all_stopped(std::string_view why) = 0;
 };
 
 }  // namespace hirosco::supervisor

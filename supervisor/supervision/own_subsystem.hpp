@@ -30,6 +30,7 @@ class OwnSubsystem final : private Subsystem {
   using Subsystem::abort;
   using Subsystem::finish;
   using Subsystem::on_function;
+  using Subsystem::progress;
   using Subsystem::publish;
 
   /// Its actuators, of which it has none, are never inhibited.

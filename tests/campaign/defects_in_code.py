@@ -117,8 +117,8 @@ DEFECTS = [
            "      if (!PLANTED) craft_.guard.fence(member.apid());",
            "supervisor_test", "ProcessesTest.WhoClosesItsChannelFencesNobodyWhomItsPlanLetsGoOn"),
     # A mode was entered whose members were dead.
-    Defect("SF15 mode of the dead", f"{SUPERVISION}/modes/modes.cpp", "[&](const auto& step) { return lives(step); }",
-           "[&](const auto& step) { return lives(step) || PLANTED; }",
+    Defect("SF15 mode of the dead", f"{SUPERVISION}/modes/mode_plan.cpp", "if (!member.alive()) {",
+           "if (!member.alive() && !PLANTED) {",
            "supervisor_test", "ModesTest.AModeWhoseMembersAreDeadIsRefusedUntilTheyLiveAgain"),
     # Permission looked at services, not at parameters.
     Defect("SF20 any parameter", PERMISSION, "if (const auto refused = write_refused(asked)) return refused;",

@@ -90,7 +90,7 @@ TEST(Commissioning, EachStepIsALoggedTelecommandWithItsVerification) {
                                           "1 LINK",      "1 LINK",  //
                                           "2 SET_STATE", "10 SET_STATE", "11 SET_STATE",  // Safe-Operational
                                           "2 SET_STATE", "10 SET_STATE", "11 SET_STATE",  // Operational
-                                          "1 SET_MODE"};
+                                          "1 ENTER_MODE"};
   EXPECT_EQ(steps, expected);
 }
 

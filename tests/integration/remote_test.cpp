@@ -161,7 +161,8 @@ TEST_F(Remote, AGroundLinkWhoseSetsAreGoneWithItComesBackWithoutThem) {
 TEST_F(Remote, ADelayIsRefusedWhereNoSetsTravelOverTheGroundLink) {
   commission("telepresence");
   EXPECT_EQ(command("COMMUNICATION", "SET_DELAY", {20, 0}).failure, FailureCode::WrongMode);
-  ASSERT_TRUE(flight->set_mode("remote").completed);
+  ASSERT_TRUE(flight->set_mode("commissioning").completed);
+  ASSERT_TRUE(flight->enter_mode("remote").completed);
   EXPECT_EQ(command("COMMUNICATION", "SET_DELAY", {20, 0}).failure, FailureCode::NotPermittedNow);
 }
 

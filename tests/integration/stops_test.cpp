@@ -296,7 +296,7 @@ TEST_F(Stops, AMotionWhoseSubsystemDiesEndsWithOutcomeUnknown) {
   for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})
     ASSERT_TRUE(flight.set_state("MANIPULATOR", state).completed) << to_text(state);
   ASSERT_TRUE(flight.configure("MANIPULATOR", "STANDALONE").completed);
-  ASSERT_TRUE(flight.set_mode("standalone").completed);
+  ASSERT_TRUE(flight.enter_mode("standalone").completed);
   for (const State state : {State::SafeOperational, State::Operational})
     ASSERT_TRUE(flight.set_state("MANIPULATOR", state).completed) << to_text(state);
   const auto packet = function_packet(robot_apid, 77, call_data("MOVE_TO", {0.0, 1.2, 5.0}));

@@ -42,7 +42,7 @@ class Telecommands : public ::testing::Test {
     expect_done(flight.configure("MANIPULATOR", "STANDALONE"));
     expect_done(flight.set_state("MANIPULATOR", State::SafeOperational));
     if (manipulator == State::Operational) expect_done(flight.set_state("MANIPULATOR", State::Operational));
-    expect_done(flight.set_mode("standalone"));
+    expect_done(flight.enter_mode("standalone"));
   }
 
   /// Out of the network into Pre-Operational, to be commissioned alone.

@@ -89,11 +89,26 @@ struct CommissionStep {
   Location at;
 };
 
+/// A state of another subsystem without which a mode is not entered, or with which it is not: judged on what holds before the
+/// change begins.
+struct Interlock {
+  enum class Kind : std::uint8_t { Needs, Excludes };
+  Kind kind{Kind::Needs};
+  std::string subsystem;
+  std::vector<State> states;  ///< one of them
+  std::string configuration;  ///< empty = any
+  Location at;
+};
+/// "ARM in SafeOperational or Operational with COUPLED".
+[[nodiscard]] std::string to_string(const Interlock& interlock);
+
 struct Mode {
   std::string name;
   std::uint8_t id{};
+  std::vector<std::string> from;  ///< modes from which it may be entered; empty = any
+  std::vector<Interlock> interlocks;
   std::vector<CommissionStep> commission;  ///< the start list when this is the start mode
-  std::vector<std::uint8_t> establish;     ///< links
+  std::vector<std::uint8_t> establish;  ///< links
   std::vector<Permit> permits;
   Location at;
 };
@@ -111,7 +126,7 @@ struct Plan {
   std::string subsystem;  ///< empty = any
   std::string event;  ///< empty = any
   std::string mode;  ///< empty = any
-  std::vector<PlanStep> steps{};     ///< in this order; empty = log
+  std::vector<PlanStep> steps{};  ///< in this order; empty = log
   Location at;
 };
 

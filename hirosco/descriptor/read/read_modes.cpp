@@ -13,15 +13,10 @@ namespace {
 
 /// Built in: in every subsystem, and in the supervisor besides (decision 10).
 constexpr std::array<std::string_view, 2> common_functions{"SET_STATE", "CONFIGURE"};
-constexpr std::array<std::string_view, 7> supervisor_functions{
-    "SET_MODE", "LINK", "UNLINK", "SET_DATABASE", "SET_POWER_BUDGET", "SAFE_ALL", "SHUTDOWN"};
+constexpr std::array<std::string_view, 8> supervisor_functions{
+    "SET_MODE", "ENTER_MODE", "LINK", "UNLINK", "SET_DATABASE", "SET_POWER_BUDGET", "SAFE_ALL", "SHUTDOWN"};
 
 constexpr std::size_t most_steps = 16;
-
-constexpr bool is_steady(State state) noexcept {
-  return state == State::Offline || state == State::PreOperational || state == State::SafeOperational ||
-         state == State::Operational || state == State::ErrorOperational || state == State::PostOperational;
-}
 
 template <class Set>
 std::vector<std::string_view> names_of(const std::vector<const Set*>& sets) {
@@ -109,7 +104,11 @@ void MissionReader::read_modes(const xml::Element& element) {
     return at->value;
   };
   mission_.initial_mode = mode(attributes.required("initial"));
-  mission_.start_mode = mode(attributes.optional("start"));
+  const auto* start = attributes.optional("start");
+  mission_.start_mode = mode(start);
+  check_from(element);
+  if (const Mode* first = mission_.find_mode(mission_.start_mode); first != nullptr && start != nullptr)
+    check_start(*start, *first);
 }
 
 void MissionReader::read_mode(const xml::Element& element) {
@@ -119,11 +118,15 @@ void MissionReader::read_mode(const xml::Element& element) {
   mode.name = attributes.name("name", NameKind::Loose);
   // Counted from 1 in the order of the file, so that 0 means no mode.
   mode.id = attributes.integer_or<std::uint8_t>("id", 1, 255, static_cast<std::uint8_t>(mission_.modes.size() + 1));
+  if (const auto* from = attributes.optional("from"))
+    for (const auto word : words(from->value)) mode.from.emplace_back(word);
   const std::size_t before = problems_.count();
   Unique commissioned{"subsystem", "E0201"}, established{"link", "E0202"};
   each_child(element, problems_,
              {{"Commission", [&](const auto& child) { read_commission(child, mode, commissioned); }, 255},
               {"Establish", [&](const auto& child) { read_establish(child, mode, established); }, 255},
+              {"Needs", [&](const auto& child) { read_interlock(child, Interlock::Kind::Needs, mode); }, 16},
+              {"Excludes", [&](const auto& child) { read_interlock(child, Interlock::Kind::Excludes, mode); }, 16},
               {"Permit", [&](const auto& child) { read_permit(child, mode); }, 255}});
   const std::size_t length = element.name.size() + 1;
   if (!mode.name.empty()) mode_names_.add(mode.name, mode.at, problems_, length);

@@ -2,16 +2,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 
+#include <algorithm>
+#include <span>
+#include <string_view>
+
 namespace hirosco::pus::st129 {
 namespace kind {
+
+constexpr Part word(std::string_view name) noexcept { return {.name = name, .form = Form::Word}; }
 
 constexpr Part packet[]{{.name = "TELECOMMAND", .form = Form::Rest}};
 constexpr Part answer[]{number("REQUEST", Type::Uint32), number("PERMITTED", Type::Uint8),
                         number("CODE", Type::Uint16)};
-constexpr RequestKind requests[]{{permission_question, "IS_IT_PERMITTED", packet}};
-constexpr ReportKind reports[]{{permission_answer, "PERMISSION", answer}, {telecommand_copy, "COPY", packet}};
+constexpr Part mode[]{number("MODE", Type::Uint8)};
+constexpr Part reason[]{word("WHY")};
+constexpr Part step[]{number("STAGE", Type::Uint8), number("SUBSYSTEM", Type::Uint16), word("WHAT")};
+constexpr Part preview[]{number("MODE", Type::Uint8), list("AGAINST", reason), list("STEPS", step)};
+constexpr RequestKind requests[]{{permission_question, "IS_IT_PERMITTED", packet},
+                                 {mode_question, "PREVIEW_MODE", mode}};
+constexpr ReportKind reports[]{{permission_answer, "PERMISSION", answer},
+                               {telecommand_copy, "COPY", packet},
+                               {mode_preview, "MODE_PREVIEW", preview}};
 
 }  // namespace kind
+
+namespace {
+
+constexpr std::size_t most = 255;  // a count and a length have one octet each
+
+void put_words(OctetWriter& writer, std::string_view words) {
+  words = words.substr(0, most);
+  writer.put(static_cast<std::uint8_t>(words.size())).put(std::as_bytes(std::span{words}));
+}
+
+}  // namespace
+
+Octets write_mode_preview(MutableOctets buffer, const ModePreview& preview) {
+  OctetWriter writer{buffer};
+  writer.put(preview.mode);
+  const std::size_t reasons = std::min(preview.against.size(), most);
+  writer.put(static_cast<std::uint8_t>(reasons));
+  for (std::size_t i = 0; i < reasons; ++i) put_words(writer, preview.against[i]);
+  const std::size_t count_at = writer.size();
+  writer.put(std::uint8_t{0});
+  std::size_t octets = writer.size();
+  std::uint8_t steps = 0;
+  for (const ModePreview::Step& each : preview.steps) {
+    if (steps == most) break;
+    writer.put(each.stage).put(each.subject);
+    put_words(writer, each.what);
+    if (!writer.good()) break;
+    octets = writer.size();
+    ++steps;
+  }
+  if (octets <= count_at) return {};  // reasons alone found no room: a buffer that is too small
+  buffer[count_at] = std::byte{steps};
+  return Octets{buffer}.first(octets);
+}
 
 const ServiceKind service_kind{.type = service_type,
                                .name = "supervision",

@@ -3,18 +3,48 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/service/service_kind.hpp"
+#include "hirosco/utilities/octets.hpp"
 
-/// ST[129], ours: what ground and the supervisor say about telecommands.
+/// ST[129], ours: what ground and the supervisor say about telecommands before they are sent, and about those that were.
 ///
 ///   TC[129,1]  would this telecommand be permitted now?  the whole packet asked about
 ///   TM[129,2]  the answer: its request id u32, 1 or 0 u8, failure code of the refusal u16 (0 = none)
 ///   TM[129,3]  copy of a telecommand that the supervisor has received from a ground, to every ground: the whole packet
+///   TC[129,4]  what would SET_MODE do now?  mode u8
+///   TM[129,5]  the answer, also beside a SET_MODE that is refused: mode u8; how many reasons are against it u8 (0 = it is
+///              possible), each as words; how many steps it would take u8, each its stage u8 from 1, its subject's APID u16, words.
+///              A stage begins when the one before has ended.
 namespace hirosco::pus::st129 {
 
 inline constexpr std::uint8_t service_type = 129;
 extern const ServiceKind service_kind;
-enum Subtype : std::uint8_t { permission_question = 1, permission_answer = 2, telecommand_copy = 3 };
+enum Subtype : std::uint8_t {
+  permission_question = 1,
+  permission_answer = 2,
+  telecommand_copy = 3,
+  mode_question = 4,
+  mode_preview = 5
+};
+
+struct ModePreview {
+  struct Step {
+    std::uint8_t stage{};
+    std::uint16_t subject{};
+    std::string what;
+  };
+  std::uint8_t mode{};
+  std::vector<std::string> against;
+  std::vector<Step> steps;
+};
+
+inline constexpr std::size_t max_preview_octets = max_telemetry_octets - telemetry_overhead_octets;
+/// Into `buffer`, of max_preview_octets. Steps and reasons beyond 255 of each, and steps that find no room, are left out; words
+/// are cut at 255 octets.
+[[nodiscard]] Octets write_mode_preview(MutableOctets buffer, const ModePreview& preview);
 
 }  // namespace hirosco::pus::st129

@@ -191,6 +191,19 @@ using Notice = std::optional<FailureNotice>;
   return !unknown_function;
 }
 
+/// What the old mode permitted and the new one may not would cross the change: until it has ended the craft is looked at, and taken
+/// towards safety, nothing else.
+[[nodiscard]] Notice crosses_no_change(const Asked& asked) {
+  if (!asked.situation.changing || !is_bound(asked)) return std::nullopt;
+  constexpr std::uint8_t parameters = pus::ParameterService::service_type;
+  const std::uint8_t service = asked.telecommand.service();
+  const bool sets = service == parameters && asked.telecommand.subtype() == pus::ParameterService::set_values;
+  if (service != pus::FunctionService::service_type && !sets && pus::standard_service(service) != nullptr)
+    return std::nullopt;
+  FailureNotice notice{FailureCode::NotPermittedNow};
+  return notice.because({ErrorCode::NotPermitted, asked.situation.mode.id, "a change of mode is under way, from mode"});
+}
+
 /// Does the mode open it?
 [[nodiscard]] Notice is_in_mode(const Asked& asked) {
   if (!is_bound(asked)) return std::nullopt;
@@ -217,7 +230,7 @@ using Notice = std::optional<FailureNotice>;
 }
 
 /// In the order in which they are asked: the first that refuses says why.
-constexpr std::array rules{is_known, is_the_senders, is_provided_for, is_in_mode, is_in_state};
+constexpr std::array rules{is_known, is_the_senders, is_provided_for, crosses_no_change, is_in_mode, is_in_state};
 
 }  // namespace
 

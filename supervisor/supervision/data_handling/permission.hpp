@@ -34,6 +34,8 @@ struct Situation {
   const PowerLedger* power{nullptr};
   /// The addressee's process does not run; one that does may have no state that can be read.
   bool down{false};
+  /// A change of mode is under way (docs/adr/0075).
+  bool changing{false};
 };
 
 struct Permitted {

@@ -168,7 +168,8 @@ Situation Telecommands::situation_of(std::uint16_t apid) const {
                       .links = parts_.links,
                       .state = std::nullopt,
                       .power = &parts_.power.ledger(),
-                      .down = false};
+                      .down = false,
+                      .changing = craft_.changing_to != nullptr};
   if (apid == supervisor_apid) {
     situation.state = parts_.own.state();
     situation.configuration = parts_.own.configuration();
@@ -182,10 +183,18 @@ Situation Telecommands::situation_of(std::uint16_t apid) const {
   return situation;
 }
 
-/// TC[129,1]: nothing is done but answered. Whoever asks is judged as the sender that it is.
+/// ST[129]: nothing is done but answered. Whoever asks is judged as the sender that it is.
 void Telecommands::answer_question(const Incoming& incoming, const pus::TelecommandView& question) {
   const pus::Request request = pus::request_of(question);
   const Octets asked = question.application_data();
+  if (const auto other = questions_.find(question.subtype()); other != questions_.end()) {
+    static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandReceived,
+                                         .source = incoming.origin.apid(),
+                                         .peer = supervisor_apid,
+                                         .packet = incoming.packet,
+                                         .note = "a question"}));
+    return other->second(request, asked);
+  }
   const auto header = pus::read_primary_header(asked);
   if (!header) return reject(incoming, request, FailureNotice{FailureCode::DataLength});
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandReceived,

@@ -60,6 +60,10 @@ class Telecommands final : public Watch, public Accounts {
   void at_once(std::string function, std::function<void(const pus::Request&)> carry_out) {
     at_once_.emplace(std::move(function), std::move(carry_out));
   }
+  /// A question of ST[129], by its subtype: who answers it reports on it. Nothing but the answer comes of it.
+  void answers(std::uint8_t subtype, std::function<void(const pus::Request&, Octets)> answer) {
+    questions_.emplace(subtype, std::move(answer));
+  }
   /// Who starts a subsystem that is down; false: it could not.
   void starts_with(std::function<bool(std::uint16_t apid)> start) { start_ = std::move(start); }
 
@@ -93,6 +97,7 @@ class Telecommands final : public Watch, public Accounts {
   Parts parts_;
   Craft& craft_;
   std::map<std::string, std::function<void(const pus::Request&)>, std::less<>> at_once_;
+  std::map<std::uint8_t, std::function<void(const pus::Request&, Octets)>> questions_;
   std::function<bool(std::uint16_t)> start_;
   WaitingForDisk waiting_;
   TimePoint report_window_{};

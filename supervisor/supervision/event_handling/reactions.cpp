@@ -113,7 +113,7 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
   if (craft_.shutting_down || std::ranges::none_of(reaction.steps, acts)) return;
   craft_.tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event},
               supervisor_apid);
-  if (means_.commissioning.cancel("plan " + std::string{reaction.plan})) craft_.fail();
+  if (means_.under_way.cancel("plan " + std::string{reaction.plan})) craft_.fail();
   for (Member& subject : craft_.members) {
     if (!subject.alive() || craft_.is_ground_link(subject) || subject.recovery.running()) continue;
     const Stage steps = steps_for(subject, reaction, event, {std::string{reaction.plan}});

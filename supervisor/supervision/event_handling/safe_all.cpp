@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "supervisor/supervision/modes/commissioning.hpp"
-
 namespace hirosco::supervisor {
 
 void SafeAll::provide() {
@@ -26,8 +24,8 @@ void SafeAll::asked() {
 
 void SafeAll::after_stop(std::string_view why) {
   craft_.tell(std::string{why} + ": every actuator inhibited", supervisor_apid);
-  // Commissioning would lift the fences again with its next step.
-  commissioning_.cancel(why);
+  // Commissioning, or a change of mode, would lift the fences again with its next step.
+  under_way_.all_stopped(why);
   for (Member& subject : craft_.members) {
     // The ground link has no actuators and is needed now more than ever.
     if (!subject.alive() || craft_.is_ground_link(subject) || subject.state() != State::Operational) continue;

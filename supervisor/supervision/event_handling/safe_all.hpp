@@ -9,18 +9,17 @@
 
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 
 namespace hirosco::supervisor {
-
-class Commissioning;
 
 /// SAFE_ALL, however it was asked for: the guard stops everything, the states follow, and what became of it is told by who
 /// was to stop. Thread: the supervisor's; the stop itself is the guard's.
 class SafeAll {
  public:
-  SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Commissioning& commissioning)
-      : craft_{craft}, own_{own}, desk_{desk}, commissioning_{commissioning} {}
+  SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Undertaking& under_way)
+      : craft_{craft}, own_{own}, desk_{desk}, under_way_{under_way} {}
 
   void provide();
   /// SAFE_ALL, carried out where it is received.
@@ -42,7 +41,7 @@ class SafeAll {
   Craft& craft_;
   OwnSubsystem& own_;
   CommandDesk& desk_;
-  Commissioning& commissioning_;
+  Undertaking& under_way_;
   std::vector<Pending> pending_;
 };
 

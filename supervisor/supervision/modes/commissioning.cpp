@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/commissioning.hpp"
 
-#include "supervisor/supervision/modes/way.hpp"
+#include "supervisor/supervision/modes/mode_plan.hpp"
 
 namespace hirosco::supervisor {
 
 void Commissioning::start(std::function<void()> failed) {
   // Itself first: the functions of the others' commissioning are its own.
   const descriptor::Subsystem& own = craft_.mission.supervisor;
-  Way way;
-  way.add(own, own.configurations.front(), State::Offline, State::Operational);
+  WayThere way;
+  way.add(own, own.configurations.front(), {State::Offline}, State::Operational);
   engine_.start({.stages = way.stages(), .finished = [this, failed = std::move(failed)](const ProcedureEnd& end) {
                    if (!end.success) {
                      craft_.tell("supervisor cannot start: " + end.text(), supervisor_apid);
@@ -24,10 +24,10 @@ void Commissioning::start(std::function<void()> failed) {
 }
 
 void Commissioning::commission(const descriptor::Mode& start_mode) {
-  Way way;
+  WayThere way;
   for (const auto& step : start_mode.commission) {
     const auto& subsystem = craft_.mission.find_subsystem(step.subsystem)->subsystem;
-    way.add(subsystem, *subsystem.find_configuration(step.configuration), State::Offline, step.state);
+    way.add(subsystem, *subsystem.find_configuration(step.configuration), {State::Offline}, step.state);
   }
   for (const std::uint8_t id : start_mode.establish) way.link(id);
   way.enter(start_mode);

@@ -19,6 +19,7 @@ class Commissioning final : public Undertaking {
   /// `failed` is called when the supervisor itself cannot be commissioned.
   void start(std::function<void()> failed);
   bool cancel(std::string_view why) override;
+  void all_stopped(std::string_view why) override { static_cast<void>(cancel(why)); }
   /// The shutdown takes over.
   void drop() { engine_.cancel(); }
 

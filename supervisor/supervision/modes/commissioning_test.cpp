@@ -40,7 +40,7 @@ TEST_F(CommissioningTest, TheSupervisorComesFirstThenAllMembersStageByStageThenT
   answer_all();
   desk.sent.erase(desk.sent.begin(), desk.sent.begin() + 4);
   EXPECT_THAT(desk.sent, ElementsAre("10 SET_STATE 3", "12 SET_STATE 3", "10 CONFIGURE 2", "12 CONFIGURE 1", "1 LINK 1",
-                                     "10 SET_STATE 4", "12 SET_STATE 4", "10 SET_STATE 5", "1 SET_MODE 1"));
+                                     "10 SET_STATE 4", "12 SET_STATE 4", "10 SET_STATE 5", "1 ENTER_MODE 1"));
   EXPECT_TRUE(commissioning.succeeded());
   EXPECT_TRUE(was_told("commissioned: mode open"));
   EXPECT_FALSE(craft.failed());

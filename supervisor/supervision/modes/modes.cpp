@@ -2,35 +2,154 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/modes.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <utility>
+
+#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "supervisor/supervision/modes/commissioning.hpp"
 
 namespace hirosco::supervisor {
 
+using descriptor::State;
+
+namespace {
+
+[[nodiscard]] const descriptor::Mode* find_mode(const Craft& craft, std::uint8_t id) {
+  const auto& modes = craft.mission.modes;
+  const auto found = std::ranges::find(modes, id, &descriptor::Mode::id);
+  return found != modes.end() ? &*found : nullptr;
+}
+
+}  // namespace
+
 void Modes::provide() {
-  own_.on_function("SET_MODE", [this](double id) -> Outcome {
-    const auto& modes = craft_.mission.modes;
-    const auto found = std::ranges::find(modes, static_cast<std::uint8_t>(id), &descriptor::Mode::id);
-    if (found == modes.end()) return refused(pus::FailureCode::UnknownIdentifier);
-    // A mode whose members are dead is not that mode, whatever it is called (hazard SF15).
-    if (!std::ranges::all_of(found->commission, [&](const auto& step) { return lives(step); }))
-      return refused(pus::FailureCode::WrongStatus);
-    enter(*found);
+  parts_.own.on_function(
+      "SET_MODE", [this](double id, Call call) -> Outcome { return set_mode(static_cast<std::uint8_t>(id), call); });
+  parts_.own.on_function("ENTER_MODE", [this](double id) -> Outcome {
+    const auto* mode = find_mode(craft_, static_cast<std::uint8_t>(id));
+    if (mode == nullptr) return refused(pus::FailureCode::UnknownIdentifier);
+    enter(*mode);
     return ok();
   });
 }
 
-bool Modes::lives(const descriptor::CommissionStep& step) const {
-  return std::ranges::any_of(craft_.members, [&](const Member& subject) {
-    return subject.descriptor().name == step.subsystem && subject.alive();
-  });
+Outcome Modes::set_mode(std::uint8_t id, const Call& call) {
+  const auto* mode = find_mode(craft_, id);
+  if (mode == nullptr) return refused(pus::FailureCode::UnknownIdentifier);
+  if (craft_.shutting_down) return refused(pus::FailureCode::NotPermittedNow, "the craft shuts down");
+  if (engine_.running()) return refused(pus::FailureCode::Busy, "another change of mode is under way");
+  if (parts_.commissioning.running()) return refused(pus::FailureCode::Busy, "the craft is being commissioned");
+  ModePlan plan = plan_mode(craft_, parts_.means.links, parts_.power, *mode);
+  if (!plan.against.empty()) {
+    craft_.tell(fmt::format("mode {} is impossible: {}", mode->name, fmt::join(plan.against, "; ")), supervisor_apid);
+    report(call.request.source, *mode, plan);
+    return refused(pus::FailureCode::WrongStatus,
+                   "reasons against it, all of them in TM[129,5]:", static_cast<std::int64_t>(plan.against.size()));
+  }
+  if (plan.stages.empty()) {
+    enter(*mode);
+    return ok();
+  }
+  change(*mode, std::move(plan), call);
+  return hirosco::running;
+}
+
+void Modes::change(const descriptor::Mode& mode, ModePlan plan, const Call& call) {
+  std::vector<std::string> names;
+  for (const std::uint16_t apid : plan.moved) names.push_back(craft_.name_of(apid));
+  craft_.tell(fmt::format("change from mode {} to {}: {} stages, moves {}", craft_.mode->name, mode.name,
+                          plan.stages.size(), fmt::join(names, ", ")),
+              supervisor_apid);
+  craft_.changing_to = &mode;
+  void_permissions();
+  call_ = call;
+  moved_ = std::move(plan.moved);
+  engine_.start({.stages = std::move(plan.stages),
+                 .finished = [this, &mode](const ProcedureEnd& end) { ended(mode, end.text()); },
+                 .begins =
+                     [this, call](std::size_t stage) {
+                       if (stage > 0) parts_.own.progress(call, static_cast<std::uint16_t>(stage));
+                     }});
+}
+
+void Modes::ended(const descriptor::Mode& mode, const std::string& failure) {
+  std::string missing = failure;
+  // Whoever was taken down, or fell, after its own step was done.
+  for (const auto& step : mode.commission) {
+    const Member* subject = std::as_const(craft_).member(craft_.mission.find_subsystem(step.subsystem)->subsystem.id);
+    if (missing.empty() && (subject == nullptr || subject->state() != step.state))
+      missing = step.subsystem + " is not " + std::string{to_text(step.state)};
+  }
+  if (!missing.empty()) return fall_back(missing, StatesFollow::Here);
+  craft_.changing_to = nullptr;
+  moved_.clear();
+  // Here and by no telecommand: one that is under way when the change is cancelled would be carried out after that.
+  enter(mode);
+  if (const auto call = std::exchange(call_, std::nullopt)) parts_.own.finish(*call);
+}
+
+bool Modes::cancel(std::string_view why) {
+  if (!engine_.running()) return false;
+  fall_back(why, StatesFollow::Here);
+  return true;
+}
+
+void Modes::all_stopped(std::string_view why) {
+  if (engine_.running()) fall_back(why, StatesFollow::Elsewhere);
+}
+
+/// Neither the old mode nor the new one holds now: whom the change had in hand is stopped, in the world first, and the mode is
+/// the one in which a craft is put right.
+void Modes::fall_back(std::string_view why, StatesFollow states) {
+  const descriptor::Mode& mode = *std::exchange(craft_.changing_to, nullptr);
+  engine_.cancel();
+  for (const std::uint16_t apid : moved_) {
+    Member& member = *craft_.member(apid);
+    if (!member.alive() || craft_.is_ground_link(member)) continue;
+    craft_.guard.fence(apid);
+    if (states == StatesFollow::Here && member.state() == State::Operational && !member.recovery.running())
+      parts_.means.desk.command(apid, "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+  }
+  moved_.clear();
+  craft_.tell(fmt::format("the change to mode {} stopped: {}", mode.name, why), supervisor_apid);
+  if (const auto* initial = craft_.mission.find_mode(craft_.mission.initial_mode)) enter(*initial);
+  if (const auto call = std::exchange(call_, std::nullopt))
+    parts_.own.abort(*call, pus::FailureCode::ExecutionError, "the craft is in its initial mode; why: the story, mode",
+                     mode.id);
 }
 
 void Modes::enter(const descriptor::Mode& mode) {
   craft_.mode = &mode;
-  ++craft_.mode_epoch;
-  own_.enter_mode(craft_.mode_epoch);
-  for (Member& member : craft_.members) member.enter_mode(craft_.mode_epoch);
+  void_permissions();
   craft_.tell("mode " + mode.name, supervisor_apid);
+}
+
+void Modes::void_permissions() {
+  ++craft_.mode_epoch;
+  parts_.own.enter_mode(craft_.mode_epoch);
+  for (Member& member : craft_.members) member.enter_mode(craft_.mode_epoch);
+}
+
+void Modes::preview(const pus::Request& asked, Octets data) {
+  const auto* mode = data.size() == 1 ? find_mode(craft_, std::to_integer<std::uint8_t>(data[0])) : nullptr;
+  pus::Verification& verification = parts_.own.verification();
+  verification.accepted(asked);
+  if (mode == nullptr) return verification.start_failed(asked, pus::FailureNotice{pus::FailureCode::UnknownIdentifier});
+  verification.started(asked);
+  report(asked.source, *mode, plan_mode(craft_, parts_.means.links, parts_.power, *mode));
+  verification.completed(asked);
+}
+
+void Modes::report(std::uint16_t destination, const descriptor::Mode& mode, const ModePlan& plan) {
+  pus::st129::ModePreview preview{.mode = mode.id, .against = plan.against, .steps = {}};
+  for (std::size_t stage = 0; stage < plan.stages.size(); ++stage)
+    for (const ProcedureStep& step : plan.stages[stage])
+      preview.steps.push_back({static_cast<std::uint8_t>(stage + 1), step.subject, text_of(step, craft_.mission)});
+  std::array<std::byte, pus::st129::max_preview_octets> buffer;
+  parts_.own.telemetry().report(pus::st129::service_type, pus::st129::mode_preview, destination,
+                                pus::st129::write_mode_preview(buffer, preview));
 }
 
 }  // namespace hirosco::supervisor

@@ -2,24 +2,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/modes/mode_plan.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/procedures/engine.hpp"
 
 namespace hirosco::supervisor {
 
-/// SET_MODE: which telecommands are permitted. What was permitted in a mode before is void behind it, by its epoch on every
-/// member's page.
-class Modes {
+class Commissioning;
+
+/// The mode of the craft (paper 4.3). SET_MODE is a planned change of all of it (docs/adr/0075): refused as a whole with every
+/// reason, or carried out in stages of ordinary telecommands; it ends in the new mode, or with whom it moved stopped and the
+/// initial mode in force. ENTER_MODE alone changes what is permitted. What was permitted in a mode before is void behind it, by
+/// its epoch on every member's page.
+/// Thread: the supervisor's.
+class Modes final : public Undertaking {
  public:
-  Modes(Craft& craft, OwnSubsystem& own) : craft_{craft}, own_{own} {}
+  struct Parts {
+    const Means& means;
+    OwnSubsystem& own;
+    const PowerLedger& power;
+    const Commissioning& commissioning;
+  };
+  explicit Modes(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, engine_{parts.means} {}
+
+  /// SET_MODE and ENTER_MODE.
   void provide();
+  /// TC[129,4]: what SET_MODE would do now. Carried out where it is received.
+  void preview(const pus::Request& asked, Octets data);
+
+  /// The change ends, and whom it moved and nobody else has stopped is stopped.
+  bool cancel(std::string_view why) override;
+  /// The change ends.
+  void all_stopped(std::string_view why) override;
+  [[nodiscard]] bool running() const noexcept { return engine_.running(); }
 
  private:
+  enum class StatesFollow : std::uint8_t { Here, Elsewhere };
+  Outcome set_mode(std::uint8_t id, const Call& call);
+  void change(const descriptor::Mode& mode, ModePlan plan, const Call& call);
+  void ended(const descriptor::Mode& mode, const std::string& failure);
+  void fall_back(std::string_view why, StatesFollow states);
   void enter(const descriptor::Mode& mode);
-  [[nodiscard]] bool lives(const descriptor::CommissionStep& step) const;
+  void void_permissions();
+  void report(std::uint16_t destination, const descriptor::Mode& mode, const ModePlan& plan);
 
+  Parts parts_;
   Craft& craft_;
-  OwnSubsystem& own_;
+  Engine engine_;
+  std::optional<Call> call_;  ///< of the change that is under way
+  std::vector<std::uint16_t> moved_;
 };
 
 }  // namespace hirosco::supervisor

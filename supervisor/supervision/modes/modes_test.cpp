@@ -43,7 +43,156 @@ TEST_F(ModesTest, AModeWhoseMembersAreDeadIsRefusedUntilTheyLiveAgain) {
   EXPECT_EQ(craft.mode->name, "open");
   parts.restarts.plan(hand, {.limit = 1, .within = 1s, .pause = 0s}, clock.now());
   parts.processes.watch(clock.now());
-  EXPECT_EQ(call_own("SET_MODE", narrow), "done");
+  EXPECT_EQ(call_own("SET_MODE", narrow), "") << "it has begun";
+  EXPECT_NE(craft.changing_to, nullptr);
+}
+
+TEST_F(ModesTest, EnteringAModeMovesNobodyWhateverItCommissions) {
+  craft.mission.modes[1].commission = {
+      {.subsystem = "ARM", .configuration = "COUPLED", .state = Operational, .at = {}}};
+  EXPECT_EQ(call_own("ENTER_MODE", narrow), "done");
+  EXPECT_EQ(craft.mode->name, "narrow");
+  EXPECT_TRUE(texts(arm).empty());
+  EXPECT_EQ(call_own("ENTER_MODE", 9), to_text(pus::FailureCode::UnknownIdentifier));
+}
+
+/// Changes of the whole craft: mode `narrow` has ARM and HAND Operational, `open` permits all and commissions nobody.
+struct ModeChangeTest : ModesTest {
+  std::string end;
+  void SetUp() override {
+    ModesTest::SetUp();
+    craft.mission.links.clear();
+    for (auto& wanted : craft.mission.subsystems[0].subsystem.configurations) wanted.requires_.clear();
+    craft.mission.modes[1].commission = {
+        {.subsystem = "ARM", .configuration = "COUPLED", .state = Operational, .at = {}},
+        {.subsystem = "HAND", .configuration = "ONLY", .state = Operational, .at = {}}};
+    set(arm, Operational, 2);
+    set(hand, PreOperational);
+  }
+  void begin() {
+    parts.own_telecommands.command(supervisor_apid, "SET_MODE", narrow,
+                                   [this](bool success, const std::string& why) { end = success ? "done" : why; });
+    for (int step = 0; step < 40 && craft.changing_to == nullptr && end.empty(); ++step) own_step();
+  }
+  /// Members obey until the change has ended or nothing happens any more.
+  void go_on() {
+    for (int step = 0; step < 60 && end.empty(); ++step) {
+      for (const std::uint16_t apid : {arm, hand})
+        if (craft.member(apid)->alive()) obey(apid);
+      own_step();
+    }
+  }
+  /// So many telecommands of the change are obeyed, one at a time; the next one was sent, and nobody has answered it.
+  void obey_some(int number) {
+    std::map<std::uint16_t, std::vector<Received>> open;
+    for (int obeyed = 0; end.empty();) {
+      for (const std::uint16_t apid : {arm, hand})
+        for (const Received& each : received(apid)) open[apid].push_back(each);
+      const auto next = std::ranges::find_if(open, [](const auto& entry) { return !entry.second.empty(); });
+      if (next == open.end() || obeyed++ == number) return;
+      const Received answered = next->second.front();
+      next->second.erase(next->second.begin());
+      constexpr std::string_view to_state = "SET_STATE ";
+      if (answered.text.starts_with(to_state))
+        set(next->first, static_cast<State>(std::stoi(answered.text.substr(to_state.size()))),
+            craft.member(next->first)->configuration());
+      if (answered.text.starts_with("CONFIGURE")) played[next->first].vital->configuration = next->first == arm ? 2 : 1;
+      verify(next->first, answered.request, 7);
+      own_step();
+    }
+  }
+  [[nodiscard]] bool fenced(std::uint16_t apid) { return played[apid].permit->stop.load() != 0; }
+};
+
+TEST_F(ModeChangeTest, OneTelecommandBringsTheWholeCraftIntoTheModeAndItsEndSaysSo) {
+  begin();
+  EXPECT_EQ(craft.changing_to, &craft.mission.modes[1]);
+  EXPECT_EQ(craft.mode->name, "open") << "the old one holds until the end";
+  go_on();
+  EXPECT_EQ(end, "done");
+  EXPECT_EQ(craft.mode->name, "narrow");
+  EXPECT_EQ(craft.changing_to, nullptr);
+  EXPECT_EQ(craft.member(hand)->state(), Operational);
+  EXPECT_TRUE(was_told("change from mode open to narrow: 5 stages, moves HAND"));
+}
+
+TEST_F(ModeChangeTest, ASecondChangeWaitsForTheEndOfTheFirst) {
+  begin();
+  EXPECT_EQ(call_own("SET_MODE", narrow), to_text(pus::FailureCode::Busy));
+  go_on();
+  EXPECT_EQ(end, "done");
+}
+
+TEST_F(ModeChangeTest, AnImpossibleOneIsRefusedAsAWholeAndEveryReasonIsTold) {
+  craft.member(hand)->died();
+  craft.mission.modes[1].from = {"narrow"};
+  EXPECT_EQ(call_own("SET_MODE", narrow), to_text(pus::FailureCode::WrongStatus));
+  EXPECT_TRUE(was_told(
+      "mode narrow is impossible: it is not entered from mode open; HAND is down: SET_STATE Offline starts it again"));
+  EXPECT_TRUE(texts(arm).empty());
+  EXPECT_THAT(routed_services, ::testing::Contains(129)) << "the reasons are telemetry, too";
+}
+
+TEST_F(ModeChangeTest, WhoeverFailsOnTheWayEndsItInTheInitialModeWithEverybodyOfItStopped) {
+  set(arm, PreOperational, 1);
+  begin();
+  const auto sent = received(hand);
+  ASSERT_FALSE(sent.empty());
+  verify(hand, sent.front().request, 8, pus::FailureCode::DeviceError);
+  go_on();
+  EXPECT_NE(end, "done");
+  EXPECT_EQ(craft.mode->name, "open");
+  EXPECT_EQ(craft.changing_to, nullptr);
+  for (const std::uint16_t apid : {arm, hand}) EXPECT_TRUE(fenced(apid)) << apid;
+  EXPECT_TRUE(was_told("the change to mode narrow stopped: HAND PostOperational: "));
+}
+
+TEST_F(ModeChangeTest, ItEndsInTheOldModeTheNewOneOrSafeWhateverHappensAtAnyOfItsSteps) {
+  using Disturb = void (*)(ModeChangeTest&);
+  const std::pair<const char*, Disturb> disturbances[]{
+      {"a member dies",
+       [](ModeChangeTest& t) {
+         t.ends[hand + 1000U] = {};
+         t.parts.processes.watch(t.clock.now());
+       }},
+      {"a member fails",
+       [](ModeChangeTest& t) {
+         t.set(hand, ErrorOperational, 1);
+         t.event(hand, 1, Severity::High);
+       }},
+      {"a stop by signal", [](ModeChangeTest& t) { t.parts.safe_all.asked(); }},
+      {"a plan cancels", [](ModeChangeTest& t) { static_cast<void>(t.parts.under_way.cancel("a plan")); }},
+      {"shutdown", [](ModeChangeTest& t) { t.parts.shutdown.request(); }},
+      {"nobody answers", [](ModeChangeTest& t) {
+         t.wait(60s);
+         t.parts.own_telecommands.watch(t.clock.now());
+       }}};
+  int new_ones = 0, safe_ones = 0;
+  for (const auto& [says, disturb] : disturbances)
+    for (int at = 0; at < 10; ++at) {
+      TearDown();
+      std::destroy_at(this);
+      std::construct_at(this);
+      SetUp();
+      set(arm, Operational, 1);  // in another configuration: it stops, goes down, and comes up again
+      set(hand, Offline);
+      begin();
+      obey_some(at);
+      disturb(*this);
+      go_on();
+      EXPECT_FALSE(parts.modes.running()) << says << " at " << at;
+      EXPECT_EQ(craft.changing_to, nullptr) << says << " at " << at;
+      EXPECT_FALSE(end.empty()) << says << " at " << at << ": whoever asked hears how it ended";
+      const bool is_new = craft.mode->name == "narrow" && end == "done";
+      const bool is_safe =
+          craft.mode->name == "open" && end != "done" && (!craft.member(hand)->alive() || fenced(hand));
+      EXPECT_TRUE(is_new || is_safe) << says << " at " << at << ": " << craft.mode->name << ", " << end;
+      new_ones += is_new ? 1 : 0;
+      safe_ones += is_safe ? 1 : 0;
+    }
+  EXPECT_EQ(new_ones, static_cast<int>(std::size(disturbances)))
+      << "what comes after the ninth telecommand comes too late";
+  EXPECT_EQ(safe_ones, 9 * static_cast<int>(std::size(disturbances)));
 }
 
 TEST_F(ModesTest, WhoIsStartedLaterIsInTheModeThatHoldsThen) {

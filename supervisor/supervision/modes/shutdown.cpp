@@ -28,7 +28,7 @@ void Shutdown::request() {
   craft_.shutting_down = true;
   deadline_ = craft_.now + limit;
   craft_.tell("shutdown");
-  parts_.commissioning.drop();
+  parts_.under_way.drop();
   // Nobody moves on until its service loop has obeyed, and nothing that waited for the disk begins to.
   for (const Member& member : craft_.members)
     if (!craft_.is_ground_link(member)) craft_.guard.fence(member.apid());

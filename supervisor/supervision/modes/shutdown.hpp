@@ -6,7 +6,7 @@
 
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/interfaces.hpp"
-#include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/modes/under_way.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/engine.hpp"
 
@@ -18,7 +18,7 @@ class Shutdown final {
   struct Parts {
     const Means& means;
     OwnSubsystem& own;
-    Commissioning& commissioning;
+    UnderWay& under_way;
     Accounts& accounts;
   };
   explicit Shutdown(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, engine_{parts.means} {}

@@ -22,6 +22,8 @@ struct Engine::Run : std::enable_shared_from_this<Run> {
     if (stage == procedure.stages.size()) return finish();
     const std::size_t count = procedure.stages[stage].size();
     open.assign(count, true);
+    if (procedure.begins) procedure.begins(begun_stages++);
+    if (over) return;
     // A step may end before run() returns: answers are matched to their stage.
     const std::size_t begun = stage;
     for (std::size_t i = 0; i < count && !over && stage == begun; ++i) {
@@ -52,14 +54,13 @@ struct Engine::Run : std::enable_shared_from_this<Run> {
   }
 
   [[nodiscard]] std::string name_of(const ProcedureStep& step, std::string_view between) const {
-    const std::string text =
-        step.kind->text != nullptr ? step.kind->text(step, means.craft.mission) : std::string{step.kind->name};
-    return means.craft.name_of(step.subject) + std::string{between} + text;
+    return means.craft.name_of(step.subject) + std::string{between} + text_of(step, means.craft.mission);
   }
 
   Means means;
   Procedure procedure;
   std::size_t stage{0};
+  std::size_t begun_stages{0};
   std::vector<bool> open{};  ///< of the stage: those that have not ended
   ProcedureEnd end{};
   bool over{false};

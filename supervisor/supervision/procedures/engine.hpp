@@ -28,6 +28,7 @@ struct Procedure {
   std::vector<Stage> stages;
   OnFailure on_failure{OnFailure::Stop};
   std::function<void(const ProcedureEnd&)> finished{};
+  std::function<void(std::size_t stage)> begins{};  ///< counted from 0, those without a step not counted
 };
 
 /// Runs one procedure at a time. Whoever lets go of an engine does not end what it has begun; cancel() does.

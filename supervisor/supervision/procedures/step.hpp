@@ -22,7 +22,7 @@ struct Means {
   CommandDesk& desk;
   const LinkGraph& links;
   Restarts& restarts;
-  Undertaking& commissioning;
+  Undertaking& under_way;
 };
 
 /// Why a plan runs; empty where none does.
@@ -55,5 +55,10 @@ struct StepKind {
   /// For plans: whether a lesser event of its subject begins nothing else while it runs.
   Holds holds{Holds::Subject};
 };
+
+/// What it asks of its subject, in words.
+[[nodiscard]] inline std::string text_of(const ProcedureStep& step, const descriptor::Mission& mission) {
+  return step.kind->text != nullptr ? step.kind->text(step, mission) : std::string{step.kind->name};
+}
 
 }  // namespace hirosco::supervisor

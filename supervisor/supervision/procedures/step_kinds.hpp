@@ -10,10 +10,10 @@
 
 #include "hirosco/descriptor/model/plan_steps.hpp"
 #include "supervisor/supervision/procedures/steps/configure.hpp"
+#include "supervisor/supervision/procedures/steps/enter_mode.hpp"
 #include "supervisor/supervision/procedures/steps/link.hpp"
 #include "supervisor/supervision/procedures/steps/log.hpp"
 #include "supervisor/supervision/procedures/steps/restart.hpp"
-#include "supervisor/supervision/procedures/steps/set_mode.hpp"
 #include "supervisor/supervision/procedures/steps/set_state.hpp"
 #include "supervisor/supervision/procedures/steps/shut_down_network.hpp"
 
@@ -21,7 +21,7 @@ namespace hirosco::supervisor {
 
 /// All kinds of steps, here and nowhere else. Those that a mission's plans may name have a word in plan_steps.hpp besides.
 inline constexpr std::array step_kinds{&steps::log,       &steps::set_state, &steps::shut_down_network, &steps::restart,
-                                       &steps::configure, &steps::link,      &steps::set_mode};
+                                       &steps::configure, &steps::link,      &steps::enter_mode};
 
 /// Place in the table; its size when there is none of this name. (With sanitizers a comparison with null is no constant.)
 [[nodiscard]] constexpr std::size_t place_of_step_kind(std::string_view name) noexcept {

@@ -6,7 +6,7 @@
 
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/interfaces.hpp"
-#include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/modes/under_way.hpp"
 #include "supervisor/supervision/procedures/engine.hpp"
 
 namespace hirosco::supervisor {
@@ -15,8 +15,8 @@ namespace hirosco::supervisor {
 /// away (adr 0043). Thread: the supervisor's.
 class GroundLinkCare final : public Watch {
  public:
-  GroundLinkCare(const Means& means, const Commissioning& commissioning)
-      : craft_{means.craft}, links_{means.links}, commissioning_{commissioning}, engine_{means} {}
+  GroundLinkCare(const Means& means, const UnderWay& under_way)
+      : craft_{means.craft}, links_{means.links}, under_way_{under_way}, engine_{means} {}
 
   void watch(TimePoint now) override;
   /// To what its mode asks for, or, while links that this requires are down, to a configuration that requires none that is.
@@ -30,7 +30,7 @@ class GroundLinkCare final : public Watch {
 
   Craft& craft_;
   const LinkGraph& links_;
-  const Commissioning& commissioning_;
+  const UnderWay& under_way_;
   Engine engine_;
   std::optional<TimePoint> lost_at_;
   Duration patience_{pause};  ///< longer after each time that it did not come back

@@ -17,6 +17,12 @@ namespace hirosco::descriptor::detail {
 /// Why the producer's set cannot feed the consumer's; empty when it can.
 [[nodiscard]] std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_);
 
+/// Somebody can be found in it; the others are passed through.
+[[nodiscard]] constexpr bool is_steady(State state) noexcept {
+  return state == State::Offline || state == State::PreOperational || state == State::SafeOperational ||
+         state == State::Operational || state == State::ErrorOperational || state == State::PostOperational;
+}
+
 /// Reads one <Mission> and the subsystem descriptors it names.
 class MissionReader {
  public:
@@ -64,6 +70,12 @@ class MissionReader {
                   const MissionLink& link);
   void read_modes(const xml::Element& element);
   void read_mode(const xml::Element& element);
+
+  // read_interlocks.cpp
+  void read_interlock(const xml::Element& element, Interlock::Kind kind, Mode& mode);
+  /// Modes may be named before they are read: when all are.
+  void check_from(const xml::Element& modes);
+  void check_start(const xml::Attribute& start, const Mode& mode);
 
   // check_modes.cpp: only what was read without a problem is judged
   /// What a mode commissions must fit the power budget together.

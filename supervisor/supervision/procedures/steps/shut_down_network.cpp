@@ -60,7 +60,7 @@ void shut_down(const ProcedureStep& step, const Means& means, const CommandDone&
   const auto members = members_of(step, means);
   const std::string plan = "plan " + step.occasion.plan;
   means.craft.tell(plan + ": network {" + names(members, means.craft) + "} to ErrorOperational and down", step.subject);
-  if (means.commissioning.cancel(plan)) means.craft.fail();
+  if (means.under_way.cancel(plan)) means.craft.fail();
   for (const std::uint16_t apid : members) {
     Member* member = means.craft.member(apid);
     if (member == nullptr || !member->alive()) continue;

@@ -10,9 +10,9 @@
 
 namespace hirosco::supervisor::steps {
 
-/// The mode of the craft: the value is its id. The subject is the supervisor.
-inline constexpr StepKind set_mode{
-    .name = "set_mode",
+/// The mode of the craft, once everybody is where it wants them: the value is its id. The subject is the supervisor.
+inline constexpr StepKind enter_mode{
+    .name = "enter_mode",
     .values = 1,
     .text =
         [](const ProcedureStep& step, const descriptor::Mission& mission) {
@@ -21,7 +21,7 @@ inline constexpr StepKind set_mode{
         },
     .run =
         [](const ProcedureStep& step, const Means& means, CommandDone done) {
-          means.desk.command(step.subject, "SET_MODE", static_cast<double>(step.values[0]), std::move(done));
+          means.desk.command(step.subject, "ENTER_MODE", static_cast<double>(step.values[0]), std::move(done));
         },
 };
 

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/modes/mode_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "supervisor/supervision/procedures/step_kinds.hpp"
+
+namespace hirosco::supervisor {
+
+using descriptor::State;
+
+void WayThere::add(const descriptor::Subsystem& subsystem, const descriptor::Configuration& configuration,
+                   const Present& from, State to) {
+  // What a configuration holds, links and devices, is given back in Post-Operational: also from Pre-Operational it leads there.
+  const bool holds = from.state == State::PreOperational && from.configuration != 0;
+  if (from.state == State::Operational) stop_.push_back(to_state(subsystem.id, State::SafeOperational));
+  if (from.state == State::ErrorOperational || holds) post_.push_back(to_state(subsystem.id, State::PostOperational));
+  if (from.state != State::PreOperational || holds) pre_.push_back(to_state(subsystem.id, State::PreOperational));
+  configure_.push_back(step("configure", subsystem.id, {configuration.id}));
+  if (to >= State::SafeOperational) safe_.push_back(to_state(subsystem.id, State::SafeOperational));
+  if (to >= State::Operational) operational_.push_back(to_state(subsystem.id, State::Operational));
+}
+
+void WayThere::down(const descriptor::Subsystem& subsystem, const Present& from) {
+  if (from.state == State::Operational) stop_.push_back(to_state(subsystem.id, State::SafeOperational));
+  pre_.push_back(to_state(subsystem.id, State::Offline));
+}
+
+void WayThere::link(std::uint8_t id) { link_.push_back(step("link", supervisor_apid, {id})); }
+
+void WayThere::enter(const descriptor::Mode& mode) { mode_.push_back(step("enter_mode", supervisor_apid, {mode.id})); }
+
+namespace {
+
+/// Where a mode wants a member; without configuration: Offline.
+struct Target {
+  const descriptor::Configuration* configuration{nullptr};
+  State state{State::Offline};
+};
+
+class Planner {
+ public:
+  Planner(const Craft& craft, const LinkGraph& links, const descriptor::Mode& mode)
+      : craft_{craft}, links_{links}, mode_{mode} {}
+
+  ModePlan plan(const PowerLedger& power) {
+    check_interlocks();
+    if (!mode_.commission.empty()) {
+      find_movers();
+      check_members();
+      check_power(power);
+    }
+    ModePlan made{.stages = {}, .moved = {}, .against = std::move(against_)};
+    WayThere way;
+    for (const Member& member : craft_.members) {
+      if (!movers_.contains(member.apid())) continue;
+      made.moved.push_back(member.apid());
+      const Target target = *target_of(member);
+      const Present from{member.state(), member.configuration()};
+      if (target.configuration != nullptr) way.add(member.descriptor(), *target.configuration, from, target.state);
+      else way.down(member.descriptor(), from);
+    }
+    for (const std::uint8_t id : mode_.establish)
+      if (is_made(id)) way.link(id);
+    for (Stage& stage : way.stages())
+      if (!stage.empty()) made.stages.push_back(std::move(stage));
+    return made;
+  }
+
+ private:
+  /// Empty: it is left where it is, as the ground link in a mode that does not name it.
+  [[nodiscard]] std::optional<Target> target_of(const Member& member) const {
+    const descriptor::Subsystem& subsystem = member.descriptor();
+    const auto named = std::ranges::find(mode_.commission, subsystem.name, &descriptor::CommissionStep::subsystem);
+    if (named != mode_.commission.end())
+      return Target{subsystem.find_configuration(named->configuration), named->state};
+    if (craft_.is_ground_link(member)) return std::nullopt;
+    return Target{};
+  }
+
+  [[nodiscard]] static bool is_there(const Member& member, const Target& target) {
+    if (member.state() != target.state) return false;
+    return target.configuration == nullptr || member.configuration() == target.configuration->id;
+  }
+
+  [[nodiscard]] std::uint16_t apid_of(const std::string& name) const {
+    return craft_.mission.find_subsystem(name)->subsystem.id;
+  }
+  [[nodiscard]] bool is_wanted(std::uint8_t link) const {
+    return std::ranges::find(mode_.establish, link) != mode_.establish.end();
+  }
+  /// Not up yet, or taken along by an end that moves.
+  [[nodiscard]] bool is_made(std::uint8_t id) const {
+    const auto& link = *craft_.mission.find_link(id);
+    return !links_.is_up(id) || movers_.contains(apid_of(link.from)) || movers_.contains(apid_of(link.to));
+  }
+
+  /// One that has nowhere to go takes part in nothing: it is left out, or told by check_members().
+  void move(std::uint16_t apid) {
+    const Member* member = craft_.member(apid);
+    if (member != nullptr && member->alive() && target_of(*member)) movers_.insert(apid);
+  }
+
+  void find_movers() {
+    for (const Member& member : craft_.members)
+      if (const auto target = target_of(member); target && !is_there(member, *target)) move(member.apid());
+    for (const descriptor::MissionLink& link : craft_.mission.links) {
+      const bool changes = is_wanted(link.id) ? !links_.is_up(link.id) : links_.is_held(link.id);
+      if (!changes) continue;
+      move(apid_of(link.from));
+      move(apid_of(link.to));
+    }
+    // Who gives its links back takes down those who need them: a network moves as a whole, the one that there is and the one to be.
+    for (std::size_t before = 0; before != movers_.size();) {
+      before = movers_.size();
+      for (const std::uint16_t apid : std::set{movers_})
+        for (const std::uint16_t other : links_.network_of(apid)) move(other);
+      for (const std::uint8_t id : mode_.establish) {
+        const auto& link = *craft_.mission.find_link(id);
+        const std::uint16_t from = apid_of(link.from), to = apid_of(link.to);
+        if (movers_.contains(from)) move(to);
+        if (movers_.contains(to)) move(from);
+      }
+    }
+    // Who is Offline and is to be so has nothing to do in that.
+    std::erase_if(movers_, [&](std::uint16_t apid) {
+      const Member* member = craft_.member(apid);
+      return target_of(*member)->configuration == nullptr && member->state() == State::Offline;
+    });
+  }
+
+  void check_members() {
+    for (const Member& member : craft_.members) {
+      const auto target = target_of(member);
+      if (!target) continue;
+      const std::string& name = member.descriptor().name;
+      // A mode whose members are dead is not that mode, whatever it is called (hazard SF15); who is not of it may be dead.
+      if (!member.alive()) {
+        if (target->configuration != nullptr) object("{} is down: SET_STATE Offline starts it again", name);
+      } else if (!movers_.contains(member.apid())) {
+        continue;
+      } else if (member.recovery.running() || member.closed_at) {
+        object("{} is in a recovery", name);
+      } else if (!member.state() || is_transient(*member.state())) {
+        object("{} is on its way between two states", name);
+      }
+    }
+  }
+
+  /// Those who are commissioned beyond Pre-Operational, beside the supervisor, against what there is now.
+  void check_power(const PowerLedger& power) {
+    if (!power.limited()) return;
+    const auto milliwatts = [](double watts) { return static_cast<std::uint32_t>(watts * 1000 + 0.5); };
+    std::uint32_t sum_mw = power.held_mw(supervisor_apid);
+    for (const Member& member : craft_.members) {
+      const auto target = target_of(member);
+      if (!target) sum_mw += power.held_mw(member.apid());
+      else if (target->configuration != nullptr && target->state != State::PreOperational)
+        sum_mw += milliwatts(target->configuration->power_w);
+    }
+    if (sum_mw > power.budget_mw())
+      object("it draws {} W of the {} W that there are", sum_mw / 1000.0, power.budget_mw() / 1000.0);
+  }
+
+  [[nodiscard]] bool holds(const descriptor::Interlock& interlock) const {
+    const Member* member = craft_.member(apid_of(interlock.subsystem));
+    if (member == nullptr || !member->state()) return false;
+    if (std::ranges::find(interlock.states, *member->state()) == interlock.states.end()) return false;
+    if (interlock.configuration.empty()) return true;
+    const auto* wanted = member->descriptor().find_configuration(interlock.configuration);
+    return wanted != nullptr && member->configuration() == wanted->id;
+  }
+
+  void check_interlocks() {
+    const auto& from = mode_.from;
+    // Entered anew from itself it may always be: that is how what has fallen comes up again.
+    if (!from.empty() && craft_.mode != &mode_ && std::ranges::find(from, craft_.mode->name) == from.end())
+      object("it is not entered from mode {}", craft_.mode->name);
+    for (const descriptor::Interlock& interlock : mode_.interlocks) {
+      const bool excludes = interlock.kind == descriptor::Interlock::Kind::Excludes;
+      if (holds(interlock) == excludes) object("it {} {}", excludes ? "excludes" : "needs", to_string(interlock));
+    }
+  }
+
+  template <class... Values>
+  void object(fmt::format_string<Values...> text, Values&&... values) {
+    against_.push_back(fmt::format(text, std::forward<Values>(values)...));
+  }
+
+  const Craft& craft_;
+  const LinkGraph& links_;
+  const descriptor::Mode& mode_;
+  std::set<std::uint16_t> movers_;
+  std::vector<std::string> against_;
+};
+
+}  // namespace
+
+ModePlan plan_mode(const Craft& craft, const LinkGraph& links, const PowerLedger& power, const descriptor::Mode& mode) {
+  return Planner{craft, links, mode}.plan(power);
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/resource_management/power_ledger.hpp"
+
+/// A change of mode, thought out before anything moves (docs/adr/0075): who moves, in which stages, and all that is against it.
+namespace hirosco::supervisor {
+
+/// Where a subsystem is.
+struct Present {
+  std::optional<State> state;  ///< empty: it does not say
+  std::uint8_t configuration{0};  ///< in force; 0 = none
+};
+
+/// From where subsystems are to where they are wanted, as stages of a procedure. Who controls stops first, all before the first
+/// gives its links back: nobody loses a set that it acts on.
+class WayThere {
+ public:
+  void add(const descriptor::Subsystem& subsystem, const descriptor::Configuration& configuration, const Present& from,
+           State to);
+  /// To Offline.
+  void down(const descriptor::Subsystem& subsystem, const Present& from);
+  /// A link of the mission; made between Pre-Operational and Safe-Operational (docs/adr/0021).
+  void link(std::uint8_t id);
+  /// At the end.
+  void enter(const descriptor::Mode& mode);
+  [[nodiscard]] std::vector<Stage> stages() const {
+    return {stop_, post_, pre_, configure_, link_, safe_, operational_, mode_};
+  }
+
+ private:
+  Stage stop_, post_, pre_, configure_, link_, safe_, operational_, mode_;
+};
+
+struct ModePlan {
+  std::vector<Stage> stages;  ///< none is empty; none at all: what is permitted changes, nothing else
+  std::vector<std::uint16_t> moved;  ///< APIDs, in the order of the mission
+  std::vector<std::string> against;  ///< every reason why it is impossible now, in words; empty: it is possible
+};
+
+/// What brings the craft into `mode` from where it is. A mode that commissions somebody is one of the whole craft: who is not named goes
+/// Offline, but for the ground link, and links that it does not establish are given back. Who has to move takes its real-time
+/// network along. A mode that commissions nobody moves nobody.
+/// Pure: nothing is sent or told. Thread: the supervisor's.
+[[nodiscard]] ModePlan plan_mode(const Craft& craft, const LinkGraph& links, const PowerLedger& power,
+                                 const descriptor::Mode& mode);
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/modes/mode_plan.hpp"
+
+#include "supervisor/supervision/testing/parts_rig.hpp"
+#include "supervisor/supervision/testing/played_desk.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using ::testing::ElementsAre;
+using enum descriptor::State;
+
+struct WayThereTest : PartsTest {
+  PlayedDesk desk;
+  WayThere way;
+  const descriptor::Subsystem& subsystem = craft.mission.subsystems.front().subsystem;
+  const descriptor::Configuration& coupled = subsystem.configurations.front();
+
+  std::vector<std::string> commands() {
+    desk.at_once = true;
+    Engine engine{means_with(desk)};
+    engine.start({.stages = way.stages()});
+    return desk.sent;
+  }
+};
+
+TEST_F(WayThereTest, FromOfflineItGoesThroughEachStateInItsOrder) {
+  way.add(subsystem, coupled, {Offline}, Operational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 3", "10 CONFIGURE 2", "10 SET_STATE 4", "10 SET_STATE 5"));
+}
+
+TEST_F(WayThereTest, ItEndsWhereTheModeWantsIt) {
+  way.add(subsystem, coupled, {Offline}, PreOperational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 3", "10 CONFIGURE 2"));
+}
+
+TEST_F(WayThereTest, WhatIsThereAlreadyIsLeftOut) {
+  way.add(subsystem, coupled, {PreOperational}, SafeOperational);
+  EXPECT_THAT(commands(), ElementsAre("10 CONFIGURE 2", "10 SET_STATE 4"));
+}
+
+TEST_F(WayThereTest, FromErrorOperationalItLeadsThroughPostOperational) {
+  way.add(subsystem, coupled, {ErrorOperational}, SafeOperational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 7", "10 SET_STATE 3", "10 CONFIGURE 2", "10 SET_STATE 4"));
+}
+
+TEST_F(WayThereTest, LinksAreMadeBetweenPreOperationalAndSafeOperationalAndTheModeComesLast) {
+  way.enter(craft.mission.modes.front());
+  way.link(1);
+  way.add(subsystem, coupled, {Offline}, SafeOperational);
+  EXPECT_THAT(commands(),
+              ElementsAre("10 SET_STATE 3", "10 CONFIGURE 2", "1 LINK 1", "10 SET_STATE 4", "1 ENTER_MODE 1"));
+}
+
+TEST_F(WayThereTest, WhatAConfigurationHoldsIsGivenBackOnTheWayToThatOrAnother) {
+  way.add(subsystem, coupled, {PreOperational, 1}, SafeOperational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 7", "10 SET_STATE 3", "10 CONFIGURE 2", "10 SET_STATE 4"));
+}
+
+TEST_F(WayThereTest, WhoControlsStopsBeforeAnybodyGivesItsLinksBack) {
+  const descriptor::Subsystem& other = craft.mission.subsystems[1].subsystem;
+  way.add(subsystem, coupled, {Operational}, Operational);
+  way.down(other, {Operational});
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 4", "11 SET_STATE 4", "10 SET_STATE 3", "11 SET_STATE 0",
+                                      "10 CONFIGURE 2", "10 SET_STATE 4", "10 SET_STATE 5"));
+}
+
+/// ARM and HAND coupled by two links, CAMERA beside them; CAMERA is not the ground link here.
+struct ModePlanTest : PartsTest {
+  descriptor::Mode& coupled = craft.mission.modes[0];
+  descriptor::Mode& watching = craft.mission.modes[1];
+  PowerLedger power{std::nullopt};
+
+  void SetUp() override {
+    PartsTest::SetUp();
+    craft.mission.ground.subsystem.clear();
+    coupled.commission = {commissioned("ARM", "COUPLED"), commissioned("HAND", "ONLY")};
+    coupled.establish = {1, 2};
+    watching.commission = {commissioned("CAMERA", "ONLY")};
+    start_all(Offline);
+  }
+  static descriptor::CommissionStep commissioned(std::string subsystem, std::string configuration) {
+    return {
+        .subsystem = std::move(subsystem), .configuration = std::move(configuration), .state = Operational, .at = {}};
+  }
+  void couple() {
+    set(arm, Operational, 2);
+    set(hand, Operational, 1);
+    for (const std::uint8_t link : {std::uint8_t{1}, std::uint8_t{2}}) parts.graph.set_up(link, true);
+  }
+  ModePlan plan(const descriptor::Mode& mode) { return plan_mode(craft, parts.graph, power, mode); }
+  static std::vector<std::string> texts_of(const Craft& craft, const ModePlan& plan) {
+    std::vector<std::string> texts;
+    for (const Stage& stage : plan.stages) {
+      std::string text;
+      for (const ProcedureStep& step : stage)
+        text += (text.empty() ? "" : ", ") + craft.name_of(step.subject) + " " + text_of(step, craft.mission);
+      texts.push_back(text);
+    }
+    return texts;
+  }
+  std::vector<std::string> texts(const descriptor::Mode& mode) { return texts_of(craft, plan(mode)); }
+};
+
+TEST_F(ModePlanTest, WhoIsThereAlreadyIsNotMoved) {
+  couple();
+  EXPECT_TRUE(plan(coupled).stages.empty());
+  EXPECT_TRUE(plan(coupled).moved.empty());
+}
+
+TEST_F(ModePlanTest, AModeThatCommissionsNobodyMovesNobody) {
+  couple();
+  watching.commission.clear();
+  EXPECT_TRUE(plan(watching).stages.empty());
+}
+
+TEST_F(ModePlanTest, WhoIsNotOfTheModeGoesOfflineWithWhatJoinsThem) {
+  couple();
+  EXPECT_THAT(
+      texts(watching),
+      ElementsAre("ARM SafeOperational, HAND SafeOperational", "ARM Offline, HAND Offline, CAMERA PreOperational",
+                  "CAMERA configuration ONLY", "CAMERA SafeOperational", "CAMERA Operational"));
+}
+
+TEST_F(ModePlanTest, TheGroundLinkStaysWhereAModeDoesNotNameIt) {
+  craft.mission.ground.subsystem = "CAMERA";
+  set(camera, Operational);
+  couple();
+  EXPECT_TRUE(plan(coupled).stages.empty());
+}
+
+TEST_F(ModePlanTest, ANetworkMovesAsAWholeAlsoForALinkThatIsMissing) {
+  couple();
+  parts.graph.set_up(2, false);
+  parts.graph.forget(2);
+  EXPECT_THAT(texts(coupled),
+              ElementsAre("ARM SafeOperational, HAND SafeOperational", "ARM PreOperational, HAND PreOperational",
+                          "ARM configuration COUPLED, HAND configuration ONLY", "SUPERVISOR link 1, SUPERVISOR link 2",
+                          "ARM SafeOperational, HAND SafeOperational", "ARM Operational, HAND Operational"));
+}
+
+TEST_F(ModePlanTest, ALinkThatTheModeDoesNotEstablishIsGivenBack) {
+  couple();
+  coupled.establish = {1};
+  EXPECT_THAT(plan(coupled).moved, ElementsAre(arm, hand));
+  EXPECT_THAT(texts(coupled), ::testing::Contains("SUPERVISOR link 1"));
+}
+
+TEST_F(ModePlanTest, WhoFailedComesBackByTheWayDown) {
+  couple();
+  set(arm, ErrorOperational, 2);
+  EXPECT_EQ(texts(coupled)[0], "HAND SafeOperational");
+  EXPECT_EQ(texts(coupled)[1], "ARM PostOperational");
+}
+
+TEST_F(ModePlanTest, EveryReasonAgainstItIsNamedAtOnce) {
+  couple();
+  coupled.from = {"narrow"};
+  coupled.interlocks = {{.kind = descriptor::Interlock::Kind::Excludes,
+                         .subsystem = "ARM",
+                         .states = {Operational, SafeOperational},
+                         .configuration = "COUPLED",
+                         .at = {}},
+                        {.kind = descriptor::Interlock::Kind::Needs,
+                         .subsystem = "CAMERA",
+                         .states = {Operational},
+                         .configuration = {},
+                         .at = {}},
+                        {.kind = descriptor::Interlock::Kind::Needs,
+                         .subsystem = "ARM",
+                         .states = {Operational},
+                         .configuration = {},
+                         .at = {}}};
+  craft.mode = &craft.mission.modes[1];
+  coupled.from = {"open"};
+  craft.member(hand)->died();
+  set(arm, SoftwareInit);
+  power.set_budget(10);
+  EXPECT_THAT(plan(coupled).against, ElementsAre("it is not entered from mode narrow", "it needs CAMERA in Operational",
+                                                 "it needs ARM in Operational", "ARM is on its way between two states",
+                                                 "HAND is down: SET_STATE Offline starts it again",
+                                                 "it draws 80 W of the 10 W that there are"));
+}
+
+TEST_F(ModePlanTest, AnInterlockIsJudgedByStateAndConfiguration) {
+  couple();
+  auto& lock = watching.interlocks.emplace_back();
+  lock = {.kind = descriptor::Interlock::Kind::Excludes,
+          .subsystem = "ARM",
+          .states = {Operational, SafeOperational},
+          .configuration = "COUPLED",
+          .at = {}};
+  EXPECT_THAT(plan(watching).against, ElementsAre("it excludes ARM in Operational or SafeOperational with COUPLED"));
+  set(arm, PreOperational, 2);
+  EXPECT_TRUE(plan(watching).against.empty());
+  set(arm, Operational, 1);
+  EXPECT_TRUE(plan(watching).against.empty());
+}
+
+TEST_F(ModePlanTest, WhoIsNotOfTheModeMayBeDead) {
+  couple();
+  craft.member(camera)->died();
+  EXPECT_TRUE(plan(coupled).against.empty());
+  EXPECT_FALSE(plan(watching).against.empty());
+}
+
+TEST_F(ModePlanTest, AModeMayBeEnteredAnewFromItself) {
+  coupled.from = {"narrow"};
+  craft.mode = &coupled;
+  EXPECT_TRUE(plan(coupled).against.empty()) << "that is how what has fallen comes up again";
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
