@@ -51,6 +51,7 @@ struct Options {
   std::filesystem::path mission;
   std::filesystem::path log;         ///< empty = as the mission says
   std::filesystem::path runtime;     ///< folder of this flight: sockets, what was injected
+  std::string mode;                  ///< to start in; empty = the mission's
   Console::Style style{Console::Style::Text};
 };
 
@@ -61,6 +62,7 @@ struct Options {
     if (word == "--mission" && i + 1 < argc) options.mission = argv[++i];
     else if (word == "--log" && i + 1 < argc) options.log = argv[++i];
     else if (word == "--runtime" && i + 1 < argc) options.runtime = argv[++i];
+    else if (word == "--mode" && i + 1 < argc) options.mode = argv[++i];
     else if (word == "--json") options.style = Console::Style::Json;
     else if (word == "--quiet") options.style = Console::Style::Quiet;
   }
@@ -269,8 +271,13 @@ int main(int argc, char** argv) {
     return exit_usage;
   }
   const auto source = descriptor::file_system();
-  const auto reading = descriptor::read_mission(options.mission, source);
+  auto reading = descriptor::read_mission(options.mission, source);
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
   if (!reading.value) return exit_finding;
+  if (!options.mode.empty())
+    if (const auto why_not = descriptor::start_in(*reading.value, options.mode)) {
+      fmt::print(stderr, "{}: {}\n", argv[0], *why_not);
+      return exit_usage;
+    }
   return named_failures(*reading.value, options);
 }

@@ -152,7 +152,7 @@ std::vector<descriptor::EnumerationText> Catalogue::texts_of(const descriptor::S
       texts.push_back({static_cast<std::int64_t>(row.value), std::string{row.text}});
   if (function.name == "CONFIGURE")
     for (const auto& configuration : subsystem.configurations) texts.push_back({configuration.id, configuration.name});
-  if (supervisor && function.name == "SET_MODE")
+  if (supervisor && (function.name == "SET_MODE" || function.name == "ENTER_MODE"))
     for (const auto& mode : mission_.modes) texts.push_back({mode.id, mode.name});
   if (supervisor && (function.name == "LINK" || function.name == "UNLINK"))
     for (const auto& link : mission_.links)

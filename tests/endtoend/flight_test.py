@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """The demonstrator flies for real: commissioned in time, coupled, felt, and gone without a trace."""
+import subprocess
 import time
 import unittest
 
@@ -71,6 +72,42 @@ class Rokviss(unittest.TestCase):
             places = [after.index(f"{name} info STATE_CHANGED STATE={state}")
                       for state in ("SafeOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit", "Offline")]
             self.assertEqual(places, sorted(places), after)
+
+
+class Modes(unittest.TestCase):
+    MODES = ("standalone", "remote", "feel", "automatic", "telepresence")
+
+    def test_one_telecommand_each_takes_the_craft_from_mode_to_mode_in_the_same_processes(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            before = rokviss.processes()
+            longest_s = 0.0
+            for mode in self.MODES * 2:
+                started = time.monotonic()
+                done = rokviss.hirosco("mode", mode, "--mission", rokviss.mission)
+                self.assertEqual(done.returncode, 0, f"{mode}: {done.stdout}{done.stderr}")
+                longest_s = max(longest_s, time.monotonic() - started)
+                self.assertIn("mode " + mode, [line.told for line in rokviss.told()])
+            flight.measure(f"{2 * len(self.MODES)} changes of mode, {1e3 * longest_s:.0f} ms at most with the tool's own time")
+            self.assertEqual(rokviss.processes(), before)
+            preview = rokviss.hirosco("mode", "automatic", "--preview", "--mission", rokviss.mission)
+            self.assertEqual(preview.returncode, 0, preview.stderr)
+            self.assertIn("JOYSTICK Offline", preview.stdout)
+            self.assertIn("MANIPULATOR configuration SCRIPT", preview.stdout)
+            # What a stop left: the mode that holds brings it up again.
+            self.assertEqual(rokviss.hirosco("safe", "--mission", rokviss.mission).returncode, 0)
+            again = rokviss.hirosco("mode", "telepresence", "--mission", rokviss.mission)
+            self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
+            self.assertEqual(rokviss.end(), 0, rokviss.errors)
+
+    def test_a_flight_may_start_in_another_mode_and_not_in_one_that_is_not_there(self):
+        with flight.Flight(more=("--mode", "standalone")) as rokviss:
+            rokviss.wait_told("commissioned: mode standalone", 20.0)
+            self.assertEqual(rokviss.end(), 0, rokviss.errors)
+        nowhere = subprocess.run([flight.BINARIES / "hirosco", "run", flight.ROKVISS, "--mode", "stand-alone"],
+                                 capture_output=True, text=True, check=False)
+        self.assertEqual(nowhere.returncode, 2)
+        self.assertIn("no mode 'stand-alone': commissioning, standalone", nowhere.stderr)
 
 
 class MissionOverride(unittest.TestCase):

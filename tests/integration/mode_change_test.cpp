@@ -26,8 +26,7 @@ struct ModeChange : ::testing::Test {
       const auto& subsystem = flight.mission().find_subsystem(step.subsystem)->subsystem;
       if (flight.state(step.subsystem) != step.state) return step.subsystem;
       const auto in_force = flight.craft().vital(step.subsystem)->configuration.load(std::memory_order_relaxed);
-      if (in_force != subsystem.find_configuration(step.configuration)->id)
-        return step.subsystem + "'s configuration";
+      if (in_force != subsystem.find_configuration(step.configuration)->id) return step.subsystem + "'s configuration";
       if (flight.inhibited(step.subsystem) != 0) return step.subsystem + " is inhibited";
     }
     for (const std::uint8_t link : flight.mission().find_mode(mode)->establish)
@@ -142,15 +141,15 @@ TEST(ModeChanges, EndInTheOldModeTheNewOneOrSafeWhateverHappensAtAnyMoment) {
     if (now == flight.mission().initial_mode)
       for (const char* name : {"MANIPULATOR", "JOYSTICK"}) {
         const auto* page = flight.craft().permit(name);
-        EXPECT_TRUE(page == nullptr || !page->permits(page->epoch.load()))
-            << round << ", " << name << "\n" << flight.story().text();
+        EXPECT_TRUE(page == nullptr || !page->permits(page->epoch.load())) << round << ", " << name << "\n"
+                                                                           << flight.story().text();
       }
     // And again.
     for (const char* name : {"MANIPULATOR", "JOYSTICK"})
       if (!flight.craft().alive(name)) static_cast<void>(flight.set_state(name, State::Offline));
     flight.craft().run(500ms);
-    EXPECT_TRUE(flight.set_mode("telepresence").completed)
-        << round << " " << what << " " << to << "\n" << flight.story().text();
+    EXPECT_TRUE(flight.set_mode("telepresence").completed) << round << " " << what << " " << to << "\n"
+                                                           << flight.story().text();
     flight.craft().run(200ms);
     EXPECT_EQ(flight.inhibited("MANIPULATOR"), 0U) << round;
     EXPECT_EQ(flight.state("JOYSTICK"), State::Operational) << round;

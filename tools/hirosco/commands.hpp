@@ -25,6 +25,7 @@ inline constexpr int exit_internal = 4;
 struct RunOptions {
   std::string mission;
   std::string instance;              ///< empty = the mission's name (adr 0037)
+  std::string mode;                  ///< to start in; empty = the mission's
   std::optional<Duration> run_for;
   bool quiet{false};
   bool json{false};
@@ -43,6 +44,7 @@ int check(const CheckOptions& options);
 
 struct SimulateOptions {
   std::string mission;
+  std::string mode;                  ///< to start in; empty = the mission's
   Duration run_for{std::chrono::seconds{10}};
   std::uint64_t seed{1};
   std::string trace;                 ///< CSV at cycle rate; empty = none
@@ -72,6 +74,15 @@ struct TelecommandOptions {
 };
 int telecommand(const TelecommandOptions& options);
 int status(const Connection& connection);
+
+struct ModeOptions {
+  Connection connection;
+  std::string name;  ///< empty = the modes are listed
+  bool preview{false};  ///< say what would be done, and what is against it
+  Duration limit{std::chrono::seconds{70}};
+};
+/// The whole craft into a mode (adr 0075). 1: refused, or it failed; with `preview`, it is impossible now.
+int mode(const ModeOptions& options);
 
 struct LogOptions {
   std::string mission;  ///< as for a connection

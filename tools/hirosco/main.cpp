@@ -50,6 +50,7 @@ int read_and_do(int argc, char** argv) {
   run_command->add_option("mission", run_options.mission, "Name or path of a mission")->required();
   run_command->add_option("--instance", run_options.instance,
                           "A name of its own for this flight: log, ports, sockets and devices of its own, too");
+  run_command->add_option("--mode", run_options.mode, "Start in this mode of the mission");
   run_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
   run_command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");
   bool no_ground = false;
@@ -74,6 +75,7 @@ int read_and_do(int argc, char** argv) {
   auto* simulate_command =
       app.add_subcommand("simulate", "Fly a mission in one process on virtual time and print its log");
   simulate_command->add_option("mission", simulate_options.mission, "Name or path of a mission")->required();
+  simulate_command->add_option("--mode", simulate_options.mode, "Start in this mode of the mission");
   simulate_command->add_option("--for", simulate_for, "Virtual time")->capture_default_str();
   simulate_command->add_option("--seed", simulate_seed, "Seed of everything random")->capture_default_str();
   simulate_command->add_option("--trace", simulate_options.trace, "Write link and world truth at cycle rate as CSV");
@@ -95,6 +97,15 @@ int read_and_do(int argc, char** argv) {
   tc_command->add_option("arguments", tc_options.arguments, "Values in order, or NAME=VALUE")->allow_extra_args();
   tc_command->add_option("--limit", tc_limit, "How long to wait for the end")->capture_default_str();
   add_connection(*tc_command, tc_options.connection);
+
+  ModeOptions mode_options;
+  std::string mode_limit = "70s";
+  auto* mode_command = app.add_subcommand("mode", "Bring the whole craft into a mode; without a name, list the modes");
+  mode_command->add_option("name", mode_options.name, "Name of the mode");
+  mode_command->add_flag("--preview", mode_options.preview,
+                         "Only tell the steps that it would take, or all that is against it");
+  mode_command->add_option("--limit", mode_limit, "How long to wait for the end")->capture_default_str();
+  add_connection(*mode_command, mode_options.connection);
 
   Connection status_options;
   auto* status_command = app.add_subcommand("status", "Newest housekeeping of every subsystem");
@@ -169,6 +180,7 @@ int read_and_do(int argc, char** argv) {
     if (!run_for.empty()) run_options.run_for = duration_of(run_for);
     simulate_options.run_for = duration_of(simulate_for);
     tc_options.limit = duration_of(tc_limit);
+    mode_options.limit = duration_of(mode_limit);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? exit_ok : exit_usage;
@@ -187,6 +199,7 @@ int read_and_do(int argc, char** argv) {
   if (*simulate_command) return simulate(simulate_options);
   if (*report_command) return mission_program("report", judged_mission, {});
   if (*tc_command) return telecommand(tc_options);
+  if (*mode_command) return mode(mode_options);
   if (*status_command) return status(status_options);
   if (*log_command) return log(log_options);
   if (*safe_command) return safe(safe_options);

@@ -159,8 +159,13 @@ struct Locks {
 
 int run(const RunOptions& options) {
   hold_back_signals();
-  const auto mission = load_mission(options.mission);
+  auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
+  if (!options.mode.empty())
+    if (const auto why_not = descriptor::start_in(*mission, options.mode)) {
+      fmt::print(stderr, "hirosco run: {}\n", *why_not);
+      return exit_usage;
+    }
   if (!ready(*mission, FlownAs::Processes)) return exit_environment;
   FlightEntry flight = plan_flight(*mission, options.instance.empty() ? mission->name : options.instance);
   if (!good_instance(flight.instance)) {
@@ -207,6 +212,8 @@ int run(const RunOptions& options) {
   }
   plan.supervisor.executable = program.string();
   plan.supervisor.arguments = {"--mission", mission->file.string(), "--runtime", folder.string()};
+  if (!options.mode.empty())
+    plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--mode", options.mode});
   if (flight.named()) plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--log", flight.log.string()});
   constexpr int first_lock = supervisor::keeper_page_descriptor + 1;
   plan.supervisor.inherited = {{locks->folder.get(), first_lock}, {locks->registry.get(), first_lock + 1}};

@@ -89,8 +89,13 @@ class Trace {
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
-  const auto mission = load_mission(options.mission);
+  auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
+  if (!options.mode.empty())
+    if (const auto why_not = descriptor::start_in(*mission, options.mode)) {
+      fmt::print(stderr, "hirosco simulate: {}\n", *why_not);
+      return exit_usage;
+    }
   if (!ready(*mission, FlownAs::Simulation)) return exit_environment;
   std::vector<Injection> injections;
   for (const std::string& text : options.at) {

@@ -29,7 +29,7 @@ namespace {
   if (function == "CONFIGURE")
     for (const auto& configuration : subsystem.configurations)
       if (lower_case(configuration.name) == wanted) return configuration.id;
-  if (function == "SET_MODE")
+  if (function == "SET_MODE" || function == "ENTER_MODE")
     for (const auto& mode : mission.modes)
       if (lower_case(mode.name) == wanted) return mode.id;
   if (function == "SET_DATABASE")

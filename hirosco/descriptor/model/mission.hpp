@@ -172,6 +172,11 @@ struct Mission {
   [[nodiscard]] const MissionLink* find_link(std::uint8_t link) const noexcept;
 };
 
+/// Why commissioning cannot enter this mode from the initial one, with everybody Offline, in words; empty: it can.
+[[nodiscard]] std::vector<std::string> against_start(const Mission& mission, const Mode& mode);
+/// Of a flight, in place of the mission's own start mode. In words: why not.
+[[nodiscard]] std::optional<std::string> start_in(Mission& mission, std::string_view mode);
+
 /// Share of the one processor of all cycles (docs/adr/0007) that the configurations of a mode declare as their budgets.
 [[nodiscard]] double cycle_share(const Mission& mission, const Mode& mode) noexcept;
 /// The greatest of all modes.

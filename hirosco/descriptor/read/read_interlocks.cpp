@@ -5,17 +5,7 @@
 #include "hirosco/descriptor/read/detail/mission_reader.hpp"
 
 /// What has to hold before a mode is entered (docs/adr/0075).
-namespace hirosco::descriptor {
-
-std::string to_string(const Interlock& interlock) {
-  std::string states;
-  for (const State state : interlock.states)
-    states += (states.empty() ? "" : " or ") + std::string{to_text(state)};
-  return interlock.subsystem + " in " + states +
-         (interlock.configuration.empty() ? "" : " with " + interlock.configuration);
-}
-
-namespace detail {
+namespace hirosco::descriptor::detail {
 
 void MissionReader::read_interlock(const xml::Element& element, Interlock::Kind kind, Mode& mode) {
   Attributes attributes{element, problems_};
@@ -56,21 +46,10 @@ void MissionReader::check_from(const xml::Element& modes) {
   }
 }
 
-/// Commissioning enters it from the initial mode, with everybody Offline.
 void MissionReader::check_start(const xml::Attribute& start, const Mode& mode) {
-  const auto refuse = [&](const std::string& why) {
+  for (const std::string& why : against_start(mission_, mode))
     problems_.add(start, "E0330", fmt::format("mode {} cannot be the first: {}", in_quotes(mode.name), why),
                   "commissioning begins in the initial mode, with every subsystem Offline");
-  };
-  if (!mode.from.empty() && std::ranges::find(mode.from, mission_.initial_mode) == mode.from.end())
-    refuse(fmt::format("it is not entered from '{}'", mission_.initial_mode));
-  for (const Interlock& interlock : mode.interlocks) {
-    const bool offline = std::ranges::find(interlock.states, State::Offline) != interlock.states.end() &&
-                         interlock.configuration.empty();
-    if (offline == (interlock.kind == Interlock::Kind::Excludes))
-      refuse(fmt::format("it {} {}", offline ? "excludes" : "needs", to_string(interlock)));
-  }
 }
 
-}  // namespace detail
-}  // namespace hirosco::descriptor
+}  // namespace hirosco::descriptor::detail

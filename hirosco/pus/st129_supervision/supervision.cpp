@@ -35,7 +35,25 @@ void put_words(OctetWriter& writer, std::string_view words) {
   writer.put(static_cast<std::uint8_t>(words.size())).put(std::as_bytes(std::span{words}));
 }
 
+[[nodiscard]] std::string get_words(OctetReader& reader) {
+  const Octets words = reader.get(reader.get<std::uint8_t>());
+  return {reinterpret_cast<const char*>(words.data()), words.size()};
+}
+
 }  // namespace
+
+std::optional<ModePreview> read_mode_preview(Octets data) {
+  OctetReader reader{data};
+  ModePreview preview{.mode = reader.get<std::uint8_t>(), .against = {}, .steps = {}};
+  for (auto left = reader.get<std::uint8_t>(); left != 0 && reader.good(); --left)
+    preview.against.push_back(get_words(reader));
+  for (auto left = reader.get<std::uint8_t>(); left != 0 && reader.good(); --left) {
+    ModePreview::Step step{.stage = reader.get<std::uint8_t>(), .subject = reader.get<std::uint16_t>(), .what = {}};
+    step.what = get_words(reader);
+    preview.steps.push_back(std::move(step));
+  }
+  return reader.exhausted() ? std::optional{std::move(preview)} : std::nullopt;
+}
 
 Octets write_mode_preview(MutableOctets buffer, const ModePreview& preview) {
   OctetWriter writer{buffer};

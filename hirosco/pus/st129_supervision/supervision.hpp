@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,5 +47,7 @@ inline constexpr std::size_t max_preview_octets = max_telemetry_octets - telemet
 /// Into `buffer`, of max_preview_octets. Steps and reasons beyond 255 of each, and steps that find no room, are left out; words
 /// are cut at 255 octets.
 [[nodiscard]] Octets write_mode_preview(MutableOctets buffer, const ModePreview& preview);
+/// Empty: it is not of this form.
+[[nodiscard]] std::optional<ModePreview> read_mode_preview(Octets data);
 
 }  // namespace hirosco::pus::st129

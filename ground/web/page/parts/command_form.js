@@ -64,7 +64,7 @@ function choices_of(subsystem, action, argument) {
   if (argument.enumeration?.length) return argument.enumeration;
   const known = mission.value;
   const named = (list, label = (one) => one.name) => list?.map((one) => ({value: one.id, name: label(one)}));
-  if (argument.name === 'MODE' && action.name === 'SET_MODE') return named(known?.modes);
+  if (argument.name === 'MODE' && (action.name === 'SET_MODE' || action.name === 'ENTER_MODE')) return named(known?.modes);
   if (argument.name === 'LINK') return named(known?.links, (one) => `${one.id}: ${one.from} → ${one.to}`);
   if (argument.name === 'CONFIGURATION' && action.name === 'CONFIGURE') return named(subsystem_of(subsystem)?.configurations);
   if (argument.name === 'STATE' && action.name === 'SET_STATE') {
