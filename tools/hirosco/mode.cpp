@@ -88,9 +88,8 @@ int mode(const ModeOptions& options) {
   const auto place = find_ground_link("mode", options.connection);
   if (!place) return place.error();
   const descriptor::Mission& mission = place->mission;
-  const auto wanted = std::ranges::find_if(mission.modes, [&](const descriptor::Mode& each) {
-    return lower_case(each.name) == lower_case(options.name);
-  });
+  const auto wanted = std::ranges::find_if(
+      mission.modes, [&](const descriptor::Mode& each) { return lower_case(each.name) == lower_case(options.name); });
   if (wanted == mission.modes.end()) {
     const bool asked = options.name.empty();
     if (!asked) fmt::print(stderr, "hirosco mode: no mode '{}'; the mission has\n", options.name);

@@ -9,17 +9,15 @@
 namespace hirosco::pus::st129 {
 namespace {
 
-ModePreview small() {
-  return {.mode = 3, .against = {"ARM is down"}, .steps = {{1, 10, "Pre"}, {2, 258, ""}}};
-}
+ModePreview small() { return {.mode = 3, .against = {"ARM is down"}, .steps = {{1, 10, "Pre"}, {2, 258, ""}}}; }
 
 TEST(ModePreview, StandsAsItsShapeSaysOctetByOctet) {
   std::vector<std::byte> buffer(max_preview_octets);
   const Octets written = write_mode_preview(buffer, small());
   std::vector<int> octets;
   for (const std::byte each : written) octets.push_back(std::to_integer<int>(each));
-  const std::vector<int> expected{3, 1, 11, 'A', 'R', 'M', ' ', 'i', 's', ' ', 'd', 'o', 'w', 'n',
-                             2, 1, 0,  10,  3,   'P', 'r', 'e', 2,   1,   2,   0};
+  const std::vector<int> expected{3,   1, 11, 'A', 'R', 'M', ' ', 'i', 's', ' ', 'd', 'o', 'w',
+                                  'n', 2, 1,  0,   10,  3,   'P', 'r', 'e', 2,   1,   2,   0};
   EXPECT_EQ(octets, expected);
 }
 
