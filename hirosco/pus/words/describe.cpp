@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "hirosco/parameter/number.hpp"
+#include "hirosco/parameter/text.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/standard_services.hpp"
+#include "hirosco/utilities/utf8.hpp"
 
 namespace hirosco::pus {
 namespace {
@@ -25,18 +27,25 @@ namespace {
 /// No double has all its numbers.
 [[nodiscard]] bool is_wide(Type type) noexcept { return type == Type::Uint64 || type == Type::Int64; }
 
-/// "NAME=value unit", an enumeration by its text.
-void append_field(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
-                  OctetReader& reader) {
-  text.append(" ").append(field.name).append("=");
+/// "value,value", an enumeration and a switch by their words, a text in quotes.
+void append_values(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
+                   OctetReader& reader) {
   if (field.text) {
     const std::string words = text_of(reader.get(field.octets()));
     text.append("'").append(words).append("'");
     return;
   }
+  if (field.type == Type::Text) {
+    text.append("'").append(printable_words(fixed_words(reader.get(field.octets())))).append("'");
+    return;
+  }
   for (std::uint32_t i = 0; i < field.count; ++i) {
     const Number value = read_number(reader, field.type);
     if (i != 0) text.append(",");
+    if (field.type == Type::Bool) {
+      text.append(switch_word(value != Number{0}));
+      continue;
+    }
     const auto enumeration =
         std::ranges::find(subsystem.enumerations, field.enumeration, &descriptor::Enumeration::name);
     if (!field.enumeration.empty() && enumeration != subsystem.enumerations.end()) {
@@ -49,6 +58,13 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
     }
     text.append(is_wide(field.type) ? to_string(value) : number_text(value.real()));
   }
+}
+
+/// "NAME=value unit"
+void append_field(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
+                  OctetReader& reader) {
+  text.append(" ").append(field.name).append("=");
+  append_values(text, subsystem, field, reader);
   if (!field.unit.empty()) text.append(" ").append(field.unit);
 }
 
@@ -183,9 +199,10 @@ class ShapeWords {
       return "?";
     }
     std::string text;
-    for (const auto& field : last_->fields)
-      for (std::uint32_t i = 0; i < field.count; ++i)
-        text.append(text.empty() ? "" : ",").append(number_text(get_number(reader_, field.type)));
+    for (const auto& field : last_->fields) {
+      if (!text.empty()) text.append(",");
+      append_values(text, subsystem_, field, reader_);
+    }
     return text;
   }
 

@@ -31,8 +31,8 @@ constexpr int messages_per_step = 64;
                        .init = parameter.init};
     if (spec.is_struct)
       for (const auto& member : parameter.members)
-        spec.fields.push_back({member.field.name, member.field.type, member.field.count});
-    else spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.count});
+        spec.fields.push_back({member.field.name, member.field.type, member.field.elements()});
+    else spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.elements()});
     specs.push_back(std::move(spec));
   }
   auto dictionary = Dictionary::make(specs);
@@ -242,6 +242,7 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
   if (!dictionary_.accepts(*index, -1, value)) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
   OctetReader reader{value};
   const auto in_range = [&](const descriptor::Field& field) {
+    if (field.type == Type::Text) return static_cast<void>(reader.get(field.octets())), true;
     for (std::uint32_t i = 0; i < field.count; ++i) {
       const Number number = read_number(reader, field.type);
       if (!(number == number)) return false;
