@@ -331,11 +331,24 @@ std::string PacketDescriber::describe_failure(std::uint16_t apid, std::uint16_t 
       for (const auto& failure : subsystem->failures)
         if (failure.code == code) text = failure.name;
   }
+  if (const std::string parameter = refused_parameter(static_cast<FailureCode>(code), data); !parameter.empty())
+    text.append(" ").append(parameter);
   const auto reason = reason_in(data);
   if (!reason) return text;
   text.append(" '").append(text_of(std::as_bytes(std::span{reason->text}))).append("'");
   if (reason->number != 0) text.append(" ").append(std::to_string(reason->number));
   return text;
+}
+
+/// "DES_POSITION" of a refusal that names one by its id; a function's argument has a smaller number than any parameter.
+std::string PacketDescriber::refused_parameter(FailureCode code, Octets data) const {
+  using enum FailureCode;
+  const bool names = code == UnknownIdentifier || code == ValueNotAcceptable || code == NotPermittedNow;
+  if (!names || data.size() != sizeof(std::uint8_t) + sizeof(std::uint32_t)) return {};
+  const auto id = OctetReader{data.subspan(1)}.get<std::uint32_t>();
+  const auto* subsystem = find(static_cast<std::uint16_t>(id >> 16));
+  const auto known = subsystem != nullptr ? parameter_of(*subsystem, id) : std::nullopt;
+  return known ? known->name : std::string{};
 }
 
 std::string PacketDescriber::describe_event(std::uint16_t apid, Octets source_data) const {

@@ -57,6 +57,21 @@ TEST(PacketDescriber, NamesTheStageAndTheReasonOfARefusal) {
   EXPECT_EQ(described_telemetry(1, 2, writer.written()), "TM[1,2] ARM not accepted ARM #5: not permitted in this mode");
 }
 
+TEST(PacketDescriber, NamesTheParameterThatWasRefused) {
+  descriptor::Mission mission = small_mission();
+  auto& parameter = mission.subsystems.front().subsystem.parameters.emplace_back();
+  parameter.id = 3;
+  parameter.field.name = "GAIN";
+  const PacketDescriber describer{mission};
+  std::array<std::byte, 5> data;
+  OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 3}.wire());
+  EXPECT_EQ(describer.describe_failure(10, 0x0105, data), "value not acceptable GAIN");
+  EXPECT_EQ(describer.describe_failure(1, 0x0107, data), "not permitted now GAIN") << "by the supervisor";
+  EXPECT_EQ(describer.describe_failure(10, 0x0107, Octets{data}.first(1)), "not permitted now");
+  OctetWriter{data}.put(std::uint8_t{0}).put(std::uint32_t{3});
+  EXPECT_EQ(describer.describe_failure(10, 0x0105, data), "value not acceptable") << "an argument of a function";
+}
+
 TEST(PacketDescriber, ShowsSwitchesWordsAndNamesOfValuesOfParameters) {
   descriptor::Mission mission = small_mission();
   const auto add = [&](const char* name, Type type, std::uint8_t id) -> descriptor::Field& {

@@ -259,15 +259,18 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
   return {};
 }
 
-bool GenericSubsystem::submit_write(std::span<const pus::ParameterAccess::Write> writes, const pus::Request&) {
+std::expected<void, pus::FailureCode> GenericSubsystem::submit_write(
+    std::span<const pus::ParameterAccess::Write> writes, const pus::Request&) {
   std::vector<ParameterWrite> batch;
   for (const auto& write : writes)
     if (const auto index = dictionary_.index_of(write.id)) batch.push_back({*index, -1, write.value});
-  if (!writes_.enqueue(dictionary_, batch)) return false;
+  if (const auto queued = writes_.enqueue(dictionary_, batch); !queued)
+    return std::unexpected{queued.error().code == ErrorCode::OutOfRange ? pus::FailureCode::CapacityExceeded
+                                                                        : pus::FailureCode::Busy};
   // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
   const bool parked = parked_ticket_.load(std::memory_order_acquire) == rest_ticket_.load(std::memory_order_relaxed);
   if (!wanted_.load(std::memory_order_relaxed) && parked) writes_.apply(dictionary_);
-  return true;
+  return {};
 }
 
 }  // namespace hirosco
