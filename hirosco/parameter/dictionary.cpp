@@ -113,9 +113,17 @@ std::expected<Dictionary, std::string> Dictionary::make(std::span<const Paramete
     const auto index = static_cast<std::uint16_t>(made.entries_.size());
     if (!made.by_name_.emplace(spec.name, index).second)
       return std::unexpected{spec.name + ": a second parameter of this name"};
-    if (const auto [other, fresh] = made.by_id_.emplace(spec.id.wire(), index); !fresh)
-      return std::unexpected{spec.name + ": has the layout and id of " + made.entries_[other->second].spec.name};
     made.entries_.push_back({spec, nullptr});
+    const auto claim = [&](ParameterId id, int member) -> std::string {
+      const auto [other, fresh] = made.by_id_.emplace(id.wire(), ParameterPlace{index, member});
+      if (fresh) return {};
+      return spec.name + (member < 0 ? "" : "." + spec.fields[static_cast<std::size_t>(member)].name) +
+             ": has the layout and id of " + made.entries_[other->second.index].spec.name;
+    };
+    std::string taken = claim(spec.id, -1);
+    for (std::size_t i = 0; spec.is_struct && taken.empty() && i < spec.fields.size(); ++i)
+      if (spec.fields[i].id) taken = claim({spec.id.subsystem, spec.fields[i].type, *spec.fields[i].id}, int(i));
+    if (!taken.empty()) return std::unexpected{std::move(taken)};
   }
   return made;
 }
@@ -147,7 +155,7 @@ std::optional<std::uint16_t> Dictionary::index_of(std::string_view name) const n
   return found == by_name_.end() ? std::nullopt : std::optional{found->second};
 }
 
-std::optional<std::uint16_t> Dictionary::index_of(std::uint32_t wire_id) const noexcept {
+std::optional<ParameterPlace> Dictionary::place_of(std::uint32_t wire_id) const noexcept {
   const auto found = by_id_.find(wire_id);
   return found == by_id_.end() ? std::nullopt : std::optional{found->second};
 }

@@ -26,6 +26,7 @@ struct SpecField {
   std::string name;
   Type type{Type::Double};
   std::uint32_t count{1};         ///< of TEXT: its octets
+  std::optional<std::uint8_t> id{};  ///< of a member: with its type, by which it is known on the wire
   /// The elements of an array; one for a text.
   [[nodiscard]] std::size_t values() const noexcept { return type == Type::Text ? 1 : count; }
 };
@@ -60,7 +61,7 @@ struct ParameterPlace {
 class Dictionary {
  public:
   Dictionary() = default;
-  /// Refuses a name or an id that occurs twice, a parameter without fields, a count of 0, a text of more than 254 octets, a
+  /// Refuses a name or an id that occurs twice (of members, too), a parameter without fields, a count of 0, a text of more than 254 octets, a
   /// wrong number of initial values; the text names the parameter. Realtime: allocates.
   [[nodiscard]] static std::expected<Dictionary, std::string> make(std::span<const ParameterSpec> specs);
 
@@ -79,7 +80,8 @@ class Dictionary {
   [[nodiscard]] const ParameterSpec& spec(std::size_t index) const noexcept { return entries_[index].spec; }
 
   [[nodiscard]] std::optional<std::uint16_t> index_of(std::string_view name) const noexcept;
-  [[nodiscard]] std::optional<std::uint16_t> index_of(std::uint32_t wire_id) const noexcept;
+  /// A parameter, or a member that has an id, by ParameterId::wire().
+  [[nodiscard]] std::optional<ParameterPlace> place_of(std::uint32_t wire_id) const noexcept;
   /// A parameter, `PARAMETER.MEMBER`, or a member's name alone where only one structure has it.
   [[nodiscard]] std::optional<ParameterPlace> find(std::string_view text) const noexcept;
 
@@ -120,7 +122,7 @@ class Dictionary {
 
   std::vector<Entry> entries_;
   std::map<std::string, std::uint16_t, std::less<>> by_name_;
-  std::map<std::uint32_t, std::uint16_t> by_id_;
+  std::map<std::uint32_t, ParameterPlace> by_id_;
 };
 
 }  // namespace hirosco

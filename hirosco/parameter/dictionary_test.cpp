@@ -60,6 +60,16 @@ TEST(Dictionary, RejectsASecondParameterOfTheSameLayoutAndId) {
   EXPECT_THAT(refusal({goal(), other}), AllOf(HasSubstr("OTHER"), HasSubstr("DES_POSITION")));
 }
 
+TEST(Dictionary, KnowsAMemberByTheIdThatItHas) {
+  ParameterSpec spec = current_values();
+  spec.fields[1].id = 7;
+  const Dictionary dictionary = made({spec, goal()});
+  EXPECT_EQ(dictionary.place_of(0x000A'0A07u), (ParameterPlace{0, 1}));
+  EXPECT_EQ(dictionary.place_of(0x000A'0A00u), (ParameterPlace{1, -1}));
+  spec.fields[1].id = 0;
+  EXPECT_THAT(refusal({goal(), spec}), AllOf(HasSubstr("CUR_VALUES.POSITION"), HasSubstr("DES_POSITION")));
+}
+
 TEST(Dictionary, AcceptsOneIdInThreeLayoutsAsInListing1) {
   EXPECT_EQ(made({current_values(), goal(), limit()}).size(), 3u);
 }
@@ -174,8 +184,8 @@ TEST_F(PublishedDictionary, FindsByNameWireIdAndMember) {
   std::string missing;
   EXPECT_TRUE(dictionary_.all_published(missing));
   EXPECT_EQ(dictionary_.index_of("LIMIT"), 2);
-  EXPECT_EQ(dictionary_.index_of(0x000A'0A00u), 1);  // subsystem 10, DOUBLE, id 0
-  EXPECT_EQ(dictionary_.index_of(0x000A'0A01u), std::nullopt);
+  EXPECT_EQ(dictionary_.place_of(0x000A'0A00u), (ParameterPlace{1, -1}));  // subsystem 10, DOUBLE, id 0
+  EXPECT_EQ(dictionary_.place_of(0x000A'0A01u), std::nullopt);
   EXPECT_EQ(dictionary_.find("CUR_VALUES.POSITION"), (ParameterPlace{0, 1}));
   EXPECT_EQ(dictionary_.find("TEMPERATURE"), (ParameterPlace{0, 2}));
   EXPECT_EQ(dictionary_.find("LIMIT"), (ParameterPlace{2, -1}));

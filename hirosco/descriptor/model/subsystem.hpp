@@ -339,6 +339,9 @@ struct Subsystem {
 /// Names of the actuator devices that have no second inhibit: nothing but their subsystem keeps them from moving.
 [[nodiscard]] std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem);
 
+/// A parameter, or a member, by ParameterId::wire().
+[[nodiscard]] std::optional<ParameterRef> find_parameter(const Subsystem& subsystem, std::uint32_t wire);
+
 /// Fields a reference stands for, in wire order: one for a value or member, all members for a structure.
 [[nodiscard]] std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference);
 

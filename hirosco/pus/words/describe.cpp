@@ -117,19 +117,8 @@ struct Known {
   std::vector<descriptor::Field> fields;
 };
 [[nodiscard]] std::optional<Known> parameter_of(const descriptor::Subsystem& subsystem, std::uint32_t wire) {
-  for (const auto& parameter : subsystem.parameters) {
-    const auto is = [&](Type type, std::uint8_t id) { return ParameterId{subsystem.id, type, id}.wire() == wire; };
-    if (is(parameter.field.type, parameter.id)) {
-      if (parameter.members.empty()) return Known{parameter.field.name, {parameter.field}};
-      Known whole{parameter.field.name, {}};
-      for (const auto& member : parameter.members) whole.fields.push_back(member.field);
-      return whole;
-    }
-    for (const auto& member : parameter.members)
-      if (is(member.field.type, member.id))
-        return Known{parameter.field.name + "." + member.field.name, {member.field}};
-  }
-  return std::nullopt;
+  const auto found = descriptor::find_parameter(subsystem, wire);
+  return found ? std::optional{Known{found->text, descriptor::fields_of(subsystem, *found)}} : std::nullopt;
 }
 
 /// The data of a standard service by their shape (service/service_kind.hpp).

@@ -18,6 +18,10 @@ using ::testing::StartsWith;
 constexpr std::string_view camera_descriptor = R"(<Subsystem name="CAMERA" id="12">
   <Enumeration name="FILTERS"><Text value="1">red</Text><Text value="2">pale green</Text></Enumeration>
   <Parameters>
+    <StructRef name="SHUTTER" id="1" type="STRUCT" writable="PreOperational">
+      <ParamRef name="OPEN" id="7" type="BOOL"/>
+      <ParamRef name="LABEL" id="7" type="TEXT" octets="4"/>
+    </StructRef>
     <StructRef name="STATUS" id="0" type="STRUCT">
       <ParamRef name="LIT" id="0" type="BOOL"/>
       <ParamRef name="NOTE" id="1" type="TEXT" octets="8"/>
@@ -42,6 +46,11 @@ struct Camera final : Subsystem {
     bool lit;
     Text<8> note;
   };
+  struct Shutter {
+    bool open;
+    Text<4> label;
+  };
+  Parameter<Shutter> shutter;
   Parameter<Status> status;
   Parameter<bool> on;
   Parameter<Text<6>> title;
@@ -49,6 +58,7 @@ struct Camera final : Subsystem {
   std::string seen_by_configure;
 
   Result<Step> software_init() override {
+    publish("SHUTTER", shutter);
     publish("STATUS", status);
     publish("ON", on);
     publish("TITLE", title);
@@ -114,6 +124,21 @@ TEST_F(SwitchesAndWords, OtherOctetsThanTheirsAreRefused) {
   EXPECT_EQ(written(Type::Text, 2, "short"sv), "2:0008") << "not of its length";
   EXPECT_TRUE(camera.on.load());
   EXPECT_EQ(camera.title.load(), "night");
+}
+
+TEST_F(SwitchesAndWords, OfAStructureAreSetAndReportedOneByOne) {
+  using namespace std::string_view_literals;
+  rig.set_state_now(State::PreOperational);
+  EXPECT_EQ(written(Type::Text, 7, "left"sv), "1 3 7");
+  EXPECT_EQ(camera.shutter.load().label, "left");
+  EXPECT_FALSE(camera.shutter.load().open);
+  EXPECT_EQ(written(Type::Bool, 7, "\x01"sv), "1 3 7");
+  EXPECT_EQ(camera.shutter.load().label, "left");
+  EXPECT_TRUE(camera.shutter.load().open);
+  EXPECT_THAT(written(Type::Bool, 7, "\x02"sv), StartsWith("1 4:0105"));
+  rig.send(20, 1, write_of(Type::Text, 7, {}));
+  rig.settle();
+  EXPECT_THAT(rig.reports(20, 2), ElementsAre(testing::hex(write_of(Type::Text, 7, "left"sv))));
 }
 
 TEST_F(SwitchesAndWords, StandInHousekeepingAndAreReadFromIt) {
