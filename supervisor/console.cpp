@@ -22,11 +22,14 @@ constexpr Duration writer_patience = 500ms;
   return quoted + "\"";
 }
 
-[[nodiscard]] std::string vector_text(const std::vector<double>& values, int decimals) {
-  std::string text = "(";
-  for (std::size_t i = 0; i < values.size(); ++i)
-    text += fmt::format("{}{:+.{}f}", i != 0 ? ", " : "", values[i], decimals);
-  return text + ")";
+[[nodiscard]] std::string value_text(const pus::HousekeepingValue& value, int decimals) {
+  std::string text;
+  if (is_carried(value.type))
+    for (const double number : value.values)
+      text += fmt::format("{}{:+.{}f}", text.empty() ? "" : ", ", number, decimals);
+  else
+    for (const std::string& words : value.texts()) text += (text.empty() ? "" : ", ") + words;
+  return "(" + text + ")";
 }
 
 }  // namespace
@@ -63,7 +66,7 @@ void Console::routed(const pus::TelemetryView& packet) {
   const auto values = decoder->second.decode(packet.source_data());
   if (!values) return;
   const std::string& name = mission_.find_subsystem(packet.apid())->subsystem.name;
-  for (const auto& value : *values) values_[name + "." + value.name] = value.values;
+  for (const auto& value : *values) values_[name + "." + value.name] = value;
 }
 
 /// A speaker is the first word of a line: a subsystem's name where it tells an event.
@@ -101,7 +104,7 @@ std::string Console::status_text(const Supervisor& supervisor, Duration since_st
   text += fmt::format(" | links {}/{}", supervisor.links().up_count(), supervisor.links().defined_count());
   for (const auto& item : mission_.console)
     if (const auto value = values_.find(item.parameter); value != values_.end())
-      text += fmt::format(" | {} {}{}{}", shown(item.label), vector_text(value->second, item.decimals),
+      text += fmt::format(" | {} {}{}{}", shown(item.label), value_text(value->second, item.decimals),
                           item.unit.empty() ? "" : " ", shown(item.unit));
   if (const std::string waiting = supervisor.waiting_for(); !waiting.empty()) text += " | waits for " + shown(waiting);
   return text + "\n";
@@ -128,11 +131,8 @@ std::string Console::status_json(const Supervisor& supervisor, Duration since_st
   }
   text += "],\"values\":{";
   first = true;
-  for (const auto& [name, values] : values_) {
-    text += fmt::format("{}{}:[", first ? "" : ",", json_string(name));
-    for (std::size_t i = 0; i < values.size(); ++i)
-      text += fmt::format("{}{}", i != 0 ? "," : "", values[i] == values[i] ? fmt::format("{}", values[i]) : "null");
-    text += "]";
+  for (const auto& [name, value] : values_) {
+    text += fmt::format("{}{}:{}", first ? "" : ",", json_string(name), value.json());
     first = false;
   }
   return text + "}}\n";

@@ -46,7 +46,7 @@ class Console final : public Observer {
   OnboardTime first_{};
   LineLimit limit_{most_told};       ///< of one speaker from status line to status line, once a second
   std::map<std::uint16_t, pus::HousekeepingDecoder> decoders_;
-  std::map<std::string, std::vector<double>> values_;   ///< newest, by "SUBSYSTEM.PARAMETER"
+  std::map<std::string, pus::HousekeepingValue> values_;  ///< newest, by "SUBSYSTEM.PARAMETER"
   // A stopped terminal must not stop the supervisor: lines wait here for a thread of their own, oldest out first.
   std::mutex mutex_;
   std::condition_variable wake_;

@@ -60,6 +60,7 @@ template <class Texts>
     for (const Place& place : report.places) {
       const Column& column = catalogue.columns()[place.column];
       json one{{"name", column.name}, {"type", to_text(column.type)}, {"unit", column.unit}};
+      if (column.type == Type::Text) one["octets"] = column.text_octets;
       if (column.minimum) one["min"] = json_number(*column.minimum);
       if (column.maximum) one["max"] = json_number(*column.maximum);
       if (column.enumeration != nullptr) one["enumeration"] = texts_json(column.enumeration->texts);

@@ -80,6 +80,8 @@ struct Basic {
   json time = described(primitive("number"), "seconds of on-board time");
   /// As json_number() writes it.
   json number = {{"oneOf", json::array({primitive("number"), one_of({"NaN", "Infinity", "-Infinity"})})}};
+  /// As value_json() writes it: a number, a switch, or the words of a text.
+  json value = {{"anyOf", json::array({primitive("number"), primitive("boolean"), primitive("string")})}};
   /// As json_value() writes it: whole numbers beyond 2^53 are a text of all their digits.
   json exact = {{"oneOf", json::array({primitive("number"), primitive("string")})}};
   json severity = one_of({"info", "low", "medium", "high"});
@@ -186,7 +188,7 @@ void add_status(const Basic& is, json& into) {
                            {"link", refers("GroundLinkStatus")},
                            {"subsystems", list_of(refers("SubsystemStatus"))},
                            {"links", list_of(refers("LinkStatus"))},
-                           {"values", map_of(object({{"v", is.number}, {"t", is.time}, {"age_s", is.real}}))}});
+                           {"values", map_of(object({{"v", is.value}, {"t", is.time}, {"age_s", is.real}}))}});
 }
 
 void add_past(const Basic& is, json& into) {

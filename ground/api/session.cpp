@@ -174,8 +174,9 @@ json Session::status() const {
   for (std::size_t i = 0; i < model_.values().size(); ++i) {
     const Value& value = model_.values()[i];
     if (value.revision == 0) continue;
-    values[parts_.catalogue.columns()[i].name] = {
-        {"v", json_number(value.number)}, {"t", json_time(value.t)}, {"age_s", seconds(now() - value.t)}};
+    const Column& column = parts_.catalogue.columns()[i];
+    values[column.name] = {
+        {"v", value_json(column, value)}, {"t", json_time(value.t)}, {"age_s", seconds(now() - value.t)}};
   }
   status["values"] = std::move(values);
   return status;

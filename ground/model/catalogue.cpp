@@ -5,13 +5,15 @@
 #include <algorithm>
 
 #include "hirosco/parameter/number.hpp"
+#include "hirosco/parameter/text.hpp"
 #include "hirosco/pus/requests.hpp"
+#include "hirosco/utilities/utf8.hpp"
 
 namespace hirosco::ground {
 namespace {
 
 [[nodiscard]] std::string element_name(const std::string& name, const descriptor::Field& field, std::uint16_t i) {
-  return field.count == 1 ? name : name + "[" + std::to_string(i) + "]";
+  return field.values() == 1 ? name : name + "[" + std::to_string(i) + "]";
 }
 
 [[nodiscard]] const descriptor::Enumeration* enumeration_of(const descriptor::Subsystem& subsystem,
@@ -35,14 +37,14 @@ Catalogue::Catalogue(descriptor::Mission mission) : mission_{std::move(mission)}
 
 void Catalogue::add_columns(const descriptor::Subsystem& subsystem) {
   const auto add = [&](const std::string& name, const descriptor::Field& field) {
-    for (std::uint32_t i = 0; i < field.count; ++i) {
+    for (std::uint32_t i = 0; i < field.values(); ++i) {
       const std::string element = element_name(name, field, static_cast<std::uint16_t>(i));
       column_index_.emplace(element, columns_.size());
       const auto real = [](const std::optional<Number>& limit) {
         return limit ? std::optional{limit->real()} : std::nullopt;
       };
-      columns_.push_back({element, subsystem.id, field.type, field.unit, real(field.minimum), real(field.maximum),
-                          enumeration_of(subsystem, field)});
+      columns_.push_back({element, subsystem.id, field.type, field.text_octets, field.unit, real(field.minimum),
+                          real(field.maximum), enumeration_of(subsystem, field)});
     }
   };
   for (const auto& parameter : subsystem.parameters) {
@@ -85,11 +87,11 @@ void Catalogue::add_places(const descriptor::Subsystem& subsystem,
     const std::string name = subsystem.name + "." + parameter.field.name;
     const bool structure = parameter.field.type == Type::Struct;
     for (const auto& field : descriptor::fields_of(subsystem, reference))
-      for (std::uint32_t i = 0; i < field.count; ++i) {
+      for (std::uint32_t i = 0; i < field.values(); ++i) {
         const auto column =
             find_column(element_name(structure ? name + "." + field.name : name, field, static_cast<std::uint16_t>(i)));
         if (column) report.places.push_back({*column, offset});
-        offset += octets_of(field.type);
+        offset += field.octets() / field.values();
       }
   }
 }
@@ -128,7 +130,14 @@ const Report* Catalogue::report_of(std::uint16_t apid, Octets source_data) const
 
 double Catalogue::read(const Place& place, Octets source_data) const noexcept {
   OctetReader reader{source_data.subspan(place.offset)};
-  return get_number(reader, columns_[place.column].type);
+  const Type type = columns_[place.column].type;
+  return type == Type::Text ? std::numeric_limits<double>::quiet_NaN() : get_number(reader, type);
+}
+
+std::string Catalogue::words(const Place& place, Octets source_data) const {
+  const Column& column = columns_[place.column];
+  if (column.type != Type::Text) return {};
+  return printable_words(fixed_words(source_data.subspan(place.offset, column.text_octets)));
 }
 
 std::vector<descriptor::Function> Catalogue::functions_of(const descriptor::Subsystem& subsystem) const {

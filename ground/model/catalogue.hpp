@@ -19,11 +19,12 @@
 /// with a name and a place in its reports. Constant after construction.
 namespace hirosco::ground {
 
-/// One number of telemetry: a parameter, a member or an element of an array.
+/// One value of telemetry: a parameter, a member or an element of an array.
 struct Column {
   std::string name;  ///< "ARM.CUR_VALUES.POSITION[0]"
   std::uint16_t apid{};
   Type type{};
+  std::uint16_t text_octets{};  ///< of TEXT: its octets in a report
   std::string unit;
   std::optional<double> minimum;
   std::optional<double> maximum;
@@ -65,8 +66,11 @@ class Catalogue {
   [[nodiscard]] const std::vector<Report>& reports() const noexcept { return reports_; }
   /// The structure of a TM[3,25]; nothing when its id is unknown or its length differs.
   [[nodiscard]] const Report* report_of(std::uint16_t apid, Octets source_data) const noexcept;
-  /// The number at a place of a report that report_of() has recognised.
+  /// The number at a place of a report that report_of() has recognised, 1 of a switch that is on; not a number where words stand.
   [[nodiscard]] double read(const Place& place, Octets source_data) const noexcept;
+
+  /// The words there; none where a number stands.
+  [[nodiscard]] std::string words(const Place& place, Octets source_data) const;
 
   /// Requests by name: SET_STATE, CONFIGURE, PING, functions of the descriptor, requests of its own services.
   [[nodiscard]] std::vector<descriptor::Function> functions_of(const descriptor::Subsystem& subsystem) const;

@@ -127,7 +127,8 @@ void Model::take_housekeeping(const pus::TelemetryView& packet, Heard& heard) {
   for (const Place& place : report->places) {
     Value& value = values_[place.column];
     if (value.revision != 0 && value.t > packet.time()) continue;
-    value = {catalogue_.read(place, packet.source_data()), packet.time(), revision_};
+    value = {catalogue_.read(place, packet.source_data()), packet.time(), revision_,
+             catalogue_.words(place, packet.source_data())};
   }
   const bool overview = packet.apid() == catalogue_.mission().supervisor.id && overview_.apid &&
                         report->places.size() > 1 &&

@@ -18,9 +18,10 @@
 namespace hirosco::ground {
 
 struct Value {
-  double number{};
+  double number{};                   ///< not a number where it is words
   OnboardTime t{};
   std::uint64_t revision{0};         ///< 0 = never heard
+  std::string words{};               ///< of TEXT
 };
 
 /// All that is told of one subsystem: a row of the supervisor's SUBSYSTEMS, and its own events.

@@ -33,7 +33,10 @@ descriptor::Mission mission_of_a_crowd() {
                           "<Links>" + links + R"(</Links><Modes initial="dark" start="dark"><Mode name="dark">
 <Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode></Modes></Mission>)"},
       {"camera.xml",
-       R"(<Subsystem name="CAMERA" id="10"><Parameters><ParamRef name="LEVEL" id="0" type="DOUBLE"/></Parameters>
+       R"(<Subsystem name="CAMERA" id="10"><Parameters><ParamRef name="LEVEL" id="0" type="DOUBLE"/>
+<ParamRef name="SHUTTERS" id="1" type="BOOL" count="2"/><ParamRef name="TITLE" id="2" type="TEXT" octets="6"/></Parameters>
+<HKService id="7" interval="1"><SampledOnce><ParamRef name="SHUTTERS"/><ParamRef name="TITLE"/><ParamRef name="LEVEL"/>
+</SampledOnce></HKService>
 <Configuration name="ON" id="1" priority="80" sampling_us="10000"><RealTimeLinkService>
 <Provides name="LIGHT" methods="shared_memory" byte_order="native" kind="latest"><ParamRef name="LEVEL"/></Provides>
 </RealTimeLinkService></Configuration></Subsystem>)"},
@@ -113,6 +116,26 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
     if (row == 18) EXPECT_TRUE(status["links"][row]["lost"].is_null());
     else EXPECT_EQ(status["links"][row]["lost"], row);
   }
+}
+
+TEST(AModel, TellsSwitchesAsTrueAndFalseAndTextsAsWords) {
+  const Catalogue catalogue{mission_of_a_crowd()};
+  std::vector<std::byte> data(2 + 2 + 6 + 8);
+  OctetWriter writer{data};
+  constexpr std::string_view words = "caf\xC3\xA9\0";
+  writer.put(std::uint16_t{7}).put(std::uint8_t{0}).put(std::uint8_t{1});
+  writer.put(std::as_bytes(std::span{words.data(), 6})).put(0.5);
+  std::array<std::byte, pus::max_telemetry_octets> buffer;
+  constexpr OnboardTime t{std::chrono::seconds{2'145'916'900}};
+  const auto packet = pus::write_telemetry(buffer, {.apid = 10, .service = 3, .subtype = 25, .time = t}, data);
+  ASSERT_TRUE(packet);
+  Model model{catalogue};
+  static_cast<void>(model.take(*pus::TelemetryView::parse(*packet)));
+  const json values = values_json(catalogue, model, 0);
+  EXPECT_EQ(values["CAMERA.SHUTTERS[0]"][0], json(false));
+  EXPECT_EQ(values["CAMERA.SHUTTERS[1]"][0], json(true));
+  EXPECT_EQ(values["CAMERA.TITLE"][0], json("caf\xC3\xA9"));
+  EXPECT_EQ(values["CAMERA.LEVEL"][0], json(0.5)) << "what stands behind words is at its place";
 }
 
 }  // namespace

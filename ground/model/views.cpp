@@ -85,12 +85,17 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
           {"links", std::move(links)}};
 }
 
+json value_json(const Column& column, const Value& value) {
+  if (column.type == Type::Text) return value.words;
+  return column.type == Type::Bool ? json(value.number != 0.0) : json_number(value.number);
+}
+
 json values_json(const Catalogue& catalogue, const Model& model, std::uint64_t since) {
   json set = json::object();
   for (std::size_t i = 0; i < model.values().size(); ++i) {
     const Value& value = model.values()[i];
     if (value.revision <= since) continue;
-    set[catalogue.columns()[i].name] = {json_number(value.number), json_time(value.t)};
+    set[catalogue.columns()[i].name] = {value_json(catalogue.columns()[i], value), json_time(value.t)};
   }
   return set;
 }

@@ -17,6 +17,8 @@ namespace hirosco::ground {
 [[nodiscard]] nlohmann::json report_json(const StoredReport& report);
 /// What a model says of mode, subsystems and links at a time; without `link` and `values`.
 [[nodiscard]] nlohmann::json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now);
+/// A number, true or false, or words.
+[[nodiscard]] nlohmann::json value_json(const Column& column, const Value& value);
 /// {NAME: [v, t]} of what is newer than a revision.
 [[nodiscard]] nlohmann::json values_json(const Catalogue& catalogue, const Model& model, std::uint64_t since);
 

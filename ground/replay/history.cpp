@@ -62,6 +62,10 @@ class Buckets {
   std::vector<Part> parts_;
 };
 
+[[nodiscard]] bool is_words(const Catalogue& catalogue, std::size_t column) {
+  return catalogue.columns()[column].type == Type::Text;
+}
+
 }  // namespace
 
 bool samples(const Catalogue& catalogue, Archive& archive, std::size_t column, const Span& span, std::size_t most,
@@ -91,6 +95,7 @@ Answered<json> history_json(const Catalogue& catalogue, Archive& archive, const 
                             const Span& span, std::size_t points) {
   const auto column = catalogue.find_column(parameter);
   if (!column) return refuse(404, "no parameter '" + parameter + "'");
+  if (is_words(catalogue, *column)) return refuse(400, "'" + parameter + "' is a text: only numbers have a history");
   std::vector<std::pair<double, double>> found;
   const bool complete = samples(catalogue, archive, *column, span, most_samples,
                                 [&](OnboardTime t, double value) { found.emplace_back(json_time(t), value); });
@@ -126,6 +131,8 @@ Answered<std::string> history_csv(const Catalogue& catalogue, Archive& archive,
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto column = catalogue.find_column(parameters[i]);
     if (!column) return refuse(404, "no parameter '" + parameters[i] + "'");
+    if (is_words(catalogue, *column))
+      return refuse(400, "'" + parameters[i] + "' is a text: only numbers have a history");
     body += "," + parameters[i];
     bool fits = true;
     const bool whole = samples(catalogue, archive, *column, span, samples_left, [&](OnboardTime t, double value) {

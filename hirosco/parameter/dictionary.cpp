@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <limits>
 
 namespace hirosco {
 namespace {
 
-[[nodiscard]] std::size_t element_count(const ParameterSpec& spec) noexcept {
+[[nodiscard]] std::size_t value_count(const ParameterSpec& spec) noexcept {
   std::size_t sum = 0;
-  for (const auto& field : spec.fields) sum += field.count;
+  for (const auto& field : spec.fields) sum += field.values();
   return sum;
 }
 
@@ -24,15 +23,17 @@ namespace {
   for (std::size_t i = 0; i < spec.fields.size(); ++i) {
     const auto& field = spec.fields[i];
     if (field.count == 0) return spec.name + "." + field.name + ": count is 0";
+    if (field.type == Type::Text && field.count > max_text_octets)
+      return spec.name + "." + field.name + ": a text has at most " + std::to_string(max_text_octets) + " octets";
     if (octets_of(field.type) == 0) return spec.name + "." + field.name + ": a structure is no member";
     if (spec.is_struct && std::ranges::count(spec.fields, field.name, &SpecField::name) > 1)
       return spec.name + "." + field.name + ": the structure has two members of this name";
   }
   if (spec.id.layout != (spec.is_struct ? Type::Struct : spec.fields.front().type))
     return spec.name + ": the layout of its id is not its type";
-  if (!spec.init.empty() && spec.init.size() != element_count(spec))
+  if (!spec.init.empty() && spec.init.size() != value_count(spec))
     return spec.name + ": " + std::to_string(spec.init.size()) + " initial values for " +
-           std::to_string(element_count(spec)) + " elements";
+           std::to_string(value_count(spec)) + " elements";
   return {};
 }
 
@@ -43,30 +44,36 @@ namespace {
   return ", which are more than " + std::to_string(native.most);
 }
 
-/// Writes `number` as T in big-endian order; false when T cannot hold it.
-template <WireNumber T>
-[[nodiscard]] bool put_number(double number, OctetWriter& to) noexcept {
-  if constexpr (std::is_integral_v<T>) {
-    // 2^digits is exact in a double, the largest T need not be.
-    const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);
-    const double begin = std::is_signed_v<T> ? -end : 0.0;
-    if (!(number >= begin && number < end) || std::trunc(number) != number) return false;
-  } else {
-    if (!std::isfinite(number) || std::abs(number) > static_cast<double>(std::numeric_limits<T>::max())) return false;
+/// One value as its octets in big-endian order, in front of `room`; empty when the field cannot hold it.
+[[nodiscard]] Octets octets_for(const NativeField& field, const Value& value,
+                                std::span<std::byte, max_text_octets> room) noexcept {
+  OctetWriter writer{room};
+  if (field.type == Type::Text) {
+    const auto* words = std::get_if<std::string>(&value);
+    if (words == nullptr || words->size() > field.count || !is_text(*words)) return {};
+    std::ranges::fill(room, std::byte{});
+    writer.put(std::as_bytes(std::span{*words}));
+    return Octets{room}.first(field.count);
   }
-  to.put(static_cast<T>(number));
-  return true;
+  const auto* number = std::get_if<Number>(&value);
+  if (number == nullptr || !number->is_finite() || !write_number(writer, field.type, *number)) return {};
+  return writer.written();
 }
 
-[[nodiscard]] bool put_number(Type type, double number, OctetWriter& to) noexcept {
-  return with_number_type(type, false, [&]<class T>(std::type_identity<T>) noexcept {
-    if constexpr (std::is_same_v<T, bool>) return false;  // no parameter is one
-    else return put_number<T>(number, to);
-  });
+/// Whether the octets of a field are what its C++ type may hold: any number is, not any bool.
+[[nodiscard]] bool holds(const NativeField& field, Octets octets) noexcept {
+  if (field.type == Type::Text) return is_fixed_text(octets);
+  return field.type != Type::Bool ||
+         std::ranges::all_of(octets, [](std::byte octet) { return octet == std::byte{0} || octet == std::byte{1}; });
 }
 
-/// One element of a field, as a field of its own.
+/// Values of a field: the elements of an array, one for a text.
+[[nodiscard]] std::size_t value_count(const NativeField& field) noexcept {
+  return field.type == Type::Text ? 1 : field.count;
+}
+/// One of them, as a field of its own.
 [[nodiscard]] NativeField element(const NativeField& field, std::size_t position) noexcept {
+  if (field.type == Type::Text) return field;
   return {field.type, 1, field.offset + position * octets_of(field.type)};
 }
 
@@ -106,9 +113,17 @@ std::expected<Dictionary, std::string> Dictionary::make(std::span<const Paramete
     const auto index = static_cast<std::uint16_t>(made.entries_.size());
     if (!made.by_name_.emplace(spec.name, index).second)
       return std::unexpected{spec.name + ": a second parameter of this name"};
-    if (const auto [other, fresh] = made.by_id_.emplace(spec.id.wire(), index); !fresh)
-      return std::unexpected{spec.name + ": has the layout and id of " + made.entries_[other->second].spec.name};
     made.entries_.push_back({spec, nullptr});
+    const auto claim = [&](ParameterId id, int member) -> std::string {
+      const auto [other, fresh] = made.by_id_.emplace(id.wire(), ParameterPlace{index, member});
+      if (fresh) return {};
+      return spec.name + (member < 0 ? "" : "." + spec.fields[static_cast<std::size_t>(member)].name) +
+             ": has the layout and id of " + made.entries_[other->second.index].spec.name;
+    };
+    std::string taken = claim(spec.id, -1);
+    for (std::size_t i = 0; spec.is_struct && taken.empty() && i < spec.fields.size(); ++i)
+      if (spec.fields[i].id) taken = claim({spec.id.subsystem, spec.fields[i].type, *spec.fields[i].id}, int(i));
+    if (!taken.empty()) return std::unexpected{std::move(taken)};
   }
   return made;
 }
@@ -140,7 +155,7 @@ std::optional<std::uint16_t> Dictionary::index_of(std::string_view name) const n
   return found == by_name_.end() ? std::nullopt : std::optional{found->second};
 }
 
-std::optional<std::uint16_t> Dictionary::index_of(std::uint32_t wire_id) const noexcept {
+std::optional<ParameterPlace> Dictionary::place_of(std::uint32_t wire_id) const noexcept {
   const auto found = by_id_.find(wire_id);
   return found == by_id_.end() ? std::nullopt : std::optional{found->second};
 }
@@ -198,6 +213,11 @@ Result<> Dictionary::accepts(std::size_t index, int member, Octets big_endian) c
   if (fields.empty()) return fail(ErrorCode::NotFound, "no member of this number", member);
   if (encoded_octets(fields) != big_endian.size())
     return fail(ErrorCode::Malformed, "length of a parameter value", std::int64_t(big_endian.size()));
+  for (const NativeField& field : fields) {
+    if (!holds(field, big_endian.first(field.octets())))
+      return fail(ErrorCode::OutOfRange, field.type == Type::Bool ? "neither 0 nor 1" : "no text of this size");
+    big_endian = big_endian.subspan(field.octets());
+  }
   return ok();
 }
 
@@ -213,24 +233,24 @@ Result<> Dictionary::decode_into(std::size_t index, int member, Octets big_endia
   return ok();
 }
 
-Result<> Dictionary::set_from_doubles(std::size_t index, int member, std::span<const double> values) noexcept {
+Result<> Dictionary::set(std::size_t index, int member, std::span<const Value> values) noexcept {
   const auto fields = fields_at(index, member);
   if (fields.empty()) return fail(ErrorCode::NotFound, "no published parameter or member", std::int64_t(index));
   std::size_t expected = 0;
-  for (const auto& field : fields) expected += field.count;
+  for (const auto& field : fields) expected += value_count(field);
   if (values.size() != expected) return fail(ErrorCode::Malformed, "number of values", std::int64_t(values.size()));
 
   // Check all before the first is set: a refused request changes nothing.
   for (const bool set : {false, true}) {
     std::size_t position = 0;
     for (const auto& field : fields) {
-      for (std::size_t i = 0; i < field.count; ++i, ++position) {
-        std::array<std::byte, 8> octets{};
-        OctetWriter writer{octets};
-        if (!put_number(field.type, values[position], writer))
+      for (std::size_t i = 0; i < value_count(field); ++i, ++position) {
+        std::array<std::byte, max_text_octets> room;
+        const Octets octets = octets_for(field, values[position], room);
+        if (octets.empty())
           return fail(ErrorCode::OutOfRange, "value not representable in its type", std::int64_t(position));
         const NativeField one = element(field, i);
-        if (set) cell(index)->stage_encoded({&one, 1}, writer.written());
+        if (set) cell(index)->stage_encoded({&one, 1}, octets);
       }
     }
   }
@@ -243,13 +263,13 @@ Result<> Dictionary::initialise() noexcept {
     const Entry& entry = entries_[index];
     if (entry.cell == nullptr) continue;
     if (!entry.spec.init.empty()) {
-      HIROSCO_TRY(set_from_doubles(index, -1, entry.spec.init));
+      HIROSCO_TRY(set(index, -1, entry.spec.init));
       continue;
     }
     constexpr std::array<std::byte, 8> zeros{};
     for (const auto& field : entry.cell->fields())
       for (std::size_t i = 0; i < field.count; ++i)
-        entry.cell->stage(element(field, i).offset, Octets{zeros}.first(octets_of(field.type)));
+        entry.cell->stage(field.offset + i * octets_of(field.type), Octets{zeros}.first(octets_of(field.type)));
     entry.cell->commit();
   }
   return ok();

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hirosco/parameter/exact_number.hpp"
 #include "hirosco/parameter/parameter.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/octets.hpp"
@@ -24,7 +25,10 @@ namespace hirosco {
 struct SpecField {
   std::string name;
   Type type{Type::Double};
-  std::uint32_t count{1};
+  std::uint32_t count{1};         ///< of TEXT: its octets
+  std::optional<std::uint8_t> id{};  ///< of a member: with its type, by which it is known on the wire
+  /// The elements of an array; one for a text.
+  [[nodiscard]] std::size_t values() const noexcept { return type == Type::Text ? 1 : count; }
 };
 
 /// A parameter as its descriptor declares it.
@@ -33,7 +37,7 @@ struct ParameterSpec {
   ParameterId id;
   std::vector<SpecField> fields;  ///< one for a value or array, the members of a structure
   bool is_struct{false};
-  std::vector<double> init;       ///< one number for each element of all fields in order, or empty (zeros)
+  std::vector<Value> init{};      ///< one for each value of all fields in order, or empty (zeros, no words)
 };
 
 /// Why a C++ type is not the declared one; `explanation` names parameter, member, C++ type and declared type.
@@ -57,8 +61,8 @@ struct ParameterPlace {
 class Dictionary {
  public:
   Dictionary() = default;
-  /// Refuses a name or an id that occurs twice, a parameter without fields, a count of 0, a wrong number of initial
-  /// values; the text names the parameter. Realtime: allocates.
+  /// Refuses a name or an id that occurs twice (of members, too), a parameter without fields, a count of 0, a text of more than 254 octets, a
+  /// wrong number of initial values; the text names the parameter. Realtime: allocates.
   [[nodiscard]] static std::expected<Dictionary, std::string> make(std::span<const ParameterSpec> specs);
 
   /// Binds a C++ parameter to its declaration. `cell` must outlive the binding. Refuses an unknown name, a second
@@ -76,7 +80,8 @@ class Dictionary {
   [[nodiscard]] const ParameterSpec& spec(std::size_t index) const noexcept { return entries_[index].spec; }
 
   [[nodiscard]] std::optional<std::uint16_t> index_of(std::string_view name) const noexcept;
-  [[nodiscard]] std::optional<std::uint16_t> index_of(std::uint32_t wire_id) const noexcept;
+  /// A parameter, or a member that has an id, by ParameterId::wire().
+  [[nodiscard]] std::optional<ParameterPlace> place_of(std::uint32_t wire_id) const noexcept;
   /// A parameter, `PARAMETER.MEMBER`, or a member's name alone where only one structure has it.
   [[nodiscard]] std::optional<ParameterPlace> find(std::string_view text) const noexcept;
 
@@ -90,20 +95,21 @@ class Dictionary {
   /// Realtime: bounded. Thread: any.
   [[nodiscard]] std::size_t snapshot_encode(std::size_t index, int member, MutableOctets big_endian) const noexcept;
 
-  /// Whether decode_into would succeed.  Realtime: wait-free. Thread: any.
+  /// Whether decode_into would succeed: the place is there, the length is its own, each BOOL is 0 or 1, each TEXT is one
+  /// (OutOfRange).  Realtime: bounded. Thread: any.
   [[nodiscard]] Result<> accepts(std::size_t index, int member, Octets big_endian) const noexcept;
-  /// Sets a place from exactly wire_octets() octets.  Realtime: wait-free. Thread: the writer's.
+  /// Sets a place from exactly wire_octets() octets.  Realtime: bounded. Thread: the writer's.
   [[nodiscard]] Result<> decode_into(std::size_t index, int member, Octets big_endian) noexcept;
   /// decode_into without showing it to other threads before commit(): for changes that belong together.
-  /// Realtime: wait-free. Thread: the writer's.
+  /// Realtime: bounded. Thread: the writer's.
   [[nodiscard]] Result<> stage(std::size_t index, int member, Octets big_endian) noexcept;
   void commit(std::size_t index) noexcept {
     if (ParameterCell* const target = cell(index)) target->commit();
   }
 
-  /// Sets a place from numbers, one for each element; each must be representable in its type (integers exactly).
-  /// `value` of an error is the position of the number that is not.  Realtime: bounded. Thread: the writer's.
-  [[nodiscard]] Result<> set_from_doubles(std::size_t index, int member, std::span<const double> values) noexcept;
+  /// Sets a place from values, one for each element, one for a text; each must be representable in its type (integers exactly).
+  /// `value` of an error is the position of the one that is not.  Realtime: bounded. Thread: the writer's.
+  [[nodiscard]] Result<> set(std::size_t index, int member, std::span<const Value> values) noexcept;
   /// Sets all published parameters to their declared initial values.  Thread: the writer's.
   [[nodiscard]] Result<> initialise() noexcept;
 
@@ -116,7 +122,7 @@ class Dictionary {
 
   std::vector<Entry> entries_;
   std::map<std::string, std::uint16_t, std::less<>> by_name_;
-  std::map<std::uint32_t, std::uint16_t> by_id_;
+  std::map<std::uint32_t, ParameterPlace> by_id_;
 };
 
 }  // namespace hirosco

@@ -60,6 +60,16 @@ TEST(Dictionary, RejectsASecondParameterOfTheSameLayoutAndId) {
   EXPECT_THAT(refusal({goal(), other}), AllOf(HasSubstr("OTHER"), HasSubstr("DES_POSITION")));
 }
 
+TEST(Dictionary, KnowsAMemberByTheIdThatItHas) {
+  ParameterSpec spec = current_values();
+  spec.fields[1].id = 7;
+  const Dictionary dictionary = made({spec, goal()});
+  EXPECT_EQ(dictionary.place_of(0x000A'0A07u), (ParameterPlace{0, 1}));
+  EXPECT_EQ(dictionary.place_of(0x000A'0A00u), (ParameterPlace{1, -1}));
+  spec.fields[1].id = 0;
+  EXPECT_THAT(refusal({goal(), spec}), AllOf(HasSubstr("CUR_VALUES.POSITION"), HasSubstr("DES_POSITION")));
+}
+
 TEST(Dictionary, AcceptsOneIdInThreeLayoutsAsInListing1) {
   EXPECT_EQ(made({current_values(), goal(), limit()}).size(), 3u);
 }
@@ -174,8 +184,8 @@ TEST_F(PublishedDictionary, FindsByNameWireIdAndMember) {
   std::string missing;
   EXPECT_TRUE(dictionary_.all_published(missing));
   EXPECT_EQ(dictionary_.index_of("LIMIT"), 2);
-  EXPECT_EQ(dictionary_.index_of(0x000A'0A00u), 1);  // subsystem 10, DOUBLE, id 0
-  EXPECT_EQ(dictionary_.index_of(0x000A'0A01u), std::nullopt);
+  EXPECT_EQ(dictionary_.place_of(0x000A'0A00u), (ParameterPlace{1, -1}));  // subsystem 10, DOUBLE, id 0
+  EXPECT_EQ(dictionary_.place_of(0x000A'0A01u), std::nullopt);
   EXPECT_EQ(dictionary_.find("CUR_VALUES.POSITION"), (ParameterPlace{0, 1}));
   EXPECT_EQ(dictionary_.find("TEMPERATURE"), (ParameterPlace{0, 2}));
   EXPECT_EQ(dictionary_.find("LIMIT"), (ParameterPlace{2, -1}));
@@ -253,22 +263,22 @@ TEST_F(PublishedDictionary, RefusesPlacesThatDoNotExistAndWrongLengths) {
 }
 
 TEST_F(PublishedDictionary, SetsOnlyNumbersThatTheTypeHolds) {
-  for (const double good : {0.0, 1.0, 255.0}) EXPECT_TRUE(dictionary_.set_from_doubles(2, -1, {{good}})) << good;
+  for (const double good : {0.0, 1.0, 255.0}) EXPECT_TRUE(dictionary_.set(2, -1, {{good}})) << good;
   limit_.store(42);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {-1.0, 256.0, 1.5, 1e300, nan, infinity, -infinity}) {
-    const auto result = dictionary_.set_from_doubles(2, -1, {{bad}});
+    const auto result = dictionary_.set(2, -1, {{bad}});
     ASSERT_FALSE(result) << bad;
     EXPECT_EQ(result.error().code, ErrorCode::OutOfRange);
   }
   EXPECT_EQ(limit_.load(), 42);
-  EXPECT_EQ(dictionary_.set_from_doubles(2, -1, {{1.0, 2.0}}).error().code, ErrorCode::Malformed);
+  EXPECT_EQ(dictionary_.set(2, -1, {{1.0, 2.0}}).error().code, ErrorCode::Malformed);
 }
 
 TEST_F(PublishedDictionary, ARefusedNumberChangesNothing) {
   ASSERT_TRUE(dictionary_.initialise());
-  const auto result = dictionary_.set_from_doubles(0, -1, {{0.0, 3.0, 4.0, 1e39}});  // beyond float
+  const auto result = dictionary_.set(0, -1, {{0.0, 3.0, 4.0, 1e39}});  // beyond float
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().value, 3);
   EXPECT_EQ(current_.load().position, (std::array{0.5, -0.5}));
@@ -280,11 +290,11 @@ TEST(Dictionary, HoldsTheEndsOf64BitIntegers) {
   Parameter<std::int64_t> s;
   Parameter<std::uint64_t> u;
   ASSERT_TRUE(dictionary.publish("S", s) && dictionary.publish("U", u));
-  EXPECT_TRUE(dictionary.set_from_doubles(0, -1, {{-0x1p63}}));
+  EXPECT_TRUE(dictionary.set(0, -1, {{-0x1p63}}));
   EXPECT_EQ(s.load(), std::numeric_limits<std::int64_t>::min());
-  EXPECT_FALSE(dictionary.set_from_doubles(0, -1, {{0x1p63}}));
-  EXPECT_FALSE(dictionary.set_from_doubles(1, -1, {{0x1p64}}));
-  EXPECT_TRUE(dictionary.set_from_doubles(1, -1, {{0x1p63}}));
+  EXPECT_FALSE(dictionary.set(0, -1, {{0x1p63}}));
+  EXPECT_FALSE(dictionary.set(1, -1, {{0x1p64}}));
+  EXPECT_TRUE(dictionary.set(1, -1, {{0x1p63}}));
   EXPECT_EQ(u.load(), std::uint64_t{1} << 63);
 }
 

@@ -23,7 +23,7 @@ namespace {
     case Type::Double: return "double";
     case Type::Struct: return "struct";
     case Type::Bool: return "bool";
-    case Type::Text: return "std::string_view";
+    case Type::Text: return "Text";
   }
   return "?";
 }
@@ -49,12 +49,14 @@ void ObjectFields::fit(MutableOctets object) const noexcept {
 
 std::string cpp_text(const NativeField& field) {
   const std::string text{cpp_name(field.type)};
+  if (field.type == Type::Text) return text + "<" + std::to_string(field.count) + ">";
   if (field.most != 0) return "Sized<" + text + ", " + std::to_string(field.most) + ">";
   return field.count == 1 ? text : "std::array<" + text + ", " + std::to_string(field.count) + ">";
 }
 
 std::string descriptor_text(Type type, std::uint32_t count) {
   std::string text{to_text(type)};
+  if (type == Type::Text) return text + " of " + std::to_string(count) + " octets";
   return count == 1 ? text : text + "[" + std::to_string(count) + "]";
 }
 

@@ -13,20 +13,22 @@
 #include <utility>
 
 #include "hirosco/parameter/sized.hpp"
+#include "hirosco/parameter/text.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 /// Derives the layout of a parameter from its C++ type: no macro, no registration. A parameter may be a number, an
-/// enumeration, a std::array or Sized of those, or an aggregate of up to 16 such members. Members carry no `alignas`.
+/// enumeration, a bool, a std::array or Sized of those, a Text, or an aggregate of up to 16 such members. Members carry no
+/// `alignas`.
 namespace hirosco {
 
 /// One value or array as it lies in memory.
 struct NativeField {
   Type type{};
-  std::uint32_t count{1};
+  std::uint32_t count{1};  ///< of a Text: its octets
   std::size_t offset{0};
-  std::uint16_t most{0};            ///< of a Sized: its N, and `count` is the descriptor's, 0 until that is known
-  std::size_t length_offset{0};     ///< of a Sized: where its length lies
+  std::uint16_t most{0};  ///< of a Sized: its N, and `count` is the descriptor's, 0 until that is known
+  std::size_t length_offset{0};  ///< of a Sized: where its length lies
   [[nodiscard]] constexpr std::size_t octets() const noexcept { return octets_of(type) * count; }
   /// Whether `declared` elements of a type are what this field holds, or can hold.
   [[nodiscard]] constexpr bool takes(Type wanted, std::uint32_t declared) const noexcept {
@@ -75,6 +77,17 @@ template <class T>
 concept Scalar = Number<typename NumberOf<std::remove_cv_t<T>>::type>;
 template <class T>
 concept FieldType = Scalar<typename ArrayOf<std::remove_cv_t<T>>::Element>;
+
+template <class T>
+struct TextOf : std::false_type {};
+template <std::size_t N>
+struct TextOf<Text<N>> : std::true_type {
+  static constexpr std::uint32_t octets = N;
+};
+/// What a parameter or member may be.
+template <class T>
+concept MemberType = FieldType<T> || std::same_as<typename ArrayOf<std::remove_cv_t<T>>::Element, bool> ||
+                     TextOf<std::remove_cv_t<T>>::value;
 
 template <Scalar S>
 [[nodiscard]] constexpr Type type_of() {
@@ -179,14 +192,24 @@ auto members_of(T& t) {
   }
 }
 
-template <FieldType F>
+template <class Element>
+[[nodiscard]] constexpr Type element_type() {
+  static_assert(sizeof(bool) == 1, "a bool is one octet in memory as on the wire");
+  if constexpr (std::same_as<std::remove_cv_t<Element>, bool>) return Type::Bool;
+  else return type_of<Element>();
+}
+
+template <MemberType F>
 [[nodiscard]] constexpr NativeField field_at(std::size_t offset) {
   using Traits = ArrayOf<std::remove_cv_t<F>>;
-  if constexpr (requires { Traits::most; }) {
-    return {type_of<typename Traits::Element>(), 0, offset, Traits::most, offset + F::length_offset()};
+  if constexpr (TextOf<std::remove_cv_t<F>>::value) {
+    static_assert(sizeof(F) == TextOf<std::remove_cv_t<F>>::octets, "a text is its octets and nothing else");
+    return {Type::Text, TextOf<std::remove_cv_t<F>>::octets, offset};
+  } else if constexpr (requires { Traits::most; }) {
+    return {element_type<typename Traits::Element>(), 0, offset, Traits::most, offset + F::length_offset()};
   } else {
     static_assert(Traits::count >= 1 && Traits::count <= 16U << 20, "an array has 1 to 16 Mi elements");
-    return {type_of<typename Traits::Element>(), static_cast<std::uint32_t>(Traits::count), offset};
+    return {element_type<typename Traits::Element>(), static_cast<std::uint32_t>(Traits::count), offset};
   }
 }
 
@@ -196,9 +219,9 @@ template <FieldType F>
 
 template <class T, class... Members>
 [[nodiscard]] consteval auto structure_layout(Types<Members...>) {
-  static_assert((FieldType<Members> && ...),
-                "a member is a number, an enumeration, a std::array or Sized of those; bool and characters have no "
-                "definite size, use std::uint8_t");
+  static_assert((MemberType<Members> && ...),
+                "a member is a number, an enumeration, a bool, a std::array or Sized of those, or a Text; characters "
+                "have no definite size");
   std::array<NativeField, sizeof...(Members)> fields{};
   std::size_t end = 0;
   std::size_t index = 0;
@@ -231,16 +254,16 @@ template <class T>
     return layout.first;
   } else {
     static_assert(
-        layout_detail::FieldType<T>,
-        "a parameter is a number, an enumeration, a std::array or Sized of those or an aggregate of those; bool "
-        "and characters have no definite size, use std::uint8_t");
+        layout_detail::MemberType<T>,
+        "a parameter is a number, an enumeration, a bool, a std::array or Sized of those, a Text, or an aggregate "
+        "of those; characters have no definite size");
     return std::array{layout_detail::field_at<T>(0)};
   }
 }
 
 /// A type that layout_of accepts as a single value or array.
 template <class T>
-concept ParameterValue = layout_detail::FieldType<T>;
+concept ParameterValue = layout_detail::MemberType<T>;
 
 /// The fields of one object: its type's, or its own where it has Sized members, whose lengths come with the descriptor.
 class ObjectFields {
@@ -284,9 +307,9 @@ class HasFields {
   [[no_unique_address]] Own own_{own_fields()};
 };
 
-/// The C++ spelling of a field, for messages: `std::array<double, 2>`, `Sized<double, 7>`.
+/// The C++ spelling of a field, for messages: `std::array<double, 2>`, `Sized<double, 7>`, `Text<20>`.
 [[nodiscard]] std::string cpp_text(const NativeField& field);
-/// The descriptor's spelling: `DOUBLE[2]`.
+/// The descriptor's spelling: `DOUBLE[2]`, `TEXT of 20 octets`; `count` of a text is its octets.
 [[nodiscard]] std::string descriptor_text(Type type, std::uint32_t count);
 
 }  // namespace hirosco

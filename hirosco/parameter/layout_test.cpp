@@ -52,8 +52,10 @@ static_assert(layout_of<Phase>() == std::array{NativeField{Type::Uint16, 1, 0}})
 static_assert(layout_of<std::array<float, 7>>() == std::array{NativeField{Type::Float, 7, 0}});
 
 // What must not compile when used, asked as a question.
-static_assert(!ParameterValue<bool>);
-static_assert(!ParameterValue<std::array<bool, 2>>);
+static_assert(layout_of<bool>() == std::array{NativeField{Type::Bool, 1, 0}});
+static_assert(layout_of<std::array<bool, 2>>() == std::array{NativeField{Type::Bool, 2, 0}});
+static_assert(layout_of<Text<20>>() == std::array{NativeField{Type::Text, 20, 0}});
+static_assert(!ParameterValue<std::array<Text<4>, 2>>, "an array of texts is not declared either");
 static_assert(!ParameterValue<Flag>);
 static_assert(!ParameterValue<char>);
 static_assert(!ParameterValue<long double>);

@@ -14,7 +14,7 @@ double through(Type type, double value) {
   std::array<std::byte, 8> octets{};
   OctetWriter writer{octets};
   put_number(writer, type, value);
-  EXPECT_EQ(writer.size(), octets_of(type));
+  EXPECT_EQ(writer.size(), type == Type::Text ? 0 : octets_of(type)) << "words are no number";
   OctetReader reader{writer.written()};
   return get_number(reader, type);
 }

@@ -28,9 +28,9 @@ struct Sensed {
 
 static_assert(std::is_trivially_copyable_v<Axes>);
 static_assert(ParameterValue<Axes>);
-static_assert(!ParameterValue<Sized<bool, 2>>);
+static_assert(ParameterValue<Sized<bool, 2>>);
 
-ParameterSpec axes_of(std::uint16_t count, std::vector<double> init = {}) {
+ParameterSpec axes_of(std::uint16_t count, std::vector<Value> init = {}) {
   return {"AXES", {10, Type::Double, 0}, {{"AXES", Type::Double, count}}, false, std::move(init)};
 }
 ParameterSpec sensed_of(std::uint16_t axes, std::uint16_t brakes) {
@@ -93,9 +93,9 @@ TEST(Sized, IsWrittenAndReadInItsLengthLikeAnyOtherArray) {
   EXPECT_EQ(dictionary.snapshot_encode(0, -1, octets), 24u);
   OctetReader reader{octets};
   EXPECT_EQ(reader.get<double>(), 0.5);
-  ASSERT_TRUE(dictionary.set_from_doubles(0, -1, std::array{3.0, 2.0, 1.0}));
+  ASSERT_TRUE(dictionary.set(0, -1, {{3.0, 2.0, 1.0}}));
   EXPECT_THAT(parameter.load(), ElementsAre(3, 2, 1));
-  EXPECT_FALSE(dictionary.set_from_doubles(0, -1, std::array{1.0, 2.0, 3.0, 4.0}));
+  EXPECT_FALSE(dictionary.set(0, -1, {{1.0, 2.0, 3.0, 4.0}}));
   EXPECT_FALSE(dictionary.accepts(0, -1, Octets{octets}.first(16)));
   ASSERT_TRUE(dictionary.decode_into(0, -1, octets));
   EXPECT_THAT(parameter.load(), ElementsAre(0.5, 1.5, 2.5));

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 #include "hirosco/utilities/enum_text.hpp"
@@ -24,8 +25,8 @@ enum class Type : std::uint8_t {
   Float = 9,
   Double = 10,
   Struct = 32,
-  Bool = 33,  ///< one octet, 0 or 1; of functions and of a subsystem's own services only, like the next
-  Text = 34,  ///< UTF-8 up to a declared length
+  Bool = 33,  ///< one octet, 0 or 1; no real-time link and no device frame carries it, or the next
+  Text = 34,  ///< UTF-8 up to a declared number of octets
 };
 
 template <>
@@ -68,15 +69,21 @@ template <class Result, class Visit>
   }
   return none;
 }
+/// What a switch is called where people read it.
+[[nodiscard]] constexpr std::string_view switch_word(bool on) noexcept { return on ? "on" : "off"; }
+
 /// As which such a type stands on the wire.
 template <class T>
 using OnWire = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
 
-/// Octets of one value of a type; 0 for a structure, whose size is that of its members, and for text.
+/// Octets of one element of a type; 0 for a structure, whose size is that of its members. The elements of a text are its octets.
 [[nodiscard]] constexpr std::size_t octets_of(Type type) noexcept {
-  return with_number_type(type, std::size_t{0},
+  return with_number_type(type, type == Type::Text ? std::size_t{1} : std::size_t{0},
                           []<class T>(std::type_identity<T>) noexcept { return sizeof(OnWire<T>); });
 }
+
+/// Whether a real-time link or a device frame carries it: numbers, which are copied and scattered as they are.
+[[nodiscard]] constexpr bool is_carried(Type type) noexcept { return type >= Type::Uint8 && type <= Type::Double; }
 
 [[nodiscard]] constexpr bool is_integer(Type type) noexcept {
   return (type >= Type::Uint8 && type <= Type::Int64) || type == Type::Bool;

@@ -58,7 +58,7 @@ struct Nobody final : FunctionExecutor, ParameterAccess {
   std::expected<std::size_t, ErrorCode> read(std::uint32_t, MutableOctets) override { return 0; }
   std::size_t size_of(std::uint32_t) override { return 0; }
   std::expected<void, FailureCode> check_write(std::uint32_t, Octets) override { return {}; }
-  bool submit_write(std::span<const Write>, const Request&) override { return true; }
+  std::expected<void, FailureCode> submit_write(std::span<const Write>, const Request&) override { return {}; }
 };
 
 class Table : public ::testing::Test {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace hirosco {
@@ -35,6 +36,20 @@ namespace hirosco {
     text.remove_prefix(octets);
   }
   return true;
+}
+
+/// Words that steer no terminal: a control character (C0, DEL, C1) or what is no UTF-8 is a '?'.
+[[nodiscard]] inline std::string printable_words(std::string_view text) {
+  std::string words;
+  while (!text.empty()) {
+    const std::size_t octets = character_octets(text);
+    const auto octet = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const bool steers = octet(0) < ' ' || octet(0) == 0x7F || (octet(0) == 0xC2 && octets == 2 && octet(1) < 0xA0);
+    if (octets == 0 || steers) words += '?';
+    else words += text.substr(0, octets);
+    text.remove_prefix(octets == 0 ? 1 : octets);
+  }
+  return words;
 }
 
 }  // namespace hirosco

@@ -80,7 +80,8 @@ Result<> Manipulator::take_joints_of_the_descriptor() {
   const auto& parameters = own_descriptor().parameters;
   const auto position = std::ranges::find(parameters, "DES_POSITION", [](const auto& p) { return p.field.name; });
   if (position == parameters.end() || joints() == 0) return ok();  // that is told already
-  if (position->init.size() == joints()) home_rad_ = Joints::of(position->init);
+  for (std::size_t i = 0; i < std::min(joints(), position->init.size()); ++i)
+    if (const auto* home = std::get_if<Number>(&position->init[i])) home_rad_[i] = home->real();
   const descriptor::Function* move_to = own_descriptor().find_function("MOVE_TO");
   if (move_to == nullptr) return fail(ErrorCode::Mismatch, "an arm has the function MOVE_TO");
   std::size_t numbers = 0;

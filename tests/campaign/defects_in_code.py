@@ -227,7 +227,7 @@ DEFECTS = [
            "  if (!PLANTED) blame(loss.damaged, Damaged);",
            "subsystem_test", "Devices.ALostDeviceSaysWhetherItWasSilentDamagedOfTheWrongSizeOrRepeatedItself"),
     # A write was completed that the next cycle overwrote.
-    Defect("overwritten parameter", "hirosco/subsystem/engine/generic_subsystem.cpp", "cycle_.writes_itself(*index))",
+    Defect("overwritten parameter", "hirosco/subsystem/engine/generic_subsystem.cpp", "cycle_.writes_itself(place->index))",
            "cycle_.writes_itself(*index) && !PLANTED)",
            "subsystem_test", "ParameterWrites.ThatTheNextCycleWouldOverwriteAreRefused"),
 

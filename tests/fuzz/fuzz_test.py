@@ -14,6 +14,8 @@ LONGEST_INPUT = 400
 MOST_RUNS_OF_A_PLANT = 2_000_000
 ARGUMENTS = "hirosco/pus/service/arguments.cpp"
 FRAMES = "hirosco/data_transfer/control/stream_frame.cpp"
+DICTIONARY = "hirosco/parameter/dictionary.cpp"
+PARAMETERS = "hirosco/pus/st20_parameter/parameter_service.cpp"
 # The files of a target, and its plants: what stands in a file, and what does in its place.
 TARGETS = {"arguments": (
     [ARGUMENTS, "hirosco/pus/st08_function/function_service.cpp", "hirosco/pus/st01_verification/verification.cpp",
@@ -25,6 +27,16 @@ TARGETS = {"arguments": (
           "good = permits(argument, read_number(reader, argument.field.type)) && (good || i + 1 == argument.field.count);"),
      "an argument that is given twice counts":
          ("hirosco/pus/st08_function/function_service.cpp", " && taken_[id - 1].empty();", ";")}),
+    "parameters": (
+    [DICTIONARY, PARAMETERS, "hirosco/pus/st01_verification/verification.cpp", "hirosco/pus/packet/packet.cpp",
+     "hirosco/pus/packet/cuc.cpp", "hirosco/parameter/exact_number.cpp", "hirosco/parameter/layout.cpp",
+     "hirosco/parameter/parameter.cpp"],
+    {"a switch may be neither on nor off":
+         (DICTIONARY, "return octet == std::byte{0} || octet == std::byte{1};", "return octet != std::byte{0xFF};"),
+     "something may stand behind the end of words":
+         (DICTIONARY, "return is_fixed_text(octets);", "return is_text(fixed_words(octets));"),
+     "a request whose last value is refused sets the others":
+         (PARAMETERS, "    good = false;\n", "    good = i + 1 == asked.size();\n")}),
     "stream_frame": (
     [FRAMES],
     {"the check sum is not looked at":

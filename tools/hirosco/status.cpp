@@ -26,7 +26,7 @@ void print_text(const descriptor::Subsystem& subsystem, Listened& listened) {
              seconds(listening));
   for (const auto& [name, value] : listened.values[subsystem.id]) {
     fmt::print("  {:<28}", name);
-    for (const double number : value.values) fmt::print(" {:>12.6g}", number);
+    for (const std::string& text : value.texts()) fmt::print(" {:>12}", text);
     fmt::print(" {}\n", value.unit);
   }
 }
@@ -36,12 +36,7 @@ void print_json(const descriptor::Subsystem& subsystem, Listened& listened) {
              listened.packets[subsystem.id]);
   bool first = true;
   for (const auto& [name, value] : listened.values[subsystem.id]) {
-    fmt::print("{}\"{}\":[", first ? "" : ",", name);
-    for (std::size_t i = 0; i < value.values.size(); ++i) {
-      const double number = value.values[i];
-      fmt::print("{}{}", i == 0 ? "" : ",", number - number == 0.0 ? fmt::format("{}", number) : "null");
-    }
-    fmt::print("]");
+    fmt::print("{}\"{}\":{}", first ? "" : ",", name, value.json());
     first = false;
   }
   fmt::print("}}}}\n");

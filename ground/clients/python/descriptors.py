@@ -34,9 +34,13 @@ class Field:
     offset: int = 0               # of a column: in the source data of its report
     words: bool = False           # the octets are text up to the first zero
     most: int = 0                 # of TEXT: octets in UTF-8
+    fixed: bool = False           # of TEXT: as many octets on the wire, zeros behind the words
 
     @property
     def octets(self) -> int:
+        """On the wire; of TEXT with `fixed` only."""
+        if self.type == "TEXT":
+            return self.most
         return self.count * struct.calcsize(">" + FORMATS[self.type])
 
     def encode(self, value: Any) -> bytes:
@@ -51,6 +55,8 @@ class Field:
     def decode(self, data: bytes, offset: int) -> Any:
         if self.words:
             return data[offset:offset + self.octets].split(b"\0")[0].decode("ascii", "replace")
+        if self.type == "TEXT":
+            return data[offset:offset + self.most].split(b"\0")[0].decode("utf-8", "replace")
         values = struct.unpack_from(f">{self.count}{FORMATS[self.type]}", data, offset)
         return values[0] if self.count == 1 else values
 
@@ -95,7 +101,7 @@ class Field:
         octets = value.encode() if isinstance(value, str) else b""
         if not isinstance(value, str) or len(octets) > self.most or b"\0" in octets:
             raise ArgumentError(f"{self.name}: a text of at most {self.most} octets is wanted, not {value!r}")
-        return struct.pack(">H", len(octets)) + octets
+        return octets.ljust(self.most, b"\0") if self.fixed else struct.pack(">H", len(octets)) + octets
 
     def _named(self, text: str) -> int:
         for known, name in self.texts:

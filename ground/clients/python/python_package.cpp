@@ -107,6 +107,7 @@ struct Value {
   std::optional<hirosco::Value> fallback;
   Texts texts;
   std::size_t offset{0};
+  bool fixed{false};  ///< words with zeros behind, as parameters have them
 };
 
 [[nodiscard]] std::string python_value(const hirosco::Value& value) {
@@ -125,7 +126,8 @@ struct Value {
   add("minimum", field.minimum);
   add("maximum", field.maximum);
   if (value.fallback) text += ", default=" + python_value(*value.fallback);
-  if (field.type == Type::Text) text += fmt::format(", most={}", field.text_octets);
+  if (field.type == Type::Text)
+    text += fmt::format(", most={}{}", field.text_octets, value.fixed ? ", fixed=True" : "");
   if (!value.texts.empty()) text += ", texts=" + pairs(value.texts);
   if (field.text) text += ", words=True";
   if (value.offset != 0) text += fmt::format(", offset={}", value.offset);
@@ -198,7 +200,7 @@ class SubsystemClass {
 
  private:
   [[nodiscard]] Value value_of(const descriptor::Field& field) const {
-    return {field, std::nullopt, catalogue_.texts_of(subsystem_, {}, field), 0};
+    return {field, std::nullopt, catalogue_.texts_of(subsystem_, {}, field), 0, true};
   }
 
   void add_method(const std::string& signature, const std::vector<std::string>& says, const std::string& body) {
@@ -212,7 +214,7 @@ class SubsystemClass {
     std::string parameters, given;
     bool optional = false;
     for (const auto& argument : function.arguments) {
-      Value value{argument.field, argument.fallback, catalogue_.texts_of(subsystem_, function, argument), 0};
+      Value value{argument.field, argument.fallback, catalogue_.texts_of(subsystem_, function, argument), 0, false};
       const std::string name = local.variable(argument.field.name);
       optional = optional || argument.fallback;
       parameters +=
@@ -275,6 +277,8 @@ class SubsystemClass {
       Value value;
       value.field.name = name;
       value.field.type = column.type;
+      value.field.text_octets = column.text_octets;
+      value.fixed = true;
       value.field.unit = column.unit;
       value.field.minimum = column.minimum;
       value.field.maximum = column.maximum;
@@ -331,7 +335,7 @@ class SubsystemClass {
   void add_own_reports(const descriptor::CustomService& service) {
     for (const auto& report : service.reports) {
       std::vector<Value> values;
-      for (const auto& field : report.fields) values.push_back({field.field, std::nullopt, field.texts, 0});
+      for (const auto& field : report.fields) values.push_back({field.field, std::nullopt, field.texts, 0, false});
       reports_ += fmt::format("            _r.ReportKind({}, {}, {}, fields={}),\n", service.type, report.subtype,
                               python_string(report.name), fields_tuple(values));
     }

@@ -108,6 +108,28 @@ TEST(PythonPackage, AParameterThatIsNeverWritableHasNoSetter) {
   EXPECT_THAT(module_of(mission), Not(HasSubstr("def set_gripper")));
 }
 
+TEST(PythonPackage, SwitchesAreBoolAndTextsAreStr) {
+  auto mission = mission_with("GRIPPER");
+  auto& subsystem = mission.subsystems[0].subsystem;
+  descriptor::Field& field = subsystem.parameters[0].field;
+  field = {};
+  field.name = "TITLE";
+  field.type = Type::Text;
+  field.text_octets = 6;
+  const std::string words = module_of(mission);
+  EXPECT_THAT(words, HasSubstr("def set_title(self, value: str, *"));
+  EXPECT_THAT(words,
+              HasSubstr("_r.Layout(99, 8, columns=(_r.Field(\"TITLE\", \"TEXT\", most=6, fixed=True, offset=2),)"));
+  EXPECT_THAT(words, HasSubstr("value: TEXT, at most 6 octets of UTF-8"));
+  field = {};
+  field.name = "ON";
+  field.type = Type::Bool;
+  field.count = 2;
+  const std::string on = module_of(mission);
+  EXPECT_THAT(on, HasSubstr("def set_on(self, value: _t.Sequence[bool], *"));
+  EXPECT_THAT(on, HasSubstr("_r.Layout(99, 4, columns=(_r.Field(\"ON\", \"BOOL\", count=2, offset=2),)"));
+}
+
 TEST(PythonPackage, ArraysOfAReportAreOneColumnAtTheirPlace) {
   EXPECT_THAT(module_of(mission_with("GRIPPER")),
               HasSubstr("_r.Layout(99, 8, columns=(_r.Field(\"GRIPPER\", \"UINT16\", count=3, unit=\"GRIPPER\""));

@@ -109,6 +109,8 @@ def failure_parameters(code: int, data: bytes) -> Dict[str, Any]:
         return {"index": data[0], "name": data[1:].rstrip(b"\0").decode("ascii", "replace")}
     if len(data) >= 10 and data[0] == 0xFF:
         return {"reason": data[10:].decode("ascii", "replace"), "number": int.from_bytes(data[2:10], "big", signed=True)}
+    if code == 0x107 and len(data) == 5:             # of a parameter
+        return dict(zip(("index", "identifier"), struct.unpack(">BI", data)))
     if len(data) != struct.calcsize(form):
         return {"data": data.hex()}
     return dict(zip((name for name, _ in shape), struct.unpack(form, data)))

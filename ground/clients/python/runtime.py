@@ -414,6 +414,8 @@ class Craft:
         names = {"state": dict(enumerate(STATES)), "mode": dict(self._about.modes), "link": dict(self._about.links)}
         subsystem = next(one for one in self._subsystems if one._about.name == request.subsystem)
         function = subsystem._functions.get(request.name)
+        if request.name.startswith(("get ", "set ")):
+            names["identifier"] = {parameter.wire: parameter.name for parameter in subsystem._about.parameters}
         if function is not None and code == 0x105:
             arguments = {number: field.name for number, field in enumerate(function.arguments, 1)}
             names["identifier"] = arguments

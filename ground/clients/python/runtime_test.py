@@ -127,6 +127,20 @@ class Fields(unittest.TestCase):
         for value in ("abcde", "€€", "a\0", 5, None, b"ab"):
             self.refused(note, value, "a text of at most 4 octets is wanted")
 
+    def test_a_text_of_a_parameter_fills_its_octets(self):
+        title = Field("TITLE", "TEXT", most=6, fixed=True)
+        self.assertEqual(title.octets, 6)
+        self.assertEqual(title.encode("café"), b"caf\xc3\xa9\0")
+        self.assertEqual(title.encode(""), b"\0" * 6)
+        for words in ("café", "", "six666"):
+            self.assertEqual(title.decode(b"\1" + title.encode(words) + b"\1", 1), words)
+        self.assertEqual(title.decode(b"a\0b\0\0\0", 0), "a")
+        self.refused(title, "seven77", "a text of at most 6 octets is wanted")
+
+    def test_a_switch_is_true_or_false(self):
+        self.assertIs(Field("ON", "BOOL").decode(b"\0\1", 1), True)
+        self.assertEqual(Field("ON", "BOOL", count=2).decode(b"\0\1", 0), (False, True))
+
     def test_an_array_takes_as_many_values_as_it_has(self):
         pair = Field("P", "INT16", count=2)
         self.assertEqual(pair.encode((1, -1)), b"\x00\x01\xff\xff")
@@ -146,7 +160,9 @@ class Arm(Subsystem):
                                                   Function("LABEL", 200, 1, (Field("OWNER", "TEXT", most=8), Field("LENT", "BOOL")))),
                             reports=(ReportKind(200, 2, "LABELLED", (Field("OWNER", "TEXT", most=8), Field("SERIAL", "UINT64"),
                                                                      Field("LENT", "BOOL", count=2))),),
-                            parameters=(Parameter("KP", 0x0A0A03, (Field("KP", "DOUBLE"),)),),
+                            parameters=(Parameter("KP", 0x0A0A03, (Field("KP", "DOUBLE"),)),
+                                        Parameter("LAMP", 0x0A2004, (Field("ON", "BOOL"), Field("TITLE", "TEXT", most=6, fixed=True))),
+                                        Parameter("TITLE", 0x0A2205, (Field("TITLE", "TEXT", most=6, fixed=True),))),
                             layouts=(Layout(7, 4, (Field("A", "UINT8", offset=2), Field("B", "INT8", offset=3))),
                                      Layout(9, 8, (Field("SUBSYSTEMS.APID", "UINT16", count=2, offset=2),
                                                    Field("SUBSYSTEMS.STATE", "UINT8", count=2, offset=6)))),
@@ -331,6 +347,23 @@ class Client(unittest.TestCase):
         self.assertEqual(self.craft.arm._get("KP", 2.0), 300.0)
         thread.join()
         self.assertEqual(self.craft._requests, {})
+
+    def test_switches_and_words_of_a_parameter_come_and_go(self):
+        asked = []
+
+        def run():
+            request = self.peer.telecommand()
+            self.peer.verify(request, 7)
+            self.peer.tell(20, 2, b"\x01" + struct.pack(">I", 0x0A2004) + b"\1caf\xc3\xa9\0", self.craft.source)
+            request = self.peer.telecommand()
+            asked.append(request[11:-2])
+            self.peer.verify(request, 7)
+        thread = threading.Thread(target=run)
+        thread.start()
+        self.assertEqual(self.craft.arm._get("LAMP", 2.0), {"ON": True, "TITLE": "café"})
+        self.craft.arm._set("TITLE", "dusk", 2.0)
+        thread.join()
+        self.assertEqual(asked, [b"\x01" + struct.pack(">I", 0x0A2205) + b"dusk\0\0"])
 
     def test_housekeeping_is_decoded_recorded_and_kept(self):
         with self.craft.arm.record(7) as reports:

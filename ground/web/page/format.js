@@ -40,7 +40,7 @@ export function number_text(value) {
 /// Without the zeros that a table of changing numbers keeps.
 export const brief_text = (value) => number_text(value).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
 
-export const value_text = (value, column) =>
+export const value_text = (value, column) => typeof value === 'boolean' ? (value ? 'on' : 'off') :
   column?.enumeration?.find((entry) => entry.value === value)?.name ?? number_text(value);
 
 export function age_text(age_s) {

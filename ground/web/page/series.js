@@ -94,7 +94,7 @@ on_values((set) => {
     const [v, t] = Array.isArray(sample) ? sample : [sample.v, sample.t];
     // A clock that jumps back by itself is a new flight; in a replay it is a seek.
     if (series.t.length && t < series.t[series.t.length - 1] - 5) series.forget();
-    series.push(t, v);
+    series.push(t, typeof v === 'boolean' ? Number(v) : v);
   }
 });
 

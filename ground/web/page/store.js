@@ -27,7 +27,7 @@ export const fast = signal(0);
 /// The same at 5 Hz, for numbers that people read, and for ages.
 export const slow = signal(0);
 
-/// NAME -> {v, t}. Not a signal: read it after `fast` or `slow`.
+/// NAME -> {v, t}; v is a number, true or false, or words. Not a signal: read it after `fast` or `slow`.
 export const values = new Map();
 const value_listeners = new Set();
 /// Calls `listener(set)` with each batch of values; returns what ends it.
@@ -131,7 +131,7 @@ const number_of = (value) => value === 'NaN' ? NaN : value === 'Infinity' ? Infi
 function take_values(set, t) {
   for (const [name, value] of Object.entries(set)) {
     const [v, at] = Array.isArray(value) ? value : [value.v, value.t];
-    values.set(name, {v: number_of(v), t: at ?? t});
+    values.set(name, {v: columns.value.get(name)?.type === 'TEXT' ? v : number_of(v), t: at ?? t});
   }
   for (const listener of value_listeners) listener(set);
 }

@@ -97,6 +97,20 @@ std::vector<std::string_view> actuators_without_enable(const Subsystem& subsyste
   return names;
 }
 
+std::optional<ParameterRef> find_parameter(const Subsystem& subsystem, std::uint32_t wire) {
+  const auto is = [&](Type type, std::uint8_t id) { return ParameterId{subsystem.id, type, id}.wire() == wire; };
+  for (std::size_t i = 0; i < subsystem.parameters.size(); ++i) {
+    const Parameter& parameter = subsystem.parameters[i];
+    const auto index = static_cast<std::uint16_t>(i);
+    const std::string& name = parameter.field.name;
+    if (is(parameter.field.type, parameter.id)) return ParameterRef{name, index, std::nullopt, {}};
+    for (std::size_t m = 0; m < parameter.members.size(); ++m)
+      if (is(parameter.members[m].field.type, parameter.members[m].id))
+        return ParameterRef{name + "." + parameter.members[m].field.name, index, static_cast<std::uint16_t>(m), {}};
+  }
+  return std::nullopt;
+}
+
 std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference) {
   const Parameter& parameter = subsystem.parameters.at(reference.parameter);
   if (reference.member) return {parameter.members.at(*reference.member).field};

@@ -18,29 +18,29 @@ namespace hirosco::descriptor {
 /// A parameter begins with other values than its subsystem's descriptor says.
 struct Override {
   std::string parameter;
-  std::vector<double> values;
+  std::vector<Value> values;
 };
-/// "NAME=1 2.5", as a launched subsystem is told.
+/// "NAME=1 2.5" or "NAME=words", as a launched subsystem is told.
 [[nodiscard]] std::string to_string(const Override& changed);
-/// The reverse, into `subsystem`. NotFound: no such parameter. OutOfRange: not as many numbers as it has values.
+/// The reverse, into `subsystem`. NotFound: no such parameter. OutOfRange: not as many values as it has, or no such ones.
 [[nodiscard]] Result<> apply_override(Subsystem& subsystem, std::string_view text);
 
 /// A device of this instance has another address than its subsystem's descriptor says, in every configuration.
 struct Readdressed {
   std::string device;
-  std::string address;               ///< empty = the descriptor's
-  std::string enable;                ///< of the second inhibit; empty = the descriptor's
+  std::string address;  ///< empty = the descriptor's
+  std::string enable;  ///< of the second inhibit; empty = the descriptor's
 };
 
 /// Whom this instance commands, where it is not who has the name that its descriptor says.
 struct Redirected {
-  std::string subsystem;             ///< as the descriptor calls it
-  std::string to;                    ///< as the mission does
+  std::string subsystem;  ///< as the descriptor calls it
+  std::string to;  ///< as the mission does
 };
 
 struct MissionSubsystem {
-  std::string executable;            ///< name of the program, looked up beside the running one and then in PATH
-  Subsystem subsystem;               ///< with what the mission changes applied: name, id, parameters, addresses
+  std::string executable;  ///< name of the program, looked up beside the running one and then in PATH
+  Subsystem subsystem;  ///< with what the mission changes applied: name, id, parameters, addresses
   std::vector<Override> overrides;
   std::vector<Readdressed> addresses;
   std::vector<Redirected> redirected;
@@ -57,9 +57,9 @@ struct MissionSubsystem {
 
 /// A simulated device process standing in for hardware.
 struct SimulatedDevice {
-  std::string name;                  ///< as `hirosco fault` names it
+  std::string name;  ///< as `hirosco fault` names it
   std::string executable;
-  std::string subsystem;             ///< whose device it plays
+  std::string subsystem;  ///< whose device it plays
   std::string device;
   std::uint64_t seed{1};
   std::vector<Setting> settings;
@@ -68,8 +68,8 @@ struct SimulatedDevice {
 
 struct MissionLink {
   std::uint8_t id{};
-  std::string from, provides;        ///< producing subsystem and its set
-  std::string to, requires_;         ///< consuming subsystem and its set
+  std::string from, provides;  ///< producing subsystem and its set
+  std::string to, requires_;  ///< consuming subsystem and its set
   Location at;
 };
 
@@ -78,7 +78,7 @@ struct Permit {
   std::string subsystem;
   std::vector<std::string> functions;  ///< "*" = all
   std::vector<std::uint8_t> services;
-  std::vector<std::string> parameters; ///< that TC[20,3] may set, besides service 20; "*" = all writable ones
+  std::vector<std::string> parameters;  ///< that TC[20,3] may set, besides service 20; "*" = all writable ones
   Location at;
 };
 

@@ -66,17 +66,19 @@ struct Field {
   Location at;
   bool text{false};                  ///< the octets are words up to the first zero; of the framework's events only
   std::uint16_t text_octets{0};      ///< of TEXT: most octets that the words take
-  /// Most octets on the wire.
-  [[nodiscard]] std::size_t octets() const noexcept {
-    return type == Type::Text ? sizeof(std::uint16_t) + text_octets : octets_of(type) * count;
-  }
+  /// Values: the elements of an array, one for anything else.
+  [[nodiscard]] std::uint32_t values() const noexcept { return type == Type::Text ? 1 : count; }
+  /// Elements in memory and on the wire: of TEXT its octets.
+  [[nodiscard]] std::uint32_t elements() const noexcept { return type == Type::Text ? text_octets : count; }
+  /// Octets on the wire; an argument has more (Function::Argument::octets).
+  [[nodiscard]] std::size_t octets() const noexcept { return octets_of(type) * elements(); }
 };
 
 /// A parameter of the dictionary: a single value or array, or a structure of such.
 struct Parameter {
   Field field;                       ///< for a structure: name and Type::Struct
   std::uint8_t id{};
-  std::vector<double> init;          ///< `count` values or empty (zeros)
+  std::vector<Value> init;           ///< `field.values()` of them or empty (zeros, no words)
   std::uint16_t writable_states{0};  ///< bit n set: ST[20] may set it in State n; 0 = never
   bool protection{false};            ///< a limit that protects: only its own function raises it
   struct Member {
@@ -139,6 +141,10 @@ struct Function {
     std::string of;                  ///< parameter that gave type, unit, enumeration and range; empty = its own
     std::optional<Value> fallback;  ///< value, of each element, when the argument is absent from the request
     std::vector<EnumerationText> texts{};  ///< of an enumeration or BOOL: its values and their names; it has no others
+    /// Most octets on the wire: words come behind their length (u16).
+    [[nodiscard]] std::size_t octets() const noexcept {
+      return field.octets() + (field.type == Type::Text ? sizeof(std::uint16_t) : 0);
+    }
   };
   std::vector<Argument> arguments;
   std::string description;
@@ -275,7 +281,7 @@ struct Configuration {
   std::vector<DeviceUse> devices;
   struct Initial {
     ParameterRef parameter;
-    std::vector<double> values;
+    std::vector<Value> values;  ///< as many as its fields have
   };
   std::vector<Initial> initial;  ///< parameter values that this configuration sets
   Location at;
@@ -332,6 +338,9 @@ struct Subsystem {
 
 /// Names of the actuator devices that have no second inhibit: nothing but their subsystem keeps them from moving.
 [[nodiscard]] std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem);
+
+/// A parameter, or a member, by ParameterId::wire().
+[[nodiscard]] std::optional<ParameterRef> find_parameter(const Subsystem& subsystem, std::uint32_t wire);
 
 /// Fields a reference stands for, in wire order: one for a value or member, all members for a structure.
 [[nodiscard]] std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference);

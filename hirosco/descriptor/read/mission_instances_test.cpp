@@ -79,6 +79,18 @@ TEST(MissionOverrides, ReachALaunchedSubsystemAsTheyWereRead) {
     EXPECT_EQ(robot.find_parameter(changed.parameter)->init, changed.values);
   }
   EXPECT_EQ(apply_override(robot, "NONE=1").error().code, ErrorCode::NotFound);
+  for (const auto& [name, type] : {std::pair{"TITLE", Type::Text}, std::pair{"ON", Type::Bool}}) {
+    Field& field = robot.parameters.emplace_back().field;
+    field.name = name;
+    field.type = type;
+    field.text_octets = 8;
+  }
+  for (const Override& changed : {Override{"TITLE", {"a b = c"}}, Override{"TITLE", {""}}, Override{"ON", {1}}}) {
+    ASSERT_TRUE(apply_override(robot, to_string(changed))) << to_string(changed);
+    EXPECT_EQ(robot.find_parameter(changed.parameter)->init, changed.values);
+  }
+  EXPECT_EQ(apply_override(robot, "TITLE=123456789").error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(apply_override(robot, "ON=2").error().code, ErrorCode::OutOfRange);
   for (const char* wrong : {"DES_POSITION", "DES_POSITION=", "DES_POSITION=1", "DES_POSITION=1 2 3", "DES_POSITION=1 x",
                             "DES_POSITION=1  2", "DES_POSITION=1 2 "})
     EXPECT_EQ(apply_override(robot, wrong).error().code, ErrorCode::OutOfRange) << wrong;

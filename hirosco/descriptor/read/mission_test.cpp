@@ -49,7 +49,7 @@ TEST(MissionDescriptor, FillsTheWholeModel) {
   EXPECT_EQ(mission.start_mode, "telepresence");
   EXPECT_EQ(mission.power_budget_w, 150);
   EXPECT_EQ(mission.find_subsystem("CORONAGRAPH")->subsystem.find_parameter("DES_POSITION")->init,
-            (std::vector{-0.7, 1.5}));
+            (std::vector<Value>{-0.7, 1.5}));
   EXPECT_EQ(mission.find_subsystem("CORONAGRAPH")->subsystem.find_configuration("COUPLED")->power_w, 60.5);
 }
 

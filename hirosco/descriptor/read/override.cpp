@@ -1,18 +1,36 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/utilities/utf8.hpp"
 
 namespace hirosco::descriptor {
 
+namespace {
+
+/// One number of a field: it was in its range when the mission was read.
+[[nodiscard]] std::optional<Value> value_in(const Field& field, std::string_view text) {
+  const auto number = parse_number(text);
+  const TypeRange range = range_of(field.type);
+  if (!number || *number < range.lowest || *number > range.highest) return std::nullopt;
+  return *number;
+}
+
+}  // namespace
+
 std::string to_string(const Override& changed) {
-  return fmt::format("{}={}", changed.parameter, fmt::join(changed.values, " "));
+  std::string text = changed.parameter + "=";
+  for (std::size_t i = 0; i < changed.values.size(); ++i) {
+    const auto* words = std::get_if<std::string>(&changed.values[i]);
+    text.append(i == 0 ? "" : " ").append(words != nullptr ? *words : to_string(std::get<Number>(changed.values[i])));
+  }
+  return text;
 }
 
 Result<> apply_override(Subsystem& subsystem, std::string_view text) {
@@ -20,16 +38,24 @@ Result<> apply_override(Subsystem& subsystem, std::string_view text) {
   const auto parameter =
       std::ranges::find_if(subsystem.parameters, [&](const Parameter& p) { return p.field.name == name; });
   if (parameter == subsystem.parameters.end()) return fail(ErrorCode::NotFound, "no such parameter");
-  std::vector<double> values;
-  const char* const end = text.data() + text.size();
-  for (const char* at = text.data() + name.size(); at != end;) {
-    double value = 0;
-    const auto read = std::from_chars(at + 1, end, value);  // behind '=' or the space
-    if (read.ec != std::errc{}) return fail(ErrorCode::OutOfRange, "not a number");
-    values.push_back(value);
-    at = read.ptr;
+  if (name.size() == text.size()) return fail(ErrorCode::OutOfRange, "no value");
+  const Field& field = parameter->field;
+  std::string_view given = text.substr(name.size() + 1);
+  if (field.type == Type::Text) {
+    if (given.size() > field.text_octets || !is_text(given)) return fail(ErrorCode::OutOfRange, "no such text");
+    parameter->init = {std::string{given}};
+    return ok();
   }
-  if (values.size() != parameter->field.count) return fail(ErrorCode::OutOfRange, "another number of values");
+  std::vector<Value> values;
+  for (bool more = true; more;) {
+    const auto end = given.find(' ');
+    const auto value = value_in(field, given.substr(0, end));
+    if (!value) return fail(ErrorCode::OutOfRange, "not a number of its type");
+    values.push_back(*value);
+    more = end != given.npos;
+    given.remove_prefix(more ? end + 1 : given.size());
+  }
+  if (values.size() != field.values()) return fail(ErrorCode::OutOfRange, "another number of values");
   parameter->init = std::move(values);
   return ok();
 }

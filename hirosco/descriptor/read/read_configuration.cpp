@@ -60,7 +60,8 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   Unique devices{"device", "E0201"};
   auto children = service_children(services);
   children.push_back({"Device", [&](const auto& child) { read_device_use(child, configuration, devices); }, 255});
-  children.push_back({"Initial", [&](const auto& child) { read_initial(child, configuration); }});
+  Unique set{"parameter", "E0201"};
+  children.push_back({"Set", [&](const auto& child) { read_set(child, configuration, set); }, 1024});
   each_child(element, problems_, children);
 
   if (!configuration.name.empty())
@@ -194,29 +195,17 @@ void SubsystemReader::check_addresses() {
         take(use.endnode, fmt::format("device '{}'", subsystem_.devices[use.device].name));
 }
 
-void SubsystemReader::read_initial(const xml::Element& element, Configuration& configuration) {
-  const Attributes none{element, problems_};
-  each_child(element, problems_, {{"ParamRef", [&](const xml::Element& child) {
-                                     Attributes attributes{child, problems_};
-                                     no_children(child, problems_);
-                                     auto reference = read_reference(attributes, "<Initial>");
-                                     const auto* at = attributes.required("value");
-                                     auto values = attributes.numbers("value");
-                                     if (!reference || at == nullptr || values.empty()) return;
-                                     const auto fields = fields_of(subsystem_, *reference);
-                                     std::size_t count = 0;
-                                     for (const Field& field : fields) count += field.count;
-                                     if (values.size() != count)
-                                       return problems_.add(*at, "E0209",
-                                                            fmt::format("'{}' has {} value{}, not {}", reference->text,
-                                                                        count, count == 1 ? "" : "s", values.size()));
-                                     auto next = values.begin();
-                                     for (const Field& field : fields) {
-                                       if (!check_values(problems_, *at, field, {next, next + field.count})) return;
-                                       next += field.count;
-                                     }
-                                     configuration.initial.push_back({std::move(*reference), std::move(values)});
-                                   }}});
+void SubsystemReader::read_set(const xml::Element& element, Configuration& configuration, Unique& names) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const auto* name = attributes.required("parameter");
+  const auto* value = attributes.required("value");
+  auto reference = name == nullptr ? std::nullopt : resolve(*name, "<Set>");
+  if (!reference || value == nullptr) return;
+  names.add(name->value, place(name->value_at), problems_, name->value.size());
+  const auto fields = fields_of(subsystem_, *reference);
+  auto values = read_values(problems_, *value, reference->text, fields, subsystem_.enumerations);
+  if (values) configuration.initial.push_back({std::move(*reference), std::move(*values)});
 }
 
 }  // namespace hirosco::descriptor::detail

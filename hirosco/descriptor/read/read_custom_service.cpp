@@ -58,7 +58,7 @@ void SubsystemReader::read_request(const xml::Element& element, CustomService& s
                },
                1}});
   std::size_t octets = 0;
-  for (const auto& argument : request.arguments) octets += argument.field.octets();
+  for (const auto& argument : request.arguments) octets += argument.octets();
   if (octets > max_request_octets)
     problems_.add(element, "E0215", fmt::format("request '{}' takes {} octets", request.name, octets),
                   fmt::format("at most {}", max_request_octets));
@@ -89,7 +89,7 @@ void SubsystemReader::read_report(const xml::Element& element, CustomService& se
                },
                max_fields}});
   std::size_t octets = 0;
-  for (const auto& field : report.fields) octets += field.field.octets();
+  for (const auto& field : report.fields) octets += field.octets();
   if (octets > max_report_octets)
     problems_.add(element, "E0215", fmt::format("report '{}' takes {} octets", report.name, octets),
                   fmt::format("at most {}", max_report_octets));

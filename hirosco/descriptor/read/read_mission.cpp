@@ -257,10 +257,10 @@ void MissionReader::read_override(const xml::Element& element, MissionSubsystem&
         return problems_.add(*name, "E0319",
                              fmt::format("configuration '{}' sets '{}' itself", configuration.name, name->value),
                              "the value would not last: change it in the descriptor");
-  auto values = read_values(problems_, attributes, "value", found->field);
-  if (values.empty()) return;
-  found->init = values;
-  member.overrides.push_back({name->value, std::move(values)});
+  auto values = read_values(problems_, *value, name->value, {&found->field, 1}, member.subsystem.enumerations);
+  if (!values) return;
+  found->init = *values;
+  member.overrides.push_back({name->value, std::move(*values)});
 }
 
 std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+#include "hirosco/parameter/text.hpp"
 
 namespace hirosco::descriptor::detail {
 namespace {
@@ -14,56 +15,7 @@ namespace {
 constexpr std::int64_t max_count = 4096;
 constexpr std::int64_t max_lent_count = max_loaned_payload_octets;
 
-std::string range_text(const Field& field) {
-  return fmt::format("{} to {}", field.minimum ? to_string(*field.minimum) : "-inf",
-                     field.maximum ? to_string(*field.maximum) : "inf");
-}
-
 }  // namespace
-
-bool check_value(Problems& problems, const xml::Attribute& at, const Field& field, const Number& value) {
-  if (is_integer(field.type) && value.real() != std::trunc(value.real())) {
-    problems.add(
-        at, "E0208",
-        fmt::format("{} is not a whole number, '{}' is {}", to_string(value), field.name, to_text(field.type)));
-    return false;
-  }
-  const TypeRange range = range_of(field.type);
-  if (value < range.lowest || value > range.highest) {
-    problems.add(at, "E0208", fmt::format("{} does not fit {}", to_string(value), to_text(field.type)),
-                 fmt::format("{} to {}", to_string(range.lowest), to_string(range.highest)));
-    return false;
-  }
-  if ((field.minimum && value < *field.minimum) || (field.maximum && value > *field.maximum)) {
-    problems.add(at, "E0207", fmt::format("{} is outside the range of '{}'", to_string(value), field.name),
-                 range_text(field));
-    return false;
-  }
-  return true;
-}
-
-bool check_values(Problems& problems, const xml::Attribute& at, const Field& field, const std::vector<double>& values) {
-  return std::ranges::all_of(values, [&](double value) {
-    if (!is_integer(field.type) || std::abs(value) <= max_exact_integer) return check_value(problems, at, field, value);
-    problems.add(at, "E0208", fmt::format("{} does not fit {}", value, to_text(field.type)),
-                 fmt::format("whole numbers up to {}", max_exact_integer));
-    return false;
-  });
-}
-
-std::vector<double> read_values(Problems& problems, Attributes& attributes, std::string_view name, const Field& field) {
-  auto values = attributes.numbers(name);
-  if (values.empty()) return {};
-  const xml::Attribute& at = *attributes.element().find(name);
-  if (values.size() != field.count) {
-    problems.add(at, "E0209",
-                 fmt::format("'{}' has {} value{}, not {}", field.name, field.count, field.count == 1 ? "" : "s",
-                             values.size()));
-    return {};
-  }
-  if (!check_values(problems, at, field, values)) return {};
-  return values;
-}
 
 bool SubsystemReader::read_built_in(const xml::Element& element) {
   const auto* name = element.find("name");
@@ -174,7 +126,8 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   Parameter parameter;
   parameter.field = read_field(attributes, Says::WordsAndRange);
   parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
-  parameter.init = read_values(problems_, attributes, "init", parameter.field);
+  if (const auto* init = attributes.optional("init"); init != nullptr)
+    initial_values_.push_back({subsystem_.parameters.size(), init});
   read_access(attributes, parameter);
   claim_parameter_id(attributes, parameter.field.type, parameter.id);
   no_children(element, problems_);
@@ -192,7 +145,19 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   subsystem_.parameters.push_back(std::move(parameter));
 }
 
+/// Once all enumerations are known, whose names they may be given by.
+void SubsystemReader::read_initial_values() {
+  for (const auto& [index, at] : initial_values_) {
+    Parameter& parameter = subsystem_.parameters[index];
+    auto values = read_values(problems_, *at, parameter.field.name, {&parameter.field, 1}, subsystem_.enumerations);
+    if (values) parameter.init = std::move(*values);
+  }
+}
+
 void SubsystemReader::expect_range(const xml::Element& element, std::string_view what) {
+  // A switch has its two values, a text its octets.
+  if (const auto* type = element.find("type"); type != nullptr && (type->value == "BOOL" || type->value == "TEXT"))
+    return;
   std::string missing;
   for (const std::string_view limit : {"minimum", "maximum"})
     if (element.find(limit) == nullptr) missing += fmt::format("{}{}", missing.empty() ? "" : " and ", limit);
@@ -233,17 +198,21 @@ Field SubsystemReader::read_field(Attributes& attributes, Says says) {
   field.name = attributes.name();
   if (const auto* type = attributes.required("type"); type != nullptr) {
     field.type = attributes.one_of("type", Type::Double);
-    const bool of_requests = field.type == Type::Bool || field.type == Type::Text;
-    if (field.type == Type::Struct || (of_requests && says != Says::Argument && says != Says::Report)) {
+    const bool numbers_only = says == Says::Nothing || says == Says::Words || says == Says::Range || says == Says::Lent;
+    if (field.type == Type::Struct) {
+      problems_.add(*type, "E0104", fmt::format("'{}' is a type of <StructRef> only", type->value));
+      field.type = Type::Double;
+    } else if (!is_carried(field.type) && numbers_only) {
       problems_.add(*type, "E0104",
-                    fmt::format("'{}' is a type of {} only", type->value,
-                                of_requests ? "a function's arguments and of an own service" : "<StructRef>"));
+                    fmt::format("'{}' is a type of parameters, of a function's arguments and of an own service only",
+                                type->value),
+                    "real-time links, devices and events carry numbers: a switch as UINT8");
       field.type = Type::Double;
     }
   }
   if (field.type == Type::Text) {
-    constexpr std::int64_t most = max_argument_octets - sizeof(std::uint16_t);
-    field.text_octets = attributes.required_integer<std::uint16_t>("octets", 1, most);
+    static_assert(max_text_octets + sizeof(std::uint16_t) == max_argument_octets);
+    field.text_octets = attributes.required_integer<std::uint16_t>("octets", 1, max_text_octets);
     return field;
   }
   field.count = attributes.integer_or<std::uint32_t>("count", 1, says == Says::Lent ? max_lent_count : max_count, 1);
@@ -311,7 +280,8 @@ void SubsystemReader::check_enumerations() {
 
 void SubsystemReader::name_values(std::vector<Function::Argument>& arguments) {
   for (Function::Argument& argument : arguments) {
-    if (argument.field.type == Type::Bool) argument.texts = {{0, "off"}, {1, "on"}};
+    if (argument.field.type == Type::Bool)
+      argument.texts = {{0, std::string{switch_word(false)}}, {1, std::string{switch_word(true)}}};
     const auto found = std::ranges::find(subsystem_.enumerations, argument.field.enumeration, &Enumeration::name);
     if (argument.field.enumeration.empty() || found == subsystem_.enumerations.end()) continue;
     argument.texts = found->texts;

@@ -160,7 +160,7 @@ void SubsystemReader::expect_for_all(const xml::Element& element, const Services
 
 void SubsystemReader::check_arguments(const xml::Element& element, const Function& function) {
   std::size_t octets = 0;
-  for (const Function::Argument& argument : function.arguments) octets += argument.field.octets();
+  for (const Function::Argument& argument : function.arguments) octets += argument.octets();
   if (octets > max_argument_octets)
     problems_.add(element, "E0225", fmt::format("the arguments of function '{}' take {} octets", function.name, octets),
                   fmt::format("at most {} in one call", max_argument_octets));
@@ -190,25 +190,19 @@ void SubsystemReader::read_argument(const xml::Element& element, Function& funct
 }
 
 void SubsystemReader::read_fallback(Attributes& attributes, Function::Argument& argument) {
-  if (argument.field.type != Type::Text) {
-    if (const auto value = attributes.exact("default"))
-      if (check_value(problems_, *attributes.element().find("default"), argument.field, *value))
-        argument.fallback = *value;
-    return;
-  }
-  const auto* words = attributes.optional("default");
-  if (words == nullptr) return;
-  if (words->value.size() <= argument.field.text_octets) argument.fallback = words->value;
-  else
-    problems_.add(*words, "E0207",
-                  fmt::format("{} is longer than {} octets", in_quotes(words->value), argument.field.text_octets));
+  const auto* at = attributes.optional("default");
+  if (at == nullptr) return;
+  Field each = argument.field;
+  each.count = 1;
+  if (auto values = read_values(problems_, *at, each.name, {&each, 1}, subsystem_.enumerations))
+    argument.fallback = std::move(values->front());
 }
 
 /// One range for a number wherever it is set: the argument is one value of the parameter.
 void SubsystemReader::read_range_of(Attributes& attributes, Function::Argument& argument, const std::string& function) {
   const std::string name = attributes.name();
   const xml::Attribute& at = *attributes.optional("of");
-  for (const std::string_view own : {"type", "count", "unit", "minimum", "maximum", "enumeration"})
+  for (const std::string_view own : {"type", "count", "octets", "unit", "minimum", "maximum", "enumeration"})
     if (const auto* given = attributes.optional(own); given != nullptr)
       problems_.add(place(given->at), "E0220", fmt::format("'{}' has its {} from {}", name, own, in_quotes(at.value)),
                     fmt::format("leave {} or of out", own), own.size());
@@ -217,7 +211,7 @@ void SubsystemReader::read_range_of(Attributes& attributes, Function::Argument& 
     argument.of = at.value;
     if (fields.size() != 1)
       problems_.add(at, "E0221", in_quotes(at.value) + " is a structure", "name one of its members");
-    else if (!fields.front().minimum || !fields.front().maximum)
+    else if (is_carried(fields.front().type) && (!fields.front().minimum || !fields.front().maximum))
       problems_.add(at, "E0221", in_quotes(at.value) + " has no range", "give it minimum and maximum");
     if (!fields.empty()) argument.field = fields.front();
     const Parameter& of = subsystem_.parameters[parameter->parameter];
@@ -341,10 +335,17 @@ void SubsystemReader::read_provides(const xml::Element& element, Services& servi
     const auto& members = subsystem_.parameters[reference.parameter].members;
     fields += reference.member || members.empty() ? 1 : members.size();
     if (octets > max_link_payload_octets || fields > max_set_fields) break;
-    for (const Field& field : fields_of(subsystem_, reference))
+    for (const Field& field : fields_of(subsystem_, reference)) {
+      if (!is_carried(field.type))
+        problems_.add(reference.at, "E0104",
+                      fmt::format("{} provides '{}', which is {}: a real-time link carries numbers", user,
+                                  reference.text == field.name ? field.name : reference.text + ", " + field.name,
+                                  to_text(field.type)),
+                      "a switch as UINT8; words by housekeeping", reference.text.size());
       if (!field.name.empty() &&
           !names.add(field.name, reference.at, problems_, reference.text.size(), "fields of a set are matched by name"))
         break;
+    }
   }
   if (octets > max_link_payload_octets)
     problems_.add(element, "E0215", fmt::format("{} takes {} octets or more in one sample", user, octets),

@@ -60,6 +60,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   const std::vector<Child> service_rows = service_children(services);
   for (const Child& row : service_rows) children.push_back({row.name, later(services_elements), row.most});
   each_child(root, problems_, children);
+  read_initial_values();
   imply_parameters();
   configurations_ = configurations.size();
   for (const xml::Element* element : services_elements)
@@ -182,7 +183,7 @@ void SubsystemReader::read_output(const xml::Element& element, Device& device, U
   Attributes attributes{element, problems_};
   Device::Output output;
   output.field = read_field(attributes, Says::Range);
-  output.safe = read_values(problems_, attributes, "safe", output.field);
+  output.safe = read_numbers(problems_, attributes, "safe", output.field);
   no_children(element, problems_);
   if (device.actuator && element.find("safe") == nullptr)
     problems_.add(element, "E0218", fmt::format("output '{}' of an actuator needs its safe value", output.field.name),

@@ -78,7 +78,7 @@ TEST(SubsystemDescriptor, FillsTheWholeModel) {
   EXPECT_EQ(robot.parameters.at(0).octets(), 4U + 16 + 16 + 8);
   const Parameter* goal = robot.find_parameter("DES_POSITION");
   ASSERT_NE(goal, nullptr);
-  EXPECT_EQ(goal->init, (std::vector<double>{-0.80, 1.60}));
+  EXPECT_EQ(goal->init, (std::vector<Value>{-0.80, 1.60}));
   EXPECT_EQ(goal->field.minimum, -2.0);
   EXPECT_EQ(goal->field.unit, "rad");
   EXPECT_EQ(robot.find_parameter("NONE"), nullptr);
@@ -155,10 +155,54 @@ TEST(SubsystemDescriptor, ArgumentsOfFunctionsHaveEveryTypeAndExactRanges) {
   ASSERT_EQ(arguments[2].texts.size(), 2U);
   EXPECT_EQ(arguments[2].texts[1].text, "green");
   EXPECT_EQ(arguments[3].fallback, Value{"so"});
-  EXPECT_EQ(arguments[3].field.octets(), 202U);
+  EXPECT_EQ(arguments[3].octets(), 202U);
   EXPECT_EQ(arguments[4].field.type, Type::Bool);
   EXPECT_EQ(arguments[4].field.count, 3);
   ASSERT_EQ(arguments[4].texts.size(), 2U);
+}
+
+TEST(SubsystemDescriptor, ParametersAreSwitchesAndWordsAndNamesOfValues) {
+  const std::string text = R"(<Subsystem name="S" id="10">
+    <ParamRef name="ON" id="1" type="BOOL" init="true" writable="Operational"/>
+    <ParamRef name="SHUTTERS" id="2" type="BOOL" count="3" init="off 1 TRUE"/>
+    <ParamRef name="TITLE" id="3" type="TEXT" octets="12" init="night watch" writable="Operational"/>
+    <ParamRef name="COLOUR" id="4" type="UINT8" enumeration="COLOURS" init="Pale Green"/>
+    <ParamRef name="PAIR" id="5" type="INT8" count="2" enumeration="COLOURS" init="red 7"/>
+    <ParamRef name="SERIAL" id="6" type="UINT64" init="18446744073709551615"/>
+    <StructRef name="LAMP" id="7" writable="Operational">
+      <ParamRef name="LIT" id="8" type="BOOL"/><ParamRef name="OWNER" id="9" type="TEXT" octets="5"/>
+    </StructRef>
+    <Enumeration name="COLOURS"><Text value="1">red</Text><Text value="7">pale green</Text></Enumeration>
+    <FunctionService><Function name="LIGHT"><Argument name="LIT" of="LAMP.LIT" default="on"/>
+      <Argument name="OWNER" of="OWNER" default="me"/></Function></FunctionService>
+    <Configuration name="C" id="1" sampling_us="100">
+      <HKService id="1" interval="1"><SampledOnce><ParamRef name="LAMP"/><ParamRef name="TITLE"/></SampledOnce></HKService>
+      <Set parameter="COLOUR" value="red"/><Set parameter="LAMP.OWNER" value="nobod"/><Set parameter="LIT" value="1"/>
+      <Set parameter="TITLE" value=""/>
+    </Configuration></Subsystem>)";
+  const auto reading = read_text(text);
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(text));
+  const Subsystem& subsystem = *reading.value;
+  const auto init = [&](std::string_view name) { return subsystem.find_parameter(name)->init; };
+  EXPECT_EQ(init("ON"), (std::vector<Value>{1}));
+  EXPECT_EQ(init("SHUTTERS"), (std::vector<Value>{0, 1, 1}));
+  EXPECT_EQ(init("TITLE"), (std::vector<Value>{"night watch"}));
+  EXPECT_EQ(init("COLOUR"), (std::vector<Value>{7}));
+  EXPECT_EQ(init("PAIR"), (std::vector<Value>{1, 7}));
+  EXPECT_EQ(init("SERIAL"), (std::vector<Value>{UINT64_MAX}));
+  EXPECT_EQ(subsystem.find_parameter("TITLE")->octets(), 12U) << "without a length in front";
+  EXPECT_EQ(subsystem.find_parameter("LAMP")->octets(), 6U);
+  const auto& arguments = subsystem.find_function("LIGHT")->arguments;
+  EXPECT_EQ(arguments.at(0).fallback, Value{1});
+  EXPECT_EQ(arguments.at(0).texts.size(), 2U);
+  EXPECT_EQ(arguments.at(1).field.text_octets, 5U);
+  EXPECT_EQ(arguments.at(1).fallback, Value{"me"});
+  const auto& initial = subsystem.configurations.at(0).initial;
+  ASSERT_EQ(initial.size(), 4U);
+  EXPECT_EQ(initial[0].values, (std::vector<Value>{1}));
+  EXPECT_EQ(initial[1].values, (std::vector<Value>{"nobod"}));
+  EXPECT_EQ(initial[2].parameter.member, 0);
+  EXPECT_EQ(initial[3].values, (std::vector<Value>{""}));
 }
 
 TEST(SubsystemDescriptor, AnActuatorDeclaresItsStopAndItsSecondInhibit) {
@@ -207,7 +251,7 @@ TEST(SubsystemDescriptor, FillsTheConfiguration) {
   EXPECT_EQ(use.watchdog_reduced_us, 40'000U);
   EXPECT_EQ(use.settings.at(0).value, "4000");
   EXPECT_EQ(use.endnode.address, "orbiter-robot");
-  EXPECT_EQ(coupled->initial.at(1).values, (std::vector<double>{-0.8, 1.6}));
+  EXPECT_EQ(coupled->initial.at(1).values, (std::vector<Value>{-0.8, 1.6}));
 }
 
 TEST(SubsystemDescriptor, ALinkServiceOfTheSubsystemHoldsInEveryConfiguration) {

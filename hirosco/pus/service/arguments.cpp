@@ -56,7 +56,7 @@ std::size_t value_count(ArgumentList declared) noexcept {
 
 std::size_t octets_of(ArgumentList declared) noexcept {
   std::size_t octets = 0;
-  for (const Argument& argument : declared) octets += argument.field.octets();
+  for (const Argument& argument : declared) octets += argument.octets();
   return octets;
 }
 
@@ -159,6 +159,7 @@ std::optional<Value> parse_value(const Argument& argument, std::string_view text
   if (argument.field.type == Type::Text) return std::string{text};
   if (const auto number = parse_number(text)) return *number;
   const std::string wanted = lower_case(std::string{text});
+  if (argument.field.type == Type::Bool && (wanted == "true" || wanted == "false")) return Number{wanted == "true"};
   for (const auto& named : argument.texts)
     if (lower_case(named.text) == wanted) return Number{named.value};
   return std::nullopt;
@@ -166,9 +167,7 @@ std::optional<Value> parse_value(const Argument& argument, std::string_view text
 
 std::string value_text(const Argument& argument, const Value& value) {
   if (const auto* words = std::get_if<std::string>(&value)) {
-    std::string text = "'";
-    for (const char c : *words) text += static_cast<unsigned char>(c) < ' ' || c == 0x7F ? '?' : c;
-    return text + "'";
+    return "'" + printable_words(*words) + "'";
   }
   const Number& number = std::get<Number>(value);
   for (const auto& named : argument.texts)

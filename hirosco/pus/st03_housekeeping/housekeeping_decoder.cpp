@@ -2,7 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
 #include "hirosco/parameter/number.hpp"
+#include "hirosco/parameter/text.hpp"
+#include "hirosco/utilities/utf8.hpp"
 
 namespace hirosco::pus {
 namespace {
@@ -10,7 +17,7 @@ namespace {
 template <class Entries>
 [[nodiscard]] std::size_t octets_of_entries(const Entries& entries) {
   std::size_t sum = 0;
-  for (const auto& entry : entries) sum += octets_of(entry.type) * entry.count;
+  for (const auto& entry : entries) sum += octets_of(entry.prototype.type) * entry.elements;
   return sum;
 }
 
@@ -18,12 +25,46 @@ template <class Entries>
 void read_entries(OctetReader& reader, const Entries& entries, std::vector<HousekeepingValue>& into) {
   for (const auto& entry : entries) {
     HousekeepingValue value = entry.prototype;
-    for (std::uint16_t i = 0; i < entry.count; ++i) value.values.push_back(get_number(reader, entry.type));
+    if (value.type == Type::Text) value.words = printable_words(fixed_words(reader.get(entry.elements)));
+    else
+      for (std::uint32_t i = 0; i < entry.elements; ++i) value.values.push_back(get_number(reader, value.type));
     into.push_back(std::move(value));
   }
 }
 
+/// The shortest that reads back the same.
+[[nodiscard]] std::string exact_text(double number) { return to_string(Number{number}); }
+
 }  // namespace
+
+std::vector<std::string> HousekeepingValue::texts() const {
+  if (type == Type::Text) return {"'" + words + "'"};
+  std::vector<std::string> all;
+  for (const double number : values) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.6g", number);
+    all.emplace_back(type == Type::Bool ? switch_word(number != 0.0) : std::string_view{text.data()});
+  }
+  return all;
+}
+
+std::string HousekeepingValue::json() const {
+  if (type == Type::Text) {
+    std::string quoted = "[\"";
+    for (const char letter : words) {
+      if (letter == '"' || letter == '\\') quoted += '\\';
+      quoted += letter;
+    }
+    return quoted + "\"]";
+  }
+  std::string list;
+  for (const double number : values) {
+    list += list.empty() ? "[" : ",";
+    if (type == Type::Bool) list += number != 0.0 ? "true" : "false";
+    else list += std::isfinite(number) ? exact_text(number) : "null";
+  }
+  return list.empty() ? "[]" : list + "]";
+}
 
 HousekeepingDecoder::HousekeepingDecoder(const descriptor::Subsystem& subsystem) {
   const auto add = [&](const std::vector<descriptor::HousekeepingStructure>& structures) {
@@ -50,7 +91,7 @@ std::vector<HousekeepingDecoder::Entry> HousekeepingDecoder::entries_of(
     const bool structure = parameter.field.type == Type::Struct;
     for (const auto& field : descriptor::fields_of(subsystem, reference)) {
       const std::string name = structure ? parameter.field.name + "." + field.name : field.name;
-      entries.push_back({{name, field.unit, {}}, field.type, field.count});
+      entries.push_back({{.name = name, .unit = field.unit, .type = field.type}, field.elements()});
     }
   }
   return entries;

@@ -17,7 +17,14 @@ namespace hirosco::pus {
 struct HousekeepingValue {
   std::string name;                  ///< "CUR_VALUES.POSITION", "DES_POSITION"
   std::string unit;
-  std::vector<double> values;        ///< `count` numbers; of a repeatedly sampled one the newest sample
+  std::vector<double> values{};  ///< `count` numbers, none of TEXT; of a repeatedly sampled one the newest sample
+  Type type{Type::Double};
+  std::string words{};  ///< of TEXT, what is no UTF-8 replaced
+
+  /// Its values one after the other as people read them: "on", "'dusk'", "1.5".
+  [[nodiscard]] std::vector<std::string> texts() const;
+  /// As a list of JSON: of numbers, of true and false, or of one string; null for what is not finite.
+  [[nodiscard]] std::string json() const;
 };
 
 class HousekeepingDecoder {
@@ -30,8 +37,7 @@ class HousekeepingDecoder {
  private:
   struct Entry {
     HousekeepingValue prototype;
-    Type type{};
-    std::uint32_t count{1};
+    std::uint32_t elements{1};
   };
   struct Layout {
     std::vector<Entry> once;

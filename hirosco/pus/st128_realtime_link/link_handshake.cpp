@@ -35,8 +35,6 @@ constexpr std::size_t max_text = 255;
   return kind == LinkKind::Loaned ? natural.octets() : packed;
 }
 
-[[nodiscard]] bool is_value_type(Type type) noexcept { return hirosco::octets_of(type) != 0; }
-
 [[nodiscard]] std::string text_of(const OfferedField& field) {
   std::string text{to_text(field.type)};
   return field.count == 1 ? text : text + "[" + std::to_string(field.count) + "]";
@@ -232,7 +230,7 @@ class Reader {
       name(field.name);
       enumerator(field.type);
       number(field.count);
-      require(is_value_type(field.type) && field.count >= 1);
+      require(is_carried(field.type) && field.count >= 1);
       require(std::ranges::count(list, field.name, &OfferedField::name) == 1);
     }
   }

@@ -9,6 +9,12 @@
 namespace hirosco::pus {
 namespace {
 constexpr std::size_t max_source_octets = max_telemetry_octets - telemetry_overhead_octets;
+
+/// Of one write: whoever set several must hear which it was, also where the standard's notice has an index only.
+[[nodiscard]] FailureNotice refusal(FailureCode code, std::size_t index, std::uint32_t parameter) noexcept {
+  FailureNotice notice = instruction_failure(code, index, parameter);
+  return code == FailureCode::NotPermittedNow ? notice.with(parameter) : notice;
+}
 }  // namespace
 
 namespace st20 {
@@ -85,24 +91,20 @@ void ParameterService::set(Octets data, const Request& request) {
   execute_writes(std::span{writes}.first(count), request);
 }
 
+/// All of it or nothing: a controller must not run with the new gain and the old limit (adr 0074). Every mistake is told.
 void ParameterService::execute_writes(std::span<const ParameterAccess::Write> asked, const Request& request) {
-  std::array<ParameterAccess::Write, max_instructions> valid;
-  std::size_t executed = 0;
+  bool good = true;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const auto checked = access_.check_write(asked[i].id, asked[i].value);
-    if (checked) valid[executed++] = asked[i];
-    else verification_.start_failed(request, instruction_failure(checked.error(), i, asked[i].id));
+    if (checked) continue;
+    good = false;
+    verification_.start_failed(request, refusal(checked.error(), i, asked[i].id));
   }
-  if (executed == 0) return;
-  if (!access_.submit_write(std::span{valid}.first(executed), request))
-    return verification_.start_failed(request, FailureNotice{FailureCode::Busy});
-  if (executed == asked.size()) {
-    verification_.started(request);
-    return verification_.completed(request);
-  }
-  verification_.completion_failed(request, FailureNotice{FailureCode::ExecutedInPart}
-                                               .with(static_cast<std::uint8_t>(executed))
-                                               .with(static_cast<std::uint8_t>(asked.size() - executed)));
+  if (!good) return;
+  if (const auto submitted = access_.submit_write(asked, request); !submitted)
+    return verification_.start_failed(request, refusal(submitted.error(), asked.size() - 1, asked.back().id));
+  verification_.started(request);
+  verification_.completed(request);
 }
 
 }  // namespace hirosco::pus

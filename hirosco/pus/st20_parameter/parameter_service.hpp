@@ -28,12 +28,13 @@ struct ParameterAccess {
   [[nodiscard]] virtual std::size_t size_of(std::uint32_t parameter_id) = 0;
   /// Whether this value may be written; `value` has size_of() octets.
   [[nodiscard]] virtual std::expected<void, FailureCode> check_write(std::uint32_t parameter_id, Octets value) = 0;
-  /// Queues checked writes so that all take effect together at one cycle boundary. False: no room, nothing queued. True
-  /// is a promise: the service then reports start and completion itself.
-  [[nodiscard]] virtual bool submit_write(std::span<const Write> writes, const Request& request) = 0;
+  /// Queues checked writes so that all take effect together at one cycle boundary. Busy: no room now; CapacityExceeded: there
+  /// is never room for so many; nothing is queued then. Else it is a promise: the service reports start and completion itself.
+  [[nodiscard]] virtual std::expected<void, FailureCode> submit_write(std::span<const Write> writes,
+                                                                      const Request& request) = 0;
 };
 
-/// ST[20]: reports and sets parameter values (pus-c 11.4).  Thread: the service loop.
+/// ST[20]: reports and sets parameter values (pus-c 11.4); of one request all are set, or none.  Thread: the service loop.
 class ParameterService final : public Service {
  public:
   static constexpr std::uint8_t service_type = 20;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <optional>
 
 #include "hirosco/pus/testing/recording_sink.hpp"
 
@@ -22,7 +23,8 @@ struct Values final : ParameterAccess {
                                         {5, from_hex("05")},
                                         {6, from_hex("06")},
                                         {7, Bytes(4000)}};
-  bool full{false};
+  std::optional<FailureCode> no_room;
+  int groups{0};
   int snapshots{0};
   void begin_report() override { ++snapshots; }
   std::expected<std::size_t, ErrorCode> read(std::uint32_t id, MutableOctets value) override {
@@ -36,10 +38,11 @@ struct Values final : ParameterAccess {
     if (value[0] == std::byte{0xFF}) return std::unexpected{FailureCode::ValueNotAcceptable};
     return {};
   }
-  bool submit_write(std::span<const Write> writes, const Request&) override {
-    if (full) return false;
+  std::expected<void, FailureCode> submit_write(std::span<const Write> writes, const Request&) override {
+    if (no_room) return std::unexpected{*no_room};
+    ++groups;
     for (const auto& write : writes) values[write.id] = Bytes(write.value.begin(), write.value.end());
-    return true;
+    return {};
   }
 };
 
@@ -105,7 +108,18 @@ TEST_F(ParameterRequests, SetNothingWhenAnyIdIsUnknown) {
   EXPECT_EQ(to_hex(values.values[0x00010001]), "03e8");
 }
 
-TEST_F(ParameterRequests, SetTheAcceptableValuesAndRejectTheOthers) {
+TEST_F(ParameterRequests, SetAllValuesOfARequestAsOneGroup) {
+  send(service, 3,
+       "02"
+       "00010001"
+       "1234"
+       "00010002"
+       "40000000");
+  EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.3 180ac001", "1.7 180ac001"));
+  EXPECT_EQ(values.groups, 1);
+}
+
+TEST_F(ParameterRequests, SetNoneWhenAnyIsRefusedAndNameEachThatIs) {
   send(service, 3,
        "03"
        "00010001"
@@ -114,19 +128,30 @@ TEST_F(ParameterRequests, SetTheAcceptableValuesAndRejectTheOthers) {
        "01"
        "00010002"
        "ff000000");
-  EXPECT_THAT(sink.take(),
-              ElementsAre("1.1 180ac001", "1.4 180ac001010701", "1.4 180ac00101050200010002", "1.8 180ac00102010102"));
-  EXPECT_EQ(to_hex(values.values[0x00010001]), "1234");
+  EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac00101070100000005", "1.4 180ac00101050200010002"));
+  EXPECT_EQ(values.groups, 0);
+  EXPECT_EQ(to_hex(values.values[0x00010001]), "03e8");
   EXPECT_EQ(to_hex(values.values[0x00010002]), "3fc00000");
 }
 
 TEST_F(ParameterRequests, FailToStartWhenTheCycleCannotTakeThem) {
-  values.full = true;
+  values.no_room = FailureCode::Busy;
   send(service, 3,
        "01"
        "00010001"
        "1234");
   EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac0010108"));
+}
+
+TEST_F(ParameterRequests, FailToStartWhenTheyAreMoreThanTheCycleEverTakes) {
+  values.no_room = FailureCode::CapacityExceeded;
+  send(service, 3,
+       "02"
+       "00010001"
+       "1234"
+       "00010002"
+       "40000000");
+  EXPECT_THAT(sink.take(), ElementsAre("1.1 180ac001", "1.4 180ac001010401"));
 }
 
 TEST_F(ParameterRequests, AreRejectedAtEveryWrongLength) {

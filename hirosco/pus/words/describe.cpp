@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "hirosco/parameter/number.hpp"
+#include "hirosco/parameter/text.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/standard_services.hpp"
+#include "hirosco/utilities/utf8.hpp"
 
 namespace hirosco::pus {
 namespace {
@@ -25,18 +27,25 @@ namespace {
 /// No double has all its numbers.
 [[nodiscard]] bool is_wide(Type type) noexcept { return type == Type::Uint64 || type == Type::Int64; }
 
-/// "NAME=value unit", an enumeration by its text.
-void append_field(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
-                  OctetReader& reader) {
-  text.append(" ").append(field.name).append("=");
+/// "value,value", an enumeration and a switch by their words, a text in quotes.
+void append_values(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
+                   OctetReader& reader) {
   if (field.text) {
     const std::string words = text_of(reader.get(field.octets()));
     text.append("'").append(words).append("'");
     return;
   }
+  if (field.type == Type::Text) {
+    text.append("'").append(printable_words(fixed_words(reader.get(field.octets())))).append("'");
+    return;
+  }
   for (std::uint32_t i = 0; i < field.count; ++i) {
     const Number value = read_number(reader, field.type);
     if (i != 0) text.append(",");
+    if (field.type == Type::Bool) {
+      text.append(switch_word(value != Number{0}));
+      continue;
+    }
     const auto enumeration =
         std::ranges::find(subsystem.enumerations, field.enumeration, &descriptor::Enumeration::name);
     if (!field.enumeration.empty() && enumeration != subsystem.enumerations.end()) {
@@ -49,6 +58,13 @@ void append_field(std::string& text, const descriptor::Subsystem& subsystem, con
     }
     text.append(is_wide(field.type) ? to_string(value) : number_text(value.real()));
   }
+}
+
+/// "NAME=value unit"
+void append_field(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
+                  OctetReader& reader) {
+  text.append(" ").append(field.name).append("=");
+  append_values(text, subsystem, field, reader);
   if (!field.unit.empty()) text.append(" ").append(field.unit);
 }
 
@@ -101,19 +117,8 @@ struct Known {
   std::vector<descriptor::Field> fields;
 };
 [[nodiscard]] std::optional<Known> parameter_of(const descriptor::Subsystem& subsystem, std::uint32_t wire) {
-  for (const auto& parameter : subsystem.parameters) {
-    const auto is = [&](Type type, std::uint8_t id) { return ParameterId{subsystem.id, type, id}.wire() == wire; };
-    if (is(parameter.field.type, parameter.id)) {
-      if (parameter.members.empty()) return Known{parameter.field.name, {parameter.field}};
-      Known whole{parameter.field.name, {}};
-      for (const auto& member : parameter.members) whole.fields.push_back(member.field);
-      return whole;
-    }
-    for (const auto& member : parameter.members)
-      if (is(member.field.type, member.id))
-        return Known{parameter.field.name + "." + member.field.name, {member.field}};
-  }
-  return std::nullopt;
+  const auto found = descriptor::find_parameter(subsystem, wire);
+  return found ? std::optional{Known{found->text, descriptor::fields_of(subsystem, *found)}} : std::nullopt;
 }
 
 /// The data of a standard service by their shape (service/service_kind.hpp).
@@ -183,9 +188,10 @@ class ShapeWords {
       return "?";
     }
     std::string text;
-    for (const auto& field : last_->fields)
-      for (std::uint32_t i = 0; i < field.count; ++i)
-        text.append(text.empty() ? "" : ",").append(number_text(get_number(reader_, field.type)));
+    for (const auto& field : last_->fields) {
+      if (!text.empty()) text.append(",");
+      append_values(text, subsystem_, field, reader_);
+    }
     return text;
   }
 
@@ -314,11 +320,24 @@ std::string PacketDescriber::describe_failure(std::uint16_t apid, std::uint16_t 
       for (const auto& failure : subsystem->failures)
         if (failure.code == code) text = failure.name;
   }
+  if (const std::string parameter = refused_parameter(static_cast<FailureCode>(code), data); !parameter.empty())
+    text.append(" ").append(parameter);
   const auto reason = reason_in(data);
   if (!reason) return text;
   text.append(" '").append(text_of(std::as_bytes(std::span{reason->text}))).append("'");
   if (reason->number != 0) text.append(" ").append(std::to_string(reason->number));
   return text;
+}
+
+/// "DES_POSITION" of a refusal that names one by its id; a function's argument has a smaller number than any parameter.
+std::string PacketDescriber::refused_parameter(FailureCode code, Octets data) const {
+  using enum FailureCode;
+  const bool names = code == UnknownIdentifier || code == ValueNotAcceptable || code == NotPermittedNow;
+  if (!names || data.size() != sizeof(std::uint8_t) + sizeof(std::uint32_t)) return {};
+  const auto id = OctetReader{data.subspan(1)}.get<std::uint32_t>();
+  const auto* subsystem = find(static_cast<std::uint16_t>(id >> 16));
+  const auto known = subsystem != nullptr ? parameter_of(*subsystem, id) : std::nullopt;
+  return known ? known->name : std::string{};
 }
 
 std::string PacketDescriber::describe_event(std::uint16_t apid, Octets source_data) const {

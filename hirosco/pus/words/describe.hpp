@@ -22,13 +22,14 @@ class PacketDescriber {
   [[nodiscard]] std::string describe(Octets packet) const;
   /// "TORQUE_LIMIT_EXCEEDED JOINT=2 VALUE=12.1 N m LIMIT=12 N m" of the source data of TM[5,x].
   [[nodiscard]] std::string describe_event(std::uint16_t apid, Octets source_data) const;
-  /// "SENSOR_BROKEN 'no answer' 42": a failure code of a report of service 1 from `apid`, and its data.
+  /// "value not acceptable KP", "SENSOR_BROKEN 'no answer' 42": a failure code of a report of service 1 from `apid`, and its data.
   [[nodiscard]] std::string describe_failure(std::uint16_t apid, std::uint16_t code, Octets data) const;
   /// Name of the subsystem, "APID 77" when the mission has none.
   [[nodiscard]] std::string name_of(std::uint16_t apid) const;
 
  private:
   [[nodiscard]] const descriptor::Subsystem* find(std::uint16_t apid) const;
+  [[nodiscard]] std::string refused_parameter(FailureCode code, Octets data) const;
   [[nodiscard]] std::string describe_telecommand(const TelecommandView& telecommand) const;
   [[nodiscard]] std::string describe_telemetry(const TelemetryView& telemetry) const;
   const descriptor::Mission* mission_;

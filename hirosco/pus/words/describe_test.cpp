@@ -57,6 +57,46 @@ TEST(PacketDescriber, NamesTheStageAndTheReasonOfARefusal) {
   EXPECT_EQ(described_telemetry(1, 2, writer.written()), "TM[1,2] ARM not accepted ARM #5: not permitted in this mode");
 }
 
+TEST(PacketDescriber, NamesTheParameterThatWasRefused) {
+  descriptor::Mission mission = small_mission();
+  auto& parameter = mission.subsystems.front().subsystem.parameters.emplace_back();
+  parameter.id = 3;
+  parameter.field.name = "GAIN";
+  const PacketDescriber describer{mission};
+  std::array<std::byte, 5> data;
+  OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 3}.wire());
+  EXPECT_EQ(describer.describe_failure(10, 0x0105, data), "value not acceptable GAIN");
+  EXPECT_EQ(describer.describe_failure(1, 0x0107, data), "not permitted now GAIN") << "by the supervisor";
+  EXPECT_EQ(describer.describe_failure(10, 0x0107, Octets{data}.first(1)), "not permitted now");
+  OctetWriter{data}.put(std::uint8_t{0}).put(std::uint32_t{3});
+  EXPECT_EQ(describer.describe_failure(10, 0x0105, data), "value not acceptable") << "an argument of a function";
+}
+
+TEST(PacketDescriber, ShowsSwitchesWordsAndNamesOfValuesOfParameters) {
+  descriptor::Mission mission = small_mission();
+  const auto add = [&](const char* name, Type type, std::uint8_t id) -> descriptor::Field& {
+    auto& parameter = mission.subsystems.front().subsystem.parameters.emplace_back();
+    parameter.id = id;
+    parameter.field.name = name;
+    parameter.field.type = type;
+    return parameter.field;
+  };
+  add("ON", Type::Bool, 1).count = 2;
+  add("TITLE", Type::Text, 2).text_octets = 8;
+  add("SIDE", Type::Uint8, 3).enumeration = "SIDES";
+  std::array<std::byte, 64> data;
+  OctetWriter writer{data};
+  constexpr std::string_view words = "caf\xC3\xA9\n\0\0";
+  writer.put(std::uint8_t{3}).put(ParameterId{10, Type::Bool, 1}.wire()).put(std::uint8_t{1}).put(std::uint8_t{0});
+  writer.put(ParameterId{10, Type::Text, 2}.wire()).put(std::as_bytes(std::span{words.data(), 8}));
+  writer.put(ParameterId{10, Type::Uint8, 3}.wire()).put(std::uint8_t{1});
+  std::array<std::byte, 256> buffer;
+  const auto packet = write_telemetry(buffer, {.apid = 10, .service = 20, .subtype = 2}, writer.written());
+  EXPECT_EQ(PacketDescriber{mission}.describe(*packet),
+            "TM[20,2] ARM VALUES PARAMETERS=(PARAMETER=ON VALUE=on,off),(PARAMETER=TITLE VALUE='caf\xC3\xA9?'),"
+            "(PARAMETER=SIDE VALUE=left)");
+}
+
 TEST(PacketDescriber, NamesAFunctionAndItsArguments) {
   const auto mission = small_mission();
   const auto common = common_functions();

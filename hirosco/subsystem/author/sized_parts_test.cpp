@@ -212,7 +212,7 @@ TEST(SizedParameter, HasTheInitialValuesOfAnOverride) {
   auto described = testing::read_descriptor(text);
   EXPECT_FALSE(descriptor::apply_override(described, "GOAL=1 2"));
   ASSERT_TRUE(descriptor::apply_override(described, "GOAL=1 2 3"));
-  EXPECT_THAT(described.parameters[1].init, ElementsAre(1, 2, 3));
+  EXPECT_THAT(described.parameters[1].init, ElementsAre(Value{1}, Value{2}, Value{3}));
   text.replace(text.find("9 9 9"), 5, "1 2 3");  // what the supervisor hands to the subsystem then
   AxesSubsystem axes;
   Rig rig{axes, text};

@@ -42,9 +42,13 @@ namespace {
   return native.takes(native.type, field.count) && holds_numbers(native.type, declared);
 }
 
+/// Words come to a handler as a view of them.
+[[nodiscard]] std::string native_text(const NativeField& native) {
+  return native.type == Type::Text ? "std::string_view" : cpp_text(native);
+}
+
 [[nodiscard]] std::string declared_text(const pus::Argument& declared) {
-  if (declared.field.type == Type::Text) return "TEXT of " + std::to_string(declared.field.text_octets) + " octets";
-  return descriptor_text(declared.field.type, declared.field.count);
+  return descriptor_text(declared.field.type, declared.field.elements());
 }
 
 /// "3 (double, bool, std::array<float, 2>)"
@@ -71,7 +75,7 @@ std::vector<std::string> handler_mistakes(const std::string& who, std::optional<
   else
     for (const auto& argument : declared) natives.push_back({Type::Double, argument.field.count});
   if (natives.size() != declared.size())
-    return {who + "the handler takes " + listed(natives, cpp_text) + ", the descriptor declares " +
+    return {who + "the handler takes " + listed(natives, native_text) + ", the descriptor declares " +
             listed(declared, declared_text)};
   std::vector<std::string> mistakes;
   for (std::size_t i = 0; i < declared.size(); ++i)
@@ -79,7 +83,7 @@ std::vector<std::string> handler_mistakes(const std::string& who, std::optional<
       mistakes.push_back(who + "argument " + std::to_string(i + 1) + ", " + declared[i].field.name +
                          ": the descriptor declares " + declared_text(declared[i]) + ", " +
                          pus::range_text(declared[i]) + "; the handler takes " + (takes ? "" : "FunctionValues, ") +
-                         cpp_text(natives[i]) + ", which does not hold every value");
+                         native_text(natives[i]) + ", which does not hold every value");
   if (!takes && pus::value_count(declared) > max_function_arguments)
     mistakes.push_back(who + "FunctionValues hold " + std::to_string(max_function_arguments) +
                        " numbers, the descriptor declares " + std::to_string(pus::value_count(declared)));
@@ -92,7 +96,7 @@ bool same_types(std::span<const NativeField> native, pus::ArgumentList declared)
   });
 }
 
-std::string types_text(std::span<const NativeField> native) { return joined(native, cpp_text); }
+std::string types_text(std::span<const NativeField> native) { return joined(native, native_text); }
 std::string types_text(pus::ArgumentList declared) { return joined(declared, declared_text); }
 
 }  // namespace hirosco

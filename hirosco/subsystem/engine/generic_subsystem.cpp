@@ -31,8 +31,8 @@ constexpr int messages_per_step = 64;
                        .init = parameter.init};
     if (spec.is_struct)
       for (const auto& member : parameter.members)
-        spec.fields.push_back({member.field.name, member.field.type, member.field.count});
-    else spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.count});
+        spec.fields.push_back({member.field.name, member.field.type, member.field.elements(), member.id});
+    else spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.elements()});
     specs.push_back(std::move(spec));
   }
   auto dictionary = Dictionary::make(specs);
@@ -218,30 +218,32 @@ bool GenericSubsystem::push(const CycleCommand& command) { return handover_.comm
 // --- parameters --------------------------------------------------------------------------------------------------------
 
 std::expected<std::size_t, ErrorCode> GenericSubsystem::read(std::uint32_t parameter, MutableOctets big_endian) {
-  const auto index = dictionary_.index_of(parameter);
-  if (!index) return std::unexpected{ErrorCode::NotFound};
-  const std::size_t octets = dictionary_.snapshot_encode(*index, -1, big_endian);
+  const auto place = dictionary_.place_of(parameter);
+  if (!place) return std::unexpected{ErrorCode::NotFound};
+  const std::size_t octets = dictionary_.snapshot_encode(place->index, place->member, big_endian);
   if (octets == 0) return std::unexpected{ErrorCode::Unavailable};
   return octets;
 }
 
 std::size_t GenericSubsystem::size_of(std::uint32_t parameter) {
-  const auto index = dictionary_.index_of(parameter);
-  if (!index || dictionary_.cell(*index) == nullptr) return 0;
-  return dictionary_.wire_octets(*index);
+  const auto place = dictionary_.place_of(parameter);
+  if (!place || dictionary_.cell(place->index) == nullptr) return 0;
+  return dictionary_.wire_octets(place->index, place->member);
 }
 
 std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_t parameter, Octets value) {
-  const auto index = dictionary_.index_of(parameter);
-  if (!index) return std::unexpected{pus::FailureCode::UnknownIdentifier};
-  const descriptor::Parameter& declared = descriptor_.parameters[*index];
+  const auto place = dictionary_.place_of(parameter);
+  if (!place) return std::unexpected{pus::FailureCode::UnknownIdentifier};
+  const descriptor::Parameter& declared = descriptor_.parameters[place->index];
   if (!declared.writable_in(state_)) return std::unexpected{pus::FailureCode::NotPermittedNow};
   // A value that the next cycle overwrites was not set, whatever a report said.
-  if (wanted_.load(std::memory_order_relaxed) && cycle_.writes_itself(*index))
+  if (wanted_.load(std::memory_order_relaxed) && cycle_.writes_itself(place->index))
     return std::unexpected{pus::FailureCode::NotPermittedNow};
-  if (!dictionary_.accepts(*index, -1, value)) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
+  if (!dictionary_.accepts(place->index, place->member, value))
+    return std::unexpected{pus::FailureCode::ValueNotAcceptable};
   OctetReader reader{value};
   const auto in_range = [&](const descriptor::Field& field) {
+    if (field.type == Type::Text) return static_cast<void>(reader.get(field.octets())), true;
     for (std::uint32_t i = 0; i < field.count; ++i) {
       const Number number = read_number(reader, field.type);
       if (!(number == number)) return false;
@@ -251,22 +253,26 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
     return true;
   };
   bool good = true;
-  if (declared.members.empty()) good = in_range(declared.field);
+  if (place->member >= 0) good = in_range(declared.members[static_cast<std::size_t>(place->member)].field);
+  else if (declared.members.empty()) good = in_range(declared.field);
   else
     for (const auto& member : declared.members) good = good && in_range(member.field);
   if (!good) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
   return {};
 }
 
-bool GenericSubsystem::submit_write(std::span<const pus::ParameterAccess::Write> writes, const pus::Request&) {
+std::expected<void, pus::FailureCode> GenericSubsystem::submit_write(
+    std::span<const pus::ParameterAccess::Write> writes, const pus::Request&) {
   std::vector<ParameterWrite> batch;
   for (const auto& write : writes)
-    if (const auto index = dictionary_.index_of(write.id)) batch.push_back({*index, -1, write.value});
-  if (!writes_.enqueue(dictionary_, batch)) return false;
+    if (const auto place = dictionary_.place_of(write.id)) batch.push_back({place->index, place->member, write.value});
+  if (const auto queued = writes_.enqueue(dictionary_, batch); !queued)
+    return std::unexpected{queued.error().code == ErrorCode::OutOfRange ? pus::FailureCode::CapacityExceeded
+                                                                        : pus::FailureCode::Busy};
   // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
   const bool parked = parked_ticket_.load(std::memory_order_acquire) == rest_ticket_.load(std::memory_order_relaxed);
   if (!wanted_.load(std::memory_order_relaxed) && parked) writes_.apply(dictionary_);
-  return true;
+  return {};
 }
 
 }  // namespace hirosco

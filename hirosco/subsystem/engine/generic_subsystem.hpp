@@ -147,7 +147,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::expected<std::size_t, ErrorCode> read(std::uint32_t parameter, MutableOctets big_endian) override;
   std::size_t size_of(std::uint32_t parameter) override;
   std::expected<void, pus::FailureCode> check_write(std::uint32_t parameter, Octets value) override;
-  bool submit_write(std::span<const pus::ParameterAccess::Write> writes, const pus::Request& request) override;
+  std::expected<void, pus::FailureCode> submit_write(std::span<const pus::ParameterAccess::Write> writes,
+                                                     const pus::Request& request) override;
   // LinkServiceOwner
   const descriptor::Requires* find_required(std::string_view set) override;
   const LinkOutputSlot* find_provided(std::string_view set) override;

@@ -357,6 +357,41 @@ TEST_F(GenericSubsystemTest, AllWritesOfARequestTakeEffectAtOneCycleBoundary) {
   EXPECT_EQ(rig.outcome(request), "1 3 7");
 }
 
+TEST_F(GenericSubsystemTest, NoCycleSeesHalfAGroupHoweverRequestsAndCyclesAlternate) {
+  rig.bring_to(State::Operational);
+  rig.send(20, 3, gains(0, 0));
+  rig.service();
+  rig.cycle();
+  probe.record_gains = true;
+  int sent = 0;
+  for (int i = 1; i <= 60; ++i) {
+    for (int burst = i % 4; burst > 0; --burst) {
+      ++sent;
+      rig.send(20, 3, gains(sent, sent));
+    }
+    if (i % 3 == 0) rig.send(20, 3, gains(sent, 1e6));  // refused as a whole
+    if (i % 2 == 0) rig.service();
+    rig.cycle();
+  }
+  rig.settle();
+  ASSERT_EQ(probe.kp.load(), sent);
+  EXPECT_GE(probe.gains_seen.size(), 60U);
+  for (const auto& [kp, kd] : probe.gains_seen) EXPECT_EQ(kp, kd);
+  EXPECT_TRUE(std::ranges::is_sorted(probe.gains_seen));
+}
+
+TEST_F(GenericSubsystemTest, AGroupThatIsLargerThanTheCycleEverTakesIsRefusedAsSuch) {
+  rig.bring_to(State::Operational);
+  std::vector<std::byte> data(1 + 255 * 12);
+  OctetWriter writer{data};
+  writer.put(std::uint8_t{255});
+  for (int i = 0; i < 255; ++i) writer.put(ParameterId{10, Type::Double, 2}.wire()).put(1.0);
+  const auto request = rig.send(20, 3, data);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(request), "1 4:0104fe");
+  EXPECT_EQ(probe.kp.load(), 3.0);
+}
+
 TEST_F(GenericSubsystemTest, WhileTheCycleRestsAWriteTakesEffectAtOnce) {
   rig.set_state_now(State::PreOperational);
   rig.send(20, 3, gains(11, 12));
@@ -369,8 +404,9 @@ TEST_F(GenericSubsystemTest, AValueOutOfItsDeclaredRangeIsNotTaken) {
   rig.set_state_now(State::PreOperational);
   const auto request = rig.send(20, 3, gains(11, 100.5));
   rig.settle();
-  EXPECT_THAT(rig.outcome(request), HasSubstr("4:0105"));
+  EXPECT_EQ(rig.outcome(request), "1 4:010501000a0a03") << "KD, the second of the request";
   EXPECT_EQ(probe.kd.load(), 4.0);
+  EXPECT_EQ(probe.kp.load(), 3.0) << "the gain that would fit does not go without the other";
 }
 
 // --- telemetry of listings 1 and 2 -------------------------------------------------------------------------------------

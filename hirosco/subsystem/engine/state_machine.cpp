@@ -276,7 +276,7 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
   configuration_ = &configuration;
   for (const auto& initial : configuration.initial) {
     const int member = initial.parameter.member ? static_cast<int>(*initial.parameter.member) : -1;
-    if (!dictionary_.set_from_doubles(initial.parameter.parameter, member, initial.values))
+    if (!dictionary_.set(initial.parameter.parameter, member, initial.values))
       return mismatch("initial value of " + initial.parameter.text);
   }
   CyclePlan plan;

@@ -161,8 +161,7 @@ TEST_F(Commissioning, AnotherConfigurationIsRefusedWhicheverOfThemStandsFirst) {
 
 TEST_F(Commissioning, AnInitialValueOfAWholeStructureSetsAllOfIt) {
   Probe author;
-  Rig other{author, changed(R"(<Initial><ParamRef name="KP" value="30"/></Initial>)",
-                            R"(<Initial><ParamRef name="CUR_VALUES" value="7 0.25"/></Initial>)")};
+  Rig other{author, changed(R"(<Set parameter="KP" value="30"/>)", R"(<Set parameter="CUR_VALUES" value="7 0.25"/>)")};
   other.set_state_now(State::PreOperational);
   const auto configured = other.configure(2);
   other.service();
@@ -249,8 +248,7 @@ TEST_F(Commissioning, AConfigurationWithoutThePortsThatItNeedsNeverRuns) {
 
 TEST_F(Commissioning, AnInitialValueOfAMemberIsSetAndTheOthersStay) {
   Probe author;
-  Rig other{author, changed(R"(<Initial><ParamRef name="KP" value="30"/></Initial>)",
-                            R"(<Initial><ParamRef name="CUR_VALUES.STATE" value="7"/></Initial>)")};
+  Rig other{author, changed(R"(<Set parameter="KP" value="30"/>)", R"(<Set parameter="CUR_VALUES.STATE" value="7"/>)")};
   other.set_state_now(State::PreOperational);
   const auto configured = other.configure(2);
   other.service();

@@ -65,7 +65,7 @@ inline const std::string probe_descriptor = R"(<Subsystem name="PROBE" id="10">
         <Field name="ENABLE" type="UINT8"/>
       </Requires>
     </RealTimeLinkService>
-    <Initial><ParamRef name="KP" value="30"/></Initial>
+    <Set parameter="KP" value="30"/>
   </Configuration>
   <Configuration name="WITH_ARM" id="3" priority="60" sampling_us="2000">
     <Device name="ARM" silence="3" silence_reduced="40"><Endnode transfer="shared_memory" address="arm"/></Device>

@@ -32,7 +32,7 @@ ArmParameters arm_of(const CraftOptions& options) {
 }
 
 /// Initial values of the dictionary and those that configurations set over them.
-void each_initial(descriptor::Mission& mission, const std::function<void(std::string, std::vector<double>&)>& visit) {
+void each_initial(descriptor::Mission& mission, const std::function<void(std::string, std::vector<Value>&)>& visit) {
   for (auto& member : mission.subsystems) {
     const std::string owner = member.subsystem.name + ".";
     for (auto& parameter : member.subsystem.parameters) visit(owner + parameter.field.name, parameter.init);
@@ -44,9 +44,10 @@ void each_initial(descriptor::Mission& mission, const std::function<void(std::st
 void edit(descriptor::Mission& mission, const CraftOptions& options) {
   if (!options.hand_of_mission) hand_rests(mission);
   if (!options.start_mode.empty()) mission.start_mode = options.start_mode;
-  each_initial(mission, [&](const std::string& name, std::vector<double>& init) {
-    if (const auto value = options.initial.find(name); value != options.initial.end()) init = {value->second};
-    if (name == "JOYSTICK.FORCE_SCALE" && !init.empty()) init[0] *= options.plant.force_scale;
+  each_initial(mission, [&](const std::string& name, std::vector<Value>& init) {
+    if (const auto value = options.initial.find(name); value != options.initial.end()) init = {Number{value->second}};
+    if (name == "JOYSTICK.FORCE_SCALE" && !init.empty())
+      init[0] = Number{std::get<Number>(init[0]).real() * options.plant.force_scale};
   });
   if (options.cycles_per_report == 0) return;
   for (auto& member : mission.subsystems)

@@ -64,12 +64,12 @@ using Notice = std::optional<FailureNotice>;
   const auto count = reader.get<std::uint8_t>();
   for (unsigned i = 0; i < count && reader.good(); ++i) {
     const auto id = reader.get<std::uint32_t>();
-    const auto parameter = std::ranges::find_if(subsystem.parameters, [&](const descriptor::Parameter& candidate) {
-      return ParameterId{subsystem.id, candidate.field.type, candidate.id}.wire() == id;
-    });
+    const auto place = descriptor::find_parameter(subsystem, id);
     // An unknown one hides the width of all behind it; the addressee refuses the whole (pus-c tailoring, ST[20]).
-    if (!reader.good() || parameter == subsystem.parameters.end()) return std::nullopt;
-    static_cast<void>(reader.get(parameter->octets()));
+    if (!reader.good() || !place) return std::nullopt;
+    const descriptor::Parameter* const parameter = &subsystem.parameters[place->parameter];
+    static_cast<void>(
+        reader.get(place->member ? parameter->members[*place->member].field.octets() : parameter->octets()));
     const bool opened = std::ranges::any_of(situation.mode.permits, [&](const descriptor::Permit& permit) {
       return (permit.subsystem == "*" || permit.subsystem == subsystem.name) &&
              listed(permit.parameters, parameter->field.name);

@@ -272,7 +272,16 @@ TEST(Permission, AParameterIsWrittenOnlyInItsStatesAndOnlyWhereTheModeOpensIt) {
   };
   mission.subsystems[0].subsystem.parameters = {parameter("GAIN", 3, testing::in_states({State::SafeOperational})),
                                                 parameter("LIMIT", 5, 0)};
-  mission.modes[open_mode].permits.front().parameters = {"GAIN"};
+  // Structures of one number each, which is known by an id of its own.
+  for (const auto& [name, member, states] : {std::tuple{"GAINS", 9, testing::in_states({State::SafeOperational})},
+                                             std::tuple{"LIMITS", 10, std::uint16_t{0}},
+                                             std::tuple{"OTHERS", 11, testing::in_states({State::SafeOperational})}}) {
+    auto structure = parameter(name, static_cast<std::uint8_t>(member), states);
+    structure.field.type = Type::Struct;
+    structure.members.emplace_back().id = static_cast<std::uint8_t>(member);
+    mission.subsystems[0].subsystem.parameters.push_back(structure);
+  }
+  mission.modes[open_mode].permits.front().parameters = {"GAIN", "GAINS", "LIMITS"};
   const LinkGraph links{mission};
   const auto write = [&](std::initializer_list<std::uint8_t> ids, State state, std::size_t mode, const Origin& origin) {
     std::vector<std::byte> data(1 + ids.size() * (4 + sizeof(double)));
@@ -294,6 +303,11 @@ TEST(Permission, AParameterIsWrittenOnlyInItsStatesAndOnlyWhereTheModeOpensIt) {
   EXPECT_EQ(write({3}, State::Operational, open_mode, ground), not_now);
   EXPECT_EQ(write({5}, State::SafeOperational, open_mode, ground), not_now);
   EXPECT_EQ(write({3, 5}, State::SafeOperational, open_mode, ground), not_now);
+  EXPECT_EQ(write({9, 3}, State::SafeOperational, open_mode, ground), 0) << "a member of GAINS";
+  EXPECT_EQ(write({9}, State::Operational, open_mode, ground), not_now);
+  EXPECT_EQ(write({9, 10}, State::SafeOperational, open_mode, ground), not_now) << "a member of what is never writable";
+  EXPECT_EQ(write({9, 5}, State::SafeOperational, open_mode, ground), not_now) << "what stands behind a member is seen";
+  EXPECT_EQ(write({11}, State::SafeOperational, open_mode, ground), wrong_mode);
   mission.modes[narrow_mode].permits.front().services = {20};
   EXPECT_EQ(write({3}, State::SafeOperational, narrow_mode, ground), wrong_mode);
   EXPECT_EQ(write({3}, State::SafeOperational, open_mode, Origin::subsystem(hand)),

@@ -87,7 +87,9 @@ function Field({subsystem, action, argument, text, on_text, result, focus}) {
   const error = result.error && text !== '' ? result.error : null;
   const placeholder = argument.type === 'TEXT' ? `text, at most ${argument.octets} octets` : range_text(argument) || argument.type.toLowerCase();
   return html`<label class=${`field ${error ? 'wrong' : ''}`}><span>${argument.name}${unit ? html` <small>${unit}</small>` : null}</span>
-    ${choices?.length ? html`<select data-test=${field} value=${text} onChange=${(event) => on_text(event.currentTarget.value)}>
+    ${argument.type === 'BOOL' && (argument.count ?? 1) === 1 ? html`<input data-test=${field} type="checkbox" checked=${judged(argument, text).value === 1}
+        onChange=${(event) => on_text(event.currentTarget.checked ? '1' : '0')} />` :
+      choices?.length ? html`<select data-test=${field} value=${text} onChange=${(event) => on_text(event.currentTarget.value)}>
         ${choices.map((one) => html`<option value=${String(one.value)}>${state_text(one.name)}${
           Number.isInteger(one.value) ? ` (${one.value})` : ''}</option>`)}</select>` :
       html`<input data-test=${field} type="text" inputmode=${argument.type === 'TEXT' ? 'text' : 'decimal'} autocomplete="off" spellcheck="false" value=${text}

@@ -47,7 +47,7 @@ function options_of(names, size, on_zoom) {
   const bands = [];
   names.forEach((name, i) => {
     const scale = columns.peek().get(name)?.unit ?? '';
-    const stepped = Boolean(columns.peek().get(name)?.enumeration?.length);
+    const stepped = Boolean(columns.peek().get(name)?.enumeration?.length) || columns.peek().get(name)?.type === 'BOOL';
     const stroke = colours[i % colours.length];
     series.push({label: name, scale, stroke, width: 1.4, points: {show: false}, spanGaps: false,
       paths: stepped ? uPlot.paths.stepped({align: 1}) : undefined},

@@ -30,7 +30,7 @@ export function first_plots() {
   if (described) return described.map((names) => names.filter((name) => columns.value.has(name))).filter((names) => names.length);
   const by_parameter = new Map();
   for (const column of columns.value.values()) {
-    if (column.enumeration?.length || /CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name)) continue;
+    if (column.type === 'TEXT' || column.enumeration?.length || /CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name)) continue;
     if (scene_of_mission.value === null && column.subsystem === 'SUPERVISOR') continue;
     const base = column.name.replace(/\[\d+\]$/, '');
     by_parameter.set(base, [...(by_parameter.get(base) ?? []), column.name]);

@@ -98,7 +98,7 @@ function by_base(list) {
 function Picker({on_pick}) {
   const [search, set_search] = useState('');
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
-  const found = [...columns.value.values()].filter((column) => words.every((word) => column.name.toLowerCase().includes(word)));
+  const found = [...columns.value.values()].filter((column) => column.type !== 'TEXT' && words.every((word) => column.name.toLowerCase().includes(word)));
   // The mission's own subsystems before those that every mission has.
   const own = mission.value?.subsystems.filter((one) => one.id >= 10) ?? [], common = mission.value?.subsystems.filter((one) => one.id < 10) ?? [];
   const groups = [...own, ...common].map(({name}) => [name, by_base(found.filter((column) => column.subsystem === name))]).filter(([, list]) => list.length);

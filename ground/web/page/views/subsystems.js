@@ -106,7 +106,7 @@ export function Values({name}) {
       const value = values.get(column.name)?.v;
       const {age_s, stale} = freshness(elements?.[0].name ?? column.name);
       return html`<tr key=${column.name} class=${stale ? 'stale' : ''}>
-        <td><a href=${`#/plots?p=${(elements ?? [column]).slice(0, 8).map((one) => encodeURIComponent(one.name)).join('+')}`} title="plot">${column.name.slice(name.length + 1)}</a></td>
+        <td>${column.type === 'TEXT' ? column.name.slice(name.length + 1) : html`<a href=${`#/plots?p=${(elements ?? [column]).slice(0, 8).map((one) => encodeURIComponent(one.name)).join('+')}`} title="plot">${column.name.slice(name.length + 1)}</a>`}</td>
         ${elements ? html`<td class="number" colspan="3"><${Bars} elements=${elements} /></td>` : html`<td class="number">${column.enumeration?.length ? state_text(value_text(value, column)) : value_text(value, column)}</td><td>${unit_text(column.unit)}</td>
         <td><${Bar} value=${value} column=${column} /></td>`}<td class="number age">${age_text(age_s)}</td></tr>`;
     })}</tbody></table>`)}</div>

@@ -237,22 +237,6 @@ std::optional<double> Attributes::watts(std::string_view name) {
   return std::nullopt;
 }
 
-std::vector<double> Attributes::numbers(std::string_view name) {
-  const auto* attribute = optional(name);
-  if (attribute == nullptr) return {};
-  std::vector<double> values;
-  for (const std::string_view part : words(attribute->value)) {
-    const auto value = to_double(part);
-    if (!value) {
-      problems_.add(*attribute, "E0111", in_quotes(part) + " is not a finite number");
-      return {};
-    }
-    values.push_back(*value);
-  }
-  if (values.empty()) problems_.add(*attribute, "E0109", fmt::format("attribute '{}' is empty", name));
-  return values;
-}
-
 bool Attributes::yes(std::string_view name, bool fallback) {
   const auto* attribute = optional(name);
   if (attribute == nullptr) return fallback;

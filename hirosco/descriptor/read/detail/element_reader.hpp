@@ -130,7 +130,6 @@ class Attributes {
   /// Electrical power, 1 mW to 1 MW.
   [[nodiscard]] std::optional<double> watts(std::string_view name);
   /// Numbers between white space; empty when one of them is none.
-  [[nodiscard]] std::vector<double> numbers(std::string_view name);
   [[nodiscard]] bool yes(std::string_view name, bool fallback);
 
   template <class E>
@@ -214,10 +213,15 @@ enum class Address { Loopback, Foreign, Malformed };
 
 /// True when the value fits the type and the range of `field`; else it is reported.
 bool check_value(Problems& problems, const xml::Attribute& at, const Field& field, const Number& value);
-/// The same of every value, which a double must hold exactly; reports the first that does not.
-bool check_values(Problems& problems, const xml::Attribute& at, const Field& field, const std::vector<double>& values);
-/// As many values as `field` has; empty when the attribute is absent or reported.
-[[nodiscard]] std::vector<double> read_values(Problems& problems, Attributes& attributes, std::string_view name,
-                                              const Field& field);
+/// "-1 to 2.5", "0 to inf"
+[[nodiscard]] std::string range_text(const Field& field);
+/// As many values as the fields of `name` have: numbers or the names that values of a field have, with blanks between them; of
+/// one TEXT the words. Empty when something was reported.
+[[nodiscard]] std::optional<std::vector<Value>> read_values(Problems& problems, const xml::Attribute& at,
+                                                            std::string_view name, std::span<const Field> fields,
+                                                            const std::vector<Enumeration>& enumerations);
+/// As many numbers as `field` has, which a double must hold exactly; empty when the attribute is absent or reported.
+[[nodiscard]] std::vector<double> read_numbers(Problems& problems, Attributes& attributes, std::string_view name,
+                                               const Field& field);
 
 }  // namespace hirosco::descriptor::detail

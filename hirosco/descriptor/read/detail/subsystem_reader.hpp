@@ -60,7 +60,7 @@ class SubsystemReader {
   [[nodiscard]] Endnode read_address(Attributes& attributes);
   /// An address belongs to one device: in all configurations, and its enable endnode to nothing else.
   void check_addresses();
-  void read_initial(const xml::Element& element, Configuration& configuration);
+  void read_set(const xml::Element& element, Configuration& configuration, Unique& names);
 
   // read_parameters.cpp
   /// True when the element names what every subsystem has: it may give a parameter its id, and is else reported.
@@ -69,6 +69,7 @@ class SubsystemReader {
   void read_enumeration(const xml::Element& element);
   void read_structure(const xml::Element& element);
   void read_parameter(const xml::Element& element);
+  void read_initial_values();
   void read_member(const xml::Element& element, Parameter& structure, Unique& names);
   /// A number that comes from outside has a range.
   void expect_range(const xml::Element& element, std::string_view what);
@@ -155,6 +156,7 @@ class SubsystemReader {
   std::size_t configurations_{0};    ///< that the descriptor has
   std::vector<Parameter> built_in_{framework_parameters()};
   std::vector<EnumerationUse> enumeration_uses_;
+  std::vector<std::pair<std::size_t, const xml::Attribute*>> initial_values_;  ///< of which parameter
   std::map<std::uint16_t, std::string> raised_by_;  ///< the function whose argument is first `of` a parameter
   std::vector<std::pair<const xml::Element*, Event>> framework_severities_;  ///< as the descriptor wants them
   std::map<std::string, std::vector<ParameterRef>, std::less<>> references_;  ///< by every spelling
