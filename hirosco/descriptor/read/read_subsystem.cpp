@@ -56,7 +56,8 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                               {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
                               {"CustomService", later(custom_services), max_custom_services},
                               {"Configuration", later(configurations), max_configurations}};
-  Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_};
+  Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_,
+                    self_test_within_};
   const std::vector<Child> service_rows = service_children(services);
   for (const Child& row : service_rows) children.push_back({row.name, later(services_elements), row.most});
   each_child(root, problems_, children);

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st17_test/self_test.hpp"
 
 namespace hirosco::pus {
 namespace {
@@ -55,6 +56,22 @@ TEST(PacketDescriber, NamesTheStageAndTheReasonOfARefusal) {
   OctetWriter writer{data};
   writer.put(std::uint32_t{0x180A'C005}).put(std::uint16_t{13});
   EXPECT_EQ(described_telemetry(1, 2, writer.written()), "TM[1,2] ARM not accepted ARM #5: not permitted in this mode");
+}
+
+TEST(PacketDescriber, NamesTheOutcomeOfASelfTestWithItsTimeAndReason) {
+  const auto data = write_self_test({.outcome = SelfTestOutcome::Failed,
+                                     .configuration = 2,
+                                     .at = OnboardTime{std::chrono::milliseconds{1'000'500}},
+                                     .code = FailureCode::ExecutionError,
+                                     .number = 2,
+                                     .reason = "wrong sign"});
+  EXPECT_EQ(described_telemetry(17, 129, data),
+            "TM[17,129] ARM SELF_TEST_OUTCOME OUTCOME=failed CONFIGURATION=2 TIME=1000.500 s CODE=514 NUMBER=2 "
+            "REASON='wrong sign'");
+  std::vector<std::byte> unknown = data;
+  unknown[0] = std::byte{9};
+  EXPECT_NE(described_telemetry(17, 129, unknown).find("OUTCOME=9 "), std::string::npos);
+  EXPECT_NE(described_telemetry(17, 129, Octets{data}.first(4)).find("TIME=?"), std::string::npos);
 }
 
 TEST(PacketDescriber, NamesAFunctionAndItsArguments) {

@@ -38,6 +38,7 @@ CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {
 
 void CycleLoop::prepare(CyclePlan plan) {
   plan_ = std::move(plan);
+  self_test_.forget();
   input_was_stale_.assign(plan_.inputs.size(), 0);
   state_ = State::PreOperational;
   first_ = true;
@@ -66,6 +67,7 @@ void CycleLoop::prepare(CyclePlan plan) {
 }
 
 void CycleLoop::release() {
+  self_test_.forget();
   for (LinkInputSlot& input : plan_.inputs) input.release();
   for (LinkOutputSlot& output : plan_.outputs) output.release();
   plan_ = {};
@@ -142,6 +144,10 @@ void CycleLoop::take_commands() noexcept {
         plan_.outputs[command->index].detach(command->link);
         report(ReportKind::OutputDetached, command->index, {}, command->link);
         break;
+      case CommandKind::SelfTest:
+        self_test_.begin(command->request, plan_.configuration->self_test_within);
+        if (state_ != State::SafeOperational) end_self_test(self_test_.leave(state_));
+        break;
     }
   }
 }
@@ -161,8 +167,18 @@ void CycleLoop::run_function(const CycleCommand& command) noexcept {
 
 void CycleLoop::enter(State state) noexcept {
   // A node that failed is not healed by an entry that was on its way already: the way down follows (hazard SF10).
+  const auto refuse = [&](const char* why) {
+    const AuthorsError reason{Error{ErrorCode::NotPermitted, why}};
+    answer({.kind = ReportKind::EntryRefused, .index = static_cast<std::uint16_t>(state)},
+           std::as_bytes(std::span{&reason, 1}));
+  };
   if (state == State::Operational && (inhibited_ & inhibited_by_failure) != 0)
-    return report(ReportKind::EntryRefused, static_cast<std::uint16_t>(state), {});
+    return refuse("a node had failed before");
+  // The service loop has looked, too; what voids it may have come in between.
+  if (state == State::Operational && plan_.configuration->self_test == descriptor::SelfTest::Required &&
+      !self_test_.passed())
+    return refuse("the required self test is not passed");
+  end_self_test(self_test_.leave(state));
   state_ = state;
   first_ = true;
   if (state == State::Operational) {
@@ -189,11 +205,27 @@ void CycleLoop::run_node(TimePoint planned) noexcept {
     case State::ErrorOperational: result = parts_.author.error_operational(cycle); break;
     default: break;
   }
-  if (result || state_ == State::ErrorOperational || (inhibited_ & inhibited_by_failure) != 0) return;
+  if ((inhibited_ & inhibited_by_failure) != 0) return;
+  if (result || state_ == State::ErrorOperational) return run_self_test(cycle);
   inhibit(inhibited_by_failure);
+  end_self_test(self_test_.fail_node());
   const AuthorsError failure{result.error()};
   answer({.kind = ReportKind::NodeFailed, .index = static_cast<std::uint16_t>(state_)},
          std::as_bytes(std::span{&failure, 1}));
+}
+
+/// In Safe-Operational only: there write_outputs() passes nothing on to an actuator, whatever the test does.
+void CycleLoop::run_self_test(Cycle cycle) noexcept {
+  if (!self_test_.running()) return;
+  cycle.first = self_test_.first(cycle.planned);
+  end_self_test(self_test_.take(parts_.author.self_test(cycle), cycle.planned));
+}
+
+void CycleLoop::end_self_test(const std::optional<SelfTestRun::End>& end) noexcept {
+  if (!end) return;
+  const AuthorsError reason{end->why};
+  answer({.kind = ReportKind::SelfTestEnded, .index = static_cast<std::uint16_t>(end->code), .request = end->request},
+         std::as_bytes(std::span{&reason, 1}));
 }
 
 void CycleLoop::note_stores() noexcept {

@@ -16,6 +16,7 @@
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 #include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
+#include "hirosco/subsystem/cycle/self_test_run.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 
 /// The cycle of a subsystem (architecture, rule 1): reads links and devices, runs the state's node, gates the actuators,
@@ -78,6 +79,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void release();
   [[nodiscard]] CyclePlan& plan() noexcept { return plan_; }
   [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
+  /// Whether the author's self test has passed in this configuration, and nothing has voided it.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
   [[nodiscard]] Parameter<CycleStatistics>& statistics() noexcept { return statistics_; }
   [[nodiscard]] Parameter<CycleTimes>& times() noexcept { return times_parameter_; }
   [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
@@ -112,6 +115,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void listen_to_supervisor() noexcept;
   void read_inputs(TimePoint started) noexcept;
   void run_node(TimePoint planned) noexcept;
+  void run_self_test(Cycle cycle) noexcept;
+  void end_self_test(const std::optional<SelfTestRun::End>& end) noexcept;
   void write_outputs(TimePoint planned) noexcept;
   void note_stores() noexcept;
   void note_own_writes() noexcept;
@@ -126,6 +131,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
 
   Parts parts_;
   CyclePlan plan_;
+  SelfTestRun self_test_;
   std::vector<BoundFunction> functions_;
   Parameter<CycleStatistics> statistics_;
   Parameter<CycleTimes> times_parameter_;
