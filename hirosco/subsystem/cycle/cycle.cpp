@@ -32,6 +32,8 @@ CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {
   std::size_t largest = 0;
   for (const auto& event : parts_.descriptor.events) largest = std::max(largest, pus::octets_of(event));
   event_buffer_.resize(largest);
+  for (const descriptor::Device& device : parts_.descriptor.devices)
+    if (device.actuator && !device.output.empty()) outputs_.push_back(std::make_unique<OutputParameter>(device));
   own_writes_octets_ = parts_.descriptor.parameters.size();
   own_writes_ = std::make_unique<std::atomic<std::uint8_t>[]>(own_writes_octets_);
 }
@@ -39,6 +41,11 @@ CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {
 void CycleLoop::prepare(CyclePlan plan) {
   plan_ = std::move(plan);
   self_test_.forget();
+  for (const auto& output : outputs_) {
+    output->clear();
+    for (DeviceSlot& slot : plan_.devices)
+      if (&slot.device() == &output->device()) slot.show_in(output.get());
+  }
   input_was_stale_.assign(plan_.inputs.size(), 0);
   state_ = State::PreOperational;
   first_ = true;
@@ -165,19 +172,21 @@ void CycleLoop::run_function(const CycleCommand& command) noexcept {
   }
 }
 
-void CycleLoop::enter(State state) noexcept {
+const char* CycleLoop::why_not(State state) const noexcept {
+  if (state != State::Operational) return nullptr;
   // A node that failed is not healed by an entry that was on its way already: the way down follows (hazard SF10).
-  const auto refuse = [&](const char* why) {
-    const AuthorsError reason{Error{ErrorCode::NotPermitted, why}};
-    answer({.kind = ReportKind::EntryRefused, .index = static_cast<std::uint16_t>(state)},
-           std::as_bytes(std::span{&reason, 1}));
-  };
-  if (state == State::Operational && (inhibited_ & inhibited_by_failure) != 0)
-    return refuse("a node had failed before");
+  if ((inhibited_ & inhibited_by_failure) != 0) return "a node had failed before";
   // The service loop has looked, too; what voids it may have come in between.
-  if (state == State::Operational && plan_.configuration->self_test == descriptor::SelfTest::Required &&
-      !self_test_.passed())
-    return refuse("the required self test is not passed");
+  const bool required = plan_.configuration->self_test == descriptor::SelfTest::Required;
+  return required && !self_test_.passed() ? "the required self test is not passed" : nullptr;
+}
+
+void CycleLoop::enter(State state) noexcept {
+  if (const char* const why = why_not(state)) {
+    const AuthorsError reason{Error{ErrorCode::NotPermitted, why}};
+    return answer({.kind = ReportKind::EntryRefused, .index = static_cast<std::uint16_t>(state)},
+                  std::as_bytes(std::span{&reason, 1}));
+  }
   end_self_test(self_test_.leave(state));
   state_ = state;
   first_ = true;
@@ -250,7 +259,11 @@ void CycleLoop::write_outputs(TimePoint planned) noexcept {
   // Inhibited means the declared safe output; only Error-Operational brings the device to a controlled stop (decision 22).
   const bool stopping = state_ == State::ErrorOperational;
   // The epoch that was checked in this cycle: an output under an older permission must not carry a newer one.
-  for (DeviceSlot& device : plan_.devices) device.write(permitted_epoch_, active, stopping);
+  const auto telling = state_ == State::Operational ? DeviceSlot::Telling::PutOut : DeviceSlot::Telling::Wish;
+  for (DeviceSlot& device : plan_.devices) {
+    device.write(permitted_epoch_, active, stopping);
+    device.tell(telling);
+  }
   for (LinkOutputSlot& output : plan_.outputs) output.write(planned, link_status());
 }
 

@@ -83,6 +83,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
   [[nodiscard]] Parameter<CycleStatistics>& statistics() noexcept { return statistics_; }
   [[nodiscard]] Parameter<CycleTimes>& times() noexcept { return times_parameter_; }
+  /// One for each actuator of the descriptor.
+  [[nodiscard]] std::span<const std::unique_ptr<OutputParameter>> outputs() const noexcept { return outputs_; }
   [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
 
   /// Whether the author's node wrote this parameter in the newest cycle: what anybody else writes would not last.
@@ -110,6 +112,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void answer(CycleReport head, Octets payload = {}) noexcept;
   void take_commands() noexcept;
   void run_function(const CycleCommand& command) noexcept;
+  /// Why a state is not to be entered; null: it may be.
+  [[nodiscard]] const char* why_not(State state) const noexcept;
   void enter(State state) noexcept;
   void check_permit() noexcept;
   void listen_to_supervisor() noexcept;
@@ -136,6 +140,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   Parameter<CycleStatistics> statistics_;
   Parameter<CycleTimes> times_parameter_;
   Parameter<LinkStatistics> link_statistics_;
+  std::vector<std::unique_ptr<OutputParameter>> outputs_;
   std::vector<std::byte> event_buffer_;  ///< room for the largest event of the descriptor
   struct Watched {
     const ParameterCell* cell;

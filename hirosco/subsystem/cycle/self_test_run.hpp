@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-// Safety module: cycle (docs/safety/modules.csv).
 #pragma once
 
 #include <atomic>

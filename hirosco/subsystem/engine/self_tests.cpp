@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/subsystem/engine/self_tests.hpp"
 
-
 #include "hirosco/pus/st17_test/test_service.hpp"
 
 namespace hirosco {
@@ -58,8 +57,7 @@ std::optional<pus::FailureNotice> SelfTests::keeps_from_operational(const descri
     case SelfTestOutcome::Failed: return notice.because({ErrorCode::NotPermitted, newest_.number, newest_.reason});
     case SelfTestOutcome::Void:
       return notice.because({ErrorCode::NotPermitted, 0, "it passed before a device was lost: run SELF_TEST again"});
-    default:
-      return notice.because({ErrorCode::NotPermitted, 0, "it has not run in this configuration: run SELF_TEST"});
+    default: return notice.because({ErrorCode::NotPermitted, 0, "it has not run in this configuration: run SELF_TEST"});
   }
 }
 

@@ -32,8 +32,8 @@ class SelfTests {
 
   [[nodiscard]] pus::SelfTestRecord record(bool passed) const;
   /// Why SET_STATE Operational is refused; nothing where it is not. `passed`: a pass is in force.
-  [[nodiscard]] std::optional<pus::FailureNotice> keeps_from_operational(
-      const descriptor::Configuration& configuration, bool passed) const;
+  [[nodiscard]] std::optional<pus::FailureNotice> keeps_from_operational(const descriptor::Configuration& configuration,
+                                                                         bool passed) const;
 
  private:
   void tell(const pus::Request& request);

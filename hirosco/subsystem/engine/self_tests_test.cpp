@@ -17,10 +17,10 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using ::testing::SizeIs;
 using testing::Probe;
 using testing::Rig;
 using testing::Sent;
+using ::testing::SizeIs;
 
 constexpr std::uint8_t test_service = 17, run_test = 128, test_report = 129, report_test = 130;
 
@@ -85,7 +85,8 @@ struct SelfTestRig : ::testing::Test {
     }
     const std::array<std::byte, 8> payload{};
     const auto status = write_status(
-        buffer, {.epoch = command.epoch, .sequence = command.sequence, .payload = Octets{payload}.first(payload_octets)});
+        buffer,
+        {.epoch = command.epoch, .sequence = command.sequence, .payload = Octets{payload}.first(payload_octets)});
     static_cast<void>(flow.send(status.value()));
   }
   void exchange(int cycles = 1) {
@@ -141,11 +142,19 @@ TEST_F(SelfTestRig, IsCalledCycleByCycleUntilItIsDoneAndReportsThat) {
 TEST_F(SelfTestRig, FailsWithTheReasonAndTheNumberOfItsAuthor) {
   up_to(State::SafeOperational);
   author.says = [] { return fail(ErrorCode::Internal, "sensor is broken", 42); };
-  EXPECT_EQ(run(), "1 3 8:0202" "ff0b" "000000000000002a" + words("sensor is broken"));
+  EXPECT_EQ(run(),
+            "1 3 8:0202"
+            "ff0b"
+            "000000000000002a" +
+                words("sensor is broken"));
   const auto reports = rig.reports(test_service, test_report);
   ASSERT_THAT(reports, SizeIs(1));
   EXPECT_EQ(reports[0].substr(0, 4), "0203");
-  EXPECT_EQ(reports[0].substr(4 + 14), "0202" "000000000000002a" "10" + words("sensor is broken"));
+  EXPECT_EQ(reports[0].substr(4 + 14),
+            "0202"
+            "000000000000002a"
+            "10" +
+                words("sensor is broken"));
   EXPECT_EQ(author.calls, 1);
 }
 
@@ -154,7 +163,11 @@ TEST_F(SelfTestRig, ThatIsNotDoneInItsTimeHasFailedWithThatReason) {
   author.says = [] { return Result<Step>{again}; };
   const Sent request = ask();
   EXPECT_EQ(after(request, 10), "1 3") << "18 of 20 ms";
-  EXPECT_EQ(after(request, 2), "1 3 8:0203" "ff09" "0000000000000014" + words("self test: not done in its time, ms"));
+  EXPECT_EQ(after(request, 2),
+            "1 3 8:0203"
+            "ff09"
+            "0000000000000014" +
+                words("self test: not done in its time, ms"));
   const int calls = author.calls;
   EXPECT_EQ(calls, 11) << "at 0, 2, ... 20 ms";
   exchange(5);
@@ -167,7 +180,11 @@ TEST_F(SelfTestRig, ThatItsAuthorDidNotWriteFails) {
   plain.bring_to(State::SafeOperational);
   const Sent request = plain.send(test_service, run_test, {});
   plain.settle();
-  EXPECT_EQ(plain.outcome(request), "1 3 8:0202" "ff02" "0000000000000000" + words("it has no self test"));
+  EXPECT_EQ(plain.outcome(request),
+            "1 3 8:0202"
+            "ff02"
+            "0000000000000000" +
+                words("it has no self test"));
 }
 
 TEST_F(SelfTestRig, IsRefusedInEveryStateButSafeOperational) {
@@ -233,7 +250,8 @@ TEST_F(SelfTestRig, IsGivenUpWhenTheSubsystemGoesElsewhere) {
     const Sent request = ask();
     exchange(3);
     EXPECT_EQ(go(next), "1 3 7");
-    EXPECT_EQ(rig.outcome(request).substr(0, 14), "1 3 8:0204ff0" + std::string{next == State::PostOperational ? "5" : "4"});
+    EXPECT_EQ(rig.outcome(request).substr(0, 14),
+              "1 3 8:0204ff0" + std::string{next == State::PostOperational ? "5" : "4"});
     EXPECT_EQ(told(), "0203") << "failed";
     if (next != State::PostOperational) static_cast<void>(go(State::PostOperational));
     ASSERT_EQ(go(State::Offline), "1 3 7");
@@ -247,7 +265,11 @@ TEST_F(SelfTestRig, IsGivenUpWhenItsNodeFails) {
   exchange(3);
   author.nodes[State::SafeOperational].fails = true;
   const std::string outcome = after(request, 6);
-  EXPECT_EQ(outcome, "1 3 8:0204" "ff05" "0000000000000000" + words("self test: the node of Safe-Operational failed"));
+  EXPECT_EQ(outcome,
+            "1 3 8:0204"
+            "ff05"
+            "0000000000000000" +
+                words("self test: the node of Safe-Operational failed"));
   EXPECT_EQ(rig.state(), State::ErrorOperational);
 }
 
@@ -277,7 +299,9 @@ struct RequiredSelfTest : SelfTestRig {
   static std::string refusal(std::string_view why, std::int64_t number = 0) {
     std::array<std::byte, 8> octets{};
     OctetWriter{octets}.put(number);
-    return "1 4:010a" "ff04" + testing::hex(octets) + words(why);
+    return "1 4:010a"
+           "ff04" +
+           testing::hex(octets) + words(why);
   }
   static constexpr const char* not_run = "it has not run in this configuration: run SELF_TEST";
 };
@@ -327,7 +351,11 @@ TEST_F(RequiredSelfTest, FailsWhenADeviceIsLostWhileItRuns) {
   const Sent request = ask();
   arm_answers = false;
   exchange(8);
-  EXPECT_EQ(rig.outcome(request), "1 3 8:0204" "ff05" "0000000000000000" + words("self test: a device was lost, number"));
+  EXPECT_EQ(rig.outcome(request),
+            "1 3 8:0204"
+            "ff05"
+            "0000000000000000" +
+                words("self test: a device was lost, number"));
 }
 
 TEST_F(RequiredSelfTest, IsVoidAfterErrorOperationalAndInTheNextConfiguration) {
@@ -362,7 +390,11 @@ TEST_F(RequiredSelfTest, IsLookedAtAgainByTheCycleThatWouldPutOut) {
   EXPECT_EQ(rig.events(testing::arm_lost), 1);
   EXPECT_EQ(rig.outcome(entry), "1 3") << "it is on its way";
   exchange(4);
-  EXPECT_EQ(rig.outcome(entry), "1 3 8:0202" "ff04" "0000000000000000" + words("the required self test is not passed"));
+  EXPECT_EQ(rig.outcome(entry),
+            "1 3 8:0202"
+            "ff04"
+            "0000000000000000" +
+                words("the required self test is not passed"));
   EXPECT_EQ(rig.state(), State::ErrorOperational);
   EXPECT_THAT(torques, ::testing::Each(-1.0));
 }

@@ -113,6 +113,7 @@ Result<Step> GenericSubsystem::initialise_software() {
   publish(descriptor::framework_parameter::cycle_stats, cycle_.statistics());
   publish(descriptor::framework_parameter::cycle_times, cycle_.times());
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
+  for (const auto& output : cycle_.outputs()) publish(output->name(), *output);
   if (step) check_introduction();
   if (!problems_.empty()) {
     problems_text_ = short_words_of(problems_.front());

@@ -14,6 +14,8 @@ void Way::add(const descriptor::Subsystem& subsystem, const descriptor::Configur
   if (from != State::PreOperational) pre_.push_back(to_state(subsystem.id, State::PreOperational));
   configure_.push_back(step("configure", subsystem.id, {configuration.id}));
   if (to >= State::SafeOperational) safe_.push_back(to_state(subsystem.id, State::SafeOperational));
+  if (to >= State::Operational && configuration.self_test == descriptor::SelfTest::Required)
+    self_test_.push_back(step("self_test", subsystem.id, {configuration.id}));
   if (to >= State::Operational) operational_.push_back(to_state(subsystem.id, State::Operational));
 }
 

@@ -9,7 +9,8 @@
 
 namespace hirosco::supervisor {
 
-/// From where subsystems are to where a mode wants them, as stages of a procedure: what is the same already is left out.
+/// From where subsystems are to where a mode wants them, as stages of a procedure: what is the same already is left out. A
+/// configuration that requires its self test runs it before Operational.
 class Way {
  public:
   void add(const descriptor::Subsystem& subsystem, const descriptor::Configuration& configuration,
@@ -19,11 +20,11 @@ class Way {
   /// At the end.
   void enter(const descriptor::Mode& mode);
   [[nodiscard]] std::vector<Stage> stages() const {
-    return {down_, pre_, configure_, link_, safe_, operational_, mode_};
+    return {down_, pre_, configure_, link_, safe_, self_test_, operational_, mode_};
   }
 
  private:
-  Stage down_, pre_, configure_, link_, safe_, operational_, mode_;
+  Stage down_, pre_, configure_, link_, safe_, self_test_, operational_, mode_;
 };
 
 }  // namespace hirosco::supervisor

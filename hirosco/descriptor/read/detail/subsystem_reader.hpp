@@ -66,7 +66,11 @@ class SubsystemReader {
   // read_parameters.cpp
   /// True when the element names what every subsystem has: it may give a parameter its id, and is else reported.
   bool read_built_in(const xml::Element& element);
+  /// The parameters of actuators, once these are known.
+  void imply_outputs();
   void imply_parameters();
+  void check_built_in_ids(const Parameter& built_in, const Field& field, std::uint8_t id);
+  void read_parameter_element(const xml::Element& element);
   void read_enumeration(const xml::Element& element);
   void read_structure(const xml::Element& element);
   void read_parameter(const xml::Element& element);
