@@ -188,6 +188,9 @@ TEST(SubsystemDescriptor, FillsTheConfiguration) {
   EXPECT_EQ(coupled->name, "COUPLED");
   EXPECT_EQ(coupled->priority, 80);
   EXPECT_EQ(coupled->sampling, 500us);
+  EXPECT_EQ(coupled->self_test, SelfTest::Required);
+  EXPECT_EQ(coupled->self_test_within, 2s);
+  EXPECT_EQ(robot.find_configuration("STANDALONE")->self_test, SelfTest::Optional);
   const Provides& state = coupled->provides.at(0);
   EXPECT_EQ(state.terms.methods, std::vector{LinkMethod::SharedMemory});
   EXPECT_EQ(state.parameters.at(0).member, 1);
