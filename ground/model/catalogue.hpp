@@ -72,7 +72,7 @@ class Catalogue {
   /// The words there; none where a number stands.
   [[nodiscard]] std::string words(const Place& place, Octets source_data) const;
 
-  /// Requests by name: SET_STATE, CONFIGURE, PING, functions of the descriptor, requests of its own services.
+  /// Requests by name, as pus::requests_of() lists them.
   [[nodiscard]] std::vector<descriptor::Function> functions_of(const descriptor::Subsystem& subsystem) const;
   /// What the values of an argument are called: by its enumeration, or states, configurations, modes, links.
   [[nodiscard]] std::vector<descriptor::EnumerationText> texts_of(

@@ -29,6 +29,14 @@ class Downlink final : public pus::TelemetrySink {
 };
 // [stamper]
 
+/// There is nothing here that could test itself.
+class NoSelfTest final : public pus::SelfTest {
+  std::expected<void, pus::FailureNotice> begin_self_test(const pus::Request&) override {
+    return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
+  }
+  [[nodiscard]] pus::SelfTestRecord newest_self_test() const override { return {}; }
+};
+
 int main() {
   // [ping]
   std::array<std::byte, 64> buffer;
@@ -38,7 +46,8 @@ int main() {
 
   Downlink downlink;
   pus::Verification verification{downlink};
-  pus::TestService service{verification, downlink};
+  NoSelfTest self_test;
+  pus::TestService service{verification, downlink, self_test};
   service.handle(telecommand.value(), pus::request_of(telecommand.value()));
   // [ping]
 }

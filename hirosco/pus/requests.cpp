@@ -3,6 +3,7 @@
 #include "hirosco/pus/requests.hpp"
 
 #include "hirosco/pus/st17_test/test_service.hpp"
+#include "hirosco/pus/standard_services.hpp"
 
 namespace hirosco::pus {
 
@@ -10,13 +11,18 @@ using descriptor::Function;
 
 std::vector<Function> requests_of(const descriptor::Subsystem& subsystem) {
   std::vector<Function> requests = common_functions();
-  Function ping;
-  ping.name = "PING";
-  ping.service = TestService::service_type;
-  ping.subtype = TestService::are_you_alive;
-  ping.description = "Are you alive? (service 17)";
-  ping.essential = true;
-  requests.push_back(std::move(ping));
+  for (const ServiceKind* service : standard_services())
+    for (const RequestKind& kind : service->requests) {
+      if (kind.words.empty()) continue;
+      Function request;
+      request.name = kind.name;
+      request.service = service->type;
+      request.subtype = kind.subtype;
+      request.states = kind.states;
+      request.essential = service->needs_of(kind.subtype) == Needs::Essential;
+      request.description = kind.words;
+      requests.push_back(std::move(request));
+    }
   requests.insert(requests.end(), subsystem.functions.begin(), subsystem.functions.end());
   for (const auto& service : subsystem.services)
     requests.insert(requests.end(), service.requests.begin(), service.requests.end());

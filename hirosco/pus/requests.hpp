@@ -13,7 +13,8 @@
 /// The requests of a subsystem by name, whatever service carries them: for clients, forms and words.
 namespace hirosco::pus {
 
-/// SET_STATE, CONFIGURE, PING, the functions of the descriptor, the requests of its own services.
+/// SET_STATE, CONFIGURE, what the framework's services have words for (PING, SELF_TEST), the functions of the descriptor, the
+/// requests of its own services.
 [[nodiscard]] std::vector<descriptor::Function> requests_of(const descriptor::Subsystem& subsystem);
 
 /// Whether it takes the way of what is essential, past what waits; a ping asks about the ordinary one.

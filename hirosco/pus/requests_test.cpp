@@ -58,7 +58,8 @@ TEST(Requests, AreThoseOfEverySubsystemOfItsFunctionsAndOfItsOwnServices) {
   std::string names;
   for (const auto& request : requests_of(mission.subsystems[0].subsystem))
     names += request.name + " " + std::to_string(request.service) + "," + std::to_string(request.subtype) + ";";
-  EXPECT_EQ(names, "SET_STATE 8,1;CONFIGURE 8,1;PING 17,1;DIM 8,1;BLINK 200,3;");
+  EXPECT_EQ(names,
+            "SET_STATE 8,1;CONFIGURE 8,1;PING 17,1;SELF_TEST 17,128;REPORT_SELF_TEST 17,130;DIM 8,1;BLINK 200,3;");
 }
 
 TEST(Requests, OfAnOwnServiceCarryTheirArgumentsInOrderAndNothingElse) {
@@ -96,6 +97,23 @@ TEST(Requests, WhatIsEssentialGoesAloneAndAPingDoesNot) {
   EXPECT_TRUE(goes_alone(stop));
 }
 
+TEST(Requests, OfEverySubsystemHaveNamesThatNoDescriptorMayTake) {
+  std::vector<std::string_view> names;
+  const auto requests = requests_of({});
+  for (const auto& request : requests) names.push_back(request.name);
+  EXPECT_TRUE(std::ranges::equal(names, descriptor::built_in_requests));
+}
+
+TEST(Requests, OfTheFrameworkSayWhatTheyDoAndWhereTheyArePermitted) {
+  const auto requests = requests_of({});
+  for (const auto& request : requests) {
+    EXPECT_FALSE(request.description.empty()) << request.name;
+    EXPECT_EQ(request.permitted_in(descriptor::State::Operational), request.name != "SELF_TEST");
+    EXPECT_TRUE(request.permitted_in(descriptor::State::SafeOperational));
+    EXPECT_EQ(request.essential, request.name == "PING");
+  }
+}
+
 std::string described(const descriptor::Mission& mission, std::uint8_t service, std::uint8_t subtype, Octets data) {
   std::array<std::byte, 256> buffer;
   const auto packet = write_telecommand(buffer, {.apid = 10, .service = service, .subtype = subtype}, data);
@@ -117,6 +135,7 @@ TEST(Requests, HaveWordsOfTheirShape) {
   EXPECT_EQ(described(mission, 20, 3, values.written()),
             "TC[20,3] LAMP #0 SET_VALUES PARAMETERS=(PARAMETER=GAIN VALUE=1.5)");
   EXPECT_EQ(described(mission, 17, 1, {}), "TC[17,1] LAMP #0 PING");
+  EXPECT_EQ(described(mission, 17, 128, {}), "TC[17,128] LAMP #0 SELF_TEST");
 }
 
 TEST(Requests, HaveWordsForWhateverOctetsCome) {

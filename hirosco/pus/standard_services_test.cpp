@@ -10,6 +10,7 @@
 #include <memory>
 #include <set>
 
+#include "hirosco/pus/packet/cuc.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 #include "hirosco/pus/st05_event/event_service.hpp"
@@ -17,6 +18,7 @@
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 #include "hirosco/pus/st17_test/test_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
+#include "hirosco/pus/testing/played_self_test.hpp"
 #include "hirosco/pus/testing/recording_sink.hpp"
 
 /// What a service says of itself is what it takes.
@@ -36,6 +38,7 @@ void append(Bytes& data, const Part& part) {
       data.resize(data.size() + part.count - 1);
       break;
     case Form::Word: data.insert(data.end(), {std::byte{1}, std::byte{'A'}}); break;
+    case Form::Time: data.resize(data.size() + cuc_octets); break;
     case Form::List:
       data.push_back(std::byte{1});
       for (const Part& one : part.repeated()) append(data, one);
@@ -87,7 +90,8 @@ class Table : public ::testing::Test {
   HousekeepingService housekeeping_{subsystem_, sampler_, verification_, sink_};
   EventService events_{subsystem_.events, verification_, sink_};
   FunctionService functions_{subsystem_.functions, {}, nobody_, verification_};
-  TestService test_{verification_, sink_};
+  testing::PlayedSelfTest self_test_;
+  TestService test_{verification_, sink_, self_test_};
   ParameterService parameters_{nobody_, verification_, sink_};
   std::vector<Service*> services_{&housekeeping_, &events_, &functions_, &test_, &parameters_};
 };
@@ -104,7 +108,7 @@ TEST_F(Table, TakesDataOfTheShapeThatItDeclaresAndNoneThatIsAnOctetShort) {
       EXPECT_EQ(answer(*service, request.subtype, data), wrong_length);
       ++seen;
     }
-  EXPECT_EQ(seen, 9 + 3 + 1 + 1 + 2);
+  EXPECT_EQ(seen, 9 + 3 + 1 + 3 + 2);
 }
 
 TEST_F(Table, HasEverySubtypeThatAServiceTakes) {
@@ -136,15 +140,22 @@ std::string table_of_services() {
       text += (text.empty() ? "" : ", ") + std::to_string(kind.subtype) + " " + std::string{kind.name};
     return text.empty() ? std::string{"none"} : text;
   };
-  const auto asks = [](const ServiceKind& service) {
-    if (service.requests.empty()) return "nobody";
-    switch (service.needs) {
+  const auto may = [](Needs needs) -> std::string {
+    switch (needs) {
       case Needs::Nothing: return "as mode and state permit";
       case Needs::Essential: return "everybody, always";
       case Needs::SupervisorAsks: return "the supervisor";
       case Needs::SupervisorAnswers: return "everybody, always; the supervisor answers";
     }
     return "";
+  };
+  const auto asks = [&](const ServiceKind& service) {
+    if (service.requests.empty()) return std::string{"nobody"};
+    std::string text = may(service.needs), others;
+    for (const auto& request : service.requests)
+      if (const Needs needs = service.needs_of(request.subtype); needs != service.needs)
+        others += (others.empty() ? "" : ", ") + std::to_string(request.subtype) + ": " + may(needs);
+    return others.empty() ? text : text + "; " + others;
   };
   for (const ServiceKind* service : standard_services())
     table += "| ST[" + std::to_string(service->type) + "] " + std::string{service->name} + " | " +

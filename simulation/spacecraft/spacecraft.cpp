@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/requests.hpp"
 #include "simulation/devices/device_arguments.hpp"
 
 namespace hirosco::simulation {
@@ -392,12 +392,11 @@ CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view 
   CommandOutcome outcome;
   const auto* member = parts_.mission.find_subsystem(subsystem);
   const descriptor::Subsystem& target = member != nullptr ? member->subsystem : parts_.mission.supervisor;
-  const auto common = pus::common_functions();
-  const auto built_in = std::ranges::find(common, name, &descriptor::Function::name);
-  const auto* function = built_in != common.end() ? &*built_in : target.find_function(name);
-  if (function == nullptr) return outcome;
+  const std::vector<descriptor::Function> requests = pus::requests_of(target);
+  const auto request = std::ranges::find(requests, name, &descriptor::Function::name);
+  if (request == requests.end()) return outcome;
   const std::vector<std::optional<Value>> given(arguments.begin(), arguments.end());
-  const auto data = pus::encode_call(*function, pus::GivenValues{given});
+  const auto data = pus::encode_request(*request, pus::GivenValues{given});
   if (!data) return outcome;
   static constexpr std::uint16_t modulo = 16'384;
   std::array<std::byte, max_packet_octets> buffer;
@@ -406,8 +405,8 @@ CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view 
                                              {.apid = target.id,
                                               .sequence_count = sequence_,
                                               .ack = pus::ack_all,
-                                              .service = 8,
-                                              .subtype = 1,
+                                              .service = request->service,
+                                              .subtype = request->subtype,
                                               .source = ground_source},
                                              *data);
   if (!packet) return outcome;

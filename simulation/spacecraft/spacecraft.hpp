@@ -93,7 +93,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   /// Called after every cycle of the fastest subsystem, for traces and checks at cycle rate.
   void on_cycle(std::function<void(std::string_view subsystem, TimePoint)> watch) { watch_ = std::move(watch); }
 
-  /// Sends a function from ground with all acknowledgements and runs until it has ended, at most for `limit`. Arguments
+  /// Sends a request by its name from ground with all acknowledgements and runs until it has ended, at most for `limit`. Arguments
   /// stand in declared order, arrays element by element.
   CommandOutcome command(std::string_view subsystem, std::string_view function, const std::vector<Value>& arguments,
                          Duration limit = 10s);

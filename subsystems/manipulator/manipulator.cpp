@@ -221,10 +221,17 @@ manipulator::Gains Manipulator::wanted_gains() const noexcept {
   return {kp_.load(), kd_.load(), effort_n_m, effort_n_m / 3};
 }
 
-void Manipulator::control(const Cycle& cycle) noexcept {
+manipulator::Measured Manipulator::measured() const noexcept {
   const RobotInput& in = robot_.input();
-  const manipulator::Measured measured{in.motor_position_rad, in.motor_velocity_rad_per_s, in.position_rad,
-                                       in.velocity_rad_per_s, in.torque_n_m};
+  return {in.motor_position_rad, in.motor_velocity_rad_per_s, in.position_rad, in.velocity_rad_per_s, in.torque_n_m};
+}
+
+/// From the law to what is put out.
+void Manipulator::drive(const Joints& desired_rad, const manipulator::Measured& measured) noexcept {
+  robot_.output().torque_n_m = law_(*controller_, desired_rad, measured, gains_.now());
+}
+
+void Manipulator::control(const Cycle& cycle) noexcept {
   const manipulator::Gains wanted = wanted_gains();
   const manipulator::Gains& gains = gains_.advance(wanted, seconds(cycle.period));
   gain_values_.store({gains.kp_n_m_per_rad, gains.kd_n_m_s_per_rad});
@@ -232,8 +239,8 @@ void Manipulator::control(const Cycle& cycle) noexcept {
     finish(*gains_call_);
     gains_call_.reset();
   }
-  robot_.output().tool = tool_.busy() ? tool_.wanted() : in.tool;
-  robot_.output().torque_n_m = controller_->motor_torque(desired_position_.load(), measured, gains);
+  robot_.output().tool = tool_.busy() ? tool_.wanted() : robot_.input().tool;
+  drive(desired_position_.load(), measured());
   desired_velocity_.store(controller_->desired_velocity_rad_s());
 }
 

@@ -22,9 +22,10 @@ namespace hirosco {
 /// position of a handle, or on a programme. What depends on its shape, or on where it stands, a class derived from it adds.
 class Manipulator : public Subsystem {
  public:
-  /// `surface`: what the arm could run into; nullptr: nothing.
-  explicit Manipulator(std::unique_ptr<const manipulator::Surface> surface = nullptr) noexcept
-      : surface_{std::move(surface)} {}
+  /// `surface`: what the arm could run into; nullptr: nothing. `law`: how torques come from its controller.
+  explicit Manipulator(std::unique_ptr<const manipulator::Surface> surface = nullptr,
+                       manipulator::Law law = manipulator::joint_law) noexcept
+      : surface_{std::move(surface)}, law_{law} {}
 
  protected:
   /// Author's failure codes: why a function was refused or ended without its effect. Each arm's descriptor names them.
@@ -68,6 +69,7 @@ class Manipulator : public Subsystem {
   Result<> safe_operational(const Cycle& cycle) noexcept final;
   Result<> operational(const Cycle& cycle) noexcept final;
   Result<> error_operational(const Cycle& cycle) noexcept final;
+  Result<Step> self_test(const Cycle& cycle) noexcept final;
 
   void bind_functions();
   [[nodiscard]] Result<> take_joints_of_the_descriptor();
@@ -85,6 +87,12 @@ class Manipulator : public Subsystem {
   void watch_tool() noexcept;
   void govern(const Cycle& cycle) noexcept;
   void control(const Cycle& cycle) noexcept;
+  [[nodiscard]] manipulator::Measured measured() const noexcept;
+  void drive(const manipulator::Joints& desired_rad, const manipulator::Measured& measured) noexcept;
+  [[nodiscard]] Result<> check_sensors() noexcept;
+  [[nodiscard]] Result<> check_law(std::size_t joint, double side) noexcept;
+  [[nodiscard]] manipulator::Joints wish(const manipulator::Joints& desired_rad,
+                                         const manipulator::Measured& measured) noexcept;
   void check_torque(const Cycle& cycle) noexcept;
   void check_temperature(const Cycle& cycle) noexcept;
   void stop_motion(pus::FailureCode why) noexcept;
@@ -115,6 +123,8 @@ class Manipulator : public Subsystem {
   DevicePort<manipulator::RobotInput, manipulator::RobotOutput> robot_;
 
   std::unique_ptr<const manipulator::Surface> surface_;
+  manipulator::Law law_;
+  std::size_t tried_{0};  ///< in a self test: each joint to each side
   manipulator::Joints home_rad_, lowest_rad_, highest_rad_;  ///< the descriptor's
   std::optional<manipulator::JointController> controller_;
   manipulator::Trajectory trajectory_;
@@ -140,5 +150,7 @@ class Manipulator : public Subsystem {
 [[nodiscard]] std::unique_ptr<Subsystem> make_arm();
 /// The two-joint robot of the demonstrator (paper 5), with contour, springs and programmes.
 [[nodiscard]] std::unique_ptr<Subsystem> make_manipulator();
+/// The same with another law.
+[[nodiscard]] std::unique_ptr<Subsystem> make_manipulator_with(manipulator::Law law);
 
 }  // namespace hirosco

@@ -10,6 +10,7 @@
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/time.hpp"
 
 namespace hirosco::supervisor {
 
@@ -23,9 +24,9 @@ class CommandDesk {
   /// A function, by its name.
   virtual void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
                        CommandDone done) = 0;
-  /// Any other request; memory travels beside it.
+  /// Any other request; memory travels beside it. `takes`: how long its execution may last besides.
   virtual void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
-                    const MemoryHandle& memory, CommandDone done) = 0;
+                    const MemoryHandle& memory, CommandDone done, Duration takes) = 0;
 };
 
 }  // namespace hirosco::supervisor

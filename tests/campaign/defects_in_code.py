@@ -166,9 +166,16 @@ DEFECTS = [
            "if (silent_cycles_ > silence_limit_ && !PLANTED) inhibit(",
            "subsystem_test", "SupervisorGone.TheCycleItselfInhibitsTheActuatorsInItsOwnCyclesThoughTheServiceLoopIsStuck"),
     # The entry into Operational forgot that a node had failed in the cycle before.
-    Defect("SF10 entry forgets failure", CYCLE, "(inhibited_ & inhibited_by_failure) != 0)\n    return report(",
-           "(inhibited_ & inhibited_by_failure) != 0 && !PLANTED)\n    return report(",
+    Defect("SF10 entry forgets failure", CYCLE, "if ((inhibited_ & inhibited_by_failure) != 0) return \"a node",
+           "if ((inhibited_ & inhibited_by_failure) != 0 && !PLANTED) return \"a node",
            "subsystem_test", "FailedNode.StaysInhibitedAndRefusesAnEntryIntoOperationalThatWasOnItsWay"),
+    # The pass of a self test that was voided on the way into Operational; the service loop alone had looked.
+    Defect("entry without the self test", CYCLE, "return required && !self_test_.passed() ?",
+           "return !PLANTED && required && !self_test_.passed() ?",
+           "subsystem_test", "RequiredSelfTest.IsLookedAtAgainByTheCycleThatWouldPutOut"),
+    Defect("pass outlives its device", "hirosco/subsystem/cycle/self_test_run.cpp",
+           "lose_device(std::int64_t index) noexcept {\n  passed_", "lose_device(std::int64_t index) noexcept {\n  if (!PLANTED) passed_",
+           "subsystem_test", "RequiredSelfTest.IsVoidAfterADeviceWasLost"),
     # One bit of the page decided: flipped, it enabled.
     Defect("SF19 one bit of the page", CYCLE, "(epoch != entered_epoch_ || !parts_.permit.permits(epoch))",
            "(epoch != entered_epoch_ || (!PLANTED && !parts_.permit.permits(epoch)))",

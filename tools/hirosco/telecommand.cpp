@@ -10,6 +10,7 @@
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/requests.hpp"
+#include "hirosco/pus/words/describe.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
@@ -121,6 +122,13 @@ struct Encoded {
   return std::nullopt;
 }
 
+/// Printable, and without what would end a JSON string.
+[[nodiscard]] std::string words_of(const pus::Reason& reason) {
+  std::string text = pus::text_of(std::as_bytes(std::span{reason.text}));
+  std::ranges::replace_if(text, [](char c) { return c == '"' || c == '\\'; }, '\'');
+  return reason.number == 0 ? text : fmt::format("{} {}", text, reason.number);
+}
+
 /// Prints one verification report; true when it was the last of the request.
 [[nodiscard]] bool print_report(const pus::TelemetryView& report, double after_ms, bool json, bool& success) {
   OctetReader reader{report.source_data()};
@@ -135,6 +143,7 @@ struct Encoded {
   if (failure) {
     const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
     detail += fmt::format(": {} (code {})", to_text(code), static_cast<unsigned>(code));
+    if (const auto reason = pus::reason_in(reader.rest())) detail += ": " + words_of(*reason);
   }
   if (json)
     fmt::print("{{\"report\":\"1,{}\",\"text\":\"{}{}\",\"from\":{},\"after_ms\":{:.2f}}}\n", subtype, names[subtype],

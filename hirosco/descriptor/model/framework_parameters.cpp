@@ -3,6 +3,9 @@
 #include "hirosco/descriptor/model/framework_parameters.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
 
 namespace hirosco::descriptor {
 namespace {
@@ -40,6 +43,27 @@ std::vector<Parameter> framework_parameters() {
       structure(framework_parameter::link_stats, 41, {member("RECEIVED", 242, Uint32), member("LOST", 243, Uint32)})};
 }
 
+std::string output_parameter(const Device& device) {
+  std::string name = device.name;
+  std::ranges::replace_if(name, [](char c) { return c == '-' || c == '.'; }, '_');
+  return name + "_OUTPUT";
+}
+
+std::vector<Parameter> output_parameters(const std::vector<Device>& devices) {
+  constexpr std::uint8_t first_structure = 42, highest_member = 239;
+  std::vector<Parameter> parameters;
+  std::map<Type, std::uint8_t> used;
+  for (const Device& device : devices) {
+    if (!device.actuator || device.output.empty()) continue;
+    std::vector<Parameter::Member> members;
+    for (const Device::Output& output : device.output)
+      members.push_back({output.field, static_cast<std::uint8_t>(highest_member - used[output.field.type]++)});
+    const auto id = static_cast<std::uint8_t>(first_structure + parameters.size());
+    parameters.push_back(structure(output_parameter(device).c_str(), id, std::move(members)));
+  }
+  return parameters;
+}
+
 void add_framework_parameters(Subsystem& subsystem) {
   if (std::ranges::find(subsystem.enumerations, states_enumeration, &Enumeration::name) ==
       subsystem.enumerations.end()) {
@@ -48,7 +72,9 @@ void add_framework_parameters(Subsystem& subsystem) {
       states.texts.push_back({static_cast<std::int64_t>(row.value), std::string{row.text}});
     subsystem.enumerations.push_back(std::move(states));
   }
-  for (Parameter& parameter : framework_parameters())
+  std::vector<Parameter> all = framework_parameters();
+  std::ranges::move(output_parameters(subsystem.devices), std::back_inserter(all));
+  for (Parameter& parameter : all)
     if (subsystem.find_parameter(parameter.field.name) == nullptr) subsystem.parameters.push_back(std::move(parameter));
 }
 

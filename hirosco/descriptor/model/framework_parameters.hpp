@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
@@ -23,7 +24,16 @@ inline constexpr const char* link_stats = "LINK_STATS";
 
 /// CYCLE_STATS, CYCLE_TIMES and LINK_STATS, with the ids that are theirs where a descriptor gives no other.
 [[nodiscard]] std::vector<Parameter> framework_parameters();
-/// Appends them and STATES; those that are there stay as they are.
+
+/// "NAME_OUTPUT": what is put out to an actuator, or what its author would put out (adr 0073).
+[[nodiscard]] std::string output_parameter(const Device& device);
+/// Such a structure for each actuator, in their order, with the fields of its output.
+[[nodiscard]] std::vector<Parameter> output_parameters(const std::vector<Device>& devices);
+/// More actuators, or more output fields of one type, than these have no ids left.
+inline constexpr std::size_t most_actuators = 200;
+inline constexpr std::size_t most_output_fields = 200;
+
+/// Appends all of them and STATES; those that are there stay as they are.
 void add_framework_parameters(Subsystem& subsystem);
 
 }  // namespace hirosco::descriptor

@@ -111,5 +111,75 @@ TEST(FrameworkParameters, AddedTwiceAreThereOnce) {
   EXPECT_EQ(std::ranges::count(subsystem.enumerations, "STATES", &Enumeration::name), 1);
 }
 
+// --- outputs of actuators ----------------------------------------------------------------------------------------------
+
+const std::string two_actuators = R"(
+    <Device name="LAMP"><Output><Field name="LIT" type="UINT8" safe="0"/></Output></Device>
+    <Device name="ARM" actuator="yes"><Output><Field name="TORQUE" type="DOUBLE" count="2" unit="N m" minimum="-5" maximum="5" safe="0 0"/>
+      <Field name="BRAKE" type="UINT8" safe="1"/></Output></Device>
+    <Device name="left-hand.1" actuator="yes"><Output><Field name="FORCE" type="DOUBLE" safe="0"/></Output></Device>)";
+
+TEST(OutputParameters, AreTheOutputFieldsOfEachActuator) {
+  const auto subsystem = with(two_actuators).value.value();
+  EXPECT_EQ(subsystem.find_parameter("LAMP_OUTPUT"), nullptr) << "a lamp is no actuator";
+  const Parameter* arm = subsystem.find_parameter("ARM_OUTPUT");
+  ASSERT_NE(arm, nullptr);
+  EXPECT_EQ(arm->id, 42);
+  EXPECT_FALSE(arm->writable());
+  ASSERT_EQ(arm->members.size(), 2U);
+  EXPECT_EQ(arm->members[0].field.name, "TORQUE");
+  EXPECT_EQ(arm->members[0].field.count, 2U);
+  EXPECT_EQ(arm->members[0].field.unit, "N m");
+  EXPECT_EQ(arm->members[0].field.maximum, Number{5});
+  EXPECT_EQ(arm->members[0].id, 239);
+  EXPECT_EQ(arm->members[1].id, 239) << "of another type";
+  const Parameter* hand = subsystem.find_parameter("left_hand_1_OUTPUT");
+  ASSERT_NE(hand, nullptr) << "what a device's name may have and a parameter's may not";
+  EXPECT_EQ(hand->id, 43);
+  EXPECT_EQ(hand->members[0].id, 238);
+}
+
+TEST(OutputParameters, AreReferredToWhereverTheirDeviceIsDeclared) {
+  const std::string structure = R"(<HKService id="1" interval="1"><SampledOnce><ParamRef name="ARM_OUTPUT"/>
+    <ParamRef name="left_hand_1_OUTPUT.FORCE"/></SampledOnce></HKService>)";
+  EXPECT_EQ(problems_of(structure + two_actuators), "");
+  EXPECT_EQ(problems_of(two_actuators + structure), "");
+  EXPECT_EQ(
+      problems_of(two_actuators +
+                  R"(<HKService id="1" interval="1"><SampledOnce><ParamRef name="TORQUE"/></SampledOnce></HKService>)"),
+      "E0204 HKService 1 refers to 'TORQUE', which is not defined\n")
+      << "by the full name only";
+}
+
+TEST(OutputParameters, CollideWithAWordThatNamesThem) {
+  EXPECT_EQ(
+      problems_of(R"(<StructRef name="A" id="42"><ParamRef name="X" id="1" type="INT8"/></StructRef>)" + two_actuators),
+      "E0203 type and id of 'A', STRUCT 42, are those of 'ARM_OUTPUT', which every subsystem with this actuator has\n");
+  EXPECT_EQ(
+      problems_of(R"(<ParamRef name="X" id="239" type="UINT8"/>)" + two_actuators),
+      "E0203 type and id of 'X', UINT8 239, are those of 'ARM_OUTPUT', which every subsystem with this actuator has\n");
+  EXPECT_EQ(problems_of(R"(<ParamRef name="ARM_OUTPUT" id="1" type="UINT8"/>)" + two_actuators),
+            "E0213 'ARM_OUTPUT' is built in: every subsystem has it\n");
+  EXPECT_EQ(problems_of(R"(<StructRef name="CYCLE_STATS" id="42"/>)" + two_actuators),
+            "E0203 type and id of 'CYCLE_STATS', STRUCT 42, are those of 'ARM_OUTPUT', which every subsystem with this "
+            "actuator has\n");
+  EXPECT_EQ(problems_of(R"(<StructRef name="ARM_OUTPUT" id="7"/>
+    <StructRef name="A" id="42"><ParamRef name="X" id="1" type="INT8"/></StructRef>)" +
+                        two_actuators),
+            "");
+}
+
+TEST(OutputParameters, HaveIdsForTwoHundredFieldsOfAType) {
+  const auto actuators = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i)
+      text += "<Device name=\"D" + std::to_string(i) +
+              R"(" actuator="yes"><Output><Field name="F" type="INT8" safe="0"/></Output></Device>)";
+    return text;
+  };
+  EXPECT_EQ(problems_of(actuators(200)), "");
+  EXPECT_EQ(problems_of(actuators(201)), "E0232 no ids are left for the outputs of 'D200'\n");
+}
+
 }  // namespace
 }  // namespace hirosco::descriptor

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -128,6 +129,10 @@ struct Event {
   std::vector<Field> arguments;      ///< auxiliary data, in order
   Location at;
 };
+
+/// Requests that every subsystem has: no function or request of its own has one of these names.
+inline constexpr std::array<std::string_view, 5> built_in_requests{"SET_STATE", "CONFIGURE", "PING", "SELF_TEST",
+                                                                   "REPORT_SELF_TEST"};
 
 /// A request by name: a function of ST[08], whose argument ids count from 1 in order, or of a subsystem's own service.
 struct Function {
@@ -260,6 +265,10 @@ struct DeviceUse {
   Location at;
 };
 
+/// Whether Operational waits for a pass of the author's self test.
+enum class SelfTest : std::uint8_t { Optional, Required };
+inline constexpr Duration default_self_test_within = std::chrono::seconds{10};
+
 /// Shorter cycles cannot be kept, and somebody else would be told as hung for it.
 inline constexpr Duration least_sampling = std::chrono::microseconds{50};
 /// Above every cycle run the simulated devices and the supervisor's guard, which takes priority from a cycle that hangs.
@@ -275,6 +284,8 @@ struct Configuration {
   Duration budget{};  ///< most processor time that a cycle takes; 0 = not declared
   double power_w{0};  ///< most that it draws from Safe- to Post-Operational; 0 = not accounted
   CycleLimit overruns{3, 20};  ///< overruns in a row until the overrun event
+  SelfTest self_test{SelfTest::Optional};
+  Duration self_test_within{default_self_test_within};  ///< one that takes longer has failed
   std::vector<HousekeepingStructure> housekeeping;
   std::vector<Provides> provides;
   std::vector<Requires> requires_;
@@ -380,6 +391,11 @@ template <>
 struct EnumTexts<descriptor::MissingPolicy> {
   using enum descriptor::MissingPolicy;
   static constexpr auto table = enum_table<descriptor::MissingPolicy>({{Inhibit, "inhibit"}, {Hold, "hold"}});
+};
+template <>
+struct EnumTexts<descriptor::SelfTest> {
+  using enum descriptor::SelfTest;
+  static constexpr auto table = enum_table<descriptor::SelfTest>({{Optional, "optional"}, {Required, "required"}});
 };
 template <>
 struct EnumTexts<descriptor::StopKind> {

@@ -46,6 +46,8 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   read_budget(attributes, configuration);
   configuration.power_w = attributes.watts("power_W").value_or(0);
   configuration.overruns = read_limit(attributes, "overruns", "overruns_reduced", configuration.overruns);
+  configuration.self_test = attributes.one_of("self_test", SelfTest::Optional);
+  configuration.self_test_within = self_test_within_;
   configuration.provides = provides_;
   configuration.requires_ = requires_;
 
@@ -56,6 +58,7 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
                     structure_ids,
                     provided,
                     required,
+                    configuration.self_test_within,
                     true};
   Unique devices{"device", "E0201"};
   auto children = service_children(services);

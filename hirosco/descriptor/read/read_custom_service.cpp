@@ -64,7 +64,7 @@ void SubsystemReader::read_request(const xml::Element& element, CustomService& s
                   fmt::format("at most {}", max_request_octets));
   const std::size_t length = element.name.size() + 1;
   // One name, one request: whoever commands a subsystem by name need not know by which service it is carried.
-  if (request.name == "SET_STATE" || request.name == "CONFIGURE" || request.name == "PING")
+  if (std::ranges::find(built_in_requests, request.name) != built_in_requests.end())
     problems_.add(*element.find("name"), "E0213",
                   fmt::format("'{}' is built in: every subsystem has it", request.name));
   else if (!request.name.empty()) function_names_.add(request.name, request.at, problems_, length);

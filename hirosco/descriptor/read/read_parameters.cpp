@@ -34,30 +34,62 @@ bool SubsystemReader::read_built_in(const xml::Element& element) {
   Attributes attributes{element, problems_};
   static_cast<void>(attributes.name());
   found->id = attributes.required_integer<std::uint8_t>("id", 0, 255);
+  found->field.at = place(element.at);
   no_children(element, problems_);
   return true;
+}
+
+void SubsystemReader::read_parameter_element(const xml::Element& element) {
+  if (element.name == "StructRef") return read_structure(element);
+  if (element.name == "ParamRef") return read_parameter(element);
+  const Attributes none{element, problems_};
+  each_child(element, problems_,
+             {{"StructRef", [this](const auto& child) { read_structure(child); }},
+              {"ParamRef", [this](const auto& child) { read_parameter(child); }}});
+}
+
+void SubsystemReader::imply_outputs() {
+  std::size_t actuators = 0;
+  std::map<Type, std::size_t> fields;
+  for (const Device& device : subsystem_.devices) {
+    if (!device.actuator) continue;
+    bool too_many = ++actuators > most_actuators;
+    for (const Device::Output& output : device.output) too_many |= ++fields[output.field.type] > most_output_fields;
+    if (!too_many) continue;
+    return problems_.add(device.at, "E0232", fmt::format("no ids are left for the outputs of '{}'", device.name),
+                         fmt::format("a subsystem has at most {} actuators, with {} output fields of one type",
+                                     most_actuators, most_output_fields),
+                         6);
+  }
+  std::ranges::move(output_parameters(subsystem_.devices), std::back_inserter(built_in_));
 }
 
 /// No identity of the author's is one of theirs.
 void SubsystemReader::imply_parameters() {
   const std::size_t own = subsystem_.parameters.size();
-  const auto check = [this](const Parameter& built_in, const Field& field, std::uint8_t id) {
-    const bool member = std::ranges::any_of(
-        built_in.members, [&](const auto& theirs) { return theirs.field.type == field.type && theirs.id == id; });
-    if (!member && (field.type != Type::Struct || built_in.id != id)) return;
-    problems_.add(field.at, "E0203",
-                  fmt::format("type and id of '{}', {} {}, are those of '{}', which every subsystem has", field.name,
-                              to_text(field.type), id, built_in.field.name),
-                  "type and id together must be unique, members included");
-  };
   for (const Parameter& built_in : built_in_) {
     for (const Parameter& parameter : subsystem_.parameters) {
-      check(built_in, parameter.field, parameter.id);
-      for (const Parameter::Member& member : parameter.members) check(built_in, member.field, member.id);
+      check_built_in_ids(built_in, parameter.field, parameter.id);
+      for (const Parameter::Member& member : parameter.members) check_built_in_ids(built_in, member.field, member.id);
     }
+    // One that has its id from the descriptor may have taken another's.
+    for (const Parameter& other : built_in_)
+      if (&other != &built_in && other.field.at.line != 0) check_built_in_ids(built_in, other.field, other.id);
   }
   std::ranges::copy(built_in_, std::back_inserter(subsystem_.parameters));
   index_references(own);
+}
+
+void SubsystemReader::check_built_in_ids(const Parameter& built_in, const Field& field, std::uint8_t id) {
+  const bool member = std::ranges::any_of(
+      built_in.members, [&](const auto& theirs) { return theirs.field.type == field.type && theirs.id == id; });
+  if (!member && (field.type != Type::Struct || built_in.id != id)) return;
+  const bool of_all = std::ranges::any_of(
+      framework_parameters(), [&](const Parameter& parameter) { return parameter.field.name == built_in.field.name; });
+  problems_.add(field.at, "E0203",
+                fmt::format("type and id of '{}', {} {}, are those of '{}', which every subsystem{} has", field.name,
+                            to_text(field.type), id, built_in.field.name, of_all ? "" : " with this actuator"),
+                "type and id together must be unique, members included");
 }
 
 void SubsystemReader::read_enumeration(const xml::Element& element) {

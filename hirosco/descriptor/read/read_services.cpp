@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::int64_t max_cycles = 1'000'000;
 constexpr std::size_t max_arguments = 255;
+constexpr std::int64_t max_self_test_ms = 600'000;  // ten minutes
 constexpr std::size_t max_structures = 256;
 constexpr std::size_t max_sets = 32;
 
@@ -52,7 +53,10 @@ std::vector<Child> SubsystemReader::service_children(Services& services) {
              each_child(element, problems_,
                         {{"Function", [this, &services](const auto& child) { read_function(child, services); }}});
            })},
-          {"TestService", service([this](const xml::Element& element) { no_children(element, problems_); })},
+          {"TestService",
+           [this, &services](const xml::Element& element) {
+             if (first_service(element, services)) read_test_service(element, services);
+           }},
           {"HKService", [this, &services](const xml::Element& element) { read_housekeeping(element, services); },
            max_structures},
           {"RealTimeLinkService", service([this, &services](const xml::Element& element) {
@@ -70,6 +74,14 @@ bool SubsystemReader::first_service(const xml::Element& element, Services& servi
                   fmt::format("a second <{}>: a subsystem has one instance of each service", element.name),
                   fmt::format("the first one is in line {}", before->second.line));
   return first;
+}
+
+void SubsystemReader::read_test_service(const xml::Element& element, Services& services) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const std::int64_t inherited_ms = services.self_test_within / std::chrono::milliseconds{1};
+  services.self_test_within = std::chrono::milliseconds{
+      attributes.integer_or<std::int64_t>("self_test_within_ms", 1, max_self_test_ms, inherited_ms)};
 }
 
 void SubsystemReader::read_event(const xml::Element& element, const Services& services) {
@@ -143,7 +155,7 @@ void SubsystemReader::read_function(const xml::Element& element, const Services&
                1}});
   check_arguments(element, function);
   expect_for_all(element, services, function.name);
-  if (function.name == "SET_STATE" || function.name == "CONFIGURE")
+  if (std::ranges::find(built_in_requests, function.name) != built_in_requests.end())
     problems_.add(*element.find("name"), "E0213",
                   fmt::format("'{}' is built in: every subsystem has it", function.name));
   else if (!function.name.empty()) function_names_.add(function.name, function.at, problems_, element.name.size() + 1);

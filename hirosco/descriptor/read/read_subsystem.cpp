@@ -21,7 +21,7 @@ constexpr std::size_t max_custom_services = 64;
 
 Subsystem SubsystemReader::read(const xml::Element& root) {
   read_head(root);
-  std::vector<const xml::Element*> configurations, services_elements, custom_services;
+  std::vector<const xml::Element*> parameters, configurations, services_elements, custom_services;
   const auto later = [](std::vector<const xml::Element*>& list) {
     return [&list](const xml::Element& e) { list.push_back(&e); };
   };
@@ -39,16 +39,9 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                                  problems_.not_built_in(element, "leave it out: nothing limits what a subsystem takes");
                                },
                                1},
-                              {"Parameters",
-                               [this](const xml::Element& element) {
-                                 const Attributes none{element, problems_};
-                                 each_child(element, problems_,
-                                            {{"StructRef", [this](const auto& child) { read_structure(child); }},
-                                             {"ParamRef", [this](const auto& child) { read_parameter(child); }}});
-                               },
-                               1},
-                              {"StructRef", [this](const auto& element) { read_structure(element); }},
-                              {"ParamRef", [this](const auto& element) { read_parameter(element); }},
+                              {"Parameters", later(parameters), 1},
+                              {"StructRef", later(parameters)},
+                              {"ParamRef", later(parameters)},
                               {"Enumeration", [this](const auto& element) { read_enumeration(element); }},
                               {"Device", [this](const auto& element) { read_device(element); }, 255},
                               {"Hang", [this](const auto& element) { read_hang(element); }, 1},
@@ -56,10 +49,13 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                               {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
                               {"CustomService", later(custom_services), max_custom_services},
                               {"Configuration", later(configurations), max_configurations}};
-  Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_};
+  Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_,
+                    self_test_within_};
   const std::vector<Child> service_rows = service_children(services);
   for (const Child& row : service_rows) children.push_back({row.name, later(services_elements), row.most});
   each_child(root, problems_, children);
+  imply_outputs();
+  for (const xml::Element* element : parameters) read_parameter_element(*element);
   read_initial_values();
   imply_parameters();
   configurations_ = configurations.size();

@@ -43,6 +43,8 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
   const auto file = std::filesystem::path{HIROSCO_BINARY_DIR} / "schema_test.xml";
   for (const char* body :
        {"<ParamRef name=\"X\" id=\"1\" type=\"DUBLE\"/>", "<Paramters/>", "<TestService x=\"1\"/>",
+        "<TestService self_test_within_ms=\"0\"/>",
+        "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\" self_test=\"yes\"/>",
         "<ParamRef name=\"X\" id=\"256\" type=\"DOUBLE\"/>", "<Resources/>",
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" persistent=\"yes\"/>",
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" read_only=\"yes\"/>",

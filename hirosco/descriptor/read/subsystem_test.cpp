@@ -232,6 +232,9 @@ TEST(SubsystemDescriptor, FillsTheConfiguration) {
   EXPECT_EQ(coupled->name, "COUPLED");
   EXPECT_EQ(coupled->priority, 80);
   EXPECT_EQ(coupled->sampling, 500us);
+  EXPECT_EQ(coupled->self_test, SelfTest::Required);
+  EXPECT_EQ(coupled->self_test_within, 2s);
+  EXPECT_EQ(robot.find_configuration("STANDALONE")->self_test, SelfTest::Optional);
   const Provides& state = coupled->provides.at(0);
   EXPECT_EQ(state.terms.methods, std::vector{LinkMethod::SharedMemory});
   EXPECT_EQ(state.parameters.at(0).member, 1);
@@ -252,6 +255,27 @@ TEST(SubsystemDescriptor, FillsTheConfiguration) {
   EXPECT_EQ(use.settings.at(0).value, "4000");
   EXPECT_EQ(use.endnode.address, "orbiter-robot");
   EXPECT_EQ(coupled->initial.at(1).values, (std::vector<Value>{-0.8, 1.6}));
+}
+
+TEST(SubsystemDescriptor, AConfigurationMayWaitForASelfTestWhoseTimeItOrTheSubsystemSays) {
+  const auto configuration = [](const std::string& of_subsystem, const std::string& attributes,
+                                const std::string& of_configuration) {
+    const auto reading = testing::read_text("<Subsystem name=\"S\" id=\"10\">" + of_subsystem +
+                                            "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\" " + attributes +
+                                            ">" + of_configuration + "</Configuration></Subsystem>");
+    return reading.value.value().configurations.front();
+  };
+  const Configuration silent = configuration("", "", "");
+  EXPECT_EQ(silent.self_test, SelfTest::Optional);
+  EXPECT_EQ(silent.self_test_within, 10s);
+  EXPECT_EQ(configuration("", R"(self_test="optional")", "").self_test, SelfTest::Optional);
+  EXPECT_EQ(configuration("", R"(self_test="required")", "").self_test, SelfTest::Required)
+      << "without an actuator, too";
+  const char* both = R"(<TestService self_test_within_ms="2000"/>)";
+  EXPECT_EQ(configuration(both, "", "").self_test_within, 2s);
+  EXPECT_EQ(configuration(both, "", "<TestService/>").self_test_within, 2s);
+  EXPECT_EQ(configuration(both, "", R"(<TestService self_test_within_ms="600000"/>)").self_test_within, 600s);
+  EXPECT_EQ(configuration("<TestService/>", "", R"(<TestService self_test_within_ms="1"/>)").self_test_within, 1ms);
 }
 
 TEST(SubsystemDescriptor, ALinkServiceOfTheSubsystemHoldsInEveryConfiguration) {

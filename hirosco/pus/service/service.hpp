@@ -30,6 +30,7 @@ struct Request {
 };
 
 class Verification;
+class SelfTest;
 
 /// The application process that a service belongs to.
 class ServiceHome {
@@ -39,6 +40,7 @@ class ServiceHome {
   [[nodiscard]] virtual descriptor::State state() const noexcept = 0;
   [[nodiscard]] virtual Verification& verification() noexcept = 0;
   [[nodiscard]] virtual TelemetrySink& telemetry() noexcept = 0;
+  [[nodiscard]] virtual SelfTest& self_test() noexcept = 0;
   /// The notice of an author's refusal.
   [[nodiscard]] virtual FailureNotice refusal(FailureCode code, const Error& why) const = 0;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -19,6 +20,7 @@ enum class Form : std::uint8_t {
   Number,  ///< `count` numbers of `type`
   Text,  ///< `count` octets of ASCII, ended early by zeros
   Word,  ///< length u8, then as many octets of ASCII
+  Time,  ///< on-board time, 7 octets (packet/cuc.hpp)
   List,  ///< count u8, then so many times `each`
   Value,  ///< of the parameter whose id stands before it
   Arguments,  ///< of the function whose name stands before it: count u8, then argument id u8 and value each
@@ -32,6 +34,7 @@ struct Part {
   std::uint16_t count{1};
   const Part* each{nullptr};  ///< of a List
   std::size_t each_count{0};
+  std::span<const std::string_view> names{};  ///< of the values of a Number: 0, 1, ...; empty = they have none
   [[nodiscard]] constexpr std::span<const Part> repeated() const noexcept { return {each, each_count}; }
 };
 
@@ -46,23 +49,28 @@ template <std::size_t N>
   return {.name = name, .form = Form::List, .each = each, .each_count = N};
 }
 
-struct RequestKind {
-  std::uint8_t subtype{};
-  std::string_view name;
-  Shape data;
-};
-struct ReportKind {
-  std::uint8_t subtype{};
-  std::string_view name;
-  Shape data;
-};
-
 /// Who may ask for a service, and how it is passed on.
 enum class Needs : std::uint8_t {
   Nothing,  ///< as mode and state permit
   Essential,  ///< forwarded first, in every mode (decision 24)
   SupervisorAsks,  ///< nobody else may ask for it (decision 10)
   SupervisorAnswers,  ///< essential, and no other subsystem has it
+};
+
+struct RequestKind {
+  std::uint8_t subtype{};
+  std::string_view name;
+  Shape data;
+  /// What it does, in words for whoever commands by name: forms, clients, `hirosco tc`. Empty: it is for programs. One with
+  /// words has no data.
+  std::string_view words{};
+  std::uint16_t states{0x03FF};  ///< bit n set: permitted in State n
+  std::optional<Needs> needs{};  ///< where it differs from its service's
+};
+struct ReportKind {
+  std::uint8_t subtype{};
+  std::string_view name;
+  Shape data;
 };
 
 class Service;
@@ -81,6 +89,11 @@ struct ServiceKind {
   [[nodiscard]] constexpr const RequestKind* request(std::uint8_t subtype) const noexcept {
     const auto found = std::ranges::find(requests, subtype, &RequestKind::subtype);
     return found == requests.end() ? nullptr : &*found;
+  }
+  /// Of a request that it has not: the service's.
+  [[nodiscard]] constexpr Needs needs_of(std::uint8_t subtype) const noexcept {
+    const RequestKind* const found = request(subtype);
+    return found != nullptr ? found->needs.value_or(needs) : needs;
   }
   [[nodiscard]] constexpr const ReportKind* report(std::uint8_t subtype) const noexcept {
     const auto found = std::ranges::find(reports, subtype, &ReportKind::subtype);

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <optional>
 #include <vector>
 
 #include "hirosco/parameter/number.hpp"
 #include "hirosco/parameter/text.hpp"
+#include "hirosco/pus/packet/cuc.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/standard_services.hpp"
@@ -121,6 +123,15 @@ struct Known {
   return found ? std::optional{Known{found->text, descriptor::fields_of(subsystem, *found)}} : std::nullopt;
 }
 
+/// Seconds since the epoch, to the millisecond.
+[[nodiscard]] std::string time_text(Octets code) {
+  if (code.size() < cuc_octets) return "?";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3f s",
+                std::chrono::duration<double>(from_cuc(code).time_since_epoch()).count());
+  return text.data();
+}
+
 /// The data of a standard service by their shape (service/service_kind.hpp).
 class ShapeWords {
  public:
@@ -142,6 +153,7 @@ class ShapeWords {
       case Form::Number: return number_of(part);
       case Form::Text: return "'" + text_of(reader_.get(part.count)) + "'";
       case Form::Word: return "'" + text_of(reader_.get(reader_.get<std::uint8_t>())) + "'";
+      case Form::Time: return time_text(reader_.get(cuc_octets));
       case Form::List: return list_of(part);
       case Form::Value: return value_of_last();
       case Form::Arguments:
@@ -162,7 +174,8 @@ class ShapeWords {
             std::ranges::find(subsystem_.events, static_cast<std::uint16_t>(number), &descriptor::Event::id);
         text.append(event != subsystem_.events.end() ? event->name : number_text(number));
       } else {
-        text.append(number_text(number));
+        const bool named = number >= 0 && number < static_cast<double>(part.names.size());
+        text.append(named ? part.names[static_cast<std::size_t>(number)] : number_text(number));
       }
     }
     return text;

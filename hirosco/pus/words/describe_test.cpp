@@ -7,6 +7,7 @@
 #include <array>
 
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st17_test/self_test.hpp"
 
 namespace hirosco::pus {
 namespace {
@@ -95,6 +96,22 @@ TEST(PacketDescriber, ShowsSwitchesWordsAndNamesOfValuesOfParameters) {
   EXPECT_EQ(PacketDescriber{mission}.describe(*packet),
             "TM[20,2] ARM VALUES PARAMETERS=(PARAMETER=ON VALUE=on,off),(PARAMETER=TITLE VALUE='caf\xC3\xA9?'),"
             "(PARAMETER=SIDE VALUE=left)");
+}
+
+TEST(PacketDescriber, NamesTheOutcomeOfASelfTestWithItsTimeAndReason) {
+  const auto data = write_self_test({.outcome = SelfTestOutcome::Failed,
+                                     .configuration = 2,
+                                     .at = OnboardTime{std::chrono::milliseconds{1'000'500}},
+                                     .code = FailureCode::ExecutionError,
+                                     .number = 2,
+                                     .reason = "wrong sign"});
+  EXPECT_EQ(described_telemetry(17, 129, data),
+            "TM[17,129] ARM SELF_TEST_OUTCOME OUTCOME=failed CONFIGURATION=2 TIME=1000.500 s CODE=514 NUMBER=2 "
+            "REASON='wrong sign'");
+  std::vector<std::byte> unknown = data;
+  unknown[0] = std::byte{9};
+  EXPECT_NE(described_telemetry(17, 129, unknown).find("OUTCOME=9 "), std::string::npos);
+  EXPECT_NE(described_telemetry(17, 129, Octets{data}.first(4)).find("TIME=?"), std::string::npos);
 }
 
 TEST(PacketDescriber, NamesAFunctionAndItsArguments) {

@@ -74,6 +74,10 @@ class Subsystem {
   virtual Result<> safe_operational(const Cycle&) noexcept { return ok(); }
   virtual Result<> operational(const Cycle&) noexcept { return ok(); }
   virtual Result<> error_operational(const Cycle&) noexcept { return ok(); }
+  /// The author's self test, which ST[17] asks for: called in Safe-Operational behind its node, each cycle until it is done or
+  /// fails, within the time of <TestService self_test_within_ms>. `cycle.first`: of this run. What the node has put out stands
+  /// in the ports and reaches no actuator. As the nodes: no allocation, no lock, no I/O.
+  virtual Result<Step> self_test(const Cycle&) noexcept { return fail(ErrorCode::NotFound, "it has no self test"); }
   virtual Result<Step> post_operational() { return done; }
   virtual Result<Step> hardware_deinit() { return done; }
   virtual Result<Step> software_deinit() { return done; }

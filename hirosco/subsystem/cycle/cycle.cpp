@@ -32,12 +32,20 @@ CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {
   std::size_t largest = 0;
   for (const auto& event : parts_.descriptor.events) largest = std::max(largest, pus::octets_of(event));
   event_buffer_.resize(largest);
+  for (const descriptor::Device& device : parts_.descriptor.devices)
+    if (device.actuator && !device.output.empty()) outputs_.push_back(std::make_unique<OutputParameter>(device));
   own_writes_octets_ = parts_.descriptor.parameters.size();
   own_writes_ = std::make_unique<std::atomic<std::uint8_t>[]>(own_writes_octets_);
 }
 
 void CycleLoop::prepare(CyclePlan plan) {
   plan_ = std::move(plan);
+  self_test_.forget();
+  for (const auto& output : outputs_) {
+    output->clear();
+    for (DeviceSlot& slot : plan_.devices)
+      if (&slot.device() == &output->device()) slot.show_in(output.get());
+  }
   input_was_stale_.assign(plan_.inputs.size(), 0);
   state_ = State::PreOperational;
   first_ = true;
@@ -66,6 +74,7 @@ void CycleLoop::prepare(CyclePlan plan) {
 }
 
 void CycleLoop::release() {
+  self_test_.forget();
   for (LinkInputSlot& input : plan_.inputs) input.release();
   for (LinkOutputSlot& output : plan_.outputs) output.release();
   plan_ = {};
@@ -142,6 +151,10 @@ void CycleLoop::take_commands() noexcept {
         plan_.outputs[command->index].detach(command->link);
         report(ReportKind::OutputDetached, command->index, {}, command->link);
         break;
+      case CommandKind::SelfTest:
+        self_test_.begin(command->request, plan_.configuration->self_test_within);
+        if (state_ != State::SafeOperational) end_self_test(self_test_.leave(state_));
+        break;
     }
   }
 }
@@ -159,10 +172,22 @@ void CycleLoop::run_function(const CycleCommand& command) noexcept {
   }
 }
 
-void CycleLoop::enter(State state) noexcept {
+const char* CycleLoop::why_not(State state) const noexcept {
+  if (state != State::Operational) return nullptr;
   // A node that failed is not healed by an entry that was on its way already: the way down follows (hazard SF10).
-  if (state == State::Operational && (inhibited_ & inhibited_by_failure) != 0)
-    return report(ReportKind::EntryRefused, static_cast<std::uint16_t>(state), {});
+  if ((inhibited_ & inhibited_by_failure) != 0) return "a node had failed before";
+  // The service loop has looked, too; what voids it may have come in between.
+  const bool required = plan_.configuration->self_test == descriptor::SelfTest::Required;
+  return required && !self_test_.passed() ? "the required self test is not passed" : nullptr;
+}
+
+void CycleLoop::enter(State state) noexcept {
+  if (const char* const why = why_not(state)) {
+    const AuthorsError reason{Error{ErrorCode::NotPermitted, why}};
+    return answer({.kind = ReportKind::EntryRefused, .index = static_cast<std::uint16_t>(state)},
+                  std::as_bytes(std::span{&reason, 1}));
+  }
+  end_self_test(self_test_.leave(state));
   state_ = state;
   first_ = true;
   if (state == State::Operational) {
@@ -189,11 +214,27 @@ void CycleLoop::run_node(TimePoint planned) noexcept {
     case State::ErrorOperational: result = parts_.author.error_operational(cycle); break;
     default: break;
   }
-  if (result || state_ == State::ErrorOperational || (inhibited_ & inhibited_by_failure) != 0) return;
+  if ((inhibited_ & inhibited_by_failure) != 0) return;
+  if (result || state_ == State::ErrorOperational) return run_self_test(cycle);
   inhibit(inhibited_by_failure);
+  end_self_test(self_test_.fail_node());
   const AuthorsError failure{result.error()};
   answer({.kind = ReportKind::NodeFailed, .index = static_cast<std::uint16_t>(state_)},
          std::as_bytes(std::span{&failure, 1}));
+}
+
+/// In Safe-Operational only: there write_outputs() passes nothing on to an actuator, whatever the test does.
+void CycleLoop::run_self_test(Cycle cycle) noexcept {
+  if (!self_test_.running()) return;
+  cycle.first = self_test_.first(cycle.planned);
+  end_self_test(self_test_.take(parts_.author.self_test(cycle), cycle.planned));
+}
+
+void CycleLoop::end_self_test(const std::optional<SelfTestRun::End>& end) noexcept {
+  if (!end) return;
+  const AuthorsError reason{end->why};
+  answer({.kind = ReportKind::SelfTestEnded, .index = static_cast<std::uint16_t>(end->code), .request = end->request},
+         std::as_bytes(std::span{&reason, 1}));
 }
 
 void CycleLoop::note_stores() noexcept {
@@ -218,7 +259,11 @@ void CycleLoop::write_outputs(TimePoint planned) noexcept {
   // Inhibited means the declared safe output; only Error-Operational brings the device to a controlled stop (decision 22).
   const bool stopping = state_ == State::ErrorOperational;
   // The epoch that was checked in this cycle: an output under an older permission must not carry a newer one.
-  for (DeviceSlot& device : plan_.devices) device.write(permitted_epoch_, active, stopping);
+  const auto telling = state_ == State::Operational ? DeviceSlot::Telling::PutOut : DeviceSlot::Telling::Wish;
+  for (DeviceSlot& device : plan_.devices) {
+    device.write(permitted_epoch_, active, stopping);
+    device.tell(telling);
+  }
   for (LinkOutputSlot& output : plan_.outputs) output.write(planned, link_status());
 }
 

@@ -16,6 +16,7 @@
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 #include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
+#include "hirosco/subsystem/cycle/self_test_run.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 
 /// The cycle of a subsystem (architecture, rule 1): reads links and devices, runs the state's node, gates the actuators,
@@ -78,8 +79,12 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void release();
   [[nodiscard]] CyclePlan& plan() noexcept { return plan_; }
   [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
+  /// Whether the author's self test has passed in this configuration, and nothing has voided it.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
   [[nodiscard]] Parameter<CycleStatistics>& statistics() noexcept { return statistics_; }
   [[nodiscard]] Parameter<CycleTimes>& times() noexcept { return times_parameter_; }
+  /// One for each actuator of the descriptor.
+  [[nodiscard]] std::span<const std::unique_ptr<OutputParameter>> outputs() const noexcept { return outputs_; }
   [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
 
   /// Whether the author's node wrote this parameter in the newest cycle: what anybody else writes would not last.
@@ -107,11 +112,15 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void answer(CycleReport head, Octets payload = {}) noexcept;
   void take_commands() noexcept;
   void run_function(const CycleCommand& command) noexcept;
+  /// Why a state is not to be entered; null: it may be.
+  [[nodiscard]] const char* why_not(State state) const noexcept;
   void enter(State state) noexcept;
   void check_permit() noexcept;
   void listen_to_supervisor() noexcept;
   void read_inputs(TimePoint started) noexcept;
   void run_node(TimePoint planned) noexcept;
+  void run_self_test(Cycle cycle) noexcept;
+  void end_self_test(const std::optional<SelfTestRun::End>& end) noexcept;
   void write_outputs(TimePoint planned) noexcept;
   void note_stores() noexcept;
   void note_own_writes() noexcept;
@@ -126,10 +135,12 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
 
   Parts parts_;
   CyclePlan plan_;
+  SelfTestRun self_test_;
   std::vector<BoundFunction> functions_;
   Parameter<CycleStatistics> statistics_;
   Parameter<CycleTimes> times_parameter_;
   Parameter<LinkStatistics> link_statistics_;
+  std::vector<std::unique_ptr<OutputParameter>> outputs_;
   std::vector<std::byte> event_buffer_;  ///< room for the largest event of the descriptor
   struct Watched {
     const ParameterCell* cell;

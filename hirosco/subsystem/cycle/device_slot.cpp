@@ -170,14 +170,14 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
   const bool pass = active || !device_->actuator;
   active_cycles_ = active ? std::min(active_cycles_ + 1, longest_silence) : 0;
   epoch_ = epoch;
-  Octets payload = safe_payload_;
-  if (pass) {
+  if (pass || told_ != nullptr) {
     port_->output_layout_.fit(port_->output_);
     const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());
     encode(output_layout_, port_->output_, room, order_);
     keep_in_range(room);
-    payload = room;
   }
+  passed_ = pass;
+  const Octets payload = pass ? Octets{payload_}.first(safe_payload_.size()) : Octets{safe_payload_};
   const DeviceMode mode = pass ? DeviceMode::Active : stopping ? DeviceMode::Stop : DeviceMode::Off;
   const auto frame = write_command(
       frame_,
@@ -185,6 +185,12 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
           .mode = mode, .epoch = epoch, .sequence = ++sequence_, .watchdog_us = watchdog_us_, .payload = payload});
   // A device that does not listen is found by its silence, one cycle later: nothing to do here.
   if (frame) static_cast<void>(flow_->send(*frame));
+}
+
+void DeviceSlot::tell(Telling what) noexcept {
+  if (told_ == nullptr) return;
+  const bool authors = passed_ || what == Telling::Wish;
+  told_->show(Octets{authors ? payload_ : safe_payload_}.first(safe_payload_.size()), order_);
 }
 
 }  // namespace hirosco

@@ -13,6 +13,7 @@
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
+#include "hirosco/subsystem/cycle/output_parameter.hpp"
 
 /// What the cycle moves between the author's ports and devices: one slot per device of the chosen configuration. Slots are
 /// built by the service loop while the cycle rests; step functions run in the cycle and are bounded.
@@ -43,6 +44,13 @@ class DeviceSlot {
   void read(bool count_silence) noexcept;
   /// Sends the author's output if `active`, else the declared safe values.
   void write(std::uint32_t epoch, bool active, bool stopping) noexcept;
+  /// Where tell() shows; null: nowhere.  Thread: the service loop, while the cycle rests.
+  void show_in(OutputParameter* told) noexcept { told_ = told; }
+  enum class Telling : std::uint8_t {
+    PutOut,  ///< what write() has sent
+    Wish,  ///< what it would have sent in Operational
+  };
+  void tell(Telling what) noexcept;
 
  private:
   void take_frame(Octets frame) noexcept;
@@ -59,7 +67,9 @@ class DeviceSlot {
   std::vector<LayoutField> input_layout_;
   std::vector<LayoutField> output_layout_;
   std::vector<std::byte> safe_payload_;
-  std::vector<std::byte> payload_;
+  std::vector<std::byte> payload_;  ///< of the author's output, within its ranges
+  OutputParameter* told_{nullptr};
+  bool passed_{false};  ///< what was sent is the author's
   std::vector<std::byte> frame_;
   std::uint32_t sequence_{0};
   Loss since_good_;

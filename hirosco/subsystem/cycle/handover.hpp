@@ -26,6 +26,7 @@ enum class CommandKind : std::uint8_t {
   DetachInput,
   AttachOutput,   ///< `link` to output slot `index`
   DetachOutput,
+  SelfTest,       ///< run it, for `request`
 };
 
 /// Service loop -> cycle.
@@ -46,10 +47,11 @@ enum class ReportKind : std::uint8_t {
   Finished,
   Aborted,        ///< of a function; `index` code or step; payload of Aborted: AuthorsError
   StateEntered,   ///< `index` the State
-  EntryRefused,   ///< `index` the State
+  EntryRefused,   ///< `index` the State; payload: AuthorsError
   NodeFailed,     ///< `index` the State; payload: AuthorsError
   InputDetached,
   OutputDetached,  ///< `link` may be freed
+  SelfTestEnded,  ///< `index` 0: passed, else the code; payload: AuthorsError
 };
 
 /// An author's error: the words are copied, as who said them may be gone when they are read.

@@ -30,6 +30,7 @@ void CycleLoop::read_inputs(TimePoint started) noexcept {
     device.read(controlling());
     if (!device.alive() && controlling()) inhibit(inhibited_by_device);
     if (!device.just_lost()) continue;
+    end_self_test(self_test_.lose_device(static_cast<std::int64_t>(i)));
     const DeviceSlot::Loss loss = device.loss();
     const std::array arguments{static_cast<double>(loss.reason), static_cast<double>(loss.silent_cycles),
                                static_cast<double>(loss.damaged), static_cast<double>(loss.wrong_size)};

@@ -21,7 +21,7 @@ std::string descriptor_with_everything() {
   std::string text = testing::probe_descriptor;
   const std::string everything = R"(<Configuration name="EVERYTHING" id="4" priority="80" sampling_us="500">
     <HKService id="4712" interval="10">
-      <SampledOnce><ParamRef name="CUR_VALUES"/></SampledOnce>
+      <SampledOnce><ParamRef name="CUR_VALUES"/><ParamRef name="ARM_OUTPUT"/></SampledOnce>
       <SampledNREPTimes nrep="5"><ParamRef name="DES_POSITION"/></SampledNREPTimes>
     </HKService>
     <RealTimeLinkService>
@@ -111,6 +111,31 @@ TEST(CycleAllocations, ThereAreNoneInAHundredThousandCycles) {
   EXPECT_GE(probe.goal.load(), 0.5);  // functions ran
   EXPECT_GT(probe.hand.count(), 90'000u);
   EXPECT_TRUE(probe.arm.alive());
+}
+
+/// Its self test takes five cycles and passes and fails in turn.
+struct Tested final : Probe {
+  int calls{0}, runs{0};
+  Result<Step> self_test(const Cycle& cycle) noexcept override {
+    if (cycle.first) ++runs;
+    if (++calls % 5 != 0) return again;
+    if (runs % 2 == 0) return fail(ErrorCode::Internal, "the second one, as always", runs);
+    return done;
+  }
+};
+
+TEST(CycleAllocations, ThereAreNoneInASelfTest) {
+  Tested tested;
+  CountedFlight flight{tested};
+  flight.rig().set_state(State::SafeOperational);
+  for (int i = 0; i < 10'000; ++i) {
+    if (i % 20 == 5) static_cast<void>(flight.rig().send(17, 128, {}));
+    flight.cycle();
+  }
+  EXPECT_EQ(tested.runs, 500);
+  EXPECT_EQ(tested.calls, 2'500);
+  EXPECT_EQ(flight.uses().allocations, 0u);
+  EXPECT_EQ(flight.uses().frees, 0u);
 }
 
 /// Its node grows a vector in one cycle of a thousand.

@@ -77,7 +77,7 @@ void GenericSubsystem::take_cycle_report(const CycleReport& head, Octets payload
       break;
     case ReportKind::EntryRefused:
       if (awaiting_cycle_ && way_ && static_cast<State>(head.index) == way_->states[way_at_])
-        fail_transition(static_cast<State>(head.index), {ErrorCode::NotPermitted, "a node had failed before"});
+        fail_transition(static_cast<State>(head.index), failure_in(payload));
       break;
     case ReportKind::NodeFailed:
       // While the cycle comes to rest the subsystem is on its way down already: Error-Operational has no cycle there.
@@ -90,6 +90,7 @@ void GenericSubsystem::take_cycle_report(const CycleReport& head, Octets payload
     case ReportKind::OutputDetached:
       std::erase_if(leaving_links_, [&](const auto& link) { return link.get() == head.link; });
       break;
+    case ReportKind::SelfTestEnded: self_tests_.ended(head.request, head.index, failure_in(payload)); break;
   }
 }
 

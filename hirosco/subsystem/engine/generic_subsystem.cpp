@@ -67,6 +67,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       parameter_service_{*this, verification_, *this},
       housekeeping_service_{descriptor_, verification_, *this},
       link_service_{verification_, *this, *this},
+      self_tests_{verification_, *this, platform.clock},
       services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_},
       requester_{descriptor_, channel_, platform.clock.now()} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
@@ -189,6 +190,15 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
   CycleCommand command{.kind = CommandKind::Function, .index = call.function, .request = request};
   command.arguments = call.arguments;
   if (!push(command)) return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
+  return {};
+}
+
+std::expected<void, pus::FailureNotice> GenericSubsystem::begin_self_test(const pus::Request& request) {
+  if (state_ != State::SafeOperational || way_) return std::unexpected{wrong_state()};
+  if (self_tests_.running()) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
+  if (!push({.kind = CommandKind::SelfTest, .request = request}))
+    return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
+  self_tests_.begun(request);
   return {};
 }
 

@@ -27,7 +27,9 @@
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/cycle/cycle.hpp"
 #include "hirosco/subsystem/engine/backlog.hpp"
+#include "hirosco/subsystem/engine/failure.hpp"
 #include "hirosco/subsystem/engine/requester.hpp"
+#include "hirosco/subsystem/engine/self_tests.hpp"
 #include "hirosco/subsystem/engine/st128_link_service.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 
@@ -49,13 +51,6 @@ struct Platform {
   LinkMechanisms links{standard_link_mechanisms()};
 };
 
-/// What failed, in words that outlive whoever said them.
-struct Failure {
-  ErrorCode code{ErrorCode::Internal};
-  std::string text;
-  std::int64_t number{0};
-};
-
 /// What an author did not do as the descriptor says, in words.
 struct Mistake {
   std::string text;
@@ -67,6 +62,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
                                private pus::FunctionExecutor,
                                private pus::ParameterAccess,
                                private LinkServiceOwner,
+                               private pus::SelfTest,
                                private pus::ServiceHome {
  public:
   /// `vital` and `permit` are the mapped pages, at least as large as VitalPage and PermitPage and initialised.
@@ -158,7 +154,14 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) override;
   bool detach(std::uint8_t link) override;
 
+  // SelfTest
+  std::expected<void, pus::FailureNotice> begin_self_test(const pus::Request& request) override;
+  [[nodiscard]] pus::SelfTestRecord newest_self_test() const override {
+    return self_tests_.record(cycle_.self_test_passed());
+  }
+
   // ServiceHome
+  [[nodiscard]] pus::SelfTest& self_test() noexcept override { return *this; }
   [[nodiscard]] pus::FailureNotice refusal(pus::FailureCode code, const Error& why) const override {
     return notice_of(static_cast<std::uint16_t>(code), {why.code, why.text, why.value});
   }
@@ -224,6 +227,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   pus::ParameterService parameter_service_;
   pus::ConfiguredHousekeeping housekeeping_service_;
   LinkService link_service_;
+  SelfTests self_tests_;
   std::vector<std::unique_ptr<pus::Service>> made_services_;  ///< by their kinds
   std::vector<pus::Service*> services_;  ///< the framework's, then the author's
   std::vector<CustomService*> own_services_;

@@ -31,6 +31,9 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State ta
   if (target == State::ErrorOperational && configuration_ == nullptr) return std::unexpected{wrong_state()};
   if (target == State::Operational && !permit_.permits(permit_.epoch.load(std::memory_order_acquire)))
     return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
+  if (target == State::Operational)
+    if (const auto missing = self_tests_.keeps_from_operational(*configuration_, cycle_.self_test_passed()))
+      return std::unexpected{*missing};
   if (overrides && way_request_)
     verification_.completion_failed(*way_request_, pus::FailureNotice{pus::FailureCode::Aborted});
   verification_.started(request);
@@ -110,6 +113,7 @@ Result<Step> GenericSubsystem::initialise_software() {
   publish(descriptor::framework_parameter::cycle_stats, cycle_.statistics());
   publish(descriptor::framework_parameter::cycle_times, cycle_.times());
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
+  for (const auto& output : cycle_.outputs()) publish(output->name(), *output);
   if (step) check_introduction();
   if (!problems_.empty()) {
     problems_text_ = short_words_of(problems_.front());
@@ -145,6 +149,7 @@ void GenericSubsystem::end_configuration() {
   for (const pus::Request& open : open_calls_)
     verification_.completion_failed(open, pus::FailureNotice{pus::FailureCode::Aborted});
   open_calls_.clear();
+  self_tests_.abandon();
 }
 
 /// Gives back all of a configuration. The cycle rests: nothing of it is in use.
@@ -315,6 +320,7 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     if (const auto configured = service->configure(configuration); !configured) return of("", configured.error());
   plan.sampler = housekeeping_service_.sampler();
   if (const auto configured = author_.configure(configuration); !configured) return of("", configured.error());
+  self_tests_.applied(configuration.id);
   cycle_.prepare(std::move(plan));
   vital_.configuration.store(configuration.id, std::memory_order_relaxed);
   vital_.period_ns.store(static_cast<std::uint64_t>(configuration.sampling.count()), std::memory_order_relaxed);

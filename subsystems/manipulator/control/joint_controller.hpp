@@ -58,4 +58,12 @@ class JointController {
   Joints velocity_;
 };
 
+/// How an arm's torques come from its controller.
+using Law = Joints (*)(JointController& controller, const Joints& desired_rad, const Measured& measured,
+                       const Gains& gains) noexcept;
+inline Joints joint_law(JointController& controller, const Joints& desired_rad, const Measured& measured,
+                        const Gains& gains) noexcept {
+  return controller.motor_torque(desired_rad, measured, gains);
+}
+
 }  // namespace hirosco::manipulator

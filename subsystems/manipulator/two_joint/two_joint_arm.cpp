@@ -17,7 +17,7 @@ struct ScriptValues {  // SCRIPT in manipulator.xml
 /// The arm of ROKVISS: what it shows of its tip, its springs, its programmes.
 class TwoJointArm final : public Manipulator {
  public:
-  TwoJointArm() : Manipulator{std::make_unique<Contour>(Geometry{})} {}
+  explicit TwoJointArm(manipulator::Law law) : Manipulator{std::make_unique<Contour>(Geometry{}), law} {}
 
  private:
   void declare() override {
@@ -87,6 +87,7 @@ class TwoJointArm final : public Manipulator {
 
 }  // namespace
 
-std::unique_ptr<Subsystem> make_manipulator() { return std::make_unique<TwoJointArm>(); }
+std::unique_ptr<Subsystem> make_manipulator() { return make_manipulator_with(manipulator::joint_law); }
+std::unique_ptr<Subsystem> make_manipulator_with(manipulator::Law law) { return std::make_unique<TwoJointArm>(law); }
 
 }  // namespace hirosco

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/words/describe.hpp"
 
 namespace hirosco::supervisor {
 
@@ -14,6 +15,14 @@ namespace {
 /// Generous: a slow disk alone may hold a telecommand back for seconds (decision 24). No less than it may wait for the disk, so
 /// that none is executed after it was reported as failed.
 constexpr Duration own_answer_limit = WaitingForDisk::limit;
+/// "execution error: sensor is broken 42"
+std::string words_of(pus::FailureCode code, Octets data) {
+  std::string text{to_text(code)};
+  const auto reason = pus::reason_in(data);
+  if (!reason) return text;
+  text.append(": ").append(pus::text_of(std::as_bytes(std::span{reason->text})));
+  return reason->number == 0 ? text : text.append(" ").append(std::to_string(reason->number));
+}
 }  // namespace
 
 void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::optional<double> argument,
@@ -31,11 +40,11 @@ void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::op
     if (done) done(false, data.error().text);
     return;
   }
-  send(apid, 8, 1, *data, {}, std::move(done));
+  send(apid, 8, 1, *data, {}, std::move(done), Duration{0});
 }
 
 void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
-                           const MemoryHandle& memory, CommandDone done) {
+                           const MemoryHandle& memory, CommandDone done, Duration takes) {
   std::array<std::byte, max_packet_octets> buffer;
   constexpr std::uint16_t modulo = 16'384;
   const std::uint16_t count = next_sequence_count_;
@@ -53,7 +62,7 @@ void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_
     return;
   }
   const auto telecommand = pus::TelecommandView::parse(*packet);
-  sent_[telecommand->request_id()] = {std::move(done), craft_.now + own_answer_limit,
+  sent_[telecommand->request_id()] = {std::move(done), craft_.now + own_answer_limit + takes,
                                       craft_.name_of(apid) + " " + telecommand_text(*telecommand), apid};
   telecommands_.take({.packet = *packet, .origin = Origin::supervisor(), .memory = memory});
 }
@@ -72,8 +81,9 @@ void OwnTelecommands::hear(std::uint16_t from, const pus::TelemetryView& report)
   sent_.erase(found);
   if (report.subtype() == 6) static_cast<void>(reader.get<std::uint16_t>());
   const auto code = static_cast<pus::FailureCode>(failure ? reader.get<std::uint16_t>() : 0);
-  if (failure) craft_.tell(ended.what + " failed: " + std::string{to_text(code)}, report.apid());
-  if (ended.done) ended.done(completed, failure ? std::string{to_text(code)} : std::string{});
+  const std::string why = failure ? words_of(code, reader.rest()) : std::string{};
+  if (failure) craft_.tell(ended.what + " failed: " + why, report.apid());
+  if (ended.done) ended.done(completed, why);
 }
 
 void OwnTelecommands::watch(TimePoint now) {

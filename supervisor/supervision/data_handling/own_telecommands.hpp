@@ -24,7 +24,7 @@ class OwnTelecommands final : public CommandDesk, public Hearer, public Watch {
   void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
                CommandDone done) override;
   void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory,
-            CommandDone done) override;
+            CommandDone done, Duration takes) override;
   /// Who has died answers nothing any more: what waits for it goes on at once.
   void fail_all_to(std::uint16_t apid, const std::string& why);
   /// Service 1 reports on them.

@@ -42,6 +42,32 @@ TEST_F(OwnTelecommandsTest, ItsSenderHearsWhyItFailed) {
   EXPECT_TRUE(was_told("ARM SET_STATE 7 failed: "));
 }
 
+TEST_F(OwnTelecommandsTest, ItsSenderHearsTheWordsAndTheNumberOfAnAuthor) {
+  const auto request = send();
+  std::array<std::byte, 4 + 2 + pus::FailureNotice::max_data_octets> data;
+  OctetWriter writer{data};
+  const auto fail_with = [&](const char* words, std::int64_t number) {
+    pus::FailureNotice notice{pus::FailureCode::ExecutionError};
+    notice.because({ErrorCode::Internal, number, words});
+    writer.put(request).put(static_cast<std::uint16_t>(notice.code())).put(notice.data());
+    report(arm, 1, 8, writer.written(), supervisor_apid);
+  };
+  fail_with("sensor\nis broken", 42);
+  EXPECT_THAT(ends, ElementsAre("execution error: sensor?is broken 42"));
+  EXPECT_TRUE(was_told("ARM SET_STATE 7 failed: execution error: sensor?is broken 42"));
+}
+
+TEST_F(OwnTelecommandsTest, WhatTakesItsTimeIsWaitedForThatMuchLonger) {
+  parts.own_telecommands.send(
+      arm, 17, 128, {}, {}, [this](bool, const std::string& why) { ends.push_back(why); }, 600s);
+  wait(615s - 1ms);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_THAT(ends, IsEmpty());
+  wait(1ms);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_THAT(ends, ElementsAre("no answer"));
+}
+
 TEST_F(OwnTelecommandsTest, AReportToSomebodyElseEndsNothing) {
   verify(arm, send(), 7, {}, 0);
   EXPECT_THAT(ends, IsEmpty());

@@ -106,8 +106,8 @@ using Notice = std::optional<FailureNotice>;
 
 [[nodiscard]] bool essential(const Asked& asked) {
   const auto* kind = pus::standard_service(asked.telecommand.service());
-  if (kind != nullptr && (kind->needs == pus::Needs::Essential || kind->needs == pus::Needs::SupervisorAnswers))
-    return true;
+  const auto needs = kind != nullptr ? kind->needs_of(asked.telecommand.subtype()) : pus::Needs::Nothing;
+  if (needs == pus::Needs::Essential || needs == pus::Needs::SupervisorAnswers) return true;
   // The supervisor commands Offline at the end of a recovery or of the flight: no disk may hold that up (decision 24).
   const bool goes_down = asked.origin.is_supervisor() && asked.asks_for(State::Offline);
   return goes_down || towards_safety(asked) || (asked.request != nullptr && asked.request->essential);
@@ -222,11 +222,20 @@ using Notice = std::optional<FailureNotice>;
   return std::nullopt;
 }
 
-/// Does the addressee's descriptor permit it in its state?
+/// In which states it is permitted, by the service's own table or the addressee's descriptor.
+[[nodiscard]] unsigned states_of(const Asked& asked) {
+  constexpr unsigned all = 0x03FF;
+  if (asked.request != nullptr) return asked.request->states;
+  const auto* kind = pus::standard_service(asked.telecommand.service());
+  const auto* request = kind != nullptr ? kind->request(asked.telecommand.subtype()) : nullptr;
+  return request != nullptr ? request->states : all;
+}
+
+/// Is it permitted in the addressee's state?
 [[nodiscard]] Notice is_in_state(const Asked& asked) {
-  if (!is_bound(asked) || asked.request == nullptr || asked.request->permitted_in(*asked.situation.state))
-    return std::nullopt;
-  return FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(*asked.situation.state));
+  const auto state = asked.situation.state;
+  if (!is_bound(asked) || !state || (states_of(asked) >> static_cast<int>(*state) & 1) != 0) return std::nullopt;
+  return FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(*state));
 }
 
 /// In the order in which they are asked: the first that refuses says why.

@@ -104,6 +104,21 @@ const std::vector<Case> cases{
     {"so it is in a narrow mode", arm, 8, 1, call("DANCE"), "ok", Origin::ground(), narrow_mode},
     {"too short for a function's name: the addressee says so", arm, 8, 1, std::vector<std::byte>(5), "13 2",
      Origin::ground(), narrow_mode},
+    // --- the self test, of ST[17] like the ping, is bound to mode and state ----------------------------------------------
+    {"a self test in Safe-Operational", arm, 17, 128, {}, "ok", Origin::ground(), open_mode, State::SafeOperational},
+    {"a self test elsewhere", arm, 17, 128, {}, "10 5"},
+    {"a self test that the mode does not permit",
+     arm,
+     17,
+     128,
+     {},
+     "13 2",
+     Origin::ground(),
+     narrow_mode,
+     State::SafeOperational},
+    {"the outcome of a self test, in any state", arm, 17, 130, {}, "ok"},
+    {"that outcome where the mode does not permit it", arm, 17, 130, {}, "13 2", Origin::ground(), narrow_mode},
+    {"its report sent as a request", arm, 17, 129, {}, "7 17 129"},
     // --- essential ------------------------------------------------------------------------------------------------
     {"an essential function in a narrow mode", arm, 8, 1, call("BRAKE"), "essential", Origin::ground(), narrow_mode},
     {"an essential function outside its states", arm, 8, 1, call("BRAKE"), "essential", Origin::ground(), narrow_mode,
@@ -222,8 +237,12 @@ TEST(Permission, WhoIsDownIsStartedByTheGroundWhereTheModeOpensThatAndByNobodyEl
 TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
   const auto mission = testing::small_mission();
   const LinkGraph links{mission};
-  const std::map<int, std::vector<int>> requests{
-      {3, {1, 3, 5, 6, 9, 27, 29, 31, 33}}, {5, {5, 6, 7}}, {8, {1}}, {17, {1}}, {20, {1, 3}}, {128, {1, 2, 3, 4}}};
+  const std::map<int, std::vector<int>> requests{{3, {1, 3, 5, 6, 9, 27, 29, 31, 33}},
+                                                 {5, {5, 6, 7}},
+                                                 {8, {1}},
+                                                 {17, {1, 128, 130}},
+                                                 {20, {1, 3}},
+                                                 {128, {1, 2, 3, 4}}};
   for (int service = 0; service < 256; ++service)
     for (int subtype = 0; subtype < 256; ++subtype) {
       const auto packet =

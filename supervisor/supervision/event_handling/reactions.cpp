@@ -129,8 +129,8 @@ void Reactions::Desk::command(std::uint16_t apid, std::string_view function, std
 }
 
 void Reactions::Desk::send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
-                           const MemoryHandle& memory, CommandDone done) {
-  desk_.send(apid, service, subtype, data, memory, std::move(done));
+                           const MemoryHandle& memory, CommandDone done, Duration takes) {
+  desk_.send(apid, service, subtype, data, memory, std::move(done), takes);
 }
 
 }  // namespace hirosco::supervisor

@@ -51,7 +51,7 @@ class Reactions {
     void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
                  CommandDone done) override;
     void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory,
-              CommandDone done) override;
+              CommandDone done, Duration takes) override;
 
    private:
     CommandDesk& desk_;

@@ -67,6 +67,19 @@ TEST_F(CommissioningTest, AMemberThatFailsEndsIt) {
   EXPECT_EQ(failures, 0) << "the others can be commanded";
 }
 
+TEST_F(CommissioningTest, ASelfTestThatFailsEndsItWithItsReasonBeforeAnybodyIsOperational) {
+  craft.mission.subsystems.front().subsystem.configurations.front().self_test = descriptor::SelfTest::Required;
+  start();
+  while (!desk.answers.empty() && desk.sent.back() != "10 TC[17,128] 10000 ms") desk.answer(true);
+  ASSERT_EQ(desk.sent.back(), "10 TC[17,128] 10000 ms");
+  EXPECT_EQ(commissioning.waiting_for(), "ARM: self test");
+  desk.answer(false, "execution error: torque of joint has the wrong sign 2");
+  EXPECT_FALSE(commissioning.running());
+  EXPECT_TRUE(was_told("commissioning stopped: ARM self test: execution error: torque of joint has the wrong sign 2"));
+  EXPECT_TRUE(craft.failed());
+  EXPECT_EQ(std::ranges::count(desk.sent, "10 SET_STATE 5"), 0);
+}
+
 TEST_F(CommissioningTest, ASupervisorThatCannotStartEndsTheFlight) {
   start();
   desk.answer(false, "no memory");

@@ -22,6 +22,8 @@ void WayThere::add(const descriptor::Subsystem& subsystem, const descriptor::Con
   if (from.state != State::PreOperational || holds) pre_.push_back(to_state(subsystem.id, State::PreOperational));
   configure_.push_back(step("configure", subsystem.id, {configuration.id}));
   if (to >= State::SafeOperational) safe_.push_back(to_state(subsystem.id, State::SafeOperational));
+  if (to >= State::Operational && configuration.self_test == descriptor::SelfTest::Required)
+    self_test_.push_back(step("self_test", subsystem.id, {configuration.id}));
   if (to >= State::Operational) operational_.push_back(to_state(subsystem.id, State::Operational));
 }
 

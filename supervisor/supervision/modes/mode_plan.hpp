@@ -20,7 +20,7 @@ struct Present {
 };
 
 /// From where subsystems are to where they are wanted, as stages of a procedure. Who controls stops first, all before the first
-/// gives its links back: nobody loses a set that it acts on.
+/// gives its links back: nobody loses a set that it acts on. A configuration that requires its self test runs it before Operational.
 class WayThere {
  public:
   void add(const descriptor::Subsystem& subsystem, const descriptor::Configuration& configuration, const Present& from,
@@ -32,11 +32,11 @@ class WayThere {
   /// At the end.
   void enter(const descriptor::Mode& mode);
   [[nodiscard]] std::vector<Stage> stages() const {
-    return {stop_, post_, pre_, configure_, link_, safe_, operational_, mode_};
+    return {stop_, post_, pre_, configure_, link_, safe_, self_test_, operational_, mode_};
   }
 
  private:
-  Stage stop_, post_, pre_, configure_, link_, safe_, operational_, mode_;
+  Stage stop_, post_, pre_, configure_, link_, safe_, self_test_, operational_, mode_;
 };
 
 struct ModePlan {

@@ -46,6 +46,22 @@ TEST_F(WayThereTest, FromErrorOperationalItLeadsThroughPostOperational) {
   EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 7", "10 SET_STATE 3", "10 CONFIGURE 2", "10 SET_STATE 4"));
 }
 
+TEST_F(WayThereTest, TheSelfTestThatAConfigurationRequiresIsRunBehindSafeOperational) {
+  descriptor::Configuration wary = coupled;
+  wary.self_test = descriptor::SelfTest::Required;
+  way.add(subsystem, wary, {Offline}, Operational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 3", "10 CONFIGURE 2", "10 SET_STATE 4", "10 TC[17,128] 10000 ms",
+                                      "10 SET_STATE 5"))
+      << "10 s is what its configuration gives it";
+}
+
+TEST_F(WayThereTest, ItIsNotRunWhereNothingWaitsForIt) {
+  descriptor::Configuration wary = coupled;
+  wary.self_test = descriptor::SelfTest::Required;
+  way.add(subsystem, wary, {Offline}, SafeOperational);
+  EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 3", "10 CONFIGURE 2", "10 SET_STATE 4"));
+}
+
 TEST_F(WayThereTest, LinksAreMadeBetweenPreOperationalAndSafeOperationalAndTheModeComesLast) {
   way.enter(craft.mission.modes.front());
   way.link(1);

@@ -14,14 +14,16 @@
 #include "supervisor/supervision/procedures/steps/link.hpp"
 #include "supervisor/supervision/procedures/steps/log.hpp"
 #include "supervisor/supervision/procedures/steps/restart.hpp"
+#include "supervisor/supervision/procedures/steps/self_test.hpp"
 #include "supervisor/supervision/procedures/steps/set_state.hpp"
 #include "supervisor/supervision/procedures/steps/shut_down_network.hpp"
 
 namespace hirosco::supervisor {
 
 /// All kinds of steps, here and nowhere else. Those that a mission's plans may name have a word in plan_steps.hpp besides.
-inline constexpr std::array step_kinds{&steps::log,       &steps::set_state, &steps::shut_down_network, &steps::restart,
-                                       &steps::configure, &steps::link,      &steps::enter_mode};
+inline constexpr std::array step_kinds{&steps::log,       &steps::set_state, &steps::shut_down_network,
+                                       &steps::restart,   &steps::configure, &steps::link,
+                                       &steps::self_test, &steps::enter_mode};
 
 /// Place in the table; its size when there is none of this name. (With sanitizers a comparison with null is no constant.)
 [[nodiscard]] constexpr std::size_t place_of_step_kind(std::string_view name) noexcept {

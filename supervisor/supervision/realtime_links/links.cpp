@@ -50,9 +50,10 @@ bool Links::has_left(std::uint16_t apid, std::uint8_t link) const {
 
 void Links::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) {
   const auto link = data.empty() ? std::uint8_t{0} : std::to_integer<std::uint8_t>(data[0]);
-  desk_.send(apid, pus::st128::service_type, subtype, data, memory, [=, this](bool success, const std::string& why) {
+  const auto done = [=, this](bool success, const std::string& why) {
     if (!success) handling_.failed(apid, subtype, link, craft_.name_of(apid) + ": " + why);
-  });
+  };
+  desk_.send(apid, pus::st128::service_type, subtype, data, memory, done, Duration{0});
 }
 
 void Links::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {

@@ -128,13 +128,13 @@ TEST_F(HalfOfAnUnlink, EndsWhenTheOtherEndDies) {
 
 TEST_F(HalfOfAnUnlink, FailsWhenTheOtherEndRefuses) {
   verify(hand, detach, 4, pus::FailureCode::UnknownIdentifier);
-  EXPECT_EQ(end(), to_text(pus::FailureCode::ExecutionError));
+  EXPECT_EQ(end(), "execution error: an end has not let go of link 2");
 }
 
 TEST_F(HalfOfAnUnlink, FailsInTimeWhenTheOtherEndSaysNothing) {
   EXPECT_EQ(end(), "");
   wait(2100ms);
-  EXPECT_EQ(end(), to_text(pus::FailureCode::Timeout));
+  EXPECT_EQ(end(), "timeout: an end has not let go of link 2");
 }
 
 TEST_F(HalfOfAnUnlink, RefusesALinkMeanwhileAndSaysWhy) {
@@ -142,7 +142,7 @@ TEST_F(HalfOfAnUnlink, RefusesALinkMeanwhileAndSaysWhy) {
   parts.own_telecommands.command(supervisor_apid, "LINK", 2,
                                  [&](bool success, const std::string& why) { how = success ? "done" : why; });
   for (int step = 0; step < 50 && how.empty(); ++step) own_step();
-  EXPECT_EQ(how, to_text(pus::FailureCode::WrongStatus));
+  EXPECT_EQ(how, "wrong status: an end has not let go since UNLINK of link 2");
   const auto reason = pus::reason_in(Octets{last_routed[1]}.subspan(6));
   ASSERT_TRUE(reason);
   EXPECT_EQ(reason->text, "an end has not let go since UNLINK of link");

@@ -28,7 +28,7 @@ struct HousekeepingTest : PartsTest {
     writer.put(std::uint8_t{1});
     writer.put(ParameterId{supervisor_apid, type, id}.wire());
     last_routed.erase(20);
-    parts.own_telecommands.send(supervisor_apid, 20, 1, asked, {}, nullptr);
+    parts.own_telecommands.send(supervisor_apid, 20, 1, asked, {}, nullptr, Duration{0});
     for (int step = 0; step < 20 && !last_routed.contains(20); ++step) own_step();
     auto& data = last_routed[20];
     if (data.size() < asked.size()) return {};

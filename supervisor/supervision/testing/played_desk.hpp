@@ -23,7 +23,13 @@ struct PlayedDesk final : CommandDesk {
     answers.push_back(std::move(done));
     if (at_once) answers.back()(*at_once, "at once");
   }
-  void send(std::uint16_t, std::uint8_t, std::uint8_t, Octets, const MemoryHandle&, CommandDone) override {}
+  void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets, const MemoryHandle&,
+            CommandDone done, Duration takes) override {
+    sent.push_back(std::to_string(apid) + " TC[" + std::to_string(service) + "," + std::to_string(subtype) + "] " +
+                   std::to_string(takes / std::chrono::milliseconds{1}) + " ms");
+    answers.push_back(std::move(done));
+    if (at_once) answers.back()(*at_once, "at once");
+  }
   /// The oldest that was not answered.
   void answer(bool success, const std::string& why = {}) {
     const CommandDone done = std::move(answers.front());

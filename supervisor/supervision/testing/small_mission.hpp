@@ -60,7 +60,7 @@ inline descriptor::Mission small_mission() {
   descriptor::Mode open;
   open.name = "open";
   open.id = 1;
-  open.permits = {{.subsystem = "*", .functions = {"*"}, .services = {3, 5, 20}, .parameters = {}, .at = {}}};
+  open.permits = {{.subsystem = "*", .functions = {"*"}, .services = {3, 5, 17, 20}, .parameters = {}, .at = {}}};
   descriptor::Mode narrow;
   narrow.name = "narrow";
   narrow.id = 2;

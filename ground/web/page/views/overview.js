@@ -46,14 +46,15 @@ export const plot_title = (names) => {
 
 function QuickCommand() {
   const list = mission.value?.subsystems ?? [];
-  const own = (one) => (one.functions ?? []).filter((action) => !['SET_STATE', 'CONFIGURE', 'PING'].includes(action.name)).length;
+  const of_its_own = (action) => (action.service === 8 ? !['SET_STATE', 'CONFIGURE'].includes(action.name) : action.service >= 192);
+  const own = (one) => (one.functions ?? []).filter(of_its_own).length;
   const first = list.filter((one) => one.id !== 1).sort((one, other) => own(other) - own(one) || other.id - one.id)[0] ?? list[0];
   const [subsystem, set_subsystem] = useState(null);
   const [action, set_action] = useState(null);
   const chosen = list.find((one) => one.name === subsystem) ?? first;
   if (!chosen) return null;
   const actions = chosen.functions ?? [];
-  const command = actions.find((one) => one.name === action) ?? actions.find((one) => !['SET_STATE', 'CONFIGURE', 'PING'].includes(one.name)) ?? actions[0];
+  const command = actions.find((one) => one.name === action) ?? actions.find(of_its_own) ?? actions[0];
   return html`<div class="quick">
     <label class="field"><span>Subsystem</span><select data-test="quick-subsystem" value=${chosen.name}
       onChange=${(event) => { set_subsystem(event.currentTarget.value); set_action(null); }}>

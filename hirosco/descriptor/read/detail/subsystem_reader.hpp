@@ -37,6 +37,7 @@ class SubsystemReader {
     Unique& structure_ids;
     Unique& provided;
     Unique& required;
+    Duration& self_test_within;
     bool of_configuration{false};
     std::map<std::string, Location> seen{};
   };
@@ -65,7 +66,11 @@ class SubsystemReader {
   // read_parameters.cpp
   /// True when the element names what every subsystem has: it may give a parameter its id, and is else reported.
   bool read_built_in(const xml::Element& element);
+  /// The parameters of actuators, once these are known.
+  void imply_outputs();
   void imply_parameters();
+  void check_built_in_ids(const Parameter& built_in, const Field& field, std::uint8_t id);
+  void read_parameter_element(const xml::Element& element);
   void read_enumeration(const xml::Element& element);
   void read_structure(const xml::Element& element);
   void read_parameter(const xml::Element& element);
@@ -116,6 +121,7 @@ class SubsystemReader {
   void check_arguments(const xml::Element& element, const Function& function);
   void read_fallback(Attributes& attributes, Function::Argument& argument);
   void read_argument(const xml::Element& element, Function& function, Unique& names);
+  void read_test_service(const xml::Element& element, Services& services);
   void read_housekeeping(const xml::Element& element, Services& services);
   void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);
   void read_provides(const xml::Element& element, Services& services);
@@ -153,6 +159,7 @@ class SubsystemReader {
   Unique required_{"required set", "E0201"};
   std::vector<Provides> provides_;   ///< under <Subsystem>: valid in every configuration
   std::vector<Requires> requires_;
+  Duration self_test_within_{default_self_test_within};  ///< where a configuration says nothing else
   std::size_t configurations_{0};    ///< that the descriptor has
   std::vector<Parameter> built_in_{framework_parameters()};
   std::vector<EnumerationUse> enumeration_uses_;

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+
+#include "subsystems/manipulator/manipulator.hpp"
+
+/// An arm's self test (adr 0073): the sensors at rest, then what the law would put out for small deviations of each joint to each
+/// side, up to the output itself. A law with a wrong sign would run away from where it is to hold.
+namespace hirosco {
+
+using manipulator::Joints;
+using manipulator::Measured;
+
+namespace {
+
+constexpr double displacement_rad = 0.01;
+constexpr double velocity_rad_s = 0.05;
+constexpr double load_n_m = 0.5;
+/// Each of these asks for more than that of a law within the declared gains.
+constexpr double least_answer_n_m = 0.5;
+/// Of the other joints: the law is one for each joint.
+constexpr double most_crosstalk_n_m = 0.01;
+
+constexpr double rest_rad_s = 0.05;
+constexpr double most_windup_rad = 0.1;  ///< between motor and joint
+constexpr double past_stop_rad = 0.05;
+
+[[nodiscard]] std::unexpected<Error> fails(const char* what, std::size_t joint) noexcept {
+  return fail(ErrorCode::Internal, what, static_cast<std::int64_t>(joint + 1));
+}
+
+}  // namespace
+
+/// One deviation in each cycle: joints to both sides in turn.
+Result<Step> Manipulator::self_test(const Cycle& cycle) noexcept {
+  if (cycle.first) {
+    tried_ = 0;
+    HIROSCO_TRY(check_sensors());
+  }
+  const double side = tried_ % 2 == 0 ? 1.0 : -1.0;
+  const auto checked = check_law(tried_ / 2, side);
+  // The node of the next cycle begins where the joints are, as ever.
+  rest();
+  if (!checked) return std::unexpected{checked.error()};
+  return ++tried_ < 2 * joints() ? again : done;
+}
+
+Result<> Manipulator::check_sensors() noexcept {
+  if (!robot_.alive()) return fail(ErrorCode::Unavailable, "the robot says nothing");
+  const Measured now = measured();
+  for (std::size_t i = 0; i < joints(); ++i) {
+    // Written so that what is no number fails.
+    if (!(std::abs(now.velocity_rad_s[i]) < rest_rad_s && std::abs(now.motor_velocity_rad_s[i]) < rest_rad_s))
+      return fails("it moves though nothing drives it, joint", i);
+    if (!(now.position_rad[i] > lowest_rad_[i] - past_stop_rad &&
+          now.position_rad[i] < highest_rad_[i] + past_stop_rad))
+      return fails("measured outside of its range, joint", i);
+    if (!(std::abs(now.position_rad[i] - now.motor_position_rad[i]) < most_windup_rad))
+      return fails("motor and joint are measured apart, joint", i);
+    if (!(std::abs(now.torque_n_m[i]) < torque_limit_.load()))
+      return fails("its load at rest is above its limit, joint", i);
+  }
+  if (temperature_guard_.too_hot()) return fail(ErrorCode::Unavailable, "too hot");
+  return ok();
+}
+
+/// What would be put out, with a setpoint that stands still.
+Joints Manipulator::wish(const Joints& desired_rad, const Measured& measured) noexcept {
+  controller_->reset(desired_rad);
+  drive(desired_rad, measured);
+  return robot_.output().torque_n_m;
+}
+
+Result<> Manipulator::check_law(std::size_t joint, double side) noexcept {
+  const Measured now = measured();
+  const Joints& here = now.motor_position_rad;
+  const Joints at_rest = wish(here, now);
+  struct Deviation {
+    Joints desired_rad;
+    Measured measured;
+    double answer;  ///< its direction
+    const char* wrong;
+  };
+  std::array<Deviation, 3> deviations{Deviation{here, now, side, "driven away from its setpoint, joint"},
+                                      Deviation{here, now, -side, "driven on in its motion, joint"},
+                                      Deviation{here, now, -side, "driven with its load, joint"}};
+  deviations[0].desired_rad[joint] += side * displacement_rad;
+  deviations[1].measured.motor_velocity_rad_s[joint] += side * velocity_rad_s;
+  deviations[2].measured.torque_n_m[joint] += side * load_n_m;
+  for (const Deviation& deviation : deviations) {
+    const Joints wanted = wish(deviation.desired_rad, deviation.measured);
+    for (std::size_t i = 0; i < joints(); ++i) {
+      const double answer = wanted[i] - at_rest[i];
+      if (i == joint && !(deviation.answer * answer > least_answer_n_m)) return fails(deviation.wrong, joint);
+      if (i != joint && !(std::abs(answer) < most_crosstalk_n_m)) return fails("driven by another joint, joint", i);
+    }
+  }
+  return ok();
+}
+
+}  // namespace hirosco
