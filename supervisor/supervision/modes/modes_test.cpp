@@ -39,7 +39,7 @@ TEST_F(ModesTest, AModeWhoseMembersAreDeadIsRefusedUntilTheyLiveAgain) {
   craft.mission.modes[1].commission = {{.subsystem = "ARM", .configuration = "COUPLED", .state = Operational, .at = {}},
                                        {.subsystem = "HAND", .configuration = "ONLY", .state = Operational, .at = {}}};
   craft.member(hand)->died();
-  EXPECT_EQ(call_own("SET_MODE", narrow), to_text(pus::FailureCode::WrongStatus));
+  EXPECT_EQ(call_own("SET_MODE", narrow), "wrong status: reasons against it, all of them in TM[129,5]: 1");
   EXPECT_EQ(craft.mode->name, "open");
   parts.restarts.plan(hand, {.limit = 1, .within = 1s, .pause = 0s}, clock.now());
   parts.processes.watch(clock.now());
@@ -118,7 +118,7 @@ TEST_F(ModeChangeTest, OneTelecommandBringsTheWholeCraftIntoTheModeAndItsEndSays
 
 TEST_F(ModeChangeTest, ASecondChangeWaitsForTheEndOfTheFirst) {
   begin();
-  EXPECT_EQ(call_own("SET_MODE", narrow), to_text(pus::FailureCode::Busy));
+  EXPECT_EQ(call_own("SET_MODE", narrow), "busy: another change of mode is under way");
   go_on();
   EXPECT_EQ(end, "done");
 }
@@ -126,7 +126,7 @@ TEST_F(ModeChangeTest, ASecondChangeWaitsForTheEndOfTheFirst) {
 TEST_F(ModeChangeTest, AnImpossibleOneIsRefusedAsAWholeAndEveryReasonIsTold) {
   craft.member(hand)->died();
   craft.mission.modes[1].from = {"narrow"};
-  EXPECT_EQ(call_own("SET_MODE", narrow), to_text(pus::FailureCode::WrongStatus));
+  EXPECT_EQ(call_own("SET_MODE", narrow), "wrong status: reasons against it, all of them in TM[129,5]: 2");
   EXPECT_TRUE(was_told(
       "mode narrow is impossible: it is not entered from mode open; HAND is down: SET_STATE Offline starts it again"));
   EXPECT_TRUE(texts(arm).empty());
