@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/link/queued_memory.hpp"
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
 #include "hirosco/data_transfer/link/testing/loan_conformance.hpp"
 #include "hirosco/data_transfer/link/testing/queue_conformance.hpp"
@@ -30,10 +29,8 @@ std::vector<const LinkMechanism*> mechanisms_of(LinkKind kind) {
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, LoanConformance, ::testing::ValuesIn(mechanisms_of(LinkKind::Loaned)),
                          mechanism_name);
-
-const QueuedMemory queued_mechanism;  // its row comes with the author's interface
-INSTANTIATE_TEST_SUITE_P(Queued, LinkConformance, ::testing::Values(&queued_mechanism), mechanism_name);
-INSTANTIATE_TEST_SUITE_P(Queued, QueueConformance, ::testing::Values(&queued_mechanism), mechanism_name);
+INSTANTIATE_TEST_SUITE_P(BuiltIn, QueueConformance, ::testing::ValuesIn(mechanisms_of(LinkKind::Queued)),
+                         mechanism_name);
 
 TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
   for (const LinkMechanism* mechanism : standard_link_mechanisms())
