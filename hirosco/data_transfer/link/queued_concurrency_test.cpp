@@ -4,10 +4,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
 #include <functional>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -19,37 +21,33 @@
 namespace hirosco::queueing {
 namespace {
 
-constexpr std::uint32_t payload_octets = 4096;
-constexpr std::uint32_t depth = 4;
+constexpr std::uint32_t payload_octets = 16'384;
+constexpr std::uint32_t depth = 2;
 constexpr LinkLayout layout{7, payload_octets, 0x1234'5678'9ABC'DEF0, 1ms, depth};
 
-/// Every word of sample n is a different function of n, so that a mixture of two samples cannot pass for one.
-std::uint64_t word_of(std::uint64_t n, std::uint64_t i) { return (n + i) * 0x9E37'79B9'7F4A'7C15; }
-void fill(std::vector<std::byte>& payload, std::uint64_t n) {
-  for (std::uint64_t i = 0; i < payload.size() / 8; ++i) {
-    const std::uint64_t word = word_of(n, i);
-    std::memcpy(payload.data() + i * 8, &word, 8);
+/// Every word of sample n is a different function of n, so that a mixture of two samples in one slot cannot pass for one. They are made
+/// beforehand: a producer that does nothing but write is nearly always at work in the slot that its consumer is about to lose.
+class Samples {
+ public:
+  Samples() {
+    for (std::uint64_t n = 0; n < made_.size(); ++n)
+      for (std::uint64_t i = 0; i < payload_octets / 8; ++i) made_[n].push_back((n + i) * 0x9E37'79B9'7F4A'7C15);
   }
-}
-bool is_sample(const std::vector<std::byte>& payload, std::uint64_t n) {
-  for (std::uint64_t i = 0; i < payload.size() / 8; ++i) {
-    std::uint64_t word;
-    std::memcpy(&word, payload.data() + i * 8, 8);
-    if (word != word_of(n, i)) return false;
-  }
-  return true;
-}
+  [[nodiscard]] Octets operator[](std::uint64_t n) const { return std::as_bytes(std::span{made_[n % made_.size()]}); }
+
+ private:
+  std::array<std::vector<std::uint64_t>, 16> made_;  ///< no multiple of the slots
+};
 
 using Produce = std::function<void(std::uint64_t n, Octets payload)>;
 
-/// Samples 1 to `last`, or until told to stop, with gaps of many lengths, so that reads begin, lie and end everywhere in a write.
-void produce(const Produce& write, std::uint64_t last, const std::atomic<bool>& stop) {
-  std::vector<std::byte> payload(payload_octets);
+/// Samples 1 to `last`, or until told to stop, now and then with a gap, so that reads begin, lie and end everywhere in a write.
+void produce(const Produce& write, const Samples& samples, std::uint64_t last, const std::atomic<bool>& stop) {
   for (std::uint64_t n = 1; n <= last && !stop.load(std::memory_order_relaxed); ++n) {
-    fill(payload, n);
-    write(n, payload);
-    for (std::uint64_t i = 0; i < n * 37 % 1024; ++i) static_cast<void>(stop.load());
-    if (n % 4 == 0) std::this_thread::yield();
+    write(n, samples[n]);
+    if (n % 8 == 0)
+      for (std::uint64_t i = 0; i < n * 37 % 1024; ++i) static_cast<void>(stop.load());
+    if (n % 64 == 0) std::this_thread::yield();
   }
 }
 
@@ -62,7 +60,7 @@ struct Tally {
 
 /// Reads until sample `last`, or the first that is not right. Of three samples two are read late: when the producer is about to
 /// overwrite, or has overwritten, what comes next.
-Tally consume(LinkReader& reader, LinkView& view, std::uint64_t last) {
+Tally consume(LinkReader& reader, LinkView& view, const Samples& samples, std::uint64_t last) {
   Tally tally;
   std::vector<std::byte> seen(payload_octets);
   std::uint64_t before = 0;
@@ -77,7 +75,7 @@ Tally consume(LinkReader& reader, LinkView& view, std::uint64_t last) {
     }
     ++tally.received;
     tally.lost += sample.lost;
-    if (!is_sample(seen, sample.count)) ++tally.torn;
+    if (!std::ranges::equal(seen, samples[sample.count])) ++tally.torn;
     if (sample.count != before + sample.lost + 1) ++tally.misnumbered;
     before = sample.count;
   }
@@ -134,9 +132,10 @@ Tally between_threads(std::uint64_t last) {
   Producer producer{shared};
   const auto reader = shared.mechanism.consume(shared.provider, shared.memory, layout).value();
   const auto view = shared.mechanism.look(shared.provider, shared.memory).value();
+  const Samples samples;
   std::atomic<bool> stop{false};
-  std::thread thread{[&] { produce(producer, last, stop); }};
-  const Tally tally = consume(*reader, *view, last);
+  std::thread thread{[&] { produce(producer, samples, last, stop); }};
+  const Tally tally = consume(*reader, *view, samples, last);
   stop = true;
   thread.join();
   return tally;
@@ -160,6 +159,7 @@ TEST(QueuedLinkStress, BetweenTwoProcessesEverySampleComesWholeOnceInOrderOrIsCo
   constexpr std::uint64_t last = 20'000;
   Shared shared;
   TrueProducer producer{shared};
+  const Samples samples;
   std::array<int, 2> ready{};
   ASSERT_EQ(::pipe(ready.data()), 0);
   const pid_t consumer = ::fork();
@@ -168,7 +168,7 @@ TEST(QueuedLinkStress, BetweenTwoProcessesEverySampleComesWholeOnceInOrderOrIsCo
     const auto reader = shared.mechanism.consume(shared.provider, shared.memory, layout);
     const auto view = shared.mechanism.look(shared.provider, shared.memory);
     if (!reader || !view || ::write(ready[1], "r", 1) != 1) ::_exit(1);
-    const Tally tally = consume(**reader, **view, last);
+    const Tally tally = consume(**reader, **view, samples, last);
     if (tally.torn != 0) ::_exit(2);
     if (tally.misnumbered != 0 || tally.received + tally.lost != last) ::_exit(3);
     ::_exit(tally.received > 0 ? 0 : 4);
@@ -177,7 +177,7 @@ TEST(QueuedLinkStress, BetweenTwoProcessesEverySampleComesWholeOnceInOrderOrIsCo
   char is_ready{};
   EXPECT_EQ(::read(ready[0], &is_ready, 1), 1) << "its first sample is sample 1 only if it was there before";
   ::close(ready[0]);
-  produce(producer, last, false);
+  produce(producer, samples, last, false);
   int status = 0;
   ASSERT_EQ(::waitpid(consumer, &status, 0), consumer);
   EXPECT_TRUE(WIFEXITED(status));

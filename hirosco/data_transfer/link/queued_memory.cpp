@@ -20,8 +20,8 @@
 //     not asked for, so that what is lost depends on how far a consumer fell behind and not on who of the two is quicker.
 //  5. That a sample is there stand two words for: the newest count, which is not below it, and the sequence of its slot. A consumer reads
 //     and passes over samples only by both: no damage of one word brings a sample that is none, or keeps those that are there.
-//  6. A slot in which sample n is not whole although the newest count, read after it, is below n + depth was damaged: the producer
-//     begins with the next sample of this slot only behind that count (2), and its sequence tells so (3). It is given up.
+//  6. A sample that was published and is not whole in its slot is gone: overwritten meanwhile, or damaged there. It is given up as soon as
+//     the newest count is sure (5), else a consumer would wait for it until the ring had come around.
 //  7. Nobody waits. A consumer tries `attempts` times, then answers with its own last copy. The producer does not know of consumers.
 //  8. A consumer believes nothing it has read but as data: a count is taken modulo the slots, sizes are those of the agreement.
 namespace hirosco {
@@ -173,8 +173,8 @@ LinkSample QueuedReader::read(MutableOctets payload) noexcept {
       if (sure && *sure > passed_ + depth_) passed_ = *sure - depth_;
     }
     LinkSample sample;
-    if (told_newest > passed_ && copy(passed_ + 1, sample)) return accept(sample, payload);
-    if (lost_in_place(passed_ + 1)) ++passed_;
+    if (copy(passed_ + 1, sample)) return accept(sample, payload);
+    if (newest()) ++passed_;
     relax(attempt);
   }
   return last(payload);
@@ -190,12 +190,6 @@ bool QueuedReader::copy(std::uint64_t count, LinkSample& sample) noexcept {
   sample.sampled_at = Queue::time_of(get(stamp_in_slot));
   for (std::size_t i = 0; i < arriving_.size(); ++i) arriving_[i] = get(payload_in_slot + i * sizeof(Queue::Word));
   return get(sequence_in_slot) == 2 * count;
-}
-
-/// Whether a sample that is not whole in its slot was damaged there, and not overwritten (6).
-bool QueuedReader::lost_in_place(std::uint64_t count) const noexcept {
-  const auto newest = this->newest();
-  return newest && *newest >= count && *newest < count + depth_;
 }
 
 LinkSample QueuedReader::accept(LinkSample sample, MutableOctets payload) noexcept {

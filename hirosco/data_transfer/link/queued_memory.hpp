@@ -79,7 +79,6 @@ class QueuedReader final : public LinkReader {
   QueuedReader() = default;
   [[nodiscard]] std::optional<std::uint64_t> newest() const noexcept;
   [[nodiscard]] bool copy(std::uint64_t count, LinkSample& sample) noexcept;
-  [[nodiscard]] bool lost_in_place(std::uint64_t count) const noexcept;
   [[nodiscard]] LinkSample accept(LinkSample sample, MutableOctets payload) noexcept;
   [[nodiscard]] LinkSample last(MutableOctets payload) const noexcept;
   [[nodiscard]] LinkStatus now() const noexcept;

@@ -216,6 +216,8 @@ TEST(QueuedLinkHeader, MemoryThatWasUsedBeforeBeginsAnew) {
   QueuedReader reader = QueuedReader::make(memory.all(), layout_of(payload_octets)).value();
   Payload seen{};
   EXPECT_EQ(reader.read(seen).flow, Flow::None);
+  EXPECT_EQ(glance_at_queue(memory.all())->count, 0u);
+  EXPECT_EQ(glance_at_queue(memory.all())->sampled_at, TimePoint{});
   writer.write(sample(1), TimePoint{42ns}, LinkStatus::Valid);
   EXPECT_EQ(reader.read(seen).count, 1u);
   EXPECT_EQ(seen, sample(1));
@@ -354,6 +356,10 @@ TEST_F(QueuedLink, ASampleWhoseSlotIsDamagedIsLostAndThoseBehindItCome) {
   EXPECT_EQ(found.count, 3u);
   EXPECT_EQ(found.lost, 1u);
   EXPECT_EQ(seen_, sample(3));
+  memory_.word(slot_of(4)).store(1);
+  write_up_to(5);
+  EXPECT_EQ(reader_.read(seen_).lost, 1u);
+  EXPECT_EQ(reader_.read(seen_).lost, 0u) << "told once";
 }
 
 TEST(QueuedLinkDamage, OfAllSlotsButTheNewestCostsThemAllAndEachReadIsBounded) {
