@@ -35,7 +35,17 @@ inline constexpr std::uint32_t max_loaned_payload_octets = 16U << 20;
   return kind == LinkKind::Loaned ? max_loaned_payload_octets : max_link_payload_octets;
 }
 
-/// Written by the producer beside each sample. What no producer wrote is read as Fault: no damage of the word turns a
+/// Samples that a link of kind Queued keeps for a consumer that is behind, and the octets of all of them, at most.
+inline constexpr std::uint32_t min_link_depth = 2;
+inline constexpr std::uint32_t max_link_depth = 4096;
+inline constexpr std::uint32_t default_link_depth = 64;
+inline constexpr std::uint32_t max_queue_octets = 64U << 20;
+[[nodiscard]] constexpr bool queue_fits(std::uint32_t depth, std::uint32_t payload_octets) noexcept {
+  return depth >= min_link_depth && depth <= max_link_depth &&
+         std::uint64_t{depth} * payload_octets <= max_queue_octets;
+}
+
+/// Written by the producer beside each sample. The larger of two is the worse to rely on. What no producer wrote is read as Fault: no damage of the word turns a
 /// fault into something to rely on (hazard SF19).
 enum class LinkStatus : std::uint32_t { None = 0, Valid = 1, Degraded = 2, Stopping = 3, Fault = 4 };
 
@@ -45,12 +55,15 @@ struct LinkLayout {
   std::uint32_t payload_octets{};  ///< of one sample, 1 .. max_payload_octets(kind)
   std::uint64_t layout_hash{};  ///< of the agreed fields, byte order and kind
   Duration period{};  ///< of the producer
+  std::uint32_t depth{0};  ///< of kind Queued: samples kept, min_link_depth .. max_link_depth; of others 0
 };
 
 /// What a read found. `flow` None: never a sample yet. Old: the same sample as last time, or none could be had whole and
 /// `payload` still holds the reader's last copy.
 struct LinkSample {
   Flow flow{Flow::None};
+  /// As the producer told it last; of kind Queued that, or what it wrote beside the sample, whichever is worse: a fault is told
+  /// ahead of the samples that wait, and no later one makes good what came of it.
   LinkStatus status{LinkStatus::None};
   std::uint64_t count{0};  ///< of the sample in `payload`
   std::uint64_t lost{0};  ///< samples never seen between this and the one before
@@ -73,13 +86,15 @@ class LinkWriter {
   virtual void set_status(LinkStatus status) noexcept = 0;
 };
 
-/// A consumer's end. Keeps the last whole sample itself, so that no producer can take it away.
+/// A consumer's end. Keeps the last whole sample itself, so that no producer can take it away. What is next depends on the
+/// kind: the newest sample there is; of kind Queued the one after that which was read last. A consumer of that kind that is
+/// more than `depth` samples behind goes on with the oldest of the newest `depth`, and `lost` tells exactly how many it missed.
 /// Realtime: bounded, never waits for the producer. Thread: one.
 class LinkReader {
  public:
   virtual ~LinkReader() = default;
-  /// Copies the next sample into `payload` (agreed size, invariant), never a torn one; on Old the last one again, on None
-  /// nothing.
+  /// Copies the next sample into `payload` (agreed size, invariant), never a torn one, none twice and none after a later
+  /// one; on Old the last one again, on None nothing.
   virtual LinkSample read(MutableOctets payload) noexcept = 0;
 };
 

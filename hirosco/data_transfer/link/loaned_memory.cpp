@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "hirosco/data_transfer/link/detail/link_words.hpp"
 #include "hirosco/utilities/processor.hpp"
 
 // A ring of places, each with a sequence of its own, for one producer and any number of consumers. Invariants:
@@ -28,15 +29,7 @@ namespace hirosco {
 namespace {
 
 /// The words of such a memory. In a class, as these names are those of other mechanisms, too.
-struct Loans {
-  using Word = std::uint64_t;
-  static_assert(std::atomic_ref<Word>::is_always_lock_free);
-
-  static constexpr std::size_t line = cache_line_octets;
-  static constexpr std::size_t page = 4096;
-  static constexpr int attempts = 8;
-
-  static constexpr std::size_t in_lines(std::size_t octets) noexcept { return (octets + line - 1) / line * line; }
+struct Loans : detail::LinkWords {
   static std::size_t place_at(std::uint64_t count, std::uint32_t payload_octets) noexcept {
     return loaned_memory::payload_at + count % loaned_memory::places * in_lines(payload_octets);
   }
@@ -45,17 +38,9 @@ struct Loans {
     return layout.payload_octets >= 1 && layout.payload_octets <= max_loaned_payload_octets;
   }
   static bool fit(const void* start, std::size_t octets, const LinkLayout& layout) noexcept {
-    return plausible(layout) && start != nullptr && std::bit_cast<std::uintptr_t>(start) % line == 0 &&
-           octets >= loaned_memory_octets(layout.payload_octets);
+    return plausible(layout) && on_a_line(start) && octets >= loaned_memory_octets(layout.payload_octets);
   }
 
-  static std::atomic_ref<Word> word(std::byte* memory, std::size_t at) noexcept {
-    return std::atomic_ref<Word>{*reinterpret_cast<Word*>(memory + at)};
-  }
-  // The standard has no atomic_ref to const yet; a lock-free load does not write, so a read-only mapping is safe.
-  static Word load(const std::byte* memory, std::size_t at, std::memory_order order) noexcept {
-    return word(const_cast<std::byte*>(memory), at).load(order);
-  }
   // Thread sanitizers do not understand fences, and the compiler refuses them there. Tests under one write and read what is lent
   // as atomic words in release and acquire order, which does the same.
   static void fence(std::memory_order order) noexcept {
@@ -67,14 +52,9 @@ struct Loans {
   }
 
   static Word version_epoch(const LinkLayout& layout) noexcept { return loaned_memory::version << 32 | layout.epoch; }
-  static constexpr Word coded(LinkStatus status) noexcept {
-    const Word number = std::to_underlying(status);
-    return (~number << 32) | number;
-  }
+  /// None stands in the first place before there is a sample.
   static constexpr LinkStatus status_of(Word word) noexcept {
-    for (const LinkStatus status : {LinkStatus::None, LinkStatus::Valid, LinkStatus::Degraded, LinkStatus::Stopping})
-      if (word == coded(status)) return status;
-    return LinkStatus::Fault;
+    return word == coded(LinkStatus::None) ? LinkStatus::None : LinkWords::status_of(word);
   }
 };
 

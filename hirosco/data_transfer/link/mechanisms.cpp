@@ -5,17 +5,20 @@
 #include "hirosco/data_transfer/link/latest_memory.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/data_transfer/link/loaned_memory.hpp"
+#include "hirosco/data_transfer/link/queued_memory.hpp"
 
 namespace hirosco {
 namespace {
 
 const LatestMemory latest_memory;
 const LoanedMemory loaned_memory_links;
+const QueuedMemory queued_memory_links;
 
 /// A mechanism is in force where it stands here: for descriptors, handshake, both ends and the supervisor's view.
 constexpr const LinkMechanism* built_in_mechanisms[]{
     &latest_memory,
     &loaned_memory_links,
+    &queued_memory_links,
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
 #include "hirosco/data_transfer/link/testing/loan_conformance.hpp"
+#include "hirosco/data_transfer/link/testing/queue_conformance.hpp"
 
 namespace hirosco::testing {
 namespace {
@@ -19,14 +20,17 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, LinkConformance,
                          ::testing::ValuesIn(standard_link_mechanisms().begin(), standard_link_mechanisms().end()),
                          mechanism_name);
 
-std::vector<const LinkMechanism*> lending_mechanisms() {
+std::vector<const LinkMechanism*> mechanisms_of(LinkKind kind) {
   std::vector<const LinkMechanism*> found;
   std::ranges::copy_if(standard_link_mechanisms(), std::back_inserter(found),
-                       [](const LinkMechanism* mechanism) { return mechanism->kind() == LinkKind::Loaned; });
+                       [kind](const LinkMechanism* mechanism) { return mechanism->kind() == kind; });
   return found;
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, LoanConformance, ::testing::ValuesIn(lending_mechanisms()), mechanism_name);
+INSTANTIATE_TEST_SUITE_P(BuiltIn, LoanConformance, ::testing::ValuesIn(mechanisms_of(LinkKind::Loaned)),
+                         mechanism_name);
+INSTANTIATE_TEST_SUITE_P(BuiltIn, QueueConformance, ::testing::ValuesIn(mechanisms_of(LinkKind::Queued)),
+                         mechanism_name);
 
 TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
   for (const LinkMechanism* mechanism : standard_link_mechanisms())

@@ -200,16 +200,19 @@ struct CycleLimit {
   std::uint32_t reduced{};
 };
 
-/// A set of fields that a configuration requires over a real-time link. Fields are matched by name.
+/// A set of fields that a configuration requires over a real-time link. Fields are matched by name. It has one kind: who looks at
+/// what is lent, or wants every sample, has another port than who wants the newest (adr 0070, 0072).
 struct Requires {
   std::string name;
   std::string from;  ///< name of the producing subsystem, empty = any
   LinkTerms terms;
+  std::uint32_t depth{0};  ///< of a queued set: samples that it may fall behind without a loss; of others 0
   bool required{true};  ///< false: useful, but Safe-Operational does not wait for it
   CycleLimit age{3, 40};
   MissingPolicy missing{MissingPolicy::Inhibit};
   std::vector<Field> fields;
   Location at;
+  [[nodiscard]] LinkKind kind() const noexcept { return terms.kinds.front(); }
 };
 
 /// Address and means of transfer of a data flow (paper 4.1).

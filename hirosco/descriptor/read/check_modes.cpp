@@ -49,6 +49,11 @@ std::string mismatch(const Subsystem& producer, const Provides& provides, const 
   if (!share(provides.terms.methods, requires_.terms.methods)) return "no common method";
   if (!share(provides.terms.byte_orders, requires_.terms.byte_orders)) return "no common byte order";
   if (!share(provides.terms.kinds, requires_.terms.kinds)) return "no common kind";
+  if (requires_.depth == 0) return {};
+  std::size_t octets = 0;
+  for (const Field& field : offered) octets += field.octets();
+  if (octets * requires_.depth > max_queue_octets)
+    return fmt::format("{} samples of {} octets are more than {}", requires_.depth, octets, max_queue_octets);
   return {};
 }
 

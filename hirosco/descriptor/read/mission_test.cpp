@@ -417,6 +417,23 @@ TEST(MissionErrors, ALentSetHasTheSameFieldsInTheSameOrderAtBothEnds) {
   EXPECT_EQ(why(both, b, "latest"), "no common kind");
 }
 
+TEST(MissionErrors, AQueueOfAllThatIsProvidedFitsItsMemory) {
+  const auto why = [](std::string_view depth) {
+    std::string text = R"(<Subsystem name="S" id="10"><Parameters><ParamRef name="A" id="1" type="DOUBLE" count="4096"/>
+      <ParamRef name="B" id="2" type="DOUBLE" count="4096"/></Parameters>
+      <Configuration name="C" id="1" sampling_us="100"><RealTimeLinkService>
+      <Provides name="P" kind="latest queued"><ParamRef name="A"/><ParamRef name="B"/></Provides>
+      <Requires name="R" kind="queued" depth=")";
+    text.append(depth).append(R"("><Field name="A" type="DOUBLE" count="4096"/></Requires>)");
+    const auto reading = testing::read_text(text + "</RealTimeLinkService></Configuration></Subsystem>");
+    if (!reading.value) return rendered(reading.problems, file_system());
+    const Configuration& configuration = reading.value->configurations.front();
+    return detail::mismatch(*reading.value, configuration.provides.front(), configuration.requires_.front());
+  };
+  EXPECT_EQ(why("1024"), "");
+  EXPECT_EQ(why("1025"), "1025 samples of 65536 octets are more than 67108864");
+}
+
 TEST(MissionErrors, EveryTruncationIsRefused) {
   std::string text = good_mission();
   while (text.ends_with('\n')) text.pop_back();

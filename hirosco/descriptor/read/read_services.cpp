@@ -315,6 +315,21 @@ LinkTerms SubsystemReader::read_terms(Attributes& attributes) {
   return terms;
 }
 
+/// Of a required set. Who wants every sample has another port than who wants the newest.
+std::uint32_t SubsystemReader::read_depth(Attributes& attributes, LinkTerms& terms) {
+  const auto* depth = attributes.optional("depth");
+  if (std::ranges::find(terms.kinds, LinkKind::Queued) == terms.kinds.end()) {
+    if (depth != nullptr)
+      problems_.add(*depth, "E0233", "a set that is not queued has no depth", "kind=\"queued\", or leave it out");
+    return 0;
+  }
+  if (terms.kinds.size() != 1)
+    problems_.add(*attributes.optional("kind"), "E0233", "a required set that is queued is of no other kind besides",
+                  "kind=\"queued\", and a second set for the newest sample");
+  terms.kinds = {LinkKind::Queued};
+  return attributes.integer_or<std::uint32_t>("depth", min_link_depth, max_link_depth, default_link_depth);
+}
+
 CycleLimit SubsystemReader::read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
                                        CycleLimit fallback) {
   CycleLimit limit;
@@ -395,6 +410,7 @@ void SubsystemReader::read_requires(const xml::Element& element, Services& servi
   set.name = attributes.name();
   if (attributes.optional("from") != nullptr) set.from = attributes.name("from");
   set.terms = read_terms(attributes);
+  set.depth = read_depth(attributes, set.terms);
   set.required = attributes.yes("required", true);
   set.age = read_limit(attributes, "age", "age_reduced", set.age);
   set.missing = attributes.one_of("missing", MissingPolicy::Inhibit);
@@ -409,6 +425,10 @@ void SubsystemReader::read_requires(const xml::Element& element, Services& servi
   if (!set.terms.lent() && octets > max_link_payload_octets)
     problems_.add(element, "E0215", fmt::format("set '{}' takes {} octets in one sample", set.name, octets),
                   fmt::format("at most {}", max_link_payload_octets));
+  if (set.depth * octets > max_queue_octets)
+    problems_.add(element, "E0215",
+                  fmt::format("set '{}' takes {} octets in {} samples", set.name, set.depth * octets, set.depth),
+                  fmt::format("at most {}: a smaller depth", max_queue_octets));
   if (!set.name.empty()) services.required.add(set.name, set.at, problems_, element.name.size() + 1);
   services.requires_.push_back(std::move(set));
 }

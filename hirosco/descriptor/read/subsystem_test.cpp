@@ -304,6 +304,24 @@ TEST(SubsystemDescriptor, ALentSetHasLargeFieldsOfItsOwnAndTheByteOrderOfTheMach
   EXPECT_EQ(wanted.fields.at(0).count, 4'194'304U);
 }
 
+TEST(SubsystemDescriptor, AQueuedSetSaysHowDeepItIs) {
+  const auto reading =
+      read_text(R"(<Subsystem name="S" id="10"><Parameters><ParamRef name="X" id="1" type="DOUBLE"/></Parameters>
+    <Configuration name="A" id="1" sampling_us="100"/><RealTimeLinkService>
+    <Provides name="P" kind="latest queued"><ParamRef name="X"/></Provides>
+    <Requires name="Q" kind="queued"><Field name="X" type="DOUBLE"/></Requires>
+    <Requires name="R" kind="queued" depth="4096"><Field name="X" type="DOUBLE" count="2048"/></Requires>
+    <Requires name="S"><Field name="X" type="DOUBLE"/></Requires></RealTimeLinkService></Subsystem>)");
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const Configuration& configuration = reading.value->configurations.at(0);
+  EXPECT_EQ(configuration.provides.at(0).terms.kinds, (std::vector{LinkKind::Latest, LinkKind::Queued}));
+  EXPECT_EQ(configuration.requires_.at(0).kind(), LinkKind::Queued);
+  EXPECT_EQ(configuration.requires_.at(0).depth, default_link_depth);
+  EXPECT_EQ(configuration.requires_.at(1).depth, 4096U);
+  EXPECT_EQ(configuration.requires_.at(2).kind(), LinkKind::Latest);
+  EXPECT_EQ(configuration.requires_.at(2).depth, 0U);
+}
+
 TEST(SubsystemDescriptor, AcceptsTheSmallestUsefulSubsystem) {
   const auto reading = read_subsystem(data / "hello.xml", file_system());
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());

@@ -18,7 +18,7 @@ namespace {
 using descriptor::ByteOrder;
 
 /// An element of the handshake; the value is Refusal::item.
-enum class Item : std::uint8_t { Method = 0, ByteOrder = 1, Kind = 2, Rate = 3, Field = 4 };
+enum class Item : std::uint8_t { Method = 0, ByteOrder = 1, Kind = 2, Rate = 3, Field = 4, Depth = 5 };
 
 constexpr std::size_t max_choices = 16;          ///< methods, byte orders or kinds of one offer
 constexpr std::size_t max_fields = 255;
@@ -101,6 +101,17 @@ template <class E>
   return std::nullopt;
 }
 
+/// As the reader of descriptors has it: depth goes with kind Queued, and with that alone.
+[[nodiscard]] bool is_depth(std::uint32_t depth, bool queued) noexcept {
+  return queued ? depth >= min_link_depth && depth <= max_link_depth : depth == 0;
+}
+
+[[nodiscard]] std::optional<Refusal> check_depth(const Offer& consumer, LinkKind kind, std::size_t payload) {
+  if (kind != LinkKind::Queued || queue_fits(consumer.depth, static_cast<std::uint32_t>(payload))) return std::nullopt;
+  return Refusal{static_cast<std::uint8_t>(Item::Depth),
+                 "depth: " + std::to_string(consumer.depth) + " samples of " + std::to_string(payload) + " octets"};
+}
+
 /// FNV-1a 64 over octets.
 class Hash {
  public:
@@ -156,12 +167,14 @@ class Writer {
     choices(offer.terms.methods);
     choices(offer.terms.byte_orders);
     choices(offer.terms.kinds);
+    depth(offer.depth);
     fields(offer.fields);
   }
   void agreement(const Agreement& agreement) {
     enumerator(agreement.method);
     enumerator(agreement.byte_order);
     enumerator(agreement.kind);
+    depth(agreement.depth);
     duration(agreement.producer_period);
     duration(agreement.consumer_period);
     fields(agreement.fields);
@@ -173,6 +186,10 @@ class Writer {
   }
 
  private:
+  void depth(std::uint32_t samples) {
+    encodable_ = encodable_ && samples <= max_link_depth;
+    out_.put(static_cast<std::uint16_t>(samples));
+  }
   void count(std::size_t size, std::size_t limit) {
     encodable_ = encodable_ && size <= limit;
     out_.put(static_cast<std::uint8_t>(size));
@@ -215,6 +232,10 @@ class Reader {
     span = Duration{in_.get<std::int64_t>()};
     require(span.count() > 0);
   }
+  void depth(std::uint32_t& samples, bool queued) noexcept {
+    samples = in_.get<std::uint16_t>();
+    require(is_depth(samples, queued));
+  }
   template <class E>
   void choices(std::vector<E>& list) {
     const std::size_t count = in_.get<std::uint8_t>();
@@ -240,16 +261,20 @@ class Reader {
     choices(offer.terms.methods);
     choices(offer.terms.byte_orders);
     choices(offer.terms.kinds);
+    depth(offer.depth, std::ranges::find(offer.terms.kinds, LinkKind::Queued) != offer.terms.kinds.end());
     fields(offer.fields);
   }
   void agreement(Agreement& agreement) {
     enumerator(agreement.method);
     enumerator(agreement.byte_order);
     enumerator(agreement.kind);
+    depth(agreement.depth, agreement.kind == LinkKind::Queued);
     duration(agreement.producer_period);
     duration(agreement.consumer_period);
     fields(agreement.fields);
-    require(octets_of(agreement.fields, agreement.kind) <= max_payload_octets(agreement.kind));
+    const std::size_t payload = octets_of(agreement.fields, agreement.kind);
+    require(payload <= max_payload_octets(agreement.kind));
+    require(agreement.depth == 0 || queue_fits(agreement.depth, static_cast<std::uint32_t>(payload)));
   }
   void require(bool condition) noexcept { good_ = good_ && condition; }
   [[nodiscard]] bool good() const noexcept { return good_ && in_.good(); }
@@ -268,6 +293,14 @@ class Reader {
 }  // namespace
 
 std::uint32_t Agreement::payload_octets() const noexcept { return static_cast<std::uint32_t>(octets_of(fields, kind)); }
+
+LinkLayout Agreement::layout(std::uint32_t epoch) const noexcept {
+  return {.epoch = epoch,
+          .payload_octets = payload_octets(),
+          .layout_hash = layout_hash(),
+          .period = producer_period,
+          .depth = depth};
+}
 
 std::uint64_t Agreement::layout_hash() const noexcept {
   Hash hash;
@@ -294,7 +327,10 @@ std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& 
   if (auto refusal = check_rates(producer.period, consumer.period)) return std::unexpected{*std::move(refusal)};
   if (auto refusal = check_fields(producer.fields, consumer.fields, way->second))
     return std::unexpected{*std::move(refusal)};
-  return Agreement{way->first, *order, way->second, producer.period, consumer.period, producer.fields};
+  if (auto refusal = check_depth(consumer, way->second, octets_of(producer.fields, way->second)))
+    return std::unexpected{*std::move(refusal)};
+  const std::uint32_t depth = way->second == LinkKind::Queued ? consumer.depth : 0;
+  return Agreement{way->first, *order, way->second, depth, producer.period, consumer.period, producer.fields};
 }
 
 Result<std::size_t> write_offer(MutableOctets to, std::uint8_t link, const Offer& offer) {
@@ -341,7 +377,7 @@ Result<LinkRefusal> read_refusal(Octets data) {
   LinkRefusal message;
   reader.number(message.link);
   reader.number(message.refusal.item);
-  reader.require(message.refusal.item <= static_cast<std::uint8_t>(Item::Field));
+  reader.require(message.refusal.item <= static_cast<std::uint8_t>(Item::Depth));
   reader.text(message.refusal.text);
   return reader.finish(std::move(message), "link refusal");
 }

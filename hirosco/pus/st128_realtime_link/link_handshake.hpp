@@ -56,6 +56,7 @@ struct Offer {
   std::string set;
   Duration period{};  ///< sampling time of the configuration
   descriptor::LinkTerms terms;
+  std::uint32_t depth{0};  ///< of a consumer that wants every sample; else 0
   std::vector<OfferedField> fields;
 };
 
@@ -64,15 +65,18 @@ struct Agreement {
   LinkMethod method{};
   descriptor::ByteOrder byte_order{};
   LinkKind kind{};
+  std::uint32_t depth{0};  ///< of kind Queued, the consumer's; else 0
   Duration producer_period{};
   Duration consumer_period{};
   std::vector<OfferedField>
       fields;  ///< the producer's in their order: packed, or of a lent sample as in a C++ aggregate
   [[nodiscard]] std::uint32_t payload_octets() const noexcept;  ///< of a lent sample as a C++ aggregate has them
   [[nodiscard]] std::uint64_t layout_hash() const noexcept;  ///< FNV-1a 64 over fields, order, kind
+  /// What supervisor and both ends make their parts of the link of.
+  [[nodiscard]] LinkLayout layout(std::uint32_t epoch) const noexcept;
 };
 
-/// Why there is nothing common. `item`: 0 method, 1 byte order, 2 kind, 3 rate, 4 field.
+/// Why there is nothing common. `item`: 0 method, 1 byte order, 2 kind, 3 rate, 4 field, 5 depth.
 struct Refusal {
   std::uint8_t item{};
   std::string text;  ///< "field POSITION: consumer FLOAT[2], producer DOUBLE[2]"
@@ -84,7 +88,8 @@ using Carried = std::function<bool(LinkMethod, LinkKind)>;
 /// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
 /// consumer has too; an integer ratio of the rates either way; every field the consumer requires present with the same
 /// name, type and count (the producer may have more). Method and kind are chosen together, by what can be carried. A lent
-/// sample has the same fields in the same order on both sides, and the byte order of the machine. Pure.
+/// sample has the same fields in the same order on both sides, and the byte order of the machine. How many samples are kept for a
+/// consumer that wants every one of them it says itself. Pure.
 [[nodiscard]] std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer,
                                                           const Carried& carried);
 

@@ -27,10 +27,15 @@ struct Side {
   std::vector<LinkKind> kinds{latest};
   int period_us{1000};
   std::vector<OfferedField> fields{{"POSITION", Type::Double, 2}};
+  std::uint32_t depth{0};
 };
 
 Offer offer_of(const Side& side) {
-  return {"SET", std::chrono::microseconds{side.period_us}, {side.methods, side.orders, side.kinds}, side.fields};
+  return {"SET",
+          std::chrono::microseconds{side.period_us},
+          {side.methods, side.orders, side.kinds},
+          side.depth,
+          side.fields};
 }
 
 /// "shared_memory little latest 1000/1000", or the refusal as "item: text".
@@ -39,8 +44,8 @@ std::string outcome(const Side& producer, const Side& consumer) {
   if (!result) return std::to_string(result.error().item) + ": " + result.error().text;
   EXPECT_EQ(result->fields, producer.fields) << "the layout is the producer's";
   return std::string{to_text(result->method)} + " " + std::string{to_text(result->byte_order)} + " " +
-         std::string{to_text(result->kind)} + " " + std::to_string(result->producer_period / 1us) + "/" +
-         std::to_string(result->consumer_period / 1us);
+         std::string{to_text(result->kind)} + (result->depth == 0 ? "" : "*" + std::to_string(result->depth)) + " " +
+         std::to_string(result->producer_period / 1us) + "/" + std::to_string(result->consumer_period / 1us);
 }
 
 struct Case {
@@ -78,8 +83,11 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
       {{.orders = {little}}, {.orders = {big}}, "1: byte order: consumer big, producer little"},
       {{.orders = {big}}, {.orders = {little}}, "1: byte order: consumer little, producer big"},
       // Kinds.
-      {{.kinds = {queued, latest}}, {.kinds = {latest, queued}}, "shared_memory little queued 1000/1000"},
+      {{.kinds = {queued, latest}},
+       {.kinds = {latest, queued}, .depth = 64},
+       "shared_memory little queued*64 1000/1000"},
       {{.kinds = {queued, latest}}, {.kinds = {latest}}, "shared_memory little latest 1000/1000"},
+      {{.kinds = {latest, queued}}, {.kinds = {latest, queued}, .depth = 64}, "shared_memory little latest 1000/1000"},
       {{.kinds = {latest}}, {.kinds = {queued}}, "2: kind: consumer queued, producer latest"},
       // Rates: an integer ratio either way.
       {{.period_us = 1000}, {.period_us = 5000}, "shared_memory little latest 1000/5000"},
@@ -133,6 +141,20 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
       {{.kinds = {loaned}, .fields = {{"BIG", Type::Double, 0xFFFF'FFFF}}},
        {.kinds = {loaned}, .fields = {{"BIG", Type::Double, 0xFFFF'FFFF}}},
        "4: payload of 34359738360 octets"},
+      // Every sample: as many are kept as the consumer says, what the producer thinks of it is nothing.
+      {{.kinds = {queued}, .depth = 9}, {.kinds = {queued}, .depth = 2}, "shared_memory little queued*2 1000/1000"},
+      {{.kinds = {queued}}, {.kinds = {queued}, .depth = 4096}, "shared_memory little queued*4096 1000/1000"},
+      {{.kinds = {queued}}, {.kinds = {queued}, .depth = 4097}, "5: depth: 4097 samples of 16 octets"},
+      {{.kinds = {queued}}, {.kinds = {queued}, .depth = 1}, "5: depth: 1 samples of 16 octets"},
+      {{.kinds = {queued}, .fields = {{"BIG", Type::Double, 8192}}},
+       {.kinds = {queued}, .fields = {}, .depth = 1024},
+       "shared_memory little queued*1024 1000/1000"},
+      {{.kinds = {queued}, .fields = {{"BIG", Type::Double, 8192}}},
+       {.kinds = {queued}, .fields = {}, .depth = 1025},
+       "5: depth: 1025 samples of 65536 octets"},
+      {{.kinds = {queued}, .fields = {{"BIG", Type::Double, 8193}}},
+       {.kinds = {queued}, .fields = {}, .depth = 2},
+       "4: payload of 65544 octets"},
       // Several reasons: the first in the order of the terms is told.
       {{.methods = {LinkMethod::Udp}, .orders = {big}, .period_us = 3000},
        {.period_us = 2000},
@@ -147,14 +169,14 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
 }
 
 Agreement agreement() {
-  return {shm, little, latest, 1ms, 5ms, {{"POSITION", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}}};
+  return {shm, little, latest, 0, 1ms, 5ms, {{"POSITION", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}}};
 }
 Offer full_offer() {
-  return {"JOINTS", 1ms, {{shm, LinkMethod::Udp}, {big, little}, {queued, latest}}, agreement().fields};
+  return {"JOINTS", 1ms, {{shm, LinkMethod::Udp}, {big, little}, {queued, latest}}, 300, agreement().fields};
 }
 
 TEST(LinkHandshake, ChoosesMethodAndKindTogetherByWhatIsCarried) {
-  const Side both{.methods = {LinkMethod::Udp, shm}, .kinds = {queued, latest}};
+  const Side both{.methods = {LinkMethod::Udp, shm}, .kinds = {queued, latest}, .depth = 64};
   const auto way = [&](const Carried& carried) {
     const auto result = negotiate(offer_of(both), offer_of(both), carried);
     return result ? std::string{to_text(result->method)} + " " + std::string{to_text(result->kind)}
@@ -196,9 +218,13 @@ TEST(LinkAgreement, ALentSampleLiesAsCppLaysIt) {
     std::array<std::uint16_t, 3> c;
     std::uint8_t d;
   };
-  Agreement lent{
-      shm, little, loaned,
-      1ms, 1ms,    {{"A", Type::Uint8, 1}, {"B", Type::Double, 1}, {"C", Type::Uint16, 3}, {"D", Type::Uint8, 1}}};
+  Agreement lent{shm,
+                 little,
+                 loaned,
+                 0,
+                 1ms,
+                 1ms,
+                 {{"A", Type::Uint8, 1}, {"B", Type::Double, 1}, {"C", Type::Uint16, 3}, {"D", Type::Uint8, 1}}};
   EXPECT_EQ(lent.payload_octets(), sizeof(Sample));
   const auto hash = lent.layout_hash();
   lent.kind = latest;
@@ -206,9 +232,21 @@ TEST(LinkAgreement, ALentSampleLiesAsCppLaysIt) {
   EXPECT_NE(lent.layout_hash(), hash);
 }
 
+TEST(LinkAgreement, IsWhatAllMakeTheirPartOfTheLinkOf) {
+  Agreement agreed = agreement();
+  agreed.kind = queued;
+  agreed.depth = 70;
+  const LinkLayout layout = agreed.layout(9);
+  EXPECT_EQ(layout.epoch, 9u);
+  EXPECT_EQ(layout.payload_octets, 17u);
+  EXPECT_EQ(layout.layout_hash, agreed.layout_hash());
+  EXPECT_EQ(layout.period, 1ms);
+  EXPECT_EQ(layout.depth, 70u);
+}
+
 TEST(LinkMessages, HaveTheOctetsWrittenHere) {
   Bytes buffer(256);
-  const Offer offer{"AB", 1ms, {{shm, LinkMethod::Udp}, {little}, {latest}}, {{"P", Type::Double, 2}}};
+  const Offer offer{"AB", 1ms, {{shm, LinkMethod::Udp}, {little}, {queued}}, 258, {{"P", Type::Double, 2}}};
   const auto used = write_terms_request(buffer, {7, "CD", offer});
   EXPECT_EQ(to_hex(Octets{buffer}.first(used.value())),
             "07"
@@ -218,7 +256,8 @@ TEST(LinkMessages, HaveTheOctetsWrittenHere) {
             "00000000000f4240"
             "020102"
             "0101"
-            "0101"
+            "0102"
+            "0102"
             "01"
             "0150"
             "0a"
@@ -273,12 +312,14 @@ void expect_equal(const Offer& a, const Offer& b) {
   EXPECT_EQ(a.terms.methods, b.terms.methods);
   EXPECT_EQ(a.terms.byte_orders, b.terms.byte_orders);
   EXPECT_EQ(a.terms.kinds, b.terms.kinds);
+  EXPECT_EQ(a.depth, b.depth);
   EXPECT_EQ(a.fields, b.fields);
 }
 void expect_equal(const Agreement& a, const Agreement& b) {
   EXPECT_EQ(a.method, b.method);
   EXPECT_EQ(a.byte_order, b.byte_order);
   EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.depth, b.depth);
   EXPECT_EQ(a.producer_period, b.producer_period);
   EXPECT_EQ(a.consumer_period, b.consumer_period);
   EXPECT_EQ(a.fields, b.fields);
@@ -310,12 +351,15 @@ TEST(LinkMessages, AreReadAsTheyWereWritten) {
   EXPECT_EQ(read_terms_request(terms)->link, 7);
   expect_equal(read_terms_request(terms)->consumer, full_offer());
 
-  const AttachRequest attach_request{8, Role::Consumer, 0xDEADBEEF, "JOINTS", agreement()};
+  Agreement of_a_queue = agreement();
+  of_a_queue.kind = queued;
+  of_a_queue.depth = 300;
+  const AttachRequest attach_request{8, Role::Consumer, 0xDEADBEEF, "JOINTS", of_a_queue};
   const Bytes attach_data = written([&](MutableOctets to) { return write_attach_request(to, attach_request); });
   sweep(attach_data, read_attach_request);
   EXPECT_EQ(read_attach_request(attach_data)->role, Role::Consumer);
   EXPECT_EQ(read_attach_request(attach_data)->epoch, 0xDEADBEEF);
-  expect_equal(read_attach_request(attach_data)->agreement, agreement());
+  expect_equal(read_attach_request(attach_data)->agreement, of_a_queue);
 }
 
 TEST(LinkMessages, CarryTheConsumersOfferWhole) {
@@ -354,6 +398,32 @@ TEST(LinkMessages, WithMeaninglessContentAreRefused) {
   EXPECT_TRUE(bad([](Offer& o) { o.fields[0].type = Type::Struct; }));
   EXPECT_TRUE(bad([](Offer& o) { o.fields[0].count = 0; }));
   EXPECT_TRUE(bad([](Offer& o) { o.fields[1].name = o.fields[0].name; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.depth = 1; }));
+  EXPECT_TRUE(bad([](Offer& o) { o.terms.kinds = {latest}; })) << "a depth of nothing";
+  EXPECT_FALSE(bad([](Offer& o) { o.depth = max_link_depth; }));
+}
+
+TEST(LinkMessages, WithADepthThatNoKindHasOrThatTakesTooMuchAreRefused) {
+  const auto good = [](LinkKind kind, std::uint32_t depth, std::uint32_t doubles = 2) {
+    Agreement agreed = agreement();
+    agreed.kind = kind;
+    agreed.depth = depth;
+    agreed.fields = {{"POSITION", Type::Double, doubles}};
+    Bytes buffer(4096);
+    const auto used = write_agreement(buffer, 1, agreed);
+    return used.has_value() && read_agreement(Octets{buffer}.first(*used)).has_value();
+  };
+  EXPECT_TRUE(good(latest, 0));
+  EXPECT_FALSE(good(latest, 64));
+  EXPECT_FALSE(good(loaned, 64));
+  EXPECT_FALSE(good(queued, 0));
+  EXPECT_FALSE(good(queued, min_link_depth - 1));
+  EXPECT_TRUE(good(queued, min_link_depth));
+  EXPECT_TRUE(good(queued, max_link_depth));
+  EXPECT_FALSE(good(queued, max_link_depth + 1));
+  EXPECT_FALSE(good(queued, 65536 + 64)) << "nor as what is left of it in 16 bits";
+  EXPECT_TRUE(good(queued, 1024, 8192));
+  EXPECT_FALSE(good(queued, 1025, 8192));
 }
 
 TEST(LinkMessages, TooLongForTheirCountsAreNotWritten) {

@@ -12,26 +12,19 @@ constexpr Part link_end[]{number("LINK", Type::Uint8), number("ROLE", Type::Uint
 constexpr Part choice[]{number("CHOICE", Type::Uint8)};
 constexpr Part field[]{word("FIELD"), number("TYPE", Type::Uint8), number("COUNT", Type::Uint32)};
 constexpr Part asked[]{number("LINK", Type::Uint8), word("SET")};
-constexpr Part offered[]{number("LINK", Type::Uint8),
-                         word("SET"),
-                         number("PERIOD_NS", Type::Int64),
-                         list("METHODS", choice),
-                         list("BYTE_ORDERS", choice),
-                         list("KINDS", choice),
-                         list("FIELDS", field)};
-constexpr Part terms[]{number("LINK", Type::Uint8),
-                       word("SET"),
-                       number("LINK", Type::Uint8),
-                       word("SET"),
-                       number("PERIOD_NS", Type::Int64),
-                       list("METHODS", choice),
-                       list("BYTE_ORDERS", choice),
-                       list("KINDS", choice),
-                       list("FIELDS", field)};
+constexpr Part offered[]{
+    number("LINK", Type::Uint8), word("SET"),           number("PERIOD_NS", Type::Int64), list("METHODS", choice),
+    list("BYTE_ORDERS", choice), list("KINDS", choice), number("DEPTH", Type::Uint16),    list("FIELDS", field)};
+constexpr Part terms[]{number("LINK", Type::Uint8),      word("SET"),
+                       number("LINK", Type::Uint8),      word("SET"),
+                       number("PERIOD_NS", Type::Int64), list("METHODS", choice),
+                       list("BYTE_ORDERS", choice),      list("KINDS", choice),
+                       number("DEPTH", Type::Uint16),    list("FIELDS", field)};
 constexpr Part agreed[]{number("LINK", Type::Uint8),
                         number("METHOD", Type::Uint8),
                         number("BYTE_ORDER", Type::Uint8),
                         number("KIND", Type::Uint8),
+                        number("DEPTH", Type::Uint16),
                         number("PRODUCER_PERIOD_NS", Type::Int64),
                         number("CONSUMER_PERIOD_NS", Type::Int64),
                         list("FIELDS", field)};
@@ -42,6 +35,7 @@ constexpr Part attachment[]{number("LINK", Type::Uint8),
                             number("METHOD", Type::Uint8),
                             number("BYTE_ORDER", Type::Uint8),
                             number("KIND", Type::Uint8),
+                            number("DEPTH", Type::Uint16),
                             number("PRODUCER_PERIOD_NS", Type::Int64),
                             number("CONSUMER_PERIOD_NS", Type::Int64),
                             list("FIELDS", field)};

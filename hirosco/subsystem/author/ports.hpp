@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -31,21 +32,29 @@ class LinkInputPort {
   [[nodiscard]] std::uint64_t received() const noexcept { return received_; }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
   [[nodiscard]] std::span<const NativeField> layout() const noexcept { return layout_.all(); }
+  /// Which samples it is for.
+  [[nodiscard]] LinkKind kind() const noexcept { return kind_; }
   /// Whether it looks at samples that are lent, and keeps none.
-  [[nodiscard]] bool lent() const noexcept { return native_.empty(); }
+  [[nodiscard]] bool lent() const noexcept { return kind_ == LinkKind::Loaned; }
 
  protected:
-  LinkInputPort(ObjectFields layout, MutableOctets native) noexcept : layout_{layout}, native_{native} {}
+  LinkInputPort(LinkKind kind, ObjectFields layout, MutableOctets native) noexcept
+      : kind_{kind}, layout_{layout}, native_{native} {}
   LinkInputPort(const LinkInputPort&) = delete;
   LinkInputPort& operator=(const LinkInputPort&) = delete;
   ~LinkInputPort() = default;
   [[nodiscard]] LoanReader* loans() const noexcept { return loans_; }
+  [[nodiscard]] const std::byte* places() const noexcept { return places_; }
+  [[nodiscard]] std::size_t arrived() const noexcept { return arrived_; }
 
  private:
   friend class LinkInputSlot;
+  LinkKind kind_;
   ObjectFields layout_;
-  MutableOctets native_;
+  MutableOctets native_;  ///< where a sample goes; where all are wanted, what each begins as
   LoanReader* loans_{nullptr};  ///< of the attached link, where it lends
+  std::byte* places_{nullptr};  ///< of the attached link, where all samples are wanted: objects side by side
+  std::size_t arrived_{0};  ///< of them filled in this cycle
   bool valid_{false};
   std::uint32_t age_cycles_{0};
   LinkStatus status_{LinkStatus::None};
@@ -59,12 +68,33 @@ class LinkInputPort {
 template <class T>
 class LinkInput final : private HasFields<T>, public LinkInputPort {
  public:
-  LinkInput() noexcept : LinkInputPort{HasFields<T>::fields(), std::as_writable_bytes(std::span{&value_, 1})} {}
+  LinkInput() noexcept
+      : LinkInputPort{LinkKind::Latest, HasFields<T>::fields(), std::as_writable_bytes(std::span{&value_, 1})} {}
   /// Last whole sample; zeros before the first.
   [[nodiscard]] const T& value() const noexcept { return value_; }
 
  private:
   T value_{};
+};
+
+/// A required set of which every sample is wanted (kind="queued"). T: as of LinkInput. age_cycles(), status() and count() are those of
+/// the newest sample, and status() is the worst of all that came in this cycle and of the producer now; lost() counts what
+/// the consumer fell too far behind to get, exactly.
+template <class T>
+class QueueInput final : private HasFields<T>, public LinkInputPort {
+  static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= alignof(std::max_align_t));
+
+ public:
+  QueueInput() noexcept
+      : LinkInputPort{LinkKind::Queued, HasFields<T>::fields(), std::as_writable_bytes(std::span{&begin_, 1})} {}
+  /// Those that came since the last cycle, oldest first; empty: none. At most the descriptor's `depth`; what came while they were
+  /// read comes in the next cycle. They are there for this cycle.  Realtime: wait-free.
+  [[nodiscard]] std::span<const T> samples() const noexcept {
+    return {reinterpret_cast<const T*>(places()), arrived()};
+  }
+
+ private:
+  T begin_{};  ///< zeros, with the lengths of Sized members
 };
 
 /// A required set whose samples are lent (kind="loaned"): images, point clouds. T: as of LinkInput, with arrays of fixed length only.
@@ -74,7 +104,7 @@ class LoanInput final : private HasFields<T>, public LinkInputPort {
   static_assert(ParameterStructure<T>, "a lent sample is an aggregate with one member per <Field>");
 
  public:
-  LoanInput() noexcept : LinkInputPort{HasFields<T>::fields(), {}} {}
+  LoanInput() noexcept : LinkInputPort{LinkKind::Loaned, HasFields<T>::fields(), {}} {}
   /// The newest sample as of the beginning of this cycle, in its producer's place; null: none yet, or no link. The place
   /// is made anew after two more publications at least: what was read counts when whole() says so afterwards, and in a
   /// later cycle whole() is asked before reading on: a link that is gone took its memory along.  Realtime: wait-free.

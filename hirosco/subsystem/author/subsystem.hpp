@@ -96,8 +96,8 @@ class Subsystem {
   // --- in software_init() -----------------------------------------------------------------------------------------
   /// Makes a parameter known under its descriptor name. A layout that differs from the descriptor's fails Software-Init.
   void publish(std::string_view name, ParameterCell& parameter);
-  /// Names the author's view of a required set of real-time data: a LinkInput, or a LoanInput where samples are lent. A lent
-  /// set whose fields differ from the descriptor's fails Software-Init.
+  /// Names the author's view of a required set of real-time data: a LinkInput, a QueueInput where every sample is wanted, or a
+  /// LoanInput where samples are lent. A lent set whose fields differ from the descriptor's fails Software-Init.
   void require_link(std::string_view set, LinkInputPort& port);
   /// Names the place where the samples of a provided set that is lent are made (LoanOutput). Fields that differ from the
   /// descriptor's fail Software-Init.

@@ -402,12 +402,12 @@ TEST_F(Links, ACycleThatHangsDoesNotKeepARequestOpen) {
 }
 
 TEST_F(Links, MemoryWithAFutureWriterIsNotTrusted) {
-  const pus::st128::AttachRequest request{
-      .link = 1,
-      .role = Role::Consumer,
-      .epoch = 5,
-      .set = "HAND",
-      .agreement = {LinkMethod::SharedMemory, descriptor::ByteOrder::Little, LinkKind::Latest, 1ms, 1ms, hand_fields}};
+  const pus::st128::AttachRequest request{.link = 1,
+                                          .role = Role::Consumer,
+                                          .epoch = 5,
+                                          .set = "HAND",
+                                          .agreement = {LinkMethod::SharedMemory, descriptor::ByteOrder::Little,
+                                                        LinkKind::Latest, 0, 1ms, 1ms, hand_fields}};
   const auto open = rig.memory.create("open", link_memory_octets(request.agreement.payload_octets())).value();
   std::vector<std::byte> buffer(max_packet_octets);
   const std::size_t octets = pus::st128::write_attach_request(buffer, request).value();

@@ -26,6 +26,8 @@ LinkInputSlot::LinkInputSlot(const descriptor::Requires& terms, LinkInputPort* p
   for (std::size_t i = 0; i < terms.fields.size(); ++i)
     port_->layout_.set_length(i, terms.fields[i].count, port_->native_);
   port_->loans_ = nullptr;
+  port_->places_ = nullptr;
+  port_->arrived_ = 0;
   port_->valid_ = false;
   port_->age_cycles_ = 0;
   port_->status_ = LinkStatus::None;
@@ -36,8 +38,8 @@ Result<> LinkInputSlot::plan(AttachedLink& link) const {
   link.scatter.clear();
   link.wire_offset.clear();
   const bool lent = link.agreement.kind == LinkKind::Loaned;
-  if (lent != port_->lent())
-    return fail(ErrorCode::Mismatch, "the agreement lends and the port copies, or the reverse");
+  if (link.agreement.kind != port_->kind())
+    return fail(ErrorCode::Mismatch, "the agreement is of another kind than the port");
   if (lent && link.agreement.fields.size() != terms_->fields.size())
     return fail(ErrorCode::Mismatch, "the agreement has other fields than the lent set");
   for (std::size_t wanted = 0; wanted < terms_->fields.size(); ++wanted) {
@@ -58,12 +60,21 @@ Result<> LinkInputSlot::plan(AttachedLink& link) const {
     link.scatter.push_back({place.type, place.count, place.offset});
     link.wire_offset.push_back(offset);
   }
+  if (link.agreement.kind != LinkKind::Queued) return ok();
+  const std::size_t each = port_->native_.size();
+  if (each * link.agreement.depth > max_queue_octets)
+    return fail(ErrorCode::ResourceExhausted, "the places of a queue", static_cast<std::int64_t>(each));
+  link.places.resize(each * link.agreement.depth);
+  for (std::size_t at = 0; at < link.places.size(); at += each)
+    std::memcpy(link.places.data() + at, port_->native_.data(), each);
   return ok();
 }
 
 void LinkInputSlot::attach(AttachedLink* link) noexcept {
   link_ = link;
   port_->loans_ = link->borrower.get();
+  port_->places_ = link->places.data();
+  port_->arrived_ = 0;
   port_->age_cycles_ = 0;
   // What an earlier link brought must not pass for a sample of this one.
   port_->count_ = 0;
@@ -78,6 +89,8 @@ void LinkInputSlot::detach(const AttachedLink* link) noexcept {
   if (link_ != link) return;
   link_ = nullptr;
   port_->loans_ = nullptr;
+  port_->places_ = nullptr;
+  port_->arrived_ = 0;
   port_->valid_ = false;
   port_->status_ = LinkStatus::None;
 }
@@ -87,31 +100,51 @@ void LinkInputSlot::read(TimePoint now) noexcept {
     port_->valid_ = false;
     return;
   }
-  // What is lent stays where it is: there is nothing to scatter.
-  const LinkSample sample = port_->lent() ? link_->borrower->newest() : link_->reader->read(link_->payload);
-  if (sample.flow == Flow::New) {
-    for (std::size_t i = 0; i < link_->scatter.size(); ++i) {
-      const LayoutField& field = link_->scatter[i];
-      const std::size_t octets = octets_of(field.type) * field.count;
-      decode(std::span{&field, 1}, Octets{link_->payload}.subspan(link_->wire_offset[i], octets), port_->native_,
-             link_->order);
-    }
-    port_->age_cycles_ = 0;
-    port_->count_ = sample.count;
-    ++port_->received_;
-    port_->lost_ += sample.lost;
-    const std::uint32_t latency_ns = clamped_ns(now - sample.sampled_at);
-    latency_max_ns_ = std::max(latency_max_ns_, latency_ns);
-    // The first samples weigh as much as they are, so that the mean needs no time to arrive.
-    const double weight = std::max(1.0 / static_cast<double>(port_->received_), 1e-3);
-    latency_mean_ns_ += weight * (static_cast<double>(latency_ns) - latency_mean_ns_);
-  } else if (port_->age_cycles_ < longest_age) {
-    ++port_->age_cycles_;
-  }
+  const LinkSample sample = port_->kind() == LinkKind::Queued ? read_all(now) : read_newest(now);
+  if (sample.flow == Flow::New) port_->age_cycles_ = 0;
+  else if (port_->age_cycles_ < longest_age) ++port_->age_cycles_;
   port_->status_ = sample.status;
   const bool fresh = port_->age_cycles_ <= age_limit_ * link_->producer_cycles_per_sample;
   const bool reliable = sample.status == LinkStatus::Valid || sample.status == LinkStatus::Degraded;
   port_->valid_ = port_->count_ != 0 && fresh && reliable;
+}
+
+LinkSample LinkInputSlot::read_newest(TimePoint now) noexcept {
+  // What is lent stays where it is: there is nothing to scatter.
+  const LinkSample sample = port_->lent() ? link_->borrower->newest() : link_->reader->read(link_->payload);
+  if (sample.flow == Flow::New) take(sample, port_->native_, now);
+  return sample;
+}
+
+/// As many as have a place; what is left comes in the next cycle. Told is the newest of them, with the worst status.
+LinkSample LinkInputSlot::read_all(TimePoint now) noexcept {
+  const std::size_t each = port_->native_.size();
+  LinkSample told;
+  for (port_->arrived_ = 0; port_->arrived_ < link_->agreement.depth; ++port_->arrived_) {
+    const LinkSample sample = link_->reader->read(link_->payload);
+    told.status = std::max(told.status, sample.status);
+    if (sample.flow != Flow::New) break;
+    take(sample, MutableOctets{link_->places}.subspan(port_->arrived_ * each, each), now);
+    told.flow = Flow::New;
+  }
+  return told;
+}
+
+/// A sample goes where the author sees it, and into the account of the link.
+void LinkInputSlot::take(const LinkSample& sample, MutableOctets into, TimePoint now) noexcept {
+  for (std::size_t i = 0; i < link_->scatter.size(); ++i) {
+    const LayoutField& field = link_->scatter[i];
+    const std::size_t octets = octets_of(field.type) * field.count;
+    decode(std::span{&field, 1}, Octets{link_->payload}.subspan(link_->wire_offset[i], octets), into, link_->order);
+  }
+  port_->count_ = sample.count;
+  ++port_->received_;
+  port_->lost_ += sample.lost;
+  const std::uint32_t latency_ns = clamped_ns(now - sample.sampled_at);
+  latency_max_ns_ = std::max(latency_max_ns_, latency_ns);
+  // The first samples weigh as much as they are, so that the mean needs no time to arrive.
+  const double weight = std::max(1.0 / static_cast<double>(port_->received_), 1e-3);
+  latency_mean_ns_ += weight * (static_cast<double>(latency_ns) - latency_mean_ns_);
 }
 
 void LinkInputSlot::tell(IncomingLink& page) const noexcept {

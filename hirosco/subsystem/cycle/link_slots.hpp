@@ -33,6 +33,7 @@ struct AttachedLink {
   std::vector<LayoutField> scatter;      ///< consumer: where each agreed field goes in the port, size 0 = unused
   std::vector<std::size_t> wire_offset;  ///< consumer: of each entry of `scatter`
   std::vector<std::byte> payload;        ///< consumer
+  std::vector<std::byte> places;  ///< consumer that wants all samples: objects of the port, as many as the link is deep
   std::endian order{std::endian::little};
   std::uint32_t producer_cycles_per_sample{1};  ///< own cycles that one sample of a slower producer may take
 };
@@ -47,8 +48,8 @@ class LinkInputSlot {
   [[nodiscard]] const descriptor::Requires& terms() const noexcept { return *terms_; }
   [[nodiscard]] LinkInputPort* port() const noexcept { return port_; }
   [[nodiscard]] bool attached() const noexcept { return link_ != nullptr; }
-  /// Prepares the scatter list of a link for the port. Mismatch: the agreement lacks a field, or, of what is lent, has any
-  /// other field; it lends and the port copies, or the other way round.
+  /// Prepares the scatter list of a link for the port, and the places of what is queued. Mismatch: the agreement lacks a field, or,
+  /// of what is lent, has any other field; it is of another kind than the port. ResourceExhausted: the places take too much.
   [[nodiscard]] Result<> plan(AttachedLink& link) const;
   void attach(AttachedLink* link) noexcept;
   /// Lets go of this link; of another one it keeps hold.
@@ -65,6 +66,10 @@ class LinkInputSlot {
   [[nodiscard]] bool ended() const noexcept { return link_ == nullptr || port_->status_ == LinkStatus::Stopping; }
 
  private:
+  [[nodiscard]] LinkSample read_newest(TimePoint now) noexcept;
+  [[nodiscard]] LinkSample read_all(TimePoint now) noexcept;
+  void take(const LinkSample& sample, MutableOctets into, TimePoint now) noexcept;
+
   const descriptor::Requires* terms_;
   LinkInputPort* port_;
   std::uint32_t age_limit_;

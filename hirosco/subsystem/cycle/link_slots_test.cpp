@@ -21,6 +21,7 @@ TEST(LinkSlot, AnInputTakesFieldsOfItsOwnTypeOnlyAndLetsGoOfItsOwnLinkOnly) {
   LinkInputSlot slot{terms, &port, true};
   AttachedLink link;
   const auto planned = [&](const char* name, Type type, std::uint16_t count) {
+    link.agreement.kind = LinkKind::Latest;
     link.agreement.fields = {{"OTHER", Type::Uint8, 3}, {name, type, count}};
     return slot.plan(link).has_value();
   };

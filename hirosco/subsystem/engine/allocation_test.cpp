@@ -138,6 +138,63 @@ TEST(CycleAllocations, ThereAreNoneInASelfTest) {
   EXPECT_EQ(flight.uses().frees, 0u);
 }
 
+/// Takes every sample of a set that comes ten times in each of its cycles.
+struct Collector final : Subsystem {
+  struct Tick {
+    Sized<double, 4> angle;
+  };
+  QueueInput<Tick> ticks;
+  double sum{0};
+  std::uint64_t taken{0};
+
+ protected:
+  Result<Step> software_init() override {
+    require_link("TICKS", ticks);
+    return done;
+  }
+  Result<> pre_operational(const Cycle&) noexcept override {
+    for (const Tick& tick : ticks.samples()) sum += tick.angle[0];
+    taken += ticks.samples().size();
+    return ok();
+  }
+};
+
+TEST(CycleAllocations, ThereAreNoneForAQueueOfSamplesEither) {
+  Collector collector;
+  Rig rig{collector, R"(<Subsystem name="COLLECTOR" id="21"><Configuration name="C" id="1" sampling_us="10000">
+    <RealTimeLinkService><Requires name="TICKS" kind="queued" depth="12"><Field name="ANGLE" type="DOUBLE" count="2"/></Requires>
+    </RealTimeLinkService></Configuration></Subsystem>)"};
+  rig.bring_to(State::PreOperational);
+  const pus::st128::Agreement agreement{
+      LinkMethod::SharedMemory,    descriptor::ByteOrder::Little, LinkKind::Queued, 12, 1ms, 10ms,
+      {{"ANGLE", Type::Double, 2}}};
+  const auto* queued = find_link_mechanism(standard_link_mechanisms(), agreement.method, agreement.kind);
+  const auto shared = queued->establish(rig.memory, agreement.layout(1)).value();
+  const auto writer = queued->produce(rig.memory, shared, agreement.layout(1)).value();
+  std::array<std::byte, 256> buffer{};
+  const auto octets = pus::st128::write_attach_request(buffer, {1, Role::Consumer, 1, "TICKS", agreement}).value();
+  const auto sent = rig.send(128, pus::st128::attach, Octets{buffer}.first(octets), shared);
+  rig.settle();
+  ASSERT_EQ(rig.outcome(sent), "1 3 7");
+  AllocationCount uses{};
+  const std::array<std::byte, 16> payload{};
+  for (int cycle = 0; cycle < 10'000; ++cycle) {
+    // Now and then more than are kept, and none.
+    for (int tick = 0; tick < cycle % 20; ++tick) writer->write(payload, rig.clock.now(), LinkStatus::Valid);
+    rig.service();
+    rig.advance(10ms);
+    const RealtimeScope no_heap;
+    static_cast<void>(rig.subsystem.cycle_step(rig.clock.now()));
+    const AllocationCount count = no_heap.count();
+    uses.allocations += count.allocations;
+    uses.frees += count.frees;
+  }
+  EXPECT_EQ(uses.allocations, 0u);
+  EXPECT_EQ(uses.frees, 0u);
+  EXPECT_EQ(collector.taken, 500u * (66 + 12 * 8));
+  EXPECT_EQ(collector.ticks.lost(), 500u * (1 + 2 + 3 + 4 + 5 + 6 + 7));
+}
+
 /// Its node grows a vector in one cycle of a thousand.
 struct Careless final : Probe {
   std::vector<double> history;

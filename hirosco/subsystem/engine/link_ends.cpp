@@ -54,10 +54,7 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
   if (!refusal_.empty()) return fail(ErrorCode::NotPermitted, refusal_.c_str());
   const bool producer = request.role == pus::st128::Role::Producer;
   const pus::st128::Agreement& agreement = request.agreement;
-  const LinkLayout layout{.epoch = request.epoch,
-                          .payload_octets = agreement.payload_octets(),
-                          .layout_hash = agreement.layout_hash(),
-                          .period = agreement.producer_period};
+  const LinkLayout layout = agreement.layout(request.epoch);
   const LinkMechanism* mechanism = find_link_mechanism(platform_.links, agreement.method, agreement.kind);
   if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
   auto link = std::make_unique<AttachedLink>();

@@ -34,7 +34,11 @@ void LinkService::offer(Octets data, const pus::Request& request) {
     return refuse(asked->link, {4, "no configuration in force requires a set '" + asked->set + "'"}, request);
   if (auto why = owner_.refuse_link(st128::Role::Consumer, asked->set, asked->link); !why.empty())
     return refuse(asked->link, {4, std::move(why)}, request);
-  st128::Offer own{.set = required->name, .period = owner_.period(), .terms = required->terms, .fields = {}};
+  st128::Offer own{.set = required->name,
+                   .period = owner_.period(),
+                   .terms = required->terms,
+                   .depth = required->depth,
+                   .fields = {}};
   for (const auto& field : required->fields) own.fields.push_back({field.name, field.type, field.count});
   std::array<std::byte, max_packet_octets> buffer;
   const auto octets = st128::write_offer(buffer, asked->link, own);

@@ -14,6 +14,14 @@ namespace {
 
 constexpr Duration transient_limit = 10s;
 
+constexpr const char* port_wanted(LinkKind kind) noexcept {
+  switch (kind) {
+    case LinkKind::Loaned: return ": is lent, its port is no LoanInput";
+    case LinkKind::Queued: return ": is queued, its port is no QueueInput";
+    default: return ": is copied, its port is no LinkInput";
+  }
+}
+
 }  // namespace
 
 std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State target, const pus::Request& request) {
@@ -292,10 +300,8 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     if (port == link_ports_.end()) return mismatch("no port for the required set " + wanted.name);
     if (const auto difference = layout_difference(port->second->layout(), wanted.fields); !difference.empty())
       return mismatch("required set " + wanted.name + ": " + difference);
-    if (port->second->lent() != wanted.terms.lent())
-      return mismatch(
-          "required set " + wanted.name +
-          (wanted.terms.lent() ? ": is lent, its port is no LoanInput" : ": is copied, its port is no LinkInput"));
+    if (port->second->kind() != wanted.kind())
+      return mismatch("required set " + wanted.name + port_wanted(wanted.kind()));
     plan.inputs.emplace_back(wanted, port->second, platform_.realtime);
     const auto set = std::ranges::find(sets, wanted.name) - sets.begin();
     plan.input_stale_events.push_back(descriptor::framework_event::set_stale(static_cast<std::size_t>(set)));

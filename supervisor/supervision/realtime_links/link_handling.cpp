@@ -19,7 +19,8 @@ constexpr Duration stage_limit = 2s;
   const auto hertz = [](Duration period) { return std::to_string(std::chrono::nanoseconds{1s} / period) + " Hz"; };
   return std::string{to_text(agreement.method)} + ", " + std::string{to_text(agreement.byte_order)} + " endian, " +
          std::string{to_text(agreement.kind)} + ", " + hertz(agreement.producer_period) + " to " +
-         hertz(agreement.consumer_period) + ", " + std::to_string(agreement.payload_octets()) + " octets";
+         hertz(agreement.consumer_period) + ", " + std::to_string(agreement.payload_octets()) + " octets" +
+         (agreement.depth == 0 ? "" : ", " + std::to_string(agreement.depth) + " samples deep");
 }
 
 }  // namespace
@@ -119,10 +120,7 @@ void LinkHandling::agreed(Handshake& handshake, const st128::Agreement& agreemen
   const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, agreement.method, agreement.kind);
   if (mechanism == nullptr) return give_up(handshake.link->id, "no mechanism here carries " + terms_text(agreement));
   const std::uint32_t epoch = epoch_ + 1;
-  auto shared = mechanism->establish(memory_, {.epoch = epoch,
-                                               .payload_octets = payload,
-                                               .layout_hash = agreement.layout_hash(),
-                                               .period = agreement.producer_period});
+  auto shared = mechanism->establish(memory_, agreement.layout(epoch));
   if (!shared) return give_up(handshake.link->id, shared.error().text);
   handshake.agreement = agreement;
   handshake.shared = std::move(*shared);

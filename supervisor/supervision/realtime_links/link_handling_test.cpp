@@ -7,6 +7,7 @@
 
 #include "hirosco/data_transfer/link/latest_memory.hpp"
 #include "hirosco/data_transfer/link/loaned_memory.hpp"
+#include "hirosco/data_transfer/link/queued_memory.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
@@ -49,9 +50,10 @@ struct LinkHandlingTest : ::testing::Test {
   std::vector<bool> ends;
   std::vector<LinkHandling::Released> released;
   TimePoint now{};
-  const st128::Offer offer{.set = "HAND_STATE", .period = 1ms, .terms = {}, .fields = {{"ANGLE", Type::Double, 2}}};
+  const st128::Offer offer{
+      .set = "HAND_STATE", .period = 1ms, .terms = {}, .depth = 0, .fields = {{"ANGLE", Type::Double, 2}}};
   const st128::Agreement agreement{
-      LinkMethod::SharedMemory,    descriptor::ByteOrder::Little, LinkKind::Latest, 500us, 1ms,
+      LinkMethod::SharedMemory,    descriptor::ByteOrder::Little, LinkKind::Latest, 0, 500us, 1ms,
       {{"ANGLE", Type::Double, 2}}};
 
   LinkHandling::Done done() {
@@ -152,15 +154,26 @@ TEST_F(LinkHandlingTest, ALinkThatLendsGetsTheMemoryOfItsFourPlaces) {
   EXPECT_TRUE(memory.verify(supervisor.last_memory, loaned_memory_octets(1'000'008), false));
 }
 
+TEST_F(LinkHandlingTest, ALinkThatQueuesGetsTheMemoryOfItsAgreedDepth) {
+  advance(1);
+  st128::Agreement queued = agreement;
+  queued.kind = LinkKind::Queued;
+  queued.depth = 100;
+  say(hand, st128::agreement, st128::write_agreement, queued);
+  ASSERT_TRUE(supervisor.last_memory);
+  EXPECT_TRUE(memory.verify(supervisor.last_memory, queued_memory_octets(16, 100), false));
+  EXPECT_EQ(st128::read_attach_request(supervisor.last)->agreement.depth, 100U) << "both ends hear of it";
+}
+
 TEST_F(LinkHandlingTest, WhatNoMechanismCarriesIsNotAttached) {
   advance(1);
   supervisor.take();
-  auto queued = agreement;
-  queued.kind = LinkKind::Queued;
-  say(hand, st128::agreement, st128::write_agreement, queued);
+  auto by_datagrams = agreement;
+  by_datagrams.method = LinkMethod::Udp;
+  say(hand, st128::agreement, st128::write_agreement, by_datagrams);
   EXPECT_THAT(supervisor.take(), ::testing::IsEmpty());
   ASSERT_EQ(supervisor.changes.size(), 1U);
-  EXPECT_THAT(supervisor.changes.front(), ::testing::StartsWith("2 down: no mechanism here carries shared_memory"));
+  EXPECT_THAT(supervisor.changes.front(), ::testing::StartsWith("2 down: no mechanism here carries udp"));
   EXPECT_THAT(ends, ElementsAre(false));
 }
 

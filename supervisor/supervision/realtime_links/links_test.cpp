@@ -35,10 +35,11 @@ struct LinksTest : PartsTest {
     EXPECT_EQ(call_own("LINK", 2), "") << "it goes on";
     EXPECT_THAT(texts(arm), ElementsAre("TC[128,1]"));
     say(arm, st128::offer, st128::write_offer,
-        st128::Offer{.set = "HAND_STATE", .period = 1ms, .terms = {}, .fields = fields});
+        st128::Offer{.set = "HAND_STATE", .period = 1ms, .terms = {}, .depth = 0, .fields = fields});
     EXPECT_THAT(texts(hand), ElementsAre("TC[128,2]"));
     say(hand, st128::agreement, st128::write_agreement,
-        st128::Agreement{LinkMethod::SharedMemory, descriptor::ByteOrder::Little, LinkKind::Latest, 1ms, 1ms, fields});
+        st128::Agreement{LinkMethod::SharedMemory, descriptor::ByteOrder::Little, LinkKind::Latest, 0, 1ms, 1ms,
+                         fields});
     EXPECT_THAT(texts(hand), ElementsAre("TC[128,3]"));
     says(hand, st128::attached, st128::Role::Producer);
     EXPECT_THAT(texts(arm), ElementsAre("TC[128,3]"));

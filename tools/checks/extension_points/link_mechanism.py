@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""Every sample, in shared memory: a ring of which each consumer has its own place. It passes the conformance of all mechanisms and a
-descriptor may ask for it; no file of supervisor/ or subsystem/ is touched."""
+"""A second method beside shared memory: "unix" in descriptors. A ring in memory stands for its sockets, as the places are counted here
+and not how samples travel. It passes the conformance of all mechanisms and a descriptor may ask for it; no file of supervisor/ or
+subsystem/ is touched."""
 WHO = "a link mechanism"
 BEFORE = "3 + 7 in 4 rooms"
 GOAL = "own files + 1 row (and its file in CMake)"
 MOST_FILES, MOST_EDITED = 2, 1
-FILES = {"hirosco/data_transfer/link/queued_memory.hpp": """\
+FILES = {"hirosco/data_transfer/link/unix_queue.hpp": """\
 #pragma once
 
 #include "hirosco/data_transfer/link/link.hpp"
@@ -14,9 +15,9 @@ FILES = {"hirosco/data_transfer/link/queued_memory.hpp": """\
 namespace hirosco {
 
 /// Every sample in order, as long as a consumer is at most 63 behind.
-class QueuedMemory final : public LinkMechanism {
+class UnixQueue final : public LinkMechanism {
  public:
-  LinkMethod method() const noexcept override { return LinkMethod::SharedMemory; }
+  LinkMethod method() const noexcept override { return LinkMethod::Unix; }
   LinkKind kind() const noexcept override { return LinkKind::Queued; }
   Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const override;
   Result<std::unique_ptr<LinkWriter>> produce(MemoryProvider& provider, const MemoryHandle& shared,
@@ -27,8 +28,8 @@ class QueuedMemory final : public LinkMechanism {
 };
 
 }  // namespace hirosco
-""", "hirosco/data_transfer/link/queued_memory.cpp": """\
-#include "hirosco/data_transfer/link/queued_memory.hpp"
+""", "hirosco/data_transfer/link/unix_queue.cpp": """\
+#include "hirosco/data_transfer/link/unix_queue.hpp"
 
 #include <atomic>
 #include <cstring>
@@ -161,12 +162,12 @@ class View final : public LinkView {
 
 }  // namespace
 
-Result<MemoryHandle> QueuedMemory::establish(MemoryProvider& provider, const LinkLayout& layout) const {
+Result<MemoryHandle> UnixQueue::establish(MemoryProvider& provider, const LinkLayout& layout) const {
   if (!possible(layout)) return fail(ErrorCode::Mismatch, "link payload size", layout.payload_octets);
   return provider.create("hirosco-link", octets_of(layout));
 }
 
-Result<std::unique_ptr<LinkWriter>> QueuedMemory::produce(MemoryProvider& provider, const MemoryHandle& shared,
+Result<std::unique_ptr<LinkWriter>> UnixQueue::produce(MemoryProvider& provider, const MemoryHandle& shared,
                                                           const LinkLayout& layout) const {
   if (!possible(layout)) return fail(ErrorCode::Mismatch, "link payload size", layout.payload_octets);
   HIROSCO_TRY(provider.verify(shared, octets_of(layout), false));
@@ -180,7 +181,7 @@ Result<std::unique_ptr<LinkWriter>> QueuedMemory::produce(MemoryProvider& provid
   return std::make_unique<Writer>(std::move(ring));
 }
 
-Result<std::unique_ptr<LinkReader>> QueuedMemory::consume(MemoryProvider& provider, const MemoryHandle& shared,
+Result<std::unique_ptr<LinkReader>> UnixQueue::consume(MemoryProvider& provider, const MemoryHandle& shared,
                                                           const LinkLayout& layout) const {
   if (!possible(layout)) return fail(ErrorCode::Mismatch, "link payload size", layout.payload_octets);
   HIROSCO_TRY(provider.verify(shared, octets_of(layout), true));
@@ -192,7 +193,7 @@ Result<std::unique_ptr<LinkReader>> QueuedMemory::consume(MemoryProvider& provid
   return std::make_unique<Reader>(std::move(ring));
 }
 
-Result<std::unique_ptr<LinkView>> QueuedMemory::look(MemoryProvider& provider, const MemoryHandle& shared) const {
+Result<std::unique_ptr<LinkView>> UnixQueue::look(MemoryProvider& provider, const MemoryHandle& shared) const {
   HIROSCO_TRY_LET(Mapping mapping, provider.map(shared, Access::ReadOnly));
   return std::make_unique<View>(Ring{std::move(mapping), {}});
 }
@@ -201,12 +202,12 @@ Result<std::unique_ptr<LinkView>> QueuedMemory::look(MemoryProvider& provider, c
 """}
 EDITS = [
     ("hirosco/data_transfer/link/mechanisms.cpp", '#include "hirosco/data_transfer/link/link.hpp"\n',
-     '#include "hirosco/data_transfer/link/link.hpp"\n#include "hirosco/data_transfer/link/queued_memory.hpp"\n'),
-    ("hirosco/data_transfer/link/mechanisms.cpp", "    &latest_memory,\n", "    &latest_memory,\n    &queued_memory,\n"),
+     '#include "hirosco/data_transfer/link/link.hpp"\n#include "hirosco/data_transfer/link/unix_queue.hpp"\n'),
+    ("hirosco/data_transfer/link/mechanisms.cpp", "    &latest_memory,\n", "    &latest_memory,\n    &unix_queue,\n"),
     ("hirosco/data_transfer/link/mechanisms.cpp", "const LatestMemory latest_memory;\n",
-     "const LatestMemory latest_memory;\nconst QueuedMemory queued_memory;\n"),
+     "const LatestMemory latest_memory;\nconst UnixQueue unix_queue;\n"),
 ]
-SOURCES = ["hirosco/data_transfer/link/mechanisms.cpp", "hirosco/data_transfer/link/queued_memory.cpp"]
+SOURCES = ["hirosco/data_transfer/link/mechanisms.cpp", "hirosco/data_transfer/link/unix_queue.cpp"]
 TRY = """\
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
 #include "hirosco/descriptor/read/read.hpp"
@@ -217,9 +218,9 @@ namespace {
 INSTANTIATE_TEST_SUITE_P(BuiltIn, LinkConformance,
                          ::testing::ValuesIn(standard_link_mechanisms().begin(), standard_link_mechanisms().end()));
 
-TEST(QueuedLink, BringsASlowConsumerEverySampleInOrder) {
+TEST(UnixLink, BringsASlowConsumerEverySampleInOrder) {
   const LinkLayout layout{.epoch = 1, .payload_octets = 8, .layout_hash = 1, .period = 1ms};
-  const auto* queued = find_link_mechanism(standard_link_mechanisms(), LinkMethod::SharedMemory, LinkKind::Queued);
+  const auto* queued = find_link_mechanism(standard_link_mechanisms(), LinkMethod::Unix, LinkKind::Queued);
   ASSERT_NE(queued, nullptr);
   HeapMemory memory;
   const auto shared = queued->establish(memory, layout).value();
@@ -232,10 +233,10 @@ TEST(QueuedLink, BringsASlowConsumerEverySampleInOrder) {
   for (std::uint64_t count = 2; count <= 41; ++count) EXPECT_EQ(reader->read(payload).count, count);
 }
 
-TEST(QueuedLink, ADescriptorMayAskForIt) {
+TEST(UnixLink, ADescriptorMayAskForIt) {
   const descriptor::FileSource source = [](const std::filesystem::path& file) {
     auto text = descriptor::file_system()(file);
-    constexpr std::string_view now = "kind=\\"latest\\"", then = "kind=\\"queued\\"";
+    constexpr std::string_view now = "methods=\\"shared_memory\\"", then = "methods=\\"unix shared_memory\\"";
     text->replace(text->find(now), now.size(), then);
     return text;
   };

@@ -18,8 +18,11 @@ namespace hirosco::testing {
 class LinkConformance : public ::testing::TestWithParam<const LinkMechanism*> {
  protected:
   using Payload = std::array<std::byte, 24>;
-  static constexpr LinkLayout layout{
-      .epoch = 7, .payload_octets = sizeof(Payload), .layout_hash = 0x1234'5678'9ABC'DEF0, .period = 500us};
+  const LinkLayout layout{.epoch = 7,
+                          .payload_octets = sizeof(Payload),
+                          .layout_hash = 0x1234'5678'9ABC'DEF0,
+                          .period = 500us,
+                          .depth = GetParam()->kind() == LinkKind::Queued ? default_link_depth : 0};
   static Payload sample(std::uint64_t number) {
     Payload payload{};
     for (std::size_t i = 0; i < payload.size(); ++i) payload[i] = static_cast<std::byte>(number * 31 + i);

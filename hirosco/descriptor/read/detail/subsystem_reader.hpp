@@ -129,6 +129,7 @@ class SubsystemReader {
   void read_lent(const xml::Element& element, std::vector<Field>& fields);
   void check_lent(const xml::Element& element, std::string_view name, const std::vector<Field>& fields);
   [[nodiscard]] LinkTerms read_terms(Attributes& attributes);
+  [[nodiscard]] std::uint32_t read_depth(Attributes& attributes, LinkTerms& terms);
   [[nodiscard]] CycleLimit read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
                                       CycleLimit fallback);
 
