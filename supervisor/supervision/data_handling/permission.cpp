@@ -191,15 +191,27 @@ using Notice = std::optional<FailureNotice>;
   return !unknown_function;
 }
 
+constexpr unsigned all_states = 0x03FF;
+
+/// In which states it is permitted, by the service's own table or the addressee's descriptor.
+[[nodiscard]] unsigned states_of(const Asked& asked) {
+  if (asked.request != nullptr) return asked.request->states;
+  const auto* kind = pus::standard_service(asked.telecommand.service());
+  const auto* request = kind != nullptr ? kind->request(asked.telecommand.subtype()) : nullptr;
+  return request != nullptr ? request->states : all_states;
+}
+
 /// What the old mode permitted and the new one may not would cross the change: until it has ended the craft is looked at, and taken
 /// towards safety, nothing else.
 [[nodiscard]] Notice crosses_no_change(const Asked& asked) {
   if (!asked.situation.changing || !is_bound(asked)) return std::nullopt;
-  constexpr std::uint8_t parameters = pus::ParameterService::service_type;
   const std::uint8_t service = asked.telecommand.service();
-  const bool sets = service == parameters && asked.telecommand.subtype() == pus::ParameterService::set_values;
-  if (service != pus::FunctionService::service_type && !sets && pus::standard_service(service) != nullptr)
-    return std::nullopt;
+  const bool sets = service == pus::ParameterService::service_type &&
+                    asked.telecommand.subtype() == pus::ParameterService::set_values;
+  // What a service itself permits in some states only is more than a look, as a self test.
+  const bool acts = service == pus::FunctionService::service_type || pus::standard_service(service) == nullptr ||
+                    sets || states_of(asked) != all_states;
+  if (!acts) return std::nullopt;
   FailureNotice notice{FailureCode::NotPermittedNow};
   return notice.because({ErrorCode::NotPermitted, asked.situation.mode.id, "a change of mode is under way, from mode"});
 }
@@ -220,15 +232,6 @@ using Notice = std::optional<FailureNotice>;
   });
   if (!opened) return wrong_mode(asked);
   return std::nullopt;
-}
-
-/// In which states it is permitted, by the service's own table or the addressee's descriptor.
-[[nodiscard]] unsigned states_of(const Asked& asked) {
-  constexpr unsigned all = 0x03FF;
-  if (asked.request != nullptr) return asked.request->states;
-  const auto* kind = pus::standard_service(asked.telecommand.service());
-  const auto* request = kind != nullptr ? kind->request(asked.telecommand.subtype()) : nullptr;
-  return request != nullptr ? request->states : all;
 }
 
 /// Is it permitted in the addressee's state?
