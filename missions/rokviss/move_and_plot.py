@@ -22,24 +22,9 @@ craft.wait_until(lambda: craft.mode and arm.state, what="the supervisor told not
 print(f"mode {craft.mode}; manipulator {arm.state}, {arm.configuration}")
 
 
-# %% Bring the robot to Operational on its own
-def lower(subsystem, state, above):
-    """To this state, if it is in one of those above."""
-    if subsystem.state in above:
-        subsystem.set_state(state)
-
-
+# %% Bring the craft into the mode where the robot moves on its own: one telecommand, from whatever mode it is in
 if (craft.mode, arm.configuration, arm.state) != ("standalone", "STANDALONE", "Operational"):
-    craft.supervisor.set_mode("commissioning")
-    # Both machines may be coupled: both stop first, then both give up their configuration.
-    for subsystem in (craft.joystick, arm):
-        lower(subsystem, "SafeOperational", ("Operational", "ErrorOperational"))
-    for subsystem in (craft.joystick, arm):
-        lower(subsystem, "PreOperational", ("SafeOperational", "Offline"))
-    arm.configure("STANDALONE")
-    arm.set_state("SafeOperational")
     craft.supervisor.set_mode("standalone")
-    arm.set_state("Operational")
     craft.wait_until(lambda: craft.mode == "standalone" and arm.state == "Operational")
     print(f"mode {craft.mode}; manipulator {arm.state}, {arm.configuration}")
 

@@ -150,10 +150,10 @@ class Checks:
         self.bring_to("manipulator takes configuration standalone", MANIPULATOR,
                       Call("CONFIGURE", (1, "UINT8", int(configuration.get("id")))))
         self.bring_to("manipulator to Safe-Operational", MANIPULATOR, set_state("SafeOperational"))
-        self.set_mode("standalone")
+        self.set_mode("standalone", "ENTER_MODE")
 
-    def set_mode(self, name):
-        self.bring_to(f"SET_MODE {name}", SUPERVISOR, Call("SET_MODE", (1, "UINT8", self.mission.modes[name])))
+    def set_mode(self, name, function="SET_MODE"):
+        self.bring_to(f"{function} {name}", SUPERVISOR, Call(function, (1, "UINT8", self.mission.modes[name])))
 
     def run(self):
         for apid in APIDS:

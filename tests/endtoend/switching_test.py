@@ -31,20 +31,6 @@ class Switching(unittest.TestCase):
         self.assertNotEqual(result.returncode, 0, words)
         self.assertIn(reason, result.stdout + result.stderr)
 
-    def switch(self, rokviss, mode, configurations, links):
-        """By way of Post-Operational, where devices and links are given back."""
-        self.done(rokviss, "SUPERVISOR", "SET_MODE", "commissioning")
-        for member in configurations:
-            for state in ("SafeOperational", "PostOperational", "PreOperational"):
-                self.done(rokviss, member, "SET_STATE", state)
-            self.done(rokviss, member, "CONFIGURE", configurations[member])
-        for link in links:
-            self.done(rokviss, "SUPERVISOR", "LINK", link)
-        for state in ("SafeOperational", "Operational"):
-            for member in configurations:
-                self.done(rokviss, member, "SET_STATE", state)
-        self.done(rokviss, "SUPERVISOR", "SET_MODE", mode)
-
     def a_commanded_hand_leads_the_robot(self, rokviss):
         self.done(rokviss, "JOYSTICK", "SET_HAND", 1)
         self.done(rokviss, "JOYSTICK", "HAND", 0, 0)
@@ -66,7 +52,7 @@ class Switching(unittest.TestCase):
         self.refused(rokviss, "not permitted in this mode", "COMMUNICATION", "SET_DELAY", 20, 0)
 
     def the_spring_programme_runs_on_board(self, rokviss):
-        self.switch(rokviss, "automatic", {"MANIPULATOR": "SCRIPT"}, ())
+        self.done(rokviss, "SUPERVISOR", "SET_MODE", "automatic")
         self.refused(rokviss, "not permitted in this mode", "JOYSTICK", "HAND", 0, 0)
         begin = time.monotonic()
         reports = self.done(rokviss, "MANIPULATOR", "RUN_SCRIPT", 2)
@@ -75,7 +61,7 @@ class Switching(unittest.TestCase):
 
     def the_joystick_goes_to_ground(self, rokviss):
         """Its own ground link is reconfigured by telecommands over that very link."""
-        self.switch(rokviss, "remote", dict.fromkeys(MEMBERS, "REMOTE"), (3, 4, 5, 6))
+        self.done(rokviss, "SUPERVISOR", "SET_MODE", "remote")
         self.done(rokviss, "COMMUNICATION", "SET_DELAY", 30, 0.001)
         self.done(rokviss, "JOYSTICK", "SET_HAND", 1)
         self.done(rokviss, "JOYSTICK", "HAND", 0, 0)
