@@ -135,9 +135,9 @@ class Rehearsal:
             good(3, 2), good(5, 4, b"\0\1")
             time.sleep(1.6)
             self.position = tuple(values[:2])
-        elif name in ("SET_MODE", "SET_STATE", "CONFIGURE"):
+        elif name in ("SET_MODE", "ENTER_MODE", "SET_STATE", "CONFIGURE"):
             good(1, 1), good(3, 2)
-            if name == "SET_MODE":
+            if name in ("SET_MODE", "ENTER_MODE"):
                 self.mode = tc.app_data[18]
             elif name == "SET_STATE" and tc.apid == 10:
                 self.state = tc.app_data[18]
