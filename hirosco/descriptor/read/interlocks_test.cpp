@@ -32,10 +32,10 @@ Reading<Mission> read_with(const std::string& inside, const std::string& attribu
 }
 
 TEST(Interlocks, AreReadWithTheirStatesAndConfiguration) {
-  const auto reading = read_with(
-      R"(<Needs subsystem="FLYWHEEL" state="Offline"/>)"
-      R"(<Excludes subsystem="CORONAGRAPH" state="SafeOperational Operational" configuration="COUPLED"/>)",
-      R"(from="commissioning")");
+  const auto reading =
+      read_with(R"(<Needs subsystem="FLYWHEEL" state="Offline"/>)"
+                R"(<Excludes subsystem="CORONAGRAPH" state="SafeOperational Operational" configuration="COUPLED"/>)",
+                R"(from="commissioning")");
   ASSERT_TRUE(reading.value) << testing::rendered(reading.problems, file_system());
   const Mode& mode = *reading.value->find_mode("telepresence");
   EXPECT_THAT(mode.from, ElementsAre("commissioning"));
@@ -48,7 +48,8 @@ TEST(Interlocks, AreReadWithTheirStatesAndConfiguration) {
 
 TEST(Interlocks, ThatNameNobodyOrNothingAreReported) {
   EXPECT_THAT(codes_of(read_with("", R"(from="commisioning")")), ::testing::Contains("E0305"));
-  EXPECT_THAT(codes_of(read_with(R"(<Needs subsystem="FLYWHEEL" state="SoftwareInit"/>)")), ::testing::Contains("E0306"));
+  EXPECT_THAT(codes_of(read_with(R"(<Needs subsystem="FLYWHEEL" state="SoftwareInit"/>)")),
+              ::testing::Contains("E0306"));
   EXPECT_THAT(codes_of(read_with(R"(<Needs subsystem="FLYWHEEL" state="Oflline"/>)")), ::testing::Not(IsEmpty()));
   EXPECT_THAT(codes_of(read_with(R"(<Excludes subsystem="NOBODY" state="Operational"/>)")), ::testing::Not(IsEmpty()));
   EXPECT_THAT(codes_of(read_with(R"(<Excludes subsystem="FLYWHEEL" state="Operational" configuration="NONE"/>)")),
@@ -67,7 +68,8 @@ TEST(Interlocks, AFlightStartsInAModeThatCanBeTheFirstAndInNoOther) {
   Mission mission = *read_with("").value;
   EXPECT_FALSE(start_in(mission, "commissioning"));
   EXPECT_EQ(mission.start_mode, "commissioning");
-  EXPECT_THAT(start_in(mission, "telepresense").value_or(""), HasSubstr("no mode 'telepresense': commissioning, telepresence"));
+  EXPECT_THAT(start_in(mission, "telepresense").value_or(""),
+              HasSubstr("no mode 'telepresense': commissioning, telepresence"));
   mission.modes[1].from = {"telepresence"};
   EXPECT_THAT(start_in(mission, "telepresence").value_or(""),
               HasSubstr("mode 'telepresence' cannot be the first: it is not entered from 'commissioning'"));
