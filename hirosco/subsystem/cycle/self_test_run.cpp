@@ -27,7 +27,6 @@ bool SelfTestRun::first(TimePoint planned) noexcept {
 }
 
 std::optional<SelfTestRun::End> SelfTestRun::take(const Result<Step>& said, TimePoint planned) noexcept {
-  if (!running_) return std::nullopt;
   if (!said) return end(pus::FailureCode::ExecutionError, said.error());
   if (*said == Step::Done) return end(pus::FailureCode{}, {});
   if (planned - begun_.value_or(planned) < within_) return std::nullopt;

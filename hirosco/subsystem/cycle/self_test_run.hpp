@@ -29,7 +29,7 @@ class SelfTestRun {
   [[nodiscard]] bool running() const noexcept { return running_; }
   /// Whether the call that is next is the first of this run; its time begins then.  Realtime: wait-free.
   [[nodiscard]] bool first(TimePoint planned) noexcept;
-  /// What the author said in the cycle that was due at `planned`.  Realtime: wait-free.
+  /// What the author said, of a run, in the cycle that was due at `planned`.  Realtime: wait-free.
   [[nodiscard]] std::optional<End> take(const Result<Step>& said, TimePoint planned) noexcept;
   /// The subsystem goes to another state: a run ends, and Error-Operational voids a pass.  Realtime: wait-free.
   [[nodiscard]] std::optional<End> leave(descriptor::State to) noexcept;

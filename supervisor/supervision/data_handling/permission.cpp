@@ -193,12 +193,10 @@ using Notice = std::optional<FailureNotice>;
 
 constexpr unsigned all_states = 0x03FF;
 
-/// In which states it is permitted, by the service's own table or the addressee's descriptor.
+/// In which states it is permitted, by the addressee's descriptor or the service's own table: is_known() has found it in one of them.
 [[nodiscard]] unsigned states_of(const Asked& asked) {
   if (asked.request != nullptr) return asked.request->states;
-  const auto* kind = pus::standard_service(asked.telecommand.service());
-  const auto* request = kind != nullptr ? kind->request(asked.telecommand.subtype()) : nullptr;
-  return request != nullptr ? request->states : all_states;
+  return pus::standard_service(asked.telecommand.service())->request(asked.telecommand.subtype())->states;
 }
 
 /// What the old mode permitted and the new one may not would cross the change: until it has ended the craft is looked at, and taken

@@ -13,7 +13,15 @@ using testing::arm;
 using testing::call_data;
 
 TEST(Permission, WhileTheModeChangesTheCraftIsLookedAtAndTakenTowardsSafetyNothingElse) {
-  const auto mission = testing::small_mission();
+  auto mission = testing::small_mission();
+  descriptor::CustomService own;
+  own.name = "PICTURES";
+  own.type = 200;
+  own.requests = {testing::function("TAKE", testing::in_states({State::Operational}))};
+  own.requests.front().service = own.type;
+  own.requests.front().subtype = 1;
+  mission.subsystems.front().subsystem.services = {own};
+  mission.modes.front().permits.front().services.push_back(own.type);
   const auto set_state = [](State state) { return call_data("SET_STATE", static_cast<int>(state)); };
   LinkGraph links{mission};
   links.set_up(2, true);
@@ -32,6 +40,7 @@ TEST(Permission, WhileTheModeChangesTheCraftIsLookedAtAndTakenTowardsSafetyNothi
     EXPECT_TRUE(refused(decided(8, 1, moves, State::SafeOperational)));
   EXPECT_TRUE(refused(decided(8, 1, call_data("MOVE_TO"), State::Operational)));
   EXPECT_TRUE(refused(decided(20, 3, {}, State::Operational))) << "a setting";
+  EXPECT_TRUE(refused(decided(200, 1, {}, State::Operational))) << "a request of an author's own service";
   EXPECT_TRUE(refused(decided(17, 128, {}, State::SafeOperational))) << "a self test";
   EXPECT_TRUE(decided(8, 1, call_data("BRAKE"), State::Operational));
   EXPECT_TRUE(decided(8, 1, set_state(State::ErrorOperational), State::Operational));
