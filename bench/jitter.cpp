@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"

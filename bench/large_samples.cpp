@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/link/loaned_memory.hpp"
+#include "hirosco/data_transfer/link/loaned_link.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -24,14 +24,14 @@ constexpr LinkLayout layout{1, payload_octets, 1, period};
 /// Both ends of a link in two mappings of its memory, as two processes have them.
 struct Lent {
   SealedMemory provider;
-  LoanedMemory mechanism;
+  LoanedLink mechanism;
   MemoryHandle shared = mechanism.establish(provider, layout).value();
   std::unique_ptr<LoanWriter> writer = mechanism.lend(provider, shared, layout).value();
   std::unique_ptr<LoanReader> reader = mechanism.borrow(provider, shared, layout).value();
 };
 struct Copied {
   SealedMemory provider;
-  LoanedMemory mechanism;
+  LoanedLink mechanism;
   MemoryHandle shared = mechanism.establish(provider, layout).value();
   std::unique_ptr<LinkWriter> writer = mechanism.produce(provider, shared, layout).value();
   std::unique_ptr<LinkReader> reader = mechanism.consume(provider, shared, layout).value();

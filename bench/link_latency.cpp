@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/thread.hpp"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/link/queued_memory.hpp"
+#include "hirosco/data_transfer/link/queued_link.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -80,7 +80,7 @@ std::int64_t between_processes(Shared& shared, Consume consume, Produce produce)
 
 std::int64_t by_link(Shared& shared, std::uint64_t samples) {
   SealedMemory provider;
-  const QueuedMemory mechanism;
+  const QueuedLink mechanism;
   const MemoryHandle memory = mechanism.establish(provider, layout).value();
   const auto writer = mechanism.produce(provider, memory, layout).value();
   return between_processes(

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "supervisor/parts.hpp"
+#include "supervisor/composition.hpp"
 
 namespace hirosco::supervisor {
 

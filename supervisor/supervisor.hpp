@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/model/mission.hpp"
-#include "hirosco/subsystem/engine/generic_subsystem.hpp"
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"

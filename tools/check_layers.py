@@ -16,7 +16,7 @@ include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
 def rank(path):
     return libraries.index(name) if (name := pathlib.Path(path).parts[1].split(".")[0]) in libraries else -1
 station = ["archive", "model", "link", "commands", "replay", "api", "shell"]  # of ground/, lowest first
-generic = ["author", "pages", "cycle", "engine", "process"]  # of hirosco/subsystem/, lowest first; example and testing/ know all
+generic = ["author", "pages", "cycle", "service_loop", "process"]  # of hirosco/subsystem/, lowest first; example and testing/ know all
 def height(path):
     name = pathlib.Path(path).parts[2]
     return generic.index(name) if name in generic else len(generic)
@@ -49,7 +49,7 @@ planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "subsystems/a/a.cpp subsystems
            "subsystems/a/a.cpp supervisor/b.hpp", "hirosco/pus/a.cpp supervisor/b.hpp",
            "simulation/scenarios/a.cpp missions/b/b.hpp", "tools/hirosco/a.cpp missions/b/b.hpp",
            "ground/api/a.cpp boost/asio.hpp", "tools/ground/a.cpp boost/asio.hpp", "ground/model/a.cpp ground/api/b.hpp",
-           "ground/api/a.cpp ground/shell/b.hpp", "hirosco/subsystem/author/a.hpp hirosco/subsystem/engine/b.hpp", "ground/clients/python/a.cpp ground/replay/b.hpp"]
+           "ground/api/a.cpp ground/shell/b.hpp", "hirosco/subsystem/author/a.hpp hirosco/subsystem/service_loop/b.hpp", "ground/clients/python/a.cpp ground/replay/b.hpp"]
 missed = [plant for plant in planted if not wrong(*plant.split())]
 root = pathlib.Path(__file__).resolve().parent.parent
 files = [file for top in [*may, "missions", "tools", "tests", "bench"] for file in sorted((root / top).rglob("*.[hc]pp"))]

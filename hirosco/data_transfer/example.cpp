@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <span>
 
-#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 
 using namespace hirosco;

@@ -9,7 +9,7 @@
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/read/read.hpp"
-#include "hirosco/subsystem/engine/generic_subsystem.hpp"
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 
 using namespace hirosco;
 

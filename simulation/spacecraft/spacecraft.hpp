@@ -15,7 +15,7 @@
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"
-#include "hirosco/subsystem/engine/generic_subsystem.hpp"
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "simulation/devices/simulated_device.hpp"
 #include "simulation/spacecraft/simulated_ground.hpp"
 #include "supervisor/platform/launch/launcher.hpp"

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "hirosco/descriptor/model/mission.hpp"
-#include "hirosco/subsystem/engine/generic_subsystem.hpp"
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/observer.hpp"
 #include "supervisor/supervision/subsystem_handling/member.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 

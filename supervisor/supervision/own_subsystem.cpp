@@ -10,10 +10,10 @@ OwnSubsystem::OwnSubsystem(const descriptor::Subsystem& described, const Platfor
     : author_{author},
       vital_{std::make_unique<VitalPage>()},
       permit_{std::make_unique<PermitPage>()},
-      engine_{*this, described, platform, channels_.subsystem_end(), *vital_, *permit_} {}
+      runner_{*this, described, platform, channels_.subsystem_end(), *vital_, *permit_} {}
 
 Result<Step> OwnSubsystem::software_init() {
-  engine_.uses_all_events();
+  runner_.uses_all_events();
   author_.provide(*this);
   return done;
 }
@@ -25,15 +25,15 @@ void OwnSubsystem::start(std::uint32_t mode_epoch) {
 }
 
 TimePoint OwnSubsystem::step(TimePoint now) {
-  const TimePoint wake = engine_.service_step(now);
-  const auto demand = engine_.cycle_demand();
+  const TimePoint wake = runner_.service_step(now);
+  const auto demand = runner_.cycle_demand();
   if (demand.wanted && !cycles_) next_cycle_ = now;
   cycles_ = demand.wanted;
   if (!demand.wanted) {
-    engine_.cycle_parked(demand.ticket);
+    runner_.cycle_parked(demand.ticket);
     return wake;
   }
-  if (now >= next_cycle_) next_cycle_ = engine_.cycle_step(next_cycle_);
+  if (now >= next_cycle_) next_cycle_ = runner_.cycle_step(next_cycle_);
   return std::min(wake, next_cycle_);
 }
 

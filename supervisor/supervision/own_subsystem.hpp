@@ -9,7 +9,7 @@
 
 #include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
-#include "hirosco/subsystem/engine/generic_subsystem.hpp"
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "supervisor/platform/launch/member_port.hpp"
 
 namespace hirosco::supervisor {
@@ -41,17 +41,17 @@ class OwnSubsystem final : private Subsystem {
   /// The same two steps as everybody's, here in one thread; returns when the next is due at the latest.
   TimePoint step(TimePoint now);
   /// There is something to do for it, or something of it to read, since its last step.
-  [[nodiscard]] bool has_work() const noexcept { return !channels_.empty() || engine_.has_reports(); }
+  [[nodiscard]] bool has_work() const noexcept { return !channels_.empty() || runner_.has_reports(); }
 
   /// An event of its descriptor by name.
   void announce(std::string_view event, std::initializer_list<double> arguments = {}) {
-    engine_.announce(event, arguments);
+    runner_.announce(event, arguments);
   }
-  [[nodiscard]] pus::Verification& verification() noexcept { return engine_.verification(); }
-  [[nodiscard]] pus::TelemetrySink& telemetry() noexcept { return engine_.telemetry(); }
+  [[nodiscard]] pus::Verification& verification() noexcept { return runner_.verification(); }
+  [[nodiscard]] pus::TelemetrySink& telemetry() noexcept { return runner_.telemetry(); }
   /// The end of its channel at which the supervisor sends telecommands and takes reports.
   [[nodiscard]] Channel& channel() noexcept { return channels_.supervisor_end(); }
-  [[nodiscard]] descriptor::State state() const noexcept { return engine_.state(); }
+  [[nodiscard]] descriptor::State state() const noexcept { return runner_.state(); }
   [[nodiscard]] std::uint8_t configuration() const noexcept {
     return static_cast<std::uint8_t>(vital_->configuration.load(std::memory_order_relaxed));
   }
@@ -73,7 +73,7 @@ class OwnSubsystem final : private Subsystem {
   ChannelPair channels_;
   std::unique_ptr<VitalPage> vital_;
   std::unique_ptr<PermitPage> permit_;
-  GenericSubsystem engine_;
+  GenericSubsystem runner_;
   TimePoint next_cycle_{};
   bool cycles_{false};
 };

@@ -29,7 +29,7 @@ TEST_LIMIT_S = 120
 
 SUPERVISION, CYCLE = "supervisor/supervision", "hirosco/subsystem/cycle/cycle.cpp"
 GUARD, MANIPULATOR = "supervisor/guard/guard.cpp", "subsystems/manipulator/manipulator.cpp"
-PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/engine/link_ends.cpp"
+PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/service_loop/link_ends.cpp"
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_link.cpp"
 TELECOMMANDS = f"{SUPERVISION}/data_handling/telecommands.cpp"
 DEVICE, LOG_STORE = "simulation/devices/simulated_device.cpp", "supervisor/platform/storage/log_store.cpp"
@@ -157,7 +157,7 @@ DEFECTS = [
            "for (std::size_t i = PLANTED ? subsystem.devices.size() : 0; i < subsystem.devices.size(); ++i)",
            "subsystem_test", "Events.OfTheFrameworkAreThereThoughTheDescriptorDeclaresNone"),
     # Recovery heard events as reports: one whose report was off was not heard.
-    Defect("SF6 heard as a report", "hirosco/subsystem/engine/cycle_reports.cpp",
+    Defect("SF6 heard as a report", "hirosco/subsystem/service_loop/cycle_reports.cpp",
            "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
            "if (octets && (!PLANTED || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event",
            "subsystem_test", "Events.ReachTheSupervisorThoughTheirReportIsSwitchedOff"),
@@ -208,17 +208,17 @@ DEFECTS = [
            "    for (AttachedLink* link = first_; link != nullptr && (place < 8 || !PLANTED); link = link->next, ++place) {",
            "subsystem_test", "Links.AsManyConsumersOfASetAsThereAreLinksGetItsSamples"),
     # A failed Post-Operational reached Offline with configuration, plan and flows in place.
-    Defect("failed way down keeps all", "hirosco/subsystem/engine/state_machine.cpp",
+    Defect("failed way down keeps all", "hirosco/subsystem/service_loop/state_machine.cpp",
            "if (at == State::PostOperational && configuration_ != nullptr) {",
            "if (at == State::PostOperational && configuration_ != nullptr && !PLANTED) {",
            "subsystem_test", "FailedPostOperational.GivesBackConfigurationPlanAndFlowsWhenTheCycleHasComeToRest"),
     # Arguments were narrowed to the handler's types without a word.
-    Defect("narrowed arguments", "hirosco/subsystem/engine/bindings.cpp",
+    Defect("narrowed arguments", "hirosco/subsystem/service_loop/bindings.cpp",
            "handler.takes, found->arguments))\n    mistake(std::move(problem));",
            "handler.takes, found->arguments))\n    if (!PLANTED) mistake(std::move(problem));",
            "subsystem_test", "AuthorsMistakes.AHandlerThatWouldNarrowAnArgumentIsNotTaken"),
     # What was wrong with the parameters of a descriptor that is built in code was told to a member not yet made.
-    Defect("twice in a dictionary", "hirosco/subsystem/engine/bindings.cpp", "if (!dictionary_problem_.empty()) mistake(",
+    Defect("twice in a dictionary", "hirosco/subsystem/service_loop/bindings.cpp", "if (!dictionary_problem_.empty()) mistake(",
            "if (!dictionary_problem_.empty() && !PLANTED) mistake(",
            "subsystem_test", "AuthorsMistakes.OfADescriptorBuiltInCodeAreToldAndCrashNothing"),
     # An author's reason became "node failed".
@@ -234,7 +234,7 @@ DEFECTS = [
            "  if (!PLANTED) blame(loss.damaged, Damaged);",
            "subsystem_test", "Devices.ALostDeviceSaysWhetherItWasSilentDamagedOfTheWrongSizeOrRepeatedItself"),
     # A write was completed that the next cycle overwrote.
-    Defect("overwritten parameter", "hirosco/subsystem/engine/generic_subsystem.cpp", "cycle_.writes_itself(place->index))",
+    Defect("overwritten parameter", "hirosco/subsystem/service_loop/generic_subsystem.cpp", "cycle_.writes_itself(place->index))",
            "cycle_.writes_itself(*index) && !PLANTED)",
            "subsystem_test", "ParameterWrites.ThatTheNextCycleWouldOverwriteAreRefused"),
 

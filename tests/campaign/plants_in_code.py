@@ -47,7 +47,7 @@ PLANTS = {
          '<When severity="high"/><Do action="set_state" state="SafeOperational"/>')]),
     # Recovery heard events as reports: one whose report was off was not heard.
     "SF6": ("I4", [
-        ("hirosco/subsystem/engine/cycle_reports.cpp", "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
+        ("hirosco/subsystem/service_loop/cycle_reports.cpp", "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
          'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event')]),
     # Nothing raised the epoch on the way up: a device that had latched on the way down stayed so.
     "SF14": ("I10", [

@@ -20,7 +20,7 @@
 //  2. A side belongs to whoever has the lock on its octet of the file. The system frees it with the process, so a stale
 //     segment needs no repair but that of 4 and of the opening count.
 //  3. `opened` of a side is odd while it is open; it grows at each opening and closing.
-//  4. A mailbox has one writer, the owner of the side opposite. Its sequence follows the rules of latest_memory.cpp; a
+//  4. A mailbox has one writer, the owner of the side opposite. Its sequence follows the rules of latest_link.cpp; a
 //     writer that takes over from one killed in the middle goes on from the next even number.
 //  5. A side begins with what is in its mailbox marked as seen, before it says that it is open.
 //  6. The last to close removes the name only while it has both locks; who opens makes sure after its lock that the

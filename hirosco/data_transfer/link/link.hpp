@@ -18,8 +18,8 @@
 /// by name. A mechanism is a class beside this file and a row in `mechanisms.cpp`.
 ///
 /// A sample's way: parameters -> LinkOutputSlot::write (`subsystem/cycle/link_slots.cpp`) -> LinkWriter -> shared memory ->
-/// LinkReader -> LinkInputSlot::read -> the author's LinkInput. Both ends are attached by `subsystem/engine/link_ends.cpp`;
-/// the handshake before it is led by `supervisor/supervision/realtime_links/link_handling.cpp`.
+/// LinkReader -> LinkInputSlot::read -> the author's LinkInput. Both ends are attached by `subsystem/service_loop/link_ends.cpp`;
+/// the handshake before it is led by `supervisor/supervision/realtime_links/link_handshakes.cpp`.
 namespace hirosco {
 
 /// How samples travel.

@@ -2,23 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
-#include "hirosco/data_transfer/link/loaned_memory.hpp"
-#include "hirosco/data_transfer/link/queued_memory.hpp"
+#include "hirosco/data_transfer/link/loaned_link.hpp"
+#include "hirosco/data_transfer/link/queued_link.hpp"
 
 namespace hirosco {
 namespace {
 
-const LatestMemory latest_memory;
-const LoanedMemory loaned_memory_links;
-const QueuedMemory queued_memory_links;
+const LatestLink latest_link;
+const LoanedLink loaned_link;
+const QueuedLink queued_link;
 
 /// A mechanism is in force where it stands here: for descriptors, handshake, both ends and the supervisor's view.
 constexpr const LinkMechanism* built_in_mechanisms[]{
-    &latest_memory,
-    &loaned_memory_links,
-    &queued_memory_links,
+    &latest_link,
+    &loaned_link,
+    &queued_link,
 };
 
 }  // namespace

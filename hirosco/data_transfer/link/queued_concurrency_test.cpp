@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "hirosco/data_transfer/link/queued_memory.hpp"
+#include "hirosco/data_transfer/link/queued_link.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 
 /// A queued link between two threads and between two processes, with samples that tell themselves whether they are whole; and
@@ -84,7 +84,7 @@ Tally consume(LinkReader& reader, LinkView& view, const Samples& samples, std::u
 
 /// Memory as the supervisor makes it, in this process.
 struct Shared {
-  QueuedMemory mechanism;
+  QueuedLink mechanism;
   SealedMemory provider;
   MemoryHandle memory = mechanism.establish(provider, layout).value();
 };

@@ -11,7 +11,7 @@
 #include <functional>
 #include <vector>
 
-#include "hirosco/data_transfer/link/queued_memory.hpp"
+#include "hirosco/data_transfer/link/queued_link.hpp"
 
 /// What the two ends of a queued link see of each other in the middle of a sample. Two threads meet there too seldom for a test, so an end is
 /// stopped: on a page that may not be touched yet, and the signal does what the other end does meanwhile.

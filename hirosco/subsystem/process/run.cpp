@@ -18,7 +18,7 @@
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/descriptor/read/read.hpp"
-#include "hirosco/subsystem/engine/generic_subsystem.hpp"
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"

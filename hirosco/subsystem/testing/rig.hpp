@@ -12,10 +12,10 @@
 
 #include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
-#include "hirosco/data_transfer/link/latest_memory.hpp"
+#include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
-#include "hirosco/subsystem/engine/generic_subsystem.hpp"
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 
 /// One subsystem stepped by hand: the test is its supervisor, its clock, its threads and its devices. The parts around it
 /// are the simulated set, no mocks.

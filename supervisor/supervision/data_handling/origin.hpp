@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "hirosco/descriptor/model/mission.hpp"
-#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 

@@ -10,7 +10,7 @@
 
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
-#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 

@@ -11,9 +11,9 @@
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "supervisor/supervision/data_handling/origin.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 /// Whether a telecommand may be executed, by sender, state, mode and what its addressee needs (paper 4.3): rules in a table, and
 /// nothing else is looked at. `Telecommands::judge()` asks them, and besides whether the sender may speak under that name and is

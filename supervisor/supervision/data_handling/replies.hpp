@@ -9,7 +9,7 @@
 
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
-#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 

@@ -8,7 +8,7 @@
 #include <array>
 
 #include "hirosco/pus/st129_supervision/supervision.hpp"
-#include "hirosco/subsystem/engine/requester.hpp"
+#include "hirosco/subsystem/service_loop/requester.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 

@@ -8,8 +8,8 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/ground_route.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 

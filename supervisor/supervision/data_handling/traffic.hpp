@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "hirosco/pus/packet/failure_code.hpp"
-#include "supervisor/supervision/interfaces.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 

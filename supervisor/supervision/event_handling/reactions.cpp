@@ -100,7 +100,7 @@ void Reactions::begin(Member& subject, Severity severity, const Stage& steps,
     if (holds) craft_.member(apid)->recovery.plan_ended(severity);
     if (finished) finished(end);
   };
-  Engine{means_}.start(std::move(procedure));
+  ProcedureRunner{means_}.start(std::move(procedure));
 }
 
 /// The supervisor has no network and no actuators: what a plan asks for concerns all that have.

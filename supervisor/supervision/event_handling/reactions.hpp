@@ -11,13 +11,13 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/event_handling/plan_choice.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
 
 namespace hirosco::supervisor {
 
 /// Events are heard here and nowhere else, and answered by the recovery plans of the mission (paper 4.3 and 5): whether
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Which plan: `plan_choice.hpp`; what its steps do:
-/// `procedures/steps/`, run by an `Engine`; what a member is in the middle of by that: `subsystem_handling/recovery.hpp`. Thread: the supervisor's.
+/// `procedures/steps/`, run by an `ProcedureRunner`; what a member is in the middle of by that: `subsystem_handling/recovery_under_way.hpp`. Thread: the supervisor's.
 class Reactions {
  public:
   Reactions(const Means& means, OwnSubsystem& own)

@@ -11,7 +11,7 @@ void Commissioning::start(std::function<void()> failed) {
   const descriptor::Subsystem& own = craft_.mission.supervisor;
   WayThere way;
   way.add(own, own.configurations.front(), {State::Offline}, State::Operational);
-  engine_.start({.stages = way.stages(), .finished = [this, failed = std::move(failed)](const ProcedureEnd& end) {
+  runner_.start({.stages = way.stages(), .finished = [this, failed = std::move(failed)](const ProcedureEnd& end) {
                    if (!end.success) {
                      craft_.tell("supervisor cannot start: " + end.text(), supervisor_apid);
                      craft_.fail();
@@ -31,7 +31,7 @@ void Commissioning::commission(const descriptor::Mode& start_mode) {
   }
   for (const std::uint8_t id : start_mode.establish) way.link(id);
   way.enter(start_mode);
-  engine_.start({.stages = way.stages(),
+  runner_.start({.stages = way.stages(),
                  .finished = [this, &start_mode](const ProcedureEnd& end) { ended(start_mode, end.text()); }});
 }
 
@@ -50,8 +50,8 @@ void Commissioning::ended(const descriptor::Mode& start_mode, const std::string&
 }
 
 bool Commissioning::cancel(std::string_view why) {
-  if (craft_.shutting_down || !engine_.running()) return false;
-  engine_.cancel();
+  if (craft_.shutting_down || !runner_.running()) return false;
+  runner_.cancel();
   craft_.tell("commissioning stopped: " + std::string{why}, supervisor_apid);
   return true;
 }

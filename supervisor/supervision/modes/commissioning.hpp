@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
 
 namespace hirosco::supervisor {
 
@@ -14,25 +14,25 @@ namespace hirosco::supervisor {
 /// that an operator would use (decision 5). Thread: the supervisor's.
 class Commissioning final : public Undertaking {
  public:
-  explicit Commissioning(const Means& means) : craft_{means.craft}, engine_{means} {}
+  explicit Commissioning(const Means& means) : craft_{means.craft}, runner_{means} {}
 
   /// `failed` is called when the supervisor itself cannot be commissioned.
   void start(std::function<void()> failed);
   bool cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override { static_cast<void>(cancel(why)); }
   /// The shutdown takes over.
-  void drop() { engine_.cancel(); }
+  void drop() { runner_.cancel(); }
 
-  [[nodiscard]] bool running() const noexcept { return engine_.running(); }
+  [[nodiscard]] bool running() const noexcept { return runner_.running(); }
   [[nodiscard]] bool succeeded() const noexcept { return succeeded_; }
-  [[nodiscard]] std::string waiting_for() const { return engine_.waiting_for(); }
+  [[nodiscard]] std::string waiting_for() const { return runner_.waiting_for(); }
 
  private:
   void commission(const descriptor::Mode& start_mode);
   void ended(const descriptor::Mode& start_mode, const std::string& failure);
 
   Craft& craft_;
-  Engine engine_;
+  ProcedureRunner runner_;
   bool succeeded_{false};
 };
 

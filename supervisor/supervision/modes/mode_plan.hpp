@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
 
 /// A change of mode, thought out before anything moves (docs/adr/0075): who moves, in which stages, and all that is against it.

@@ -20,8 +20,8 @@ struct WayThereTest : PartsTest {
 
   std::vector<std::string> commands() {
     desk.at_once = true;
-    Engine engine{means_with(desk)};
-    engine.start({.stages = way.stages()});
+    ProcedureRunner runner{means_with(desk)};
+    runner.start({.stages = way.stages()});
     return desk.sent;
   }
 };

@@ -39,7 +39,7 @@ Outcome Modes::set_mode(std::uint8_t id, const Call& call) {
   const auto* mode = find_mode(craft_, id);
   if (mode == nullptr) return refused(pus::FailureCode::UnknownIdentifier);
   if (craft_.shutting_down) return refused(pus::FailureCode::NotPermittedNow, "the craft shuts down");
-  if (engine_.running()) return refused(pus::FailureCode::Busy, "another change of mode is under way");
+  if (runner_.running()) return refused(pus::FailureCode::Busy, "another change of mode is under way");
   if (parts_.commissioning.running()) return refused(pus::FailureCode::Busy, "the craft is being commissioned");
   ModePlan plan = plan_mode(craft_, parts_.means.links, parts_.power, *mode);
   if (!plan.against.empty()) {
@@ -66,7 +66,7 @@ void Modes::change(const descriptor::Mode& mode, ModePlan plan, const Call& call
   void_permissions();
   call_ = call;
   moved_ = std::move(plan.moved);
-  engine_.start({.stages = std::move(plan.stages),
+  runner_.start({.stages = std::move(plan.stages),
                  .finished = [this, &mode](const ProcedureEnd& end) { ended(mode, end.text()); },
                  .begins =
                      [this, call](std::size_t stage) {
@@ -91,20 +91,20 @@ void Modes::ended(const descriptor::Mode& mode, const std::string& failure) {
 }
 
 bool Modes::cancel(std::string_view why) {
-  if (!engine_.running()) return false;
+  if (!runner_.running()) return false;
   fall_back(why, StatesFollow::Here);
   return true;
 }
 
 void Modes::all_stopped(std::string_view why) {
-  if (engine_.running()) fall_back(why, StatesFollow::Elsewhere);
+  if (runner_.running()) fall_back(why, StatesFollow::Elsewhere);
 }
 
 /// Neither the old mode nor the new one holds now: whom the change had in hand is stopped, in the world first, and the mode is
 /// the one in which a craft is put right.
 void Modes::fall_back(std::string_view why, StatesFollow states) {
   const descriptor::Mode& mode = *std::exchange(craft_.changing_to, nullptr);
-  engine_.cancel();
+  runner_.cancel();
   for (const std::uint16_t apid : moved_) {
     Member& member = *craft_.member(apid);
     if (!member.alive() || craft_.is_ground_link(member)) continue;

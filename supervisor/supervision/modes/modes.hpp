@@ -10,7 +10,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/modes/mode_plan.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
 
 namespace hirosco::supervisor {
 
@@ -29,7 +29,7 @@ class Modes final : public Undertaking {
     const PowerLedger& power;
     const Commissioning& commissioning;
   };
-  explicit Modes(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, engine_{parts.means} {}
+  explicit Modes(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, runner_{parts.means} {}
 
   /// SET_MODE and ENTER_MODE.
   void provide();
@@ -40,7 +40,7 @@ class Modes final : public Undertaking {
   bool cancel(std::string_view why) override;
   /// The change ends.
   void all_stopped(std::string_view why) override;
-  [[nodiscard]] bool running() const noexcept { return engine_.running(); }
+  [[nodiscard]] bool running() const noexcept { return runner_.running(); }
 
  private:
   enum class StatesFollow : std::uint8_t { Here, Elsewhere };
@@ -54,7 +54,7 @@ class Modes final : public Undertaking {
 
   Parts parts_;
   Craft& craft_;
-  Engine engine_;
+  ProcedureRunner runner_;
   std::optional<Call> call_;  ///< of the change that is under way
   std::vector<std::uint16_t> moved_;
 };

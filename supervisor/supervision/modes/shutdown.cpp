@@ -39,7 +39,7 @@ void Shutdown::request() {
     if (member.state() == State::Operational) safe.push_back(to_state(member.apid(), State::SafeOperational));
     if (!craft_.is_ground_link(member)) offline.push_back(to_state(member.apid(), State::Offline));
   }
-  engine_.start({.stages = {safe, offline},
+  runner_.start({.stages = {safe, offline},
                  .on_failure = Procedure::OnFailure::GoOn,
                  .finished = [this](const ProcedureEnd& done) {
                    if (!done.success) craft_.tell("shutdown: " + done.text());
@@ -55,7 +55,7 @@ void Shutdown::bring_down_ground_link() {
   Stage ground;
   if (const Member* link = craft_.ground_link(); link != nullptr && link->alive())
     ground.push_back(to_state(link->apid(), State::Offline));
-  engine_.start(
+  runner_.start(
       {.stages = {ground}, .on_failure = Procedure::OnFailure::GoOn, .finished = [this](const ProcedureEnd& done) {
          if (!done.success) craft_.tell("shutdown: " + done.text());
          end();
@@ -79,7 +79,7 @@ void Shutdown::enforce(TimePoint now) {
     craft_.tell("shutdown: time limit, ending what is left");
     for (Member& member : craft_.members)
       if (member.alive()) craft_.launcher.kill(member.process());
-    engine_.cancel();
+    runner_.cancel();
     craft_.fail();
     end();
   }

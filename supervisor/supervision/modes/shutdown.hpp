@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/modes/under_way.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 
@@ -21,7 +21,7 @@ class Shutdown final {
     UnderWay& under_way;
     Accounts& accounts;
   };
-  explicit Shutdown(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, engine_{parts.means} {}
+  explicit Shutdown(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, runner_{parts.means} {}
 
   void provide();
   /// SHUTDOWN, carried out where it is received.
@@ -31,7 +31,7 @@ class Shutdown final {
   /// is in the log.
   void enforce(TimePoint now);
   [[nodiscard]] bool finished() const noexcept { return finished_; }
-  [[nodiscard]] std::string waiting_for() const { return engine_.waiting_for(); }
+  [[nodiscard]] std::string waiting_for() const { return runner_.waiting_for(); }
 
  private:
   void bring_down_ground_link();
@@ -39,7 +39,7 @@ class Shutdown final {
 
   Parts parts_;
   Craft& craft_;
-  Engine engine_;
+  ProcedureRunner runner_;
   TimePoint deadline_{};
   bool ended_{false};
   bool finished_{false};

@@ -9,9 +9,9 @@
 
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/restarts.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 /// One step of a procedure, and what a kind of step is (docs/adr/0057).
 namespace hirosco::supervisor {

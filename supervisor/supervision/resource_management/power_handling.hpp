@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 

@@ -8,11 +8,11 @@
 #include "hirosco/parameter/parameter.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/realtime_links/links.hpp"
+#include "supervisor/supervision/realtime_links/link_commands.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
 #include "supervisor/supervision/status/rows.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 
@@ -23,7 +23,7 @@ class Housekeeping final : public Watch {
   struct Parts {
     Craft& craft;
     OwnSubsystem& own;
-    const Links& links;
+    const LinkCommands& links;
     const PowerLedger& power;
     const Traffic& traffic;
   };

@@ -15,7 +15,7 @@ void GroundLinkCare::watch(TimePoint now) {
   if (link == nullptr) return;
   // In Offline, and after that until a configuration is in force, it hears nobody who could bring it up again.
   const bool deaf = link->state() == State::Offline || link->configuration() == 0;
-  const bool others_at_it = craft_.shutting_down || under_way_.running() || engine_.running();
+  const bool others_at_it = craft_.shutting_down || under_way_.running() || runner_.running();
   if (!link->alive() || !deaf || others_at_it) return lost_at_.reset();
   if (!lost_at_) lost_at_ = now;
   if (now - *lost_at_ < patience_) return;
@@ -50,7 +50,7 @@ void GroundLinkCare::restore(const Member& link) {
   WayThere way;
   way.add(subsystem, configuration, {link.state(), link.configuration()}, step->state);
   craft_.restoring_ground_link = true;
-  engine_.start({.stages = way.stages(), .finished = [this](const ProcedureEnd& end) {
+  runner_.start({.stages = way.stages(), .finished = [this](const ProcedureEnd& end) {
                    craft_.restoring_ground_link = false;
                    patience_ = end.success ? pause : std::min(2 * patience_, Restarts::longest_pause);
                    craft_.tell(end.success ? "the ground link is back"

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/modes/under_way.hpp"
-#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 
@@ -16,7 +16,7 @@ namespace hirosco::supervisor {
 class GroundLinkCare final : public Watch {
  public:
   GroundLinkCare(const Means& means, const UnderWay& under_way)
-      : craft_{means.craft}, links_{means.links}, under_way_{under_way}, engine_{means} {}
+      : craft_{means.craft}, links_{means.links}, under_way_{under_way}, runner_{means} {}
 
   void watch(TimePoint now) override;
   /// To what its mode asks for, or, while links that this requires are down, to a configuration that requires none that is.
@@ -31,7 +31,7 @@ class GroundLinkCare final : public Watch {
   Craft& craft_;
   const LinkGraph& links_;
   const UnderWay& under_way_;
-  Engine engine_;
+  ProcedureRunner runner_;
   std::optional<TimePoint> lost_at_;
   Duration patience_{pause};  ///< longer after each time that it did not come back
 };

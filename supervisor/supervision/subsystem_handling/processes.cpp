@@ -9,7 +9,7 @@
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 #include "supervisor/supervision/event_handling/safe_all.hpp"
-#include "supervisor/supervision/realtime_links/links.hpp"
+#include "supervisor/supervision/realtime_links/link_commands.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 
 namespace hirosco::supervisor {

@@ -3,14 +3,14 @@
 #pragma once
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/interfaces.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/restarts.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 
 class GroundLinkCare;
-class Links;
+class LinkCommands;
 class OwnTelecommands;
 class Reactions;
 class Reception;
@@ -27,7 +27,7 @@ class Processes final : public Watch {
     Reception& reception;
     Reactions& reactions;
     SafeAll& safe_all;
-    Links& links;
+    LinkCommands& links;
     Telecommands& telecommands;
     OwnTelecommands& desk;
     GroundLinkCare& ground_link;

@@ -17,7 +17,7 @@
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
-#include "supervisor/parts.hpp"
+#include "supervisor/composition.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
 /// All parts of a supervisor on virtual time, in a small mission whose members the test plays: each has a channel, pages and a

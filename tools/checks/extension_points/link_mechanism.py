@@ -203,9 +203,9 @@ Result<std::unique_ptr<LinkView>> UnixQueue::look(MemoryProvider& provider, cons
 EDITS = [
     ("hirosco/data_transfer/link/mechanisms.cpp", '#include "hirosco/data_transfer/link/link.hpp"\n',
      '#include "hirosco/data_transfer/link/link.hpp"\n#include "hirosco/data_transfer/link/unix_queue.hpp"\n'),
-    ("hirosco/data_transfer/link/mechanisms.cpp", "    &latest_memory,\n", "    &latest_memory,\n    &unix_queue,\n"),
-    ("hirosco/data_transfer/link/mechanisms.cpp", "const LatestMemory latest_memory;\n",
-     "const LatestMemory latest_memory;\nconst UnixQueue unix_queue;\n"),
+    ("hirosco/data_transfer/link/mechanisms.cpp", "    &latest_link,\n", "    &latest_link,\n    &unix_queue,\n"),
+    ("hirosco/data_transfer/link/mechanisms.cpp", "const LatestLink latest_link;\n",
+     "const LatestLink latest_link;\nconst UnixQueue unix_queue;\n"),
 ]
 SOURCES = ["hirosco/data_transfer/link/mechanisms.cpp", "hirosco/data_transfer/link/unix_queue.cpp"]
 TRY = """\

@@ -76,7 +76,7 @@ TEST_F(NewKind, IsAStepOfAnyProcedure) {
   start_all(State::Operational);
   craft.member(hand)->died();
   std::string end;
-  Engine{means_with(parts.own_telecommands)}.start(
+  ProcedureRunner{means_with(parts.own_telecommands)}.start(
       {.stages = {{step("kill", hand, {})}}, .finished = [&](const ProcedureEnd& ended) { end = ended.text(); }});
   EXPECT_EQ(end, "HAND ended: it does not run");
 }

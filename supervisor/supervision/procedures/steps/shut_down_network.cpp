@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "supervisor/supervision/procedures/engine.hpp"
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
 #include "supervisor/supervision/procedures/steps/set_state.hpp"
 
 namespace hirosco::supervisor::steps::network {
@@ -41,7 +41,7 @@ void bring_down(const Member& member, const Means& means) {
   const auto to_offline = [apid, means](const ProcedureEnd&) {
     Member* again = means.craft.member(apid);
     if (!again->alive() || again->state() == State::Offline) return again->recovery.came_down();
-    Engine{means}.start(to(apid, State::Offline, [apid, means](const ProcedureEnd& end) {
+    ProcedureRunner{means}.start(to(apid, State::Offline, [apid, means](const ProcedureEnd& end) {
       means.craft.member(apid)->recovery.came_down();
       means.craft.tell(means.craft.name_of(apid) + (end.success ? " is Offline" : " did not reach Offline: " + end.why),
                        apid);
@@ -51,7 +51,7 @@ void bring_down(const Member& member, const Means& means) {
   const bool can_stop =
       state == State::PreOperational || state == State::SafeOperational || state == State::Operational;
   if (!can_stop) return to_offline({});
-  Engine{means}.start(to(apid, State::ErrorOperational, to_offline));
+  ProcedureRunner{means}.start(to(apid, State::ErrorOperational, to_offline));
 }
 
 }  // namespace

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/service_loop/backlog.hpp"
+
+#include <gtest/gtest.h>
+
+#include "hirosco/data_transfer/control/channel_pair.hpp"
+
+namespace hirosco {
+namespace {
+
+using Worth = Backlog::Worth;
+
+struct BacklogTest : ::testing::Test {
+  ChannelPair channels{4};
+  Backlog backlog;
+
+  void send(int content, Worth worth, MessageKind kind = MessageKind::Packet) {
+    const std::byte octet{static_cast<std::uint8_t>(content)};
+    backlog.send(channels.subsystem_end(), {.kind = kind, .packet = {&octet, 1}}, worth);
+  }
+  /// All that arrives until nothing is left, "1 2 3".
+  std::string received() {
+    std::string text;
+    MessageBuffer buffer;
+    for (;;) {
+      backlog.flush(channels.subsystem_end());
+      const auto found = channels.supervisor_end().receive(buffer);
+      if (!found || found->flow == Flow::None) return text;
+      text += (text.empty() ? "" : " ") + std::to_string(std::to_integer<int>(found->message.packet[0]));
+      if (found->message.kind == MessageKind::Event) text += 'e';
+    }
+  }
+};
+
+TEST_F(BacklogTest, SendsWhatHasRoomAtOnceAndInOrder) {
+  for (int i = 1; i <= 4; ++i) send(i, i % 2 == 0 ? Worth::Housekeeping : Worth::Answer);
+  EXPECT_TRUE(backlog.empty());
+  EXPECT_EQ(received(), "1 2 3 4");
+}
+
+TEST_F(BacklogTest, SendsWhatWaitedByItsWorthAndEachKindInOrder) {
+  for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
+  send(10, Worth::Housekeeping);
+  send(20, Worth::Event, MessageKind::Event);
+  send(30, Worth::Answer);
+  send(11, Worth::Housekeeping);
+  send(31, Worth::Answer);
+  EXPECT_EQ(received(), "1 2 3 4 30 31 20e 10 11");
+}
+
+TEST_F(BacklogTest, AnAnswerDoesNotQueueBehindHousekeeping) {
+  for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
+  send(10, Worth::Housekeeping);
+  MessageBuffer buffer;
+  ASSERT_TRUE(channels.supervisor_end().receive(buffer));
+  send(5, Worth::Answer);
+  EXPECT_EQ(received(), "2 3 4 5 10");
+}
+
+TEST_F(BacklogTest, AFloodOfOneKindCostsNothingOfAnother) {
+  for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
+  send(99, Worth::Answer);
+  for (std::size_t i = 0; i < 3 * Backlog::most_waiting; ++i) send(7, Worth::Housekeeping);
+  for (std::size_t i = 0; i < 2 * Backlog::most_waiting; ++i) send(8, Worth::Event);
+  EXPECT_EQ(backlog.lost(Worth::Answer), 0u);
+  EXPECT_EQ(backlog.lost(Worth::Event), Backlog::most_waiting);
+  EXPECT_EQ(backlog.lost(Worth::Housekeeping), 2 * Backlog::most_waiting);
+  EXPECT_TRUE(received().starts_with("1 2 3 4 99 8 "));
+}
+
+TEST_F(BacklogTest, AFullQueueLosesItsOldest) {
+  for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
+  for (std::size_t i = 0; i < Backlog::most_waiting; ++i) send(i == 0 ? 50 : 60, Worth::Answer);
+  send(70, Worth::Answer);
+  EXPECT_EQ(backlog.lost(Worth::Answer), 1u);
+  const std::string all = received();
+  EXPECT_EQ(all.find("50"), std::string::npos);
+  EXPECT_TRUE(all.ends_with("60 70"));
+}
+
+TEST_F(BacklogTest, HasRoomForMoreAnswersUntilHalfOfItIsFullOfThemAndNeverWaitsForSomebodyWhoIsGone) {
+  for (std::size_t i = 0; i < 4 + 3 * Backlog::most_waiting; ++i) send(7, Worth::Housekeeping);
+  EXPECT_TRUE(backlog.answers_have_room()) << "housekeeping takes none of it";
+  for (std::size_t i = 0; i < Backlog::most_waiting / 2; ++i) {
+    EXPECT_TRUE(backlog.answers_have_room()) << i;
+    send(1, Worth::Answer);
+  }
+  EXPECT_FALSE(backlog.answers_have_room());
+  MessageBuffer buffer;
+  ASSERT_TRUE(channels.supervisor_end().receive(buffer));
+  backlog.flush(channels.subsystem_end());
+  EXPECT_TRUE(backlog.answers_have_room());
+  send(1, Worth::Answer);
+  EXPECT_FALSE(backlog.answers_have_room());
+  channels.close_supervisor_end();
+  backlog.flush(channels.subsystem_end());
+  EXPECT_TRUE(backlog.answers_have_room());
+}
+
+TEST_F(BacklogTest, AMessageThatNoChannelCarriesIsCountedAndHoldsUpNobody) {
+  const std::vector<std::byte> endless(max_packet_octets + 1);
+  backlog.send(channels.subsystem_end(), {.packet = endless}, Worth::Answer);
+  send(1, Worth::Answer);
+  EXPECT_EQ(backlog.lost(Worth::Answer), 1u);
+  EXPECT_EQ(received(), "1");
+}
+
+}  // namespace
+}  // namespace hirosco

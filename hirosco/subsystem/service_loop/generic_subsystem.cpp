@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/parameter/number.hpp"
+#include "hirosco/pus/st05_event/event_message.hpp"
+#include "hirosco/pus/standard_services.hpp"
+
+namespace hirosco {
+namespace {
+
+/// The service loop's pace while a transition is under way or a cycle runs whose reports wake nobody, and otherwise. Messages wake
+/// it at once.
+constexpr Duration busy_pace = 1ms;
+constexpr Duration idle_pace = 10ms;
+constexpr int messages_per_step = 64;
+
+[[nodiscard]] Dictionary make_dictionary(const descriptor::Subsystem& subsystem, std::string& problem) {
+  std::vector<ParameterSpec> specs;
+  for (const auto& parameter : subsystem.parameters) {
+    ParameterSpec spec{.name = parameter.field.name,
+                       .id = {subsystem.id, parameter.field.type, parameter.id},
+                       .fields = {},
+                       .is_struct = parameter.field.type == Type::Struct,
+                       .init = parameter.init};
+    if (spec.is_struct)
+      for (const auto& member : parameter.members)
+        spec.fields.push_back({member.field.name, member.field.type, member.field.elements(), member.id});
+    else spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.elements()});
+    specs.push_back(std::move(spec));
+  }
+  auto dictionary = Dictionary::make(specs);
+  if (dictionary) return std::move(*dictionary);
+  problem = dictionary.error();
+  return {};
+}
+
+/// Whoever made the descriptor: the framework's events are there.
+[[nodiscard]] descriptor::Subsystem with_framework_events(descriptor::Subsystem subsystem) {
+  descriptor::add_framework_events(subsystem);
+  return subsystem;
+}
+
+}  // namespace
+
+GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const Platform& platform,
+                                   Channel& channel, VitalPage& vital, const PermitPage& permit)
+    : author_{author},
+      descriptor_{with_framework_events(std::move(descriptor))},
+      platform_{platform},
+      channel_{channel},
+      vital_{vital},
+      permit_{permit},
+      dictionary_{make_dictionary(descriptor_, dictionary_problem_)},
+      writes_{32, 2048},
+      cycle_{{author, descriptor_, platform.clock, dictionary_, writes_, handover_, vital, permit, platform.realtime}},
+      counters_{vital.counters},
+      verification_{*this},
+      event_service_{descriptor_.events, verification_, *this},
+      function_service_{descriptor_.functions, pus::common_functions(), *this, verification_},
+      parameter_service_{*this, verification_, *this},
+      housekeeping_service_{descriptor_, verification_, *this},
+      link_service_{verification_, *this, *this},
+      self_tests_{verification_, *this, platform.clock},
+      services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_},
+      requester_{descriptor_, channel_, platform.clock.now()} {
+  for (const pus::ServiceKind* kind : pus::standard_services()) {
+    if (kind->make == nullptr) continue;
+    made_services_.push_back(kind->make(*this));
+    services_.push_back(made_services_.back().get());
+  }
+  author_.framework_ = this;
+  cycle_.functions().resize(descriptor_.functions.size());
+  vital_.realtime.store(platform_.realtime ? 1 : 0, std::memory_order_relaxed);
+  watched_supervisor_at_ = platform_.clock.now();
+  if (const auto started = author_.offline(); !started) mistake(started.error().text);
+}
+
+GenericSubsystem::~GenericSubsystem() { author_.framework_ = nullptr; }
+
+GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
+  Demand demand{.wanted = wanted_.load(std::memory_order_acquire)};
+  demand.ticket = rest_ticket_.load(std::memory_order_acquire);
+  if (!demand.wanted) return demand;
+  demand.period = configuration_->sampling;
+  demand.priority = configuration_->priority;
+  demand.generation = generation_;
+  return demand;
+}
+
+// --- the service loop --------------------------------------------------------------------------------------------------
+
+TimePoint GenericSubsystem::service_step(TimePoint now) {
+  take_cycle_reports();
+  receive_messages();
+  watch_supervisor(now);
+  release_late();
+  advance(now);
+  requester_.step(now);
+  author_.service(now);
+  backlog_.flush(channel_);
+  tell_losses(now);
+  vital_.service_steps.fetch_add(1, std::memory_order_relaxed);
+  const bool looks = wanted_.load(std::memory_order_relaxed) && !platform_.wakes;
+  const bool busy = way_.has_value() || looks || !backlog_.empty();
+  return now + (busy ? busy_pace : std::clamp(author_.service_wake().pace, busy_pace, idle_pace));
+}
+
+void GenericSubsystem::receive_messages() {
+  MessageBuffer buffer;
+  // A telecommand whose answers might crowd out those to another stays in the channel: the supervisor finds that full and
+  // says so, while an answer that is dropped is a telecommand of which nobody ever hears again (adr 0029).
+  for (int left = messages_per_step; left > 0 && reads(); --left) {
+    auto found = channel_.receive(buffer);
+    if (!found) {
+      // One damaged message is no loss of the supervisor: the next look goes on behind it.
+      if (found.error().code == ErrorCode::Unavailable) supervisor_lost_ = true;
+      return;
+    }
+    if (found->flow == Flow::None) return;
+    if (found->message.kind == MessageKind::Packet) dispatch(found->message);
+  }
+}
+
+void GenericSubsystem::dispatch(const Message& message) {
+  const auto header = pus::read_primary_header(message.packet);
+  if (!header) return;
+  if (!header->telecommand) {
+    if (requester_.waits())
+      if (const auto report = pus::TelemetryView::parse(message.packet);
+          report && report->destination() == descriptor_.id)
+        requester_.hear(*report);
+    return author_.telemetry(message.packet);
+  }
+  const auto telecommand = pus::TelecommandView::parse(message.packet);
+  if (!telecommand) return verification_.rejected({header->request_id, 0, 0}, telecommand.error());
+  const pus::Request request = pus::request_of(*telecommand);
+  if (telecommand->apid() != descriptor_.id)
+    return verification_.routing_failed(request, pus::FailureNotice{pus::FailureCode::UnknownApid});
+  if (message.mode_epoch != 0 && message.mode_epoch != permit_.mode_epoch.load(std::memory_order_acquire))
+    return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
+  const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
+  if (found == services_.end())
+    return verification_.rejected(request,
+                                  pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
+  pus::Service& service = **found;
+  if (!service.in_force()) return verification_.rejected(request, wrong_state());
+  service.accompany(message.memory);
+  service.handle(*telecommand, request);
+}
+
+pus::FailureNotice GenericSubsystem::wrong_state() const {
+  return pus::FailureNotice{pus::FailureCode::WrongState}.with(static_cast<std::uint8_t>(state_));
+}
+
+void GenericSubsystem::watch_supervisor(TimePoint now) {
+  const std::uint64_t heartbeat = permit_.heartbeat.load(std::memory_order_acquire);
+  // While the whole computer stood nobody was silent: of what passes between two looks only so much counts.
+  supervisor_silent_for_ += std::min(now - std::exchange(watched_supervisor_at_, now), most_silence_a_look);
+  if (std::exchange(last_heartbeat_, heartbeat) != heartbeat) supervisor_silent_for_ = Duration{0};
+  if (!supervisor_lost_ && supervisor_silent_for_ <= supervisor_silence_limit) return;
+  if (way_) return;
+  if (state_ == State::Offline) {
+    finished_ = supervisor_lost_;
+    return;
+  }
+  if (state_ == State::Operational) return go(State::ErrorOperational, std::nullopt);
+  // A silent supervisor may come back: stay in a safe state. One that is gone for good will not.
+  if (supervisor_lost_) go(State::Offline, std::nullopt);
+}
+
+// --- functions ---------------------------------------------------------------------------------------------------------
+
+std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::FunctionCall& call,
+                                                                 const pus::Request& request) {
+  const auto first = std::to_integer<std::uint8_t>(call.arguments.front());
+  if (call.function == pus::set_state_function) return command_state(static_cast<State>(first), request);
+  if (call.function == pus::configure_function) return command_configuration(first, request);
+  const descriptor::Function& function = descriptor_.functions[call.function];
+  if (!function.permitted_in(state_) || !wanted_.load(std::memory_order_relaxed) || way_)
+    return std::unexpected{wrong_state()};
+  if (!cycle_.functions()[call.function].handler)
+    return std::unexpected{pus::FailureNotice{pus::FailureCode::ExecutionError}};
+  CycleCommand command{.kind = CommandKind::Function, .index = call.function, .request = request};
+  command.arguments = call.arguments;
+  if (!push(command)) return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
+  return {};
+}
+
+std::expected<void, pus::FailureNotice> GenericSubsystem::begin_self_test(const pus::Request& request) {
+  if (state_ != State::SafeOperational || way_) return std::unexpected{wrong_state()};
+  if (self_tests_.running()) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
+  if (!push({.kind = CommandKind::SelfTest, .request = request}))
+    return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
+  self_tests_.begun(request);
+  return {};
+}
+
+/// A code that nobody can look up says nothing: it becomes an execution error that names it.
+pus::FailureNotice GenericSubsystem::notice_of(std::uint16_t code, const Failure& why) const {
+  const bool own = code >= pus::first_own_failure_code;
+  if (own &&
+      std::ranges::find(descriptor_.failures, code, &descriptor::FailureName::code) == descriptor_.failures.end())
+    return pus::FailureNotice{pus::FailureCode::ExecutionError}.because(
+        {ErrorCode::NotFound, code, "failure code without a name in the descriptor"});
+  pus::FailureNotice notice{static_cast<pus::FailureCode>(code)};
+  if (!why.text.empty() || why.number != 0) notice.because({why.code, why.number, why.text});
+  return notice;
+}
+
+/// False when the call had its final report already.
+bool GenericSubsystem::close_call(const pus::Request& request) {
+  const auto found = std::ranges::find_if(
+      open_calls_, [&](const pus::Request& open) { return open.id == request.id && open.source == request.source; });
+  if (found == open_calls_.end()) return false;
+  open_calls_.erase(found);
+  return true;
+}
+
+bool GenericSubsystem::push(const CycleCommand& command) { return handover_.commands.try_push(command); }
+
+// --- parameters --------------------------------------------------------------------------------------------------------
+
+std::expected<std::size_t, ErrorCode> GenericSubsystem::read(std::uint32_t parameter, MutableOctets big_endian) {
+  const auto place = dictionary_.place_of(parameter);
+  if (!place) return std::unexpected{ErrorCode::NotFound};
+  const std::size_t octets = dictionary_.snapshot_encode(place->index, place->member, big_endian);
+  if (octets == 0) return std::unexpected{ErrorCode::Unavailable};
+  return octets;
+}
+
+std::size_t GenericSubsystem::size_of(std::uint32_t parameter) {
+  const auto place = dictionary_.place_of(parameter);
+  if (!place || dictionary_.cell(place->index) == nullptr) return 0;
+  return dictionary_.wire_octets(place->index, place->member);
+}
+
+std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_t parameter, Octets value) {
+  const auto place = dictionary_.place_of(parameter);
+  if (!place) return std::unexpected{pus::FailureCode::UnknownIdentifier};
+  const descriptor::Parameter& declared = descriptor_.parameters[place->index];
+  if (!declared.writable_in(state_)) return std::unexpected{pus::FailureCode::NotPermittedNow};
+  // A value that the next cycle overwrites was not set, whatever a report said.
+  if (wanted_.load(std::memory_order_relaxed) && cycle_.writes_itself(place->index))
+    return std::unexpected{pus::FailureCode::NotPermittedNow};
+  if (!dictionary_.accepts(place->index, place->member, value))
+    return std::unexpected{pus::FailureCode::ValueNotAcceptable};
+  OctetReader reader{value};
+  const auto in_range = [&](const descriptor::Field& field) {
+    if (field.type == Type::Text) return static_cast<void>(reader.get(field.octets())), true;
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      const Number number = read_number(reader, field.type);
+      if (!(number == number)) return false;
+      if (field.minimum && number < *field.minimum) return false;
+      if (field.maximum && number > *field.maximum) return false;
+    }
+    return true;
+  };
+  bool good = true;
+  if (place->member >= 0) good = in_range(declared.members[static_cast<std::size_t>(place->member)].field);
+  else if (declared.members.empty()) good = in_range(declared.field);
+  else
+    for (const auto& member : declared.members) good = good && in_range(member.field);
+  if (!good) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
+  return {};
+}
+
+std::expected<void, pus::FailureCode> GenericSubsystem::submit_write(
+    std::span<const pus::ParameterAccess::Write> writes, const pus::Request&) {
+  std::vector<ParameterWrite> batch;
+  for (const auto& write : writes)
+    if (const auto place = dictionary_.place_of(write.id)) batch.push_back({place->index, place->member, write.value});
+  if (const auto queued = writes_.enqueue(dictionary_, batch); !queued)
+    return std::unexpected{queued.error().code == ErrorCode::OutOfRange ? pus::FailureCode::CapacityExceeded
+                                                                        : pus::FailureCode::Busy};
+  // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
+  const bool parked = parked_ticket_.load(std::memory_order_acquire) == rest_ticket_.load(std::memory_order_relaxed);
+  if (!wanted_.load(std::memory_order_relaxed) && parked) writes_.apply(dictionary_);
+  return {};
+}
+
+}  // namespace hirosco

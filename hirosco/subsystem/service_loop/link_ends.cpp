@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
+
+/// The ends of real-time links that a subsystem holds: made, attached to the cycle, taken back.
+namespace hirosco {
+
+const descriptor::Requires* GenericSubsystem::find_required(std::string_view set) {
+  if (configuration_ == nullptr || !is_cyclic(state_)) return nullptr;
+  const auto found = std::ranges::find(configuration_->requires_, set, &descriptor::Requires::name);
+  return found != configuration_->requires_.end() ? &*found : nullptr;
+}
+
+const LinkOutputSlot* GenericSubsystem::find_provided(std::string_view set) {
+  if (configuration_ == nullptr || !is_cyclic(state_)) return nullptr;
+  const auto& outputs = cycle_.plan().outputs;
+  const auto found = std::ranges::find_if(outputs, [&](const auto& slot) { return slot.terms().name == set; });
+  return found != outputs.end() ? &*found : nullptr;
+}
+
+/// The same for the handshake, where it can be said in words, and for the attachment, where it counts.
+std::string GenericSubsystem::refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) {
+  if (role == pus::st128::Role::Producer) return {};
+  // What a consumer acts on is settled before it acts (adr 0021). A link that it has, whose partner left and came back, is
+  // no new one; and a set whose absence is only held over comes and goes.
+  const descriptor::Requires* wanted = find_required(set);
+  const bool settled = wanted != nullptr && wanted->required && !link_ends_.contains(link) &&
+                       wanted->missing == descriptor::MissingPolicy::Inhibit;
+  if (settled && state_ != State::PreOperational)
+    return "links into a set are made in PreOperational, this is " + std::string{to_text(state_)};
+  const bool has_another = std::ranges::any_of(link_ends_, [&](const auto& entry) {
+    const LinkEnd& end = entry.second;
+    return entry.first != link && end.role == role && configuration_->requires_[end.slot].name == set;
+  });
+  return has_another ? "the set has a link already" : "";
+}
+
+bool GenericSubsystem::carries(LinkMethod method, LinkKind kind) {
+  return find_link_mechanism(platform_.links, method, kind) != nullptr;
+}
+
+Duration GenericSubsystem::period() { return configuration_ != nullptr ? configuration_->sampling : Duration{}; }
+
+Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) {
+  if (!memory) return fail(ErrorCode::Malformed, "no memory beside the attach request");
+  if (configuration_ == nullptr) return fail(ErrorCode::NotPermitted, "no configuration in force");
+  // A later epoch: the partner left without this end and came back, and what this end still holds is the link as it was.
+  const auto earlier = link_ends_.find(request.link);
+  const bool renewed = earlier != link_ends_.end() && request.epoch > earlier->second.epoch;
+  if (earlier != link_ends_.end() && !renewed) return fail(ErrorCode::AlreadyExists, "the link is attached already");
+  refusal_ = refuse_link(request.role, request.set, request.link);
+  if (!refusal_.empty()) return fail(ErrorCode::NotPermitted, refusal_.c_str());
+  const bool producer = request.role == pus::st128::Role::Producer;
+  const pus::st128::Agreement& agreement = request.agreement;
+  const LinkLayout layout = agreement.layout(request.epoch);
+  const LinkMechanism* mechanism = find_link_mechanism(platform_.links, agreement.method, agreement.kind);
+  if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
+  auto link = std::make_unique<AttachedLink>();
+  link->id = request.link;
+  link->agreement = agreement;
+  link->order = agreement.byte_order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
+  LinkEnd end{.link = nullptr, .role = request.role, .epoch = request.epoch, .slot = 0};
+  CyclePlan& plan = cycle_.plan();
+  if (producer) {
+    const auto slot = std::ranges::find_if(plan.outputs, [&](const auto& s) { return s.terms().name == request.set; });
+    if (slot == plan.outputs.end()) return fail(ErrorCode::NotFound, "no such provided set");
+    // Another configuration may be in force than the one that negotiated; the cycle writes these fields unchecked.
+    if (agreement.fields != slot->fields()) return fail(ErrorCode::Mismatch, "the agreement is not of this set");
+    if ((agreement.kind == LinkKind::Loaned) != slot->terms().terms.lent())
+      return fail(ErrorCode::Mismatch, "the agreement lends and the set is copied, or the reverse");
+    if (agreement.kind == LinkKind::Loaned) {
+      HIROSCO_TRY_LET(link->lender, mechanism->lend(platform_.memory, memory, layout));
+    } else {
+      HIROSCO_TRY_LET(link->writer, mechanism->produce(platform_.memory, memory, layout));
+    }
+    end.slot = static_cast<std::uint16_t>(slot - plan.outputs.begin());
+  } else {
+    const auto slot = std::ranges::find_if(plan.inputs, [&](const auto& s) { return s.terms().name == request.set; });
+    if (slot == plan.inputs.end()) return fail(ErrorCode::NotFound, "no such required set");
+    HIROSCO_TRY(slot->plan(*link));
+    if (agreement.kind == LinkKind::Loaned) {
+      HIROSCO_TRY_LET(link->borrower, mechanism->borrow(platform_.memory, memory, layout));
+    } else {
+      HIROSCO_TRY_LET(link->reader, mechanism->consume(platform_.memory, memory, layout));
+      link->payload.resize(layout.payload_octets);
+    }
+    const auto ratio = agreement.producer_period / std::max(agreement.consumer_period, Duration{1});
+    link->producer_cycles_per_sample = static_cast<std::uint32_t>(std::max<std::int64_t>(ratio, 1));
+    end.slot = static_cast<std::uint16_t>(slot - plan.inputs.begin());
+  }
+  if (renewed && !withdraw(request.link))
+    return fail(ErrorCode::ResourceExhausted, "the cycle's command queue is full");
+  const auto kind = producer ? CommandKind::AttachOutput : CommandKind::AttachInput;
+  if (!push({.kind = kind, .index = end.slot, .link = link.get()}))
+    return fail(ErrorCode::ResourceExhausted, "the cycle's command queue is full");
+  end.link = std::move(link);
+  link_ends_.emplace(request.link, std::move(end));
+  return ok();
+}
+
+bool GenericSubsystem::detach(std::uint8_t link) {
+  const auto found = link_ends_.find(link);
+  if (found == link_ends_.end()) return false;
+  const pus::st128::Role role = found->second.role;
+  if (!withdraw(link)) return false;
+  link_service_.report_detached(link, role);
+  return true;
+}
+
+/// Takes an end back from the cycle, which names it when it has let go of it.
+bool GenericSubsystem::withdraw(std::uint8_t link) {
+  const auto found = link_ends_.find(link);
+  LinkEnd& end = found->second;
+  const bool producer = end.role == pus::st128::Role::Producer;
+  const auto kind = producer ? CommandKind::DetachOutput : CommandKind::DetachInput;
+  if (!push({.kind = kind, .index = end.slot, .link = end.link.get()})) return false;
+  leaving_links_.push_back(std::move(end.link));
+  link_ends_.erase(found);
+  return true;
+}
+
+bool GenericSubsystem::required_links_attached() const noexcept {
+  return std::ranges::all_of(configuration_->requires_, [&](const descriptor::Requires& wanted) {
+    if (!wanted.required) return true;
+    return std::ranges::any_of(link_ends_, [&](const auto& entry) {
+      const LinkEnd& end = entry.second;
+      return end.role == pus::st128::Role::Consumer && &configuration_->requires_[end.slot] == &wanted;
+    });
+  });
+}
+
+}  // namespace hirosco

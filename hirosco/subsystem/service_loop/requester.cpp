@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/service_loop/requester.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "hirosco/pus/requests.hpp"
+#include "hirosco/pus/st01_verification/verification.hpp"
+
+namespace hirosco {
+namespace {
+
+using Stage = RequestReport::Stage;
+
+constexpr std::uint16_t supervisor_id = 1;
+constexpr std::uint16_t counts = 16'384;
+
+[[nodiscard]] std::optional<Stage> stage_of(std::uint8_t subtype) noexcept {
+  switch (subtype) {
+    case 1: return Stage::Accepted;
+    case 3: return Stage::Started;
+    case 5: return Stage::Progressed;
+    case 7: return Stage::Completed;
+    case 2:
+    case 4:
+    case 10: return Stage::Refused;
+    case 8: return Stage::Failed;
+    default: return std::nullopt;  // a step that failed says nothing of the end
+  }
+}
+
+}  // namespace
+
+/// A subsystem that was started again must not take answers to its predecessor for its own: it goes on counting elsewhere.
+Requester::Requester(const descriptor::Subsystem& described, Channel& channel, TimePoint now)
+    : descriptor_{described},
+      channel_{channel},
+      next_count_{static_cast<std::uint16_t>(
+          std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % counts)} {}
+
+std::string Requester::use(const RequestPort& port, RequestHandler handler, Duration patience) {
+  const std::string who = "use_request " + std::string{port.subsystem()} + " " + std::string{port.function()} + ": ";
+  const auto commands = std::ranges::find(descriptor_.commands, port.subsystem(), &descriptor::Commands::subsystem);
+  if (commands == descriptor_.commands.end()) return who + "the descriptor has no <Commands> of this subsystem";
+  const auto named = std::ranges::find(commands->functions, port.function());
+  if (named == commands->functions.end()) return who + "<Commands> does not name this function";
+  if (commands->requests.size() != commands->functions.size()) return who + "no mission says who that is";
+  const auto place = static_cast<std::size_t>(named - commands->functions.begin());
+  const descriptor::Function& function = commands->requests[place];
+  if (!same_types(port.arguments(), function.arguments))
+    return who + "its arguments are (" + types_text(port.arguments()) + "), the descriptor of " +
+           std::string{port.subsystem()} + " declares (" + types_text(pus::ArgumentList{function.arguments}) + ")";
+  const auto before = std::ranges::find(bound_, &port, &Bound::port);
+  Bound& bound = before != bound_.end() ? *before : bound_.emplace_back();
+  bound = {&port, commands->apid, &function, std::move(handler), patience};
+  return {};
+}
+
+Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues values, TimePoint now) {
+  const auto bound = std::ranges::find(bound_, &port, &Bound::port);
+  if (bound == bound_.end()) return fail(ErrorCode::NotPermitted, "not bound: use_request() in software_init()");
+  if (open_.size() == most_open)
+    return fail(ErrorCode::ResourceExhausted, "requests under way", static_cast<std::int64_t>(most_open));
+  if (now - window_ >= std::chrono::seconds{1}) {
+    window_ = now;
+    sent_in_window_ = 0;
+  }
+  if (sent_in_window_ == most_a_second)
+    return fail(ErrorCode::ResourceExhausted, "requests in a second", static_cast<std::int64_t>(most_a_second));
+  HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_request(*bound->function, values));
+  std::array<std::byte, max_packet_octets> buffer;
+  HIROSCO_TRY_LET(const Octets packet, pus::write_telecommand(buffer,
+                                                              {.apid = bound->apid,
+                                                               .sequence_count = next_count_,
+                                                               .ack = pus::ack_all,
+                                                               .service = bound->function->service,
+                                                               .subtype = bound->function->subtype,
+                                                               .source = descriptor_.id},
+                                                              data));
+  HIROSCO_TRY(channel_.send({.packet = packet}));
+  next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % counts);
+  ++sent_in_window_;
+  const std::uint32_t id = pus::read_primary_header(packet)->request_id;
+  open_.push_back({id, &*bound, now + bound->patience});
+  return id;
+}
+
+void Requester::hear(const pus::TelemetryView& report) {
+  if (report.service() == pus::Verification::service_type) hear_verification(report);
+  else hear_answer(report);
+}
+
+void Requester::hear_verification(const pus::TelemetryView& report) {
+  OctetReader reader{report.source_data()};
+  const auto id = reader.get<std::uint32_t>();
+  const auto stage = stage_of(report.subtype());
+  const auto open = std::ranges::find(open_, id, &Open::id);
+  if (!reader.good() || !stage || open == open_.end()) return;
+  // Only who was asked says how it went, and the supervisor for it.
+  if (report.apid() != open->bound->apid && report.apid() != supervisor_id) return;
+  RequestReport heard{.stage = *stage, .request = id};
+  if (*stage == Stage::Progressed) heard.step = reader.get<std::uint16_t>();
+  if (!heard.is_end()) {
+    if (open->bound->handler) open->bound->handler(heard);
+    return;
+  }
+  if (*stage != Stage::Completed) {
+    heard.code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
+    const bool own = static_cast<std::uint16_t>(heard.code) >= pus::first_own_failure_code;
+    heard.reason = own ? std::string_view{"a failure code of its own"} : to_text(heard.code);
+    if (const auto why = pus::reason_in(reader.rest())) {
+      heard.number = why->number;
+      if (!why->text.empty()) heard.reason = why->text;
+    }
+  }
+  end(static_cast<std::size_t>(open - open_.begin()), heard);
+}
+
+/// No other report says whom it answers: it is the oldest request to this service.
+void Requester::hear_answer(const pus::TelemetryView& report) {
+  const auto open = std::ranges::find_if(open_, [&](const Open& each) {
+    return each.bound->apid == report.apid() && each.bound->function->service == report.service();
+  });
+  if (open == open_.end() || !open->bound->handler) return;
+  open->bound->handler(
+      {.stage = Stage::Answered, .request = open->id, .subtype = report.subtype(), .data = report.source_data()});
+}
+
+/// Forgotten first: its handler may ask again.
+void Requester::end(std::size_t place, RequestReport report) {
+  const Bound& bound = *open_[place].bound;
+  open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(place));
+  if (bound.handler) bound.handler(report);
+}
+
+void Requester::step(TimePoint now) {
+  for (std::size_t left = open_.size(), place = 0; left > 0; --left) {
+    if (now < open_[place].deadline) ++place;
+    else
+      end(place, {.stage = Stage::TimedOut,
+                  .request = open_[place].id,
+                  .code = pus::FailureCode::Timeout,
+                  .reason = "nobody said how it ended"});
+  }
+}
+
+void Requester::forget() {
+  for (std::size_t left = open_.size(); left > 0 && !open_.empty(); --left)
+    end(0, {.stage = Stage::TimedOut,
+            .request = open_.front().id,
+            .code = pus::FailureCode::Aborted,
+            .reason = "who asked was taken down"});
+  open_.clear();
+  bound_.clear();
+}
+
+}  // namespace hirosco

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/author/subsystem.hpp"
+
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
+
+namespace hirosco {
+namespace {
+
+[[nodiscard]] pus::FailureCode failure_code(ErrorCode code) noexcept {
+  switch (code) {
+    case ErrorCode::InvalidArgument:
+    case ErrorCode::OutOfRange: return pus::FailureCode::ValueNotAcceptable;
+    case ErrorCode::NotFound: return pus::FailureCode::UnknownIdentifier;
+    case ErrorCode::AlreadyExists: return pus::FailureCode::IdentifierExists;
+    case ErrorCode::NotPermitted: return pus::FailureCode::NotPermittedNow;
+    case ErrorCode::Unavailable: return pus::FailureCode::DeviceError;
+    case ErrorCode::ResourceExhausted: return pus::FailureCode::CapacityExceeded;
+    case ErrorCode::Timeout: return pus::FailureCode::Timeout;
+    default: return pus::FailureCode::ExecutionError;
+  }
+}
+
+}  // namespace
+
+Outcome::Outcome(const Result<>& result) noexcept
+    : kind{result ? Kind::Done : Kind::Refused},
+      code{result ? pus::FailureCode{} : failure_code(result.error().code)},
+      reason{result ? Error{} : result.error()} {}
+
+void Subsystem::provide(CustomService& service) { framework_->provide(service); }
+void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
+void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
+void Subsystem::lend_link(std::string_view set, LoanOutputPort& port) { framework_->lend_link(set, port); }
+void Subsystem::use_event(EventPort& event) { framework_->use_event(event); }
+void Subsystem::use_request(RequestPort& request, RequestHandler handler, Duration patience) {
+  framework_->use_request(request, std::move(handler), patience);
+}
+void Subsystem::use_device(std::string_view name, DevicePortBase& port,
+                           std::initializer_list<std::string_view> settings) {
+  framework_->use_device(name, port, settings);
+}
+void Subsystem::bind_function(std::string_view name, BoundHandler handler) {
+  framework_->bind_function(name, std::move(handler));
+}
+
+void Subsystem::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {
+  framework_->cycle().raise_encoded(event, auxiliary);
+}
+void Subsystem::raise_encoded_in_service(const EventPort& event, Octets auxiliary) {
+  framework_->raise_named(event.name(), auxiliary);
+}
+void Subsystem::inhibit_actuators() noexcept { framework_->cycle().inhibit(inhibited_by_author); }
+
+void Subsystem::progress(const Call& call, std::uint16_t step) noexcept {
+  framework_->cycle().report(ReportKind::Progressed, step, call.request);
+}
+void Subsystem::finish(const Call& call) noexcept { framework_->cycle().report(ReportKind::Finished, 0, call.request); }
+void Subsystem::abort(const Call& call, const Error& why) noexcept { abort_call(call, failure_code(why.code), why); }
+void Subsystem::abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept {
+  framework_->cycle().fail_call(ReportKind::Aborted, code, call.request, why);
+}
+
+Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, pus::GivenValues values) {
+  return framework_->send_request(asked, values);
+}
+Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
+  return framework_->submit_ground_telecommand(client, packet);
+}
+State Subsystem::state() const noexcept { return framework_->state(); }
+const descriptor::Subsystem& Subsystem::own_descriptor() const noexcept { return framework_->descriptor(); }
+
+}  // namespace hirosco

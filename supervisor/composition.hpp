@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/log_watch.hpp"
+#include "supervisor/supervision/data_handling/own_telecommands.hpp"
+#include "supervisor/supervision/data_handling/reception.hpp"
+#include "supervisor/supervision/data_handling/replies.hpp"
+#include "supervisor/supervision/data_handling/telecommands.hpp"
+#include "supervisor/supervision/data_handling/telemetry.hpp"
+#include "supervisor/supervision/event_handling/reactions.hpp"
+#include "supervisor/supervision/event_handling/safe_all.hpp"
+#include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/modes/modes.hpp"
+#include "supervisor/supervision/modes/shutdown.hpp"
+#include "supervisor/supervision/modes/under_way.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/realtime_links/link_commands.hpp"
+#include "supervisor/supervision/resource_management/power_handling.hpp"
+#include "supervisor/supervision/status/housekeeping.hpp"
+#include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
+#include "supervisor/supervision/subsystem_handling/processes.hpp"
+#include "supervisor/supervisor.hpp"
+
+namespace hirosco::supervisor {
+
+/// The boxes of the paper's figure 6 and what joins them. Here alone they are made and named; whoever watches or hears stands in
+/// a list, in the order in which it is asked. They know each other from before they begin to live: nothing is called until
+/// all are made.
+struct SupervisorParts final : OwnSubsystem::Author {
+  explicit SupervisorParts(const Supervisor::Parts& outside)
+      : craft{outside.mission, outside.platform, outside.launcher, outside.guard, outside.log, outside.observer},
+        log_watch{craft, own, telecommands, outside.open_database},
+        own_telecommands{craft, telecommands, outside.first_sequence_count} {
+    // No cycle, no queue and no state of the supervisor's own holds these up.
+    telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
+    telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
+    telecommands.answers(pus::st129::mode_question,
+                         [this](const pus::Request& asked, Octets data) { modes.preview(asked, data); });
+    telecommands.starts_with([this](std::uint16_t apid) { return processes.start(apid); });
+  }
+
+  void provide(OwnSubsystem&) override {
+    housekeeping.provide();
+    modes.provide();
+    links.provide();
+    log_watch.provide();
+    power.provide();
+    safe_all.provide();
+    shutdown.provide();
+  }
+  void show() noexcept override { housekeeping.show(); }
+
+  Craft craft;
+  OwnSubsystem own{craft.mission.supervisor, craft.platform, *this};
+  LinkGraph graph{craft.mission};
+  Unanswered unanswered;
+  Restarts restarts;
+  Traffic traffic;
+  GroundRoute ground_route;
+  // data handling
+  Telecommands telecommands{{craft, own, graph, power, unanswered, traffic, ground_route}};
+  LogWatch log_watch;
+  OwnTelecommands own_telecommands;
+  Replies replies{craft, unanswered};
+  Telemetry telemetry{
+      craft, own, traffic, ground_route, {&traffic, &replies, &reception, &power, &own_telecommands, &links}};
+  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic}};
+  // real-time links, resource management
+  LinkCommands links{craft, own, own_telecommands, graph};
+  PowerHandling power{craft, own, reactions};
+  // modes and procedures
+  Means means{craft, own_telecommands, graph, restarts, under_way};
+  Commissioning commissioning{means};
+  Modes modes{{means, own, power.ledger(), commissioning}};
+  UnderWay under_way{commissioning, modes};
+  Shutdown shutdown{{means, own, under_way, telecommands}};
+  // event handling
+  Reactions reactions{means, own};
+  SafeAll safe_all{craft, own, own_telecommands, under_way};
+  // subsystem handling, status
+  GroundLinkCare ground_link{means, under_way};
+  Processes processes{
+      {craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link, restarts}};
+  Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
+  std::array<Watch*, 9> watches{&processes, &ground_link,  &housekeeping,     &power,  &links,
+                                &log_watch, &telecommands, &own_telecommands, &replies};
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace hirosco::supervisor {
+
+/// Kept by the answers that are still to come.
+struct ProcedureRunner::Run : std::enable_shared_from_this<Run> {
+  Run(const Means& with, Procedure what) : means{with}, procedure{std::move(what)} {}
+
+  void act_first() const {
+    for (const Stage& each : procedure.stages)
+      for (const ProcedureStep& step : each)
+        if (step.kind->act_first != nullptr) step.kind->act_first(step, means);
+  }
+
+  void begin_stage() {
+    while (stage < procedure.stages.size() && procedure.stages[stage].empty()) ++stage;
+    if (stage == procedure.stages.size()) return finish();
+    const std::size_t count = procedure.stages[stage].size();
+    open.assign(count, true);
+    if (procedure.begins) procedure.begins(begun_stages++);
+    if (over) return;
+    // A step may end before run() returns: answers are matched to their stage.
+    const std::size_t begun = stage;
+    for (std::size_t i = 0; i < count && !over && stage == begun; ++i) {
+      const auto done = [self = shared_from_this(), begun, i](bool success, const std::string& why) {
+        if (!self->over && self->stage == begun) self->ended(i, success, why);
+      };
+      const ProcedureStep& step = procedure.stages[begun][i];
+      if (step.kind->run != nullptr) step.kind->run(step, means, done);
+      else done(true, {});
+    }
+  }
+
+  void ended(std::size_t step, bool success, const std::string& why) {
+    if (!open[step]) return;
+    open[step] = false;
+    if (!success) {
+      if (end.success) end = {false, name_of(procedure.stages[stage][step], " "), why};
+      if (procedure.on_failure == Procedure::OnFailure::Stop) return finish();
+    }
+    if (std::ranges::find(open, true) != open.end()) return;
+    ++stage;
+    begin_stage();
+  }
+
+  void finish() {
+    over = true;
+    if (const auto finished = std::exchange(procedure.finished, nullptr)) finished(end);
+  }
+
+  [[nodiscard]] std::string name_of(const ProcedureStep& step, std::string_view between) const {
+    return means.craft.name_of(step.subject) + std::string{between} + text_of(step, means.craft.mission);
+  }
+
+  Means means;
+  Procedure procedure;
+  std::size_t stage{0};
+  std::size_t begun_stages{0};
+  std::vector<bool> open{};  ///< of the stage: those that have not ended
+  ProcedureEnd end{};
+  bool over{false};
+};
+
+void ProcedureRunner::start(Procedure procedure) {
+  cancel();
+  run_ = std::make_shared<Run>(means_, std::move(procedure));
+  const auto run = run_;  // its end may start another here
+  run->act_first();
+  run->begin_stage();
+}
+
+void ProcedureRunner::cancel() {
+  if (run_ != nullptr) run_->over = true;
+  run_.reset();
+}
+
+bool ProcedureRunner::running() const noexcept { return run_ != nullptr && !run_->over; }
+
+std::string ProcedureRunner::waiting_for() const {
+  std::string text;
+  if (!running()) return text;
+  for (std::size_t i = 0; i < run_->open.size(); ++i) {
+    if (!run_->open[i]) continue;
+    if (!text.empty()) text += ", ";
+    text += run_->name_of(run_->procedure.stages[run_->stage][i], ": ");
+  }
+  return text;
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "supervisor/supervision/procedures/step.hpp"
+
+/// Steps in stages: all of a stage are begun at once, the next stage waits for the last of them. The one model for
+/// commissioning, shutdown, the care for the ground link and the plans of a mission (docs/adr/0057).
+namespace hirosco::supervisor {
+
+using Stage = std::vector<ProcedureStep>;
+
+struct ProcedureEnd {
+  bool success{true};
+  std::string step{};  ///< the first that failed: "ARM PreOperational"
+  std::string why{};
+  [[nodiscard]] std::string text() const { return success ? std::string{} : step + ": " + why; }
+};
+
+struct Procedure {
+  enum class OnFailure : std::uint8_t { Stop, GoOn };
+  std::vector<Stage> stages;
+  OnFailure on_failure{OnFailure::Stop};
+  std::function<void(const ProcedureEnd&)> finished{};
+  std::function<void(std::size_t stage)> begins{};  ///< counted from 0, those without a step not counted
+};
+
+/// Runs one procedure at a time. Whoever lets go of an runner does not end what it has begun; cancel() does.
+/// Thread: the supervisor's.
+class ProcedureRunner {
+ public:
+  explicit ProcedureRunner(const Means& means) : means_{means} {}
+  /// Replaces whatever was running.
+  void start(Procedure procedure);
+  /// Nothing more is begun or told; what was begun goes on.
+  void cancel();
+  [[nodiscard]] bool running() const noexcept;
+  /// "ARM: link 1, HAND: Operational"; empty when nothing is awaited.
+  [[nodiscard]] std::string waiting_for() const;
+
+ private:
+  struct Run;
+  Means means_;
+  std::shared_ptr<Run> run_;
+};
+
+}  // namespace hirosco::supervisor

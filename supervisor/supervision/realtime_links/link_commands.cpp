@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/realtime_links/link_commands.hpp"
+
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+
+namespace hirosco::supervisor {
+
+void LinkCommands::provide() {
+  own_.on_function("LINK", [this](double number, Call call) -> Outcome {
+    const auto link = static_cast<std::uint8_t>(number);
+    if (handling_.releases(link))
+      return refused(pus::FailureCode::WrongStatus, "an end has not let go since UNLINK of link", link);
+    const bool begun = handling_.establish(link, craft_.now, [this, call](bool success) {
+      if (success) own_.finish(call);
+      else own_.abort(call, pus::FailureCode::ExecutionError);
+    });
+    return begun ? running : refused(pus::FailureCode::WrongStatus);
+  });
+  own_.on_function("UNLINK", [this](double link, Call call) -> Outcome {
+    using enum LinkHandshakes::Released;
+    const bool begun = handling_.release(static_cast<std::uint8_t>(link), [=, this](LinkHandshakes::Released how) {
+      if (how == ByBoth) return own_.finish(call);
+      const auto code = how == Refused ? pus::FailureCode::ExecutionError : pus::FailureCode::Timeout;
+      own_.abort(call, code, "an end has not let go of link", static_cast<std::int64_t>(link));
+    });
+    return begun ? running : refused(pus::FailureCode::WrongStatus);
+  });
+}
+
+void LinkCommands::hear(std::uint16_t from, const pus::TelemetryView& report) {
+  if (report.service() == pus::st128::service_type) handling_.handle(from, report);
+}
+
+/// Whom a fence reaches ends with what it is for: who has left a link by the way of its states is joined to nobody by it, though
+/// the other end holds on to its memory until its own configuration ends, or never says that it has let go.
+void LinkCommands::watch(TimePoint now) {
+  for (const LinkGraph::HalfHeld& half : graph_.half_held())
+    if (has_left(half.gone, half.link) || has_left(half.holder, half.link)) graph_.forget(half.link);
+  handling_.step(now);
+}
+
+bool LinkCommands::has_left(std::uint16_t apid, std::uint8_t link) const {
+  const Member* end = std::as_const(craft_).member(apid);
+  if (end == nullptr || !end->alive() || end->state() == State::Offline) return true;
+  const auto when_up = configurations_.find({link, apid});
+  const std::uint8_t now = end->configuration();
+  return when_up != configurations_.end() && now != 0 && now != when_up->second;
+}
+
+void LinkCommands::send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data,
+                                     const MemoryHandle& memory) {
+  const auto link = data.empty() ? std::uint8_t{0} : std::to_integer<std::uint8_t>(data[0]);
+  const auto done = [=, this](bool success, const std::string& why) {
+    if (!success) handling_.failed(apid, subtype, link, craft_.name_of(apid) + ": " + why);
+  };
+  desk_.send(apid, pus::st128::service_type, subtype, data, memory, done, Duration{0});
+}
+
+void LinkCommands::link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) {
+  for (const Member& member : craft_.members)
+    if (const auto& name = member.descriptor().name; up && (name == link.from || name == link.to))
+      configurations_[{link.id, member.apid()}] = member.configuration();
+  craft_.tell("link " + std::to_string(link.id) + " " + link.from + "." + link.provides + " -> " + link.to +
+              (up ? " up: " : " down: ") + text);
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "hirosco/data_transfer/memory/memory.hpp"
+#include "supervisor/supervision/command_desk.hpp"
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/realtime_links/link_handshakes.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
+
+namespace hirosco::supervisor {
+
+/// The real-time links of the mission in a flight: LINK and UNLINK, the handshakes, and a look at the links that are up. Thread: the supervisor's.
+class LinkCommands final : public Watch, public Hearer, private LinkOperator {
+ public:
+  LinkCommands(Craft& craft, OwnSubsystem& own, CommandDesk& desk, LinkGraph& graph)
+      : craft_{craft},
+        own_{own},
+        desk_{desk},
+        graph_{graph},
+        handling_{craft.mission, graph, craft.platform.memory, craft.platform.links, *this} {}
+
+  /// LINK and UNLINK.
+  void provide();
+  [[nodiscard]] const LinkGraph& graph() const noexcept { return handling_.graph(); }
+  /// How a link does. Empty: it is not up, nothing was produced yet, or it cannot be seen.
+  [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept { return handling_.glance(link); }
+  /// A subsystem is gone without reporting: all its links are down.
+  void forget(std::uint16_t apid) { handling_.forget(apid); }
+  void hear(std::uint16_t from, const pus::TelemetryView& report) override;
+  void watch(TimePoint now) override;
+
+ private:
+  void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) override;
+  void link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) override;
+  /// Whether this end of a link that was up has left it, whatever it says.
+  [[nodiscard]] bool has_left(std::uint16_t apid, std::uint8_t link) const;
+
+  Craft& craft_;
+  OwnSubsystem& own_;
+  CommandDesk& desk_;
+  LinkGraph& graph_;
+  LinkHandshakes handling_;
+  /// In force at an end when its link came up, by link and APID.
+  std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint8_t> configurations_;
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/realtime_links/link_handshakes.hpp"
+
+#include <array>
+
+#include "hirosco/data_transfer/control/channel.hpp"
+
+namespace hirosco::supervisor {
+
+namespace st128 = pus::st128;
+
+namespace {
+
+/// Each stage of a handshake is one packet there and one back: a second is plenty, also beside a busy core.
+constexpr Duration stage_limit = 2s;
+
+[[nodiscard]] std::string terms_text(const st128::Agreement& agreement) {
+  const auto hertz = [](Duration period) { return std::to_string(std::chrono::nanoseconds{1s} / period) + " Hz"; };
+  return std::string{to_text(agreement.method)} + ", " + std::string{to_text(agreement.byte_order)} + " endian, " +
+         std::string{to_text(agreement.kind)} + ", " + hertz(agreement.producer_period) + " to " +
+         hertz(agreement.consumer_period) + ", " + std::to_string(agreement.payload_octets()) + " octets" +
+         (agreement.depth == 0 ? "" : ", " + std::to_string(agreement.depth) + " samples deep");
+}
+
+}  // namespace
+
+bool LinkHandshakes::establish(std::uint8_t id, TimePoint now, Done done) {
+  const auto* link = mission_.find_link(id);
+  if (link == nullptr || graph_.is_up(id) || handshakes_.contains(id) || releases(id)) return false;
+  const auto* from = mission_.find_subsystem(link->from);
+  const auto* to = mission_.find_subsystem(link->to);
+  if (from == nullptr || to == nullptr) return false;
+  Handshake& handshake = handshakes_[id];
+  handshake.link = link;
+  handshake.producer = from->subsystem.id;
+  handshake.consumer = to->subsystem.id;
+  handshake.deadline = now + stage_limit;
+  handshake.done = std::move(done);
+  std::array<std::byte, max_packet_octets> buffer;
+  if (const auto octets = st128::write_offer_request(buffer, {id, link->requires_}))
+    operator_.send_link_command(handshake.consumer, st128::request_offer, Octets{buffer}.first(*octets), {});
+  return true;
+}
+
+bool LinkHandshakes::release(std::uint8_t link, ReleaseDone done) {
+  // One that a single end still holds may be released again: an earlier release may have ended without that end.
+  if (!graph_.is_held(link) || releases(link) || handshakes_.contains(link)) return false;
+  const auto* described = mission_.find_link(link);
+  releases_[link].done = std::move(done);
+  const std::array data{std::byte{link}};
+  // The consumer first, so that it never sees a producer that left.
+  for (const std::string& name : {described->to, described->from})
+    if (const std::uint16_t end = mission_.find_subsystem(name)->subsystem.id; graph_.holds(link, end))
+      operator_.send_link_command(end, st128::detach, data, {});
+  return true;
+}
+
+void LinkHandshakes::handle(std::uint16_t from, const pus::TelemetryView& report) {
+  const Octets data = report.source_data();
+  if (data.empty()) return;
+  const auto link = std::to_integer<std::uint8_t>(data[0]);
+  if (report.subtype() == st128::detached) {
+    if (is_end_of(link, from)) detached(link, from);
+    return;
+  }
+  const auto found = handshakes_.find(link);
+  if (found == handshakes_.end()) return;
+  Handshake& handshake = found->second;
+  const bool of_producer = from == handshake.producer;
+  const bool of_consumer = from == handshake.consumer;
+  if (!of_producer && !of_consumer) return;
+  switch (report.subtype()) {
+    case st128::offer:
+      if (const auto offer = st128::read_offer(data); offer && of_consumer && handshake.stage == Stage::AwaitOffer)
+        offered(handshake, offer->offer);
+      break;
+    case st128::agreement:
+      if (const auto terms = st128::read_agreement(data);
+          terms && of_producer && handshake.stage == Stage::AwaitAgreement)
+        agreed(handshake, terms->agreement);
+      break;
+    case st128::refusal:
+      if (const auto refusal = st128::read_refusal(data)) give_up(link, refusal->refusal.text, from);
+      break;
+    case st128::attached: {
+      const auto role = data.size() == 2 ? static_cast<st128::Role>(data[1]) : st128::Role{};
+      if ((role == st128::Role::Producer && of_producer) || (role == st128::Role::Consumer && of_consumer))
+        attached(handshake, role);
+      break;
+    }
+    default: break;
+  }
+}
+
+void LinkHandshakes::detached(std::uint8_t link, std::uint16_t from) {
+  const auto found = handshakes_.find(link);
+  if (found == handshakes_.end()) down(link, "detached by " + std::to_string(from));
+  graph_.let_go(link, from);
+  if (found == handshakes_.end()) return end_releases();
+  // Reports of one subsystem come in order: a producer that attached in this handshake and detached since has left it.
+  // Before that the report is a late one of the link's earlier life.
+  const Handshake& handshake = found->second;
+  if (handshake.stage == Stage::AwaitConsumer && from == handshake.producer) give_up(link, "the producer left", from);
+}
+
+void LinkHandshakes::offered(Handshake& handshake, const st128::Offer& offer) {
+  std::array<std::byte, max_packet_octets> buffer;
+  const auto octets = st128::write_terms_request(buffer, {handshake.link->id, handshake.link->provides, offer});
+  if (!octets) return give_up(handshake.link->id, "the offer does not fit a packet");
+  handshake.stage = Stage::AwaitAgreement;
+  handshake.deadline += stage_limit;
+  operator_.send_link_command(handshake.producer, st128::negotiate_terms, Octets{buffer}.first(*octets), {});
+}
+
+void LinkHandshakes::agreed(Handshake& handshake, const st128::Agreement& agreement) {
+  const std::uint32_t payload = agreement.payload_octets();
+  if (payload == 0 || payload > max_payload_octets(agreement.kind))
+    return give_up(handshake.link->id, "payload size out of range");
+  const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, agreement.method, agreement.kind);
+  if (mechanism == nullptr) return give_up(handshake.link->id, "no mechanism here carries " + terms_text(agreement));
+  const std::uint32_t epoch = epoch_ + 1;
+  auto shared = mechanism->establish(memory_, agreement.layout(epoch));
+  if (!shared) return give_up(handshake.link->id, shared.error().text);
+  handshake.agreement = agreement;
+  handshake.shared = std::move(*shared);
+  handshake.epoch = epoch_ = epoch;
+  handshake.stage = Stage::AwaitProducer;
+  handshake.deadline += stage_limit;
+  attach(handshake, st128::Role::Producer);
+}
+
+void LinkHandshakes::attach(const Handshake& handshake, st128::Role role) {
+  const bool producer = role == st128::Role::Producer;
+  std::array<std::byte, max_packet_octets> buffer;
+  const auto octets =
+      st128::write_attach_request(buffer, {.link = handshake.link->id,
+                                           .role = role,
+                                           .epoch = handshake.epoch,
+                                           .set = producer ? handshake.link->provides : handshake.link->requires_,
+                                           .agreement = handshake.agreement});
+  if (!octets) return;  // the same agreement came in a packet: it fits; else the stage's time limit ends it
+  operator_.send_link_command(producer ? handshake.producer : handshake.consumer, st128::attach,
+                              Octets{buffer}.first(*octets), handshake.shared);
+}
+
+void LinkHandshakes::attached(Handshake& handshake, st128::Role role) {
+  if (handshake.stage == Stage::AwaitProducer && role == st128::Role::Producer) {
+    handshake.stage = Stage::AwaitConsumer;
+    handshake.deadline += stage_limit;
+    return attach(handshake, st128::Role::Consumer);
+  }
+  if (handshake.stage != Stage::AwaitConsumer || role != st128::Role::Consumer) return;
+  const std::uint8_t link = handshake.link->id;
+  Handshake finished = std::move(handshake);
+  handshakes_.erase(link);
+  // Without a view the link is only not told about.
+  const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, finished.agreement.method, finished.agreement.kind);
+  if (auto view = mechanism->look(memory_, finished.shared)) views_[link] = std::move(*view);
+  graph_.set_up(link, true);
+  operator_.link_changed(*finished.link, true, terms_text(finished.agreement));
+  if (finished.done) finished.done(true);
+}
+
+void LinkHandshakes::give_up(std::uint8_t link, const std::string& why, std::uint16_t without) {
+  const auto found = handshakes_.find(link);
+  if (found == handshakes_.end()) return;
+  Handshake failed = std::move(found->second);
+  handshakes_.erase(found);
+  // Whoever was told to attach may have done so or may still do it: an end that stays attached would refuse the next try.
+  const std::array data{std::byte{link}};
+  if (failed.stage == Stage::AwaitConsumer && failed.consumer != without)
+    operator_.send_link_command(failed.consumer, st128::detach, data, {});
+  if (failed.stage >= Stage::AwaitProducer && failed.producer != without)
+    operator_.send_link_command(failed.producer, st128::detach, data, {});
+  operator_.link_changed(*failed.link, false, why);
+  if (failed.done) failed.done(false);
+}
+
+std::optional<LinkGlance> LinkHandshakes::glance(std::uint8_t link) const noexcept {
+  const auto found = views_.find(link);
+  return found != views_.end() ? found->second->glance() : std::nullopt;
+}
+
+void LinkHandshakes::down(std::uint8_t link, const std::string& why) {
+  if (!graph_.is_up(link)) return;
+  graph_.set_up(link, false);
+  views_.erase(link);
+  operator_.link_changed(*mission_.find_link(link), false, why);
+}
+
+void LinkHandshakes::end_releases() {
+  std::vector<ReleaseDone> ended;
+  for (auto entry = releases_.begin(); entry != releases_.end();) {
+    const bool over = !graph_.is_held(entry->first);
+    if (over) ended.push_back(std::move(entry->second.done));
+    entry = over ? releases_.erase(entry) : std::next(entry);
+  }
+  for (const ReleaseDone& done : ended)
+    if (done) done(Released::ByBoth);
+}
+
+bool LinkHandshakes::is_end_of(std::uint8_t link, std::uint16_t apid) const {
+  const auto* described = mission_.find_link(link);
+  if (described == nullptr) return false;
+  const auto* subsystem = mission_.find_subsystem(apid);
+  return subsystem != nullptr &&
+         (described->from == subsystem->subsystem.name || described->to == subsystem->subsystem.name);
+}
+
+void LinkHandshakes::failed(std::uint16_t apid, std::uint8_t subtype, std::uint8_t link, const std::string& why) {
+  // Who has let go since refuses nothing: it has nothing left to let go of.
+  if (const auto release = releases_.find(link); release != releases_.end())
+    release->second.refused |= subtype == st128::detach && graph_.holds(link, apid);
+  const auto found = handshakes_.find(link);
+  if (found == handshakes_.end()) return;
+  Handshake& handshake = found->second;
+  // What belonged to an earlier handshake, or takes one down, ends none.
+  const bool of_stage =
+      handshake.stage == Stage::AwaitOffer       ? subtype == st128::request_offer && apid == handshake.consumer
+      : handshake.stage == Stage::AwaitAgreement ? subtype == st128::negotiate_terms && apid == handshake.producer
+      : handshake.stage == Stage::AwaitProducer  ? subtype == st128::attach && apid == handshake.producer
+                                                 : subtype == st128::attach && apid == handshake.consumer;
+  if (of_stage) handshake.failure = why;
+}
+
+void LinkHandshakes::forget(std::uint16_t apid) {
+  std::vector<std::uint8_t> broken;
+  for (const auto& [link, handshake] : handshakes_)
+    if (handshake.producer == apid || handshake.consumer == apid) broken.push_back(link);
+  for (const std::uint8_t link : broken) give_up(link, "a partner is gone", apid);
+  for (const std::uint8_t link : graph_.links_of(apid)) down(link, "subsystem " + std::to_string(apid) + " is gone");
+  graph_.forget_all_of(apid);
+  end_releases();
+}
+
+void LinkHandshakes::step(TimePoint now) {
+  std::map<std::uint8_t, std::string> over;
+  for (const auto& [link, handshake] : handshakes_)
+    if (!handshake.failure.empty()) over[link] = handshake.failure;
+    else if (now > handshake.deadline) over[link] = "time limit of the handshake";
+  for (const auto& [link, why] : over) give_up(link, why);
+  end_releases();
+  std::vector<Release> failed;
+  for (auto entry = releases_.begin(); entry != releases_.end();) {
+    Release& release = entry->second;
+    if (release.deadline == TimePoint{}) release.deadline = now + stage_limit;
+    const bool ends = release.refused || now > release.deadline;
+    if (ends) failed.push_back(std::move(release));
+    entry = ends ? releases_.erase(entry) : std::next(entry);
+  }
+  for (const Release& each : failed)
+    if (each.done) each.done(each.refused ? Released::Refused : Released::Unanswered);
+}
+
+}  // namespace hirosco::supervisor

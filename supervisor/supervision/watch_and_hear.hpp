@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// How the parts of the supervisor are met by what happens. A new part implements what it needs of these and is named once,
+/// in composition.hpp.
+namespace hirosco::supervisor {
+
+/// The supervisor's, and the source id of its own telecommands (decision 27).
+inline constexpr std::uint16_t supervisor_apid = 1;
+
+/// Looks after something: called in every watch period of the supervisor.
+class Watch {
+ public:
+  virtual ~Watch() = default;
+  virtual void watch(TimePoint now) = 0;
+};
+
+/// Hears every report that comes by, after it was logged and routed.
+class Hearer {
+ public:
+  virtual ~Hearer() = default;
+  virtual void hear(std::uint16_t from, const pus::TelemetryView& report) = 0;
+};
+
+/// Keeps what telecommands are under way, and says how they end when nobody else will.
+class Accounts {
+ public:
+  virtual ~Accounts() = default;
+  /// Nothing of what waits for the disk leaves any more.
+  virtual void refuse_waiting() = 0;
+  /// Who is gone will never report what it had begun.
+  virtual void outcome_unknown(std::uint16_t apid) = 0;
+};
+
+/// What takes many steps and goes on by itself: it would go on with what was taken down or stopped as if nothing had happened.
+class Undertaking {
+ public:
+  virtual ~Undertaking() = default;
+  /// For a recovery. False: it is over already.
+  virtual bool cancel(std::string_view why) = 0;
+  /// Every actuator is stopped, and whoever did it takes the states along.
+  virtual void all_stopped(std::string_view why) = 0;
+};
+
+}  // namespace hirosco::supervisor
