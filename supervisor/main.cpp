@@ -21,7 +21,6 @@
 #include "hirosco/utilities/os/shared_memory.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
-#include "supervisor/causes.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/keeper/keeper.hpp"
@@ -30,6 +29,7 @@
 #include "supervisor/platform/storage/epoch_file.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/supervisor.hpp"
+#include "supervisor/unprovoked_reactions.hpp"
 
 /// The process shell of the supervisor: sockets, signals, clock and log of the operating system around its steps.
 namespace {
@@ -85,7 +85,8 @@ struct Options {
     std::ifstream lines{file.path()};
     for (std::int64_t at_ns = 0; lines >> at_ns;) {
       const TimePoint injected{Duration{at_ns}};
-      std::erase_if(reactions, [&](TimePoint at) { return at >= injected && at - injected <= Causes::limit; });
+      std::erase_if(reactions,
+                    [&](TimePoint at) { return at >= injected && at - injected <= UnprovokedReactions::limit; });
     }
   }
   return reactions;
@@ -150,7 +151,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     return exit_environment;
   }
   Console console{mission, options.style};
-  Causes causes{clock, console};
+  UnprovokedReactions causes{clock, console};
   ThreadedPacketLog::Options log_options;
   log_options.on_progress = [&] { log_progress->notify(); };
   ThreadedPacketLog log{clock, make_store(strategy, log_path), std::move(log_options)};

@@ -16,8 +16,6 @@
 
 namespace hirosco::pus {
 
-/// A new one: its folder `stNN_name/` (copy `st17_test/`, which every subsystem makes by its row alone), its row here, its file in
-/// this library's CMakeLists.txt, its line in `docs/services.md`, and a mode's <Permit> unless it is essential.
 std::span<const ServiceKind* const> standard_services() noexcept {
   static constexpr std::array services{&Verification::service_kind, &HousekeepingService::service_kind,
                                        &EventService::service_kind, &FunctionService::service_kind,

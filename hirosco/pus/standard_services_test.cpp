@@ -98,6 +98,15 @@ class Table : public ::testing::Test {
   std::vector<Service*> services_{&housekeeping_, &events_, &functions_, &test_, &parameters_};
 };
 
+TEST_F(Table, HasAnObjectToBeTriedForEachServiceThatASubsystemHas) {
+  // Reports only (ST[01]), the links of a process and the supervisor's own are tried where they are made.
+  const std::set<std::uint8_t> elsewhere{1, 128, 129};
+  std::set<std::uint8_t> tried;
+  for (const Service* service : services_) tried.insert(service->kind().type);
+  for (const ServiceKind* kind : standard_services())
+    EXPECT_TRUE(tried.contains(kind->type) != elsewhere.contains(kind->type)) << int{kind->type};
+}
+
 TEST_F(Table, TakesDataOfTheShapeThatItDeclaresAndNoneThatIsAnOctetShort) {
   int seen = 0;
   for (Service* service : services_)

@@ -11,7 +11,7 @@
 #include "hirosco/utilities/time.hpp"
 
 /// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
-/// than its plan says (hazard SF15; reliability 5: a crash loop stays down until the ground starts it, docs/adr/0068). The ground
+/// than its plan says (`procedures/steps/restart.hpp`; `Processes` starts it; hazard SF15; reliability 5: a crash loop stays down until the ground starts it, docs/adr/0068). The ground
 /// link alone never stays down: nobody could bring it up again.
 namespace hirosco::supervisor {
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <tuple>
 
+#include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/xml/reader.hpp"
 #include "tools/hirosco/commands.hpp"
@@ -47,13 +48,26 @@ void show_subsystem(const descriptor::Subsystem& subsystem) {
   }
 }
 
+/// What is not declared takes nothing here, and the machine takes something: this is a bound for what stands in the descriptors.
+void show_cycle(const descriptor::CycleResponse& cycle) {
+  const descriptor::Configuration& its = *cycle.configuration;
+  const std::string budget = its.budget > Duration{} ? fmt::format("{} us", its.budget / 1us) : "no budget declared";
+  fmt::print("  cycle {} {}: {}, priority {}, ends at most {} us after it is due, due again after {} us\n",
+             cycle.subsystem, its.name, budget, its.priority,
+             cycle.longest ? fmt::format("{}", *cycle.longest / 1us) : "?", its.sampling / 1us);
+}
+
 void show_mission(const descriptor::Mission& mission) {
   fmt::print("mission {} ({})\n", mission.name, mission.id);
   show_subsystem(mission.supervisor);
   for (const auto& member : mission.subsystems) show_subsystem(member.subsystem);
   for (const auto& link : mission.links)
     fmt::print("link {}: {}.{} -> {}.{}\n", link.id, link.from, link.provides, link.to, link.requires_);
-  for (const auto& mode : mission.modes) fmt::print("mode {} ({})\n", mode.name, mode.id);
+  for (const auto& mode : mission.modes) {
+    fmt::print("mode {} ({}): cycles take {:.0f} % of their processor\n", mode.name, mode.id,
+               100 * descriptor::cycle_share(mission, mode));
+    for (const auto& cycle : descriptor::cycle_responses(mission, mode)) show_cycle(cycle);
+  }
 }
 
 /// What was found, each once, however many missions name a file.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/descriptor/read/detail/mission_reader.hpp"
 
 /// What a mode needs to be flown as it is written: links, power, processor.
@@ -75,10 +76,20 @@ void MissionReader::check_power(const xml::Element& element, const Mode& mode) {
 
 void MissionReader::check_cycles(const xml::Element& element, const Mode& mode) {
   const double share = cycle_share(mission_, mode);
-  if (share <= 1) return;
-  problems_.add(element, "E0324",
-                fmt::format("the cycles of mode {} take {:.0f} % of a processor", in_quotes(mode.name), 100 * share),
-                "all cycles share one: the sum of budget_us / sampling_us is at most 1");
+  if (share > 1)
+    return problems_.add(
+        element, "E0324",
+        fmt::format("the cycles of mode {} take {:.0f} % of a processor", in_quotes(mode.name), 100 * share),
+        "all cycles share one: the sum of budget_us / sampling_us is at most 1");
+  for (const CycleResponse& cycle : cycle_responses(mission_, mode)) {
+    if (cycle.longest) continue;
+    problems_.add(
+        element, "E0331",
+        fmt::format("in mode {} a cycle of {} {} may not end within its {} us", in_quotes(mode.name), cycle.subsystem,
+                    in_quotes(cycle.configuration->name), cycle.configuration->sampling / 1us),
+        "others go before it: lower a budget_us, or give the shorter sampling_us the higher priority; "
+        "`hirosco check --show` tells what each takes");
+  }
 }
 
 void MissionReader::check_required(const Mode& mode) {

@@ -341,6 +341,22 @@ TEST(MissionErrors, TheCyclesOfAModeFitOneProcessor) {
   expect_one(with("300", "205"), "E0324", "the cycles of mode 'telepresence' take 101 % of a processor");
 }
 
+TEST(MissionErrors, EveryCycleOfAModeEndsBeforeItIsDueAgain) {
+  const auto with = [](const char* robot, const char* flywheel) {
+    return read_changed({{"coronagraph.xml", R"(name="COUPLED" id="2" priority="80" sampling_us="500")",
+                          std::string{R"(name="COUPLED" id="2" )"} + robot},
+                         {"flywheel.xml", R"(name="COUPLED" id="2" priority="80" sampling_us="500")",
+                          std::string{R"(name="COUPLED" id="2" )"} + flywheel}});
+  };
+  // Sixty per cent of a processor, but the slow one goes first and takes longer than the quick one may wait.
+  expect_one(
+      with(R"(priority="81" sampling_us="2000" budget_us="800")", R"(priority="80" sampling_us="500" budget_us="100")"),
+      "E0331", "in mode 'telepresence' a cycle of FLYWHEEL 'COUPLED' may not end within its 500 us");
+  EXPECT_TRUE(
+      with(R"(priority="80" sampling_us="2000" budget_us="800")", R"(priority="81" sampling_us="500" budget_us="100")")
+          .value);
+}
+
 TEST(MissionWarnings, NameActuatorsWithoutASecondInhibitAndKeepTheMission) {
   const auto codes = [](const Reading<Mission>& reading) {
     std::string all;

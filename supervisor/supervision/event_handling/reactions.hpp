@@ -17,7 +17,7 @@ namespace hirosco::supervisor {
 
 /// Events are heard here and nowhere else, and answered by the recovery plans of the mission (paper 4.3 and 5): whether
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Which plan: `plan_choice.hpp`; what its steps do:
-/// `procedures/steps/`, run by an `ProcedureRunner`; what a member is in the middle of by that: `subsystem_handling/recovery_under_way.hpp`. Thread: the supervisor's.
+/// `procedures/steps/`, run by a `ProcedureRunner`; what a member is in the middle of by that: `subsystem_handling/member_recovery.hpp`. Thread: the supervisor's.
 class Reactions {
  public:
   Reactions(const Means& means, OwnSubsystem& own)
@@ -28,7 +28,7 @@ class Reactions {
 
   /// False: it cannot be read.
   [[nodiscard]] bool take_event(std::uint16_t from, Octets message);
-  /// What the mission's plans ask for when this event concerns `origin`.
+  /// What the mission's plans ask for when this event concerns `origin`. A plan that fails escalates once: RECOVERY_FAILED, high.
   void react(Member& origin, std::string_view event, descriptor::Severity severity);
   /// What they do first of all about this event, fences, where it is as good as certain and its reaction waits for more.
   void act_first(const Member& origin, std::string_view event, descriptor::Severity severity) const;

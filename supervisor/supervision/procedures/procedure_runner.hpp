@@ -31,7 +31,7 @@ struct Procedure {
   std::function<void(std::size_t stage)> begins{};  ///< counted from 0, those without a step not counted
 };
 
-/// Runs one procedure at a time. Whoever lets go of an runner does not end what it has begun; cancel() does.
+/// Runs one procedure at a time. Whoever lets go of a runner does not end what it has begun; cancel() does.
 /// Thread: the supervisor's.
 class ProcedureRunner {
  public:

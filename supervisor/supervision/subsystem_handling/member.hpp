@@ -10,7 +10,7 @@
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
-#include "supervisor/supervision/subsystem_handling/recovery_under_way.hpp"
+#include "supervisor/supervision/subsystem_handling/member_recovery.hpp"
 
 /// One started subsystem as the supervisor sees it: its port, whether it lives. Whether it moves, and
 /// whether it may move anything, is the guard's.
@@ -40,7 +40,7 @@ class Member {
   void beat(std::uint64_t heartbeat, TimePoint now);
 
   /// What it is in the middle of.
-  RecoveryUnderWay recovery;
+  MemberRecovery recovery;
   /// Since when its channel is closed. A process that ends closes it a moment before its handle says so; one that
   /// lives on without it can be neither commanded nor heard.
   std::optional<TimePoint> closed_at;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/causes.hpp"
+#include "supervisor/unprovoked_reactions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ class ReactionCauses : public testing::Test {
 
   ManualClock clock;
   Nobody nobody;
-  Causes causes{clock, nobody};
+  UnprovokedReactions causes{clock, nobody};
 };
 
 TEST_F(ReactionCauses, AreMissedOfANetworkThatGoesDownAndOfAnEventOfHighSeverityOnly) {
@@ -35,7 +35,7 @@ TEST_F(ReactionCauses, AreMissedOfANetworkThatGoesDownAndOfAnEventOfHighSeverity
 
 TEST_F(ReactionCauses, AreFoundInAStopBySomebodyForAsLongAsThatMayHaveEffects) {
   tell("stop by signal or local socket: every actuator inhibited");
-  clock.advance(Causes::limit);
+  clock.advance(UnprovokedReactions::limit);
   tell("plan died: network {ARM, HAND}");
   EXPECT_TRUE(causes.uncommanded().empty());
   clock.advance(std::chrono::milliseconds{1});

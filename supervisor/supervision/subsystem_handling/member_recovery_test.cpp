@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/subsystem_handling/recovery_under_way.hpp"
+#include "supervisor/supervision/subsystem_handling/member_recovery.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,16 +12,16 @@ namespace {
 using enum descriptor::Severity;
 constexpr std::array severities{Info, Low, Medium, High};
 
-TEST(RecoveryUnderWay, AtRestNothingRunsAndEveryEventMayBeginSomething) {
-  const RecoveryUnderWay rest;
+TEST(MemberRecovery, AtRestNothingRunsAndEveryEventMayBeginSomething) {
+  const MemberRecovery rest;
   EXPECT_FALSE(rest.running());
   EXPECT_FALSE(rest.going_down());
   for (const auto severity : severities) EXPECT_FALSE(rest.outweighs(severity));
 }
 
-TEST(RecoveryUnderWay, APlanOutweighsWhatIsAsGraveAsItselfOrLess) {
+TEST(MemberRecovery, APlanOutweighsWhatIsAsGraveAsItselfOrLess) {
   for (const auto runs : severities) {
-    RecoveryUnderWay recovery;
+    MemberRecovery recovery;
     recovery.plan_begins(runs);
     EXPECT_TRUE(recovery.running());
     EXPECT_FALSE(recovery.going_down());
@@ -29,18 +29,18 @@ TEST(RecoveryUnderWay, APlanOutweighsWhatIsAsGraveAsItselfOrLess) {
   }
 }
 
-TEST(RecoveryUnderWay, APlanIsEndedByItsOwnEndAndByNoOther) {
+TEST(MemberRecovery, APlanIsEndedByItsOwnEndAndByNoOther) {
   for (const auto runs : severities)
     for (const auto ended : severities) {
-      RecoveryUnderWay recovery;
+      MemberRecovery recovery;
       recovery.plan_begins(runs);
       recovery.plan_ended(ended);
       EXPECT_EQ(recovery.running(), ended != runs);
     }
 }
 
-TEST(RecoveryUnderWay, TheEndOfAPlanThatSomethingWorseHasOverriddenEndsNothing) {
-  RecoveryUnderWay recovery;
+TEST(MemberRecovery, TheEndOfAPlanThatSomethingWorseHasOverriddenEndsNothing) {
+  MemberRecovery recovery;
   recovery.plan_begins(Medium);
   recovery.plan_begins(High);
   recovery.plan_ended(Medium);
@@ -49,8 +49,8 @@ TEST(RecoveryUnderWay, TheEndOfAPlanThatSomethingWorseHasOverriddenEndsNothing) 
   EXPECT_FALSE(recovery.running());
 }
 
-TEST(RecoveryUnderWay, OnlyTheFirstReasonLeadsAMemberDown) {
-  RecoveryUnderWay recovery;
+TEST(MemberRecovery, OnlyTheFirstReasonLeadsAMemberDown) {
+  MemberRecovery recovery;
   recovery.plan_begins(Low);
   EXPECT_TRUE(recovery.goes_down());
   EXPECT_FALSE(recovery.goes_down());
@@ -58,16 +58,16 @@ TEST(RecoveryUnderWay, OnlyTheFirstReasonLeadsAMemberDown) {
   EXPECT_TRUE(recovery.outweighs(High));
 }
 
-TEST(RecoveryUnderWay, NoPlanEndsTheWayDownWhateverItsSeverity) {
-  RecoveryUnderWay recovery;
+TEST(MemberRecovery, NoPlanEndsTheWayDownWhateverItsSeverity) {
+  MemberRecovery recovery;
   ASSERT_TRUE(recovery.goes_down());
   for (const auto severity : severities) recovery.plan_ended(severity);
   EXPECT_TRUE(recovery.running());
   EXPECT_TRUE(recovery.going_down());
 }
 
-TEST(RecoveryUnderWay, TheEndOfTheWayDownEndsAllAndTheNextReasonLeadsAgain) {
-  RecoveryUnderWay recovery;
+TEST(MemberRecovery, TheEndOfTheWayDownEndsAllAndTheNextReasonLeadsAgain) {
+  MemberRecovery recovery;
   ASSERT_TRUE(recovery.goes_down());
   recovery.came_down();
   EXPECT_FALSE(recovery.running());
@@ -75,11 +75,11 @@ TEST(RecoveryUnderWay, TheEndOfTheWayDownEndsAllAndTheNextReasonLeadsAgain) {
   EXPECT_TRUE(recovery.goes_down());
 }
 
-TEST(RecoveryUnderWay, ANewProcessBeginsWithNothing) {
-  RecoveryUnderWay planned, down;
+TEST(MemberRecovery, ANewProcessBeginsWithNothing) {
+  MemberRecovery planned, down;
   planned.plan_begins(High);
   ASSERT_TRUE(down.goes_down());
-  for (RecoveryUnderWay* each : {&planned, &down}) {
+  for (MemberRecovery* each : {&planned, &down}) {
     each->started();
     EXPECT_FALSE(each->running());
     EXPECT_FALSE(each->going_down());

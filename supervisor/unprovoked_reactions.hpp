@@ -15,11 +15,11 @@ namespace hirosco::supervisor {
 /// Hears what is told and routed, keeps the moments of reactions of high severity before which no telecommand had come from
 /// ground for some time, and passes everything on. What was injected into simulated devices is asked for by the shell.
 /// Thread: the supervisor's.
-class Causes final : public Observer {
+class UnprovokedReactions final : public Observer {
  public:
   /// A reaction this long after somebody's deed may be its effect.
   static constexpr Duration limit{std::chrono::seconds{2}};
-  Causes(const Clock& clock, Observer& next) : clock_{clock}, next_{next} {}
+  UnprovokedReactions(const Clock& clock, Observer& next) : clock_{clock}, next_{next} {}
 
   [[nodiscard]] const std::vector<TimePoint>& uncommanded() const noexcept { return uncommanded_; }
 

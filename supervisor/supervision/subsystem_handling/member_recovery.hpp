@@ -10,8 +10,8 @@
 namespace hirosco::supervisor {
 
 /// What a member is in the middle of: a recovery of a severity, its way down with its network. Each that has a part in it says
-/// what happened, and nobody else sets anything. Thread: the supervisor's.
-class RecoveryUnderWay {
+/// what happened, and nobody else sets anything. What a plan that fails leads to: `event_handling/reactions.cpp`. Thread: the supervisor's.
+class MemberRecovery {
  public:
   /// A plan that holds its subject begins; it overrides what ran.
   void plan_begins(descriptor::Severity severity) noexcept { running_ = severity; }

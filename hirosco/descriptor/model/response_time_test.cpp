@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/descriptor/model/response_time.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <string>
+
+namespace hirosco::descriptor {
+namespace {
+
+struct Declared {
+  std::string name;
+  int priority;
+  Duration sampling;
+  Duration budget;
+};
+
+struct CycleResponses : ::testing::Test {
+  void commission(const Declared& declared) {
+    MissionSubsystem member;
+    member.subsystem.name = declared.name;
+    Configuration only;
+    only.name = "ONLY";
+    only.priority = declared.priority;
+    only.sampling = declared.sampling;
+    only.budget = declared.budget;
+    member.subsystem.configurations.push_back(std::move(only));
+    mission.subsystems.push_back(std::move(member));
+    CommissionStep step;
+    step.subsystem = declared.name;
+    step.configuration = "ONLY";
+    mode.commission.push_back(std::move(step));
+  }
+  std::map<std::string, std::optional<Duration>> longest() const {
+    std::map<std::string, std::optional<Duration>> all;
+    for (const CycleResponse& cycle : cycle_responses(mission, mode)) all[std::string{cycle.subsystem}] = cycle.longest;
+    return all;
+  }
+  Mission mission;
+  Mode mode;
+};
+
+TEST_F(CycleResponses, OfOneAloneIsItsBudget) {
+  commission({"A", 80, 500us, 120us});
+  EXPECT_EQ(longest()["A"], 120us);
+}
+
+TEST_F(CycleResponses, OfTheClassicalExampleAreThoseOfTheBooks) {
+  // Burns and Wellings, Real-Time Systems and Programming Languages: periods 7, 12, 20, times 3, 3, 5: 3, 6, 20.
+  commission({"C", 1, 20us, 5us});
+  commission({"A", 3, 7us, 3us});
+  commission({"B", 2, 12us, 3us});
+  EXPECT_EQ(longest()["A"], 3us);
+  EXPECT_EQ(longest()["B"], 6us);
+  EXPECT_EQ(longest()["C"], 20us);
+}
+
+TEST_F(CycleResponses, OfWhoCannotEndInTimeAreNone) {
+  // The same book's set that does not fit: periods 80, 40, 20, times 40, 10, 5, the longest period first: it has to wait for nobody.
+  commission({"C", 1, 20us, 5us});
+  commission({"B", 2, 40us, 10us});
+  commission({"A", 3, 80us, 40us});
+  EXPECT_EQ(longest()["A"], 40us);
+  EXPECT_EQ(longest()["B"], std::nullopt) << "50 us of 40";
+  EXPECT_EQ(longest()["C"], std::nullopt);
+}
+
+TEST_F(CycleResponses, OfEqualPriorityWaitForEachOtherOnce) {
+  commission({"A", 80, 500us, 100us});
+  commission({"B", 80, 250us, 50us});
+  EXPECT_EQ(longest()["A"], 150us);
+  EXPECT_EQ(longest()["B"], 150us);
+}
+
+TEST_F(CycleResponses, WithoutAPriorityGoAfterAllThatHaveOneAndKeepNoTurn) {
+  commission({"A", 0, 1000us, 400us});
+  commission({"B", 0, 300us, 50us});
+  commission({"C", 1, 500us, 100us});
+  EXPECT_EQ(longest()["C"], 100us);
+  EXPECT_EQ(longest()["B"], std::nullopt) << "400 and 100 us go before";
+  EXPECT_EQ(longest()["A"], 750us) << "its own 400, three times 50, and twice 100";
+}
+
+TEST_F(CycleResponses, OfWhoDeclaresNoBudgetAreWhatGoesBefore) {
+  commission({"A", 80, 500us, 100us});
+  commission({"B", 70, 500us, 0us});
+  EXPECT_EQ(longest()["A"], 100us);
+  EXPECT_EQ(longest()["B"], 100us);
+}
+
+TEST_F(CycleResponses, StandInTheOrderOfTheirPriority) {
+  commission({"LOW", 10, 500us, 1us});
+  commission({"HIGH", 80, 500us, 1us});
+  EXPECT_EQ(cycle_responses(mission, mode).front().subsystem, "HIGH");
+}
+
+/// From the instant at which all are due, microsecond by microsecond; more than its period: not in time.
+Duration played(const std::vector<Declared>& all, std::size_t of) {
+  std::vector<Duration> left(all.size());
+  for (std::int64_t now = 0; now < all[of].sampling / 1us; ++now) {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (now % (all[i].sampling / 1us) == 0) left[i] += all[i].budget;
+    std::size_t runs = all.size();
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (left[i] > Duration{} && (runs == all.size() || all[i].priority > all[runs].priority)) runs = i;
+    if (runs == all.size()) continue;
+    left[runs] -= 1us;
+    if (runs == of && left[of] == Duration{}) return (now + 1) * 1us;
+  }
+  return all[of].sampling + 1us;
+}
+
+TEST_F(CycleResponses, AreWhatASchedulerDoesThatIsPlayedFromTheWorstInstant) {
+  std::mt19937 random{20261123};
+  const auto pick = [&](int low, int high) { return std::uniform_int_distribution<>{low, high}(random); };
+  int fit = 0, unfit = 0;
+  for (int round = 0; round < 300; ++round) {
+    mission = {};
+    mode = {};
+    std::vector<Declared> all;
+    for (int i = 0; i < 4; ++i) {
+      const Duration sampling = pick(10, 60) * 1us;
+      all.push_back({std::string(1, static_cast<char>('A' + i)), 10 * (i + 1), sampling, pick(1, 12) * 1us});
+      commission(all.back());
+    }
+    const auto told = longest();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Duration took = played(all, i);
+      const auto& bound = told.at(all[i].name);
+      if (bound) EXPECT_EQ(*bound, took) << round << ' ' << all[i].name;
+      else EXPECT_GT(took, all[i].sampling) << round << ' ' << all[i].name;
+      ++(bound ? fit : unfit);
+    }
+  }
+  EXPECT_GT(fit, 100);
+  EXPECT_GT(unfit, 50);
+}
+
+}  // namespace
+}  // namespace hirosco::descriptor
