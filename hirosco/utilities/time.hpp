@@ -52,10 +52,13 @@ class Clock {
   virtual ~Clock() = default;
   [[nodiscard]] TimePoint now() const noexcept { return do_now(); }
   [[nodiscard]] OnboardTime onboard() const noexcept { return do_onboard(); }
+  /// What the calling thread has used of a processor since it began; always zero where time is virtual and work takes none.
+  [[nodiscard]] Duration processor() const noexcept { return do_processor(); }
 
  private:
   [[nodiscard]] virtual TimePoint do_now() const noexcept = 0;
   [[nodiscard]] virtual OnboardTime do_onboard() const noexcept = 0;
+  [[nodiscard]] virtual Duration do_processor() const noexcept { return {}; }
 };
 
 /// Virtual time: stands still until somebody moves it. Ships for tests and for the simulated spacecraft.
@@ -64,12 +67,16 @@ class ManualClock final : public Clock {
   explicit ManualClock(OnboardTime start = OnboardTime{std::chrono::seconds{2'145'916'837}}) : onboard_start_{start} {}
   void set(TimePoint now) noexcept { now_ = now; }
   void advance(Duration span) noexcept { now_ += span; }
+  /// Of whichever thread asks.
+  void use_processor(Duration span) noexcept { processor_ += span; }
 
  private:
   [[nodiscard]] TimePoint do_now() const noexcept override { return now_; }
   [[nodiscard]] OnboardTime do_onboard() const noexcept override { return onboard_start_ + now_.time_since_epoch(); }
+  [[nodiscard]] Duration do_processor() const noexcept override { return processor_; }
 
   TimePoint now_{};
+  Duration processor_{};
   OnboardTime onboard_start_;
 };
 

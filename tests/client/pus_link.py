@@ -234,6 +234,7 @@ class GroundLink:
 
 # What every subsystem has without declaring it; members are known by their full names only (docs/adr/0056).
 BUILT_IN = {"CYCLE_STATS": (("OVERRUNS", "UINT32", 1), ("MAX_US", "FLOAT", 1), ("AVG_US", "FLOAT", 1)),
+            "CYCLE_BUDGET": (("BUDGET_US", "FLOAT", 1), ("LONGEST_US", "FLOAT", 1), ("EXCEEDED", "UINT32", 1)),
             "CYCLE_TIMES": (("EXECUTION", "UINT32", 16), ("LATENCY", "UINT32", 16)),
             "LINK_STATS": (("RECEIVED", "UINT32", 1), ("LOST", "UINT32", 1))}
 

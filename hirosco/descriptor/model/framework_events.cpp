@@ -74,6 +74,8 @@ void add_framework_events(Subsystem& subsystem) {
       {argument("CYCLE_ANSWERS", Type::Uint32), argument("CYCLE_EVENTS", Type::Uint32),
        argument("CYCLE_HOUSEKEEPING", Type::Uint32), argument("ANSWERS", Type::Uint32),
        argument("EVENTS", Type::Uint32), argument("HOUSEKEEPING", Type::Uint32)});
+  add("CYCLE_OVER_BUDGET", cycle_over_budget, Severity::Low,
+      {argument("IN_A_ROW", Type::Uint32), argument("LONGEST_US", Type::Float)});
   add("SUPERVISOR_SILENT", supervisor_silent, Severity::Low, {argument("CYCLES", Type::Uint32)});
   for (std::size_t i = 0; i < subsystem.devices.size(); ++i)
     add(event_name(subsystem.devices[i].name, "_LOST"), device_lost(i), Severity::High,

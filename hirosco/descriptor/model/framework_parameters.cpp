@@ -40,6 +40,9 @@ std::vector<Parameter> framework_parameters() {
           {member("OVERRUNS", 244, Uint32), member("MAX_US", 240, Float, "us"), member("AVG_US", 241, Float, "us")}),
       structure(framework_parameter::cycle_times, 40,
                 {member("EXECUTION", 240, Uint32, "", 16), member("LATENCY", 241, Uint32, "", 16)}),
+      structure(framework_parameter::cycle_budget, 38,
+                {member("BUDGET_US", 242, Float, "us"), member("LONGEST_US", 243, Float, "us"),
+                 member("EXCEEDED", 245, Uint32)}),
       structure(framework_parameter::link_stats, 41, {member("RECEIVED", 242, Uint32), member("LOST", 243, Uint32)})};
 }
 

@@ -18,11 +18,13 @@ namespace framework_parameter {
 inline constexpr const char* cycle_stats = "CYCLE_STATS";
 /// hirosco::CycleTimes
 inline constexpr const char* cycle_times = "CYCLE_TIMES";
+/// hirosco::CycleBudget
+inline constexpr const char* cycle_budget = "CYCLE_BUDGET";
 /// hirosco::LinkStatistics
 inline constexpr const char* link_stats = "LINK_STATS";
 }  // namespace framework_parameter
 
-/// CYCLE_STATS, CYCLE_TIMES and LINK_STATS, with the ids that are theirs where a descriptor gives no other.
+/// CYCLE_STATS, CYCLE_TIMES, CYCLE_BUDGET and LINK_STATS, with the ids that are theirs where a descriptor gives no other.
 [[nodiscard]] std::vector<Parameter> framework_parameters();
 
 /// "NAME_OUTPUT": what is put out to an actuator, or what its author would put out (adr 0073).

@@ -4,6 +4,7 @@
 #include "hirosco/subsystem/cycle/cycle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -62,6 +63,8 @@ void CycleLoop::prepare(CyclePlan plan) {
   times_ = {};
   statistics_.store({});
   times_parameter_.store({});
+  budget_.begin(*plan_.configuration, parts_.realtime);
+  budget_parameter_.store(budget_.told());
   link_statistics_.store({});
   watched_.clear();
   for (std::size_t i = 0; i < own_writes_octets_; ++i) {
@@ -290,6 +293,7 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   ++times_.latency[bin_of(started - planned)];
   times_parameter_.store(times_);
   count_links();
+  hold_to_budget();
 
   const descriptor::CycleLimit& limit = plan_.configuration->overruns;
   // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007). Work that
@@ -316,6 +320,14 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   vital.execution_mean_ns.store(static_cast<std::uint32_t>(execution_mean_ns_), std::memory_order_relaxed);
   vital.lost_reports.store(static_cast<std::uint32_t>(parts_.handover.dropped()), std::memory_order_relaxed);
   vital.cycles.fetch_add(1, std::memory_order_release);
+}
+
+void CycleLoop::hold_to_budget() noexcept {
+  if (budget_.account(parts_.clock.processor())) {
+    const std::array<double, 2> told{static_cast<double>(budget_.in_a_row()), double{budget_.told().longest_us}};
+    raise(descriptor::framework_event::cycle_over_budget, told);
+  }
+  budget_parameter_.store(budget_.told());
 }
 
 void CycleLoop::raise(std::uint16_t event, std::span<const double> arguments) noexcept {

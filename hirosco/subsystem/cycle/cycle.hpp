@@ -13,6 +13,7 @@
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/parameter/write_queue.hpp"
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+#include "hirosco/subsystem/cycle/budget_watch.hpp"
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 #include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
@@ -83,6 +84,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
   [[nodiscard]] Parameter<CycleStatistics>& statistics() noexcept { return statistics_; }
   [[nodiscard]] Parameter<CycleTimes>& times() noexcept { return times_parameter_; }
+  [[nodiscard]] Parameter<CycleBudget>& budget() noexcept { return budget_parameter_; }
   /// One for each actuator of the descriptor.
   [[nodiscard]] std::span<const std::unique_ptr<OutputParameter>> outputs() const noexcept { return outputs_; }
   [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
@@ -95,7 +97,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
 
   // --- the cycle --------------------------------------------------------------------------------------------------
   /// One cycle that was due at `planned`; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
-  /// at most one system call per device.
+  /// at most one system call per device, and one for its own processor time.
   TimePoint step(TimePoint planned) noexcept;
 
   // --- the author, from inside the cycle --------------------------------------------------------------------------
@@ -126,6 +128,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void note_own_writes() noexcept;
   void account(TimePoint planned, TimePoint started) noexcept;
   void count_links() noexcept;
+  void hold_to_budget() noexcept;
   [[nodiscard]] bool controlling() const noexcept;
   [[nodiscard]] LinkStatus link_status() const noexcept;
 
@@ -139,6 +142,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   std::vector<BoundFunction> functions_;
   Parameter<CycleStatistics> statistics_;
   Parameter<CycleTimes> times_parameter_;
+  Parameter<CycleBudget> budget_parameter_;
   Parameter<LinkStatistics> link_statistics_;
   std::vector<std::unique_ptr<OutputParameter>> outputs_;
   std::vector<std::byte> event_buffer_;  ///< room for the largest event of the descriptor
@@ -168,6 +172,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   std::uint32_t execution_max_ns_{0};
   double execution_mean_ns_{0.0};
   CycleTimes times_{};
+  BudgetWatch budget_;
   std::vector<char> input_was_stale_;
 };
 

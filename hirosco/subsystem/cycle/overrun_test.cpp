@@ -17,9 +17,10 @@ using testing::Rig;
 
 struct Slow final : Probe {
   ManualClock* clock{nullptr};
-  Duration takes{0};
+  Duration takes{0};  ///< by the clock
+  Duration uses{0};   ///< of the processor
   Result<> work(const Cycle& cycle) noexcept override {
-    if (clock != nullptr) clock->advance(takes);
+    if (clock != nullptr) clock->advance(takes), clock->use_processor(uses);
     return Probe::work(cycle);
   }
 };
@@ -52,6 +53,20 @@ TEST_F(CycleTime, ThreeOverrunsInARowAreReportedOnceAndMissedCyclesAreSkipped) {
   EXPECT_THAT(rig.reports(5, 3), ElementsAre("f00300000003"));
   EXPECT_EQ(rig.vital.overruns.load(), 6u);
   EXPECT_EQ(rig.vital.execution_max_ns.load(), 2'500'000u);
+}
+
+TEST_F(CycleTime, MoreProcessorThanTheBudgetIsToldAfterThreeCyclesInARow) {
+  cycle(0us);
+  slow.uses = 251us;
+  for (int i = 0; i < 5; ++i) cycle(900us);
+  slow.uses = 250us;
+  cycle(999us);
+  rig.service();
+  const CycleBudget told = rig.subsystem.cycle().budget().load();
+  EXPECT_EQ(told.budget_us, 250.0F);
+  EXPECT_EQ(told.longest_us, 251.0F) << "of its own; what others take meanwhile is not in it";
+  EXPECT_EQ(told.exceeded, 5U);
+  EXPECT_THAT(rig.reports(5, 2), ElementsAre("f00600000003437b0000"));
 }
 
 TEST_F(CycleTime, LateStartsOfAStarvingMachineNeitherLengthenTheRowNorBreakIt) {

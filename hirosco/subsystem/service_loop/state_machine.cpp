@@ -120,6 +120,7 @@ Result<Step> GenericSubsystem::initialise_software() {
   if (!step) mistake(step.error().text);
   publish(descriptor::framework_parameter::cycle_stats, cycle_.statistics());
   publish(descriptor::framework_parameter::cycle_times, cycle_.times());
+  publish(descriptor::framework_parameter::cycle_budget, cycle_.budget());
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
   for (const auto& output : cycle_.outputs()) publish(output->name(), *output);
   if (step) check_introduction();

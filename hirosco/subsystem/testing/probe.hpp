@@ -57,7 +57,7 @@ inline const std::string probe_descriptor = R"(<Subsystem name="PROBE" id="10">
   </SampledNREPTimes>
 </HKService>
   </Configuration>
-  <Configuration name="COUPLED" id="2" priority="70" sampling_us="1000" overruns="3" overruns_reduced="5">
+  <Configuration name="COUPLED" id="2" priority="70" sampling_us="1000" budget_us="250" overruns="3" overruns_reduced="5">
     <RealTimeLinkService>
       <Provides name="ARM_STATE"><ParamRef name="CUR_VALUES.POSITION"/><ParamRef name="SEEN"/></Provides>
       <Requires name="HAND" age="3" age_reduced="10" missing="inhibit">

@@ -13,7 +13,7 @@ inline constexpr const char* flight_epoch_variable = "HIROSCO_EPOCH_NS";
 /// The epoch that this process was given, in nanoseconds; empty without one or when it is no number.
 [[nodiscard]] std::optional<Duration> given_epoch() noexcept;
 
-/// The operating system's clocks: now() is CLOCK_MONOTONIC; onboard() is now() and an epoch that is fixed once, so that a
+/// The operating system's clocks: now() is CLOCK_MONOTONIC; processor() is CLOCK_THREAD_CPUTIME_ID, a system call; onboard() is now() and an epoch that is fixed once, so that a
 /// step of the calendar never makes on-board time go back or jump. The epoch is the one the flight was given, else the
 /// calendar's (CLOCK_REALTIME brought to TAI of 1958) when this object is made.
 /// Realtime: wait-free. Thread: any.
@@ -32,6 +32,7 @@ class SystemClock final : public Clock {
  private:
   [[nodiscard]] TimePoint do_now() const noexcept override;
   [[nodiscard]] OnboardTime do_onboard() const noexcept override;
+  [[nodiscard]] Duration do_processor() const noexcept override;
 
   Duration epoch_;
 };

@@ -12,7 +12,7 @@ namespace {
 
 [[nodiscard]] Duration reading(clockid_t clock) noexcept {
   timespec value{};
-  // Neither clock can fail: both are mandatory and the pointer is ours.
+  // None of these clocks can fail: the system has them and the pointer is ours.
   (void)clock_gettime(clock, &value);
   return std::chrono::seconds{value.tv_sec} + Duration{value.tv_nsec};
 }
@@ -48,5 +48,7 @@ Duration SystemClock::calendar_epoch(Duration tai_minus_utc) noexcept {
 TimePoint SystemClock::do_now() const noexcept { return TimePoint{reading(CLOCK_MONOTONIC)}; }
 
 OnboardTime SystemClock::do_onboard() const noexcept { return OnboardTime{reading(CLOCK_MONOTONIC) + epoch_}; }
+
+Duration SystemClock::do_processor() const noexcept { return reading(CLOCK_THREAD_CPUTIME_ID); }
 
 }  // namespace hirosco

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/cycle/budget_watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace hirosco {
+namespace {
+
+struct ABudget : ::testing::Test {
+  ABudget() {
+    configuration.budget = 100us;
+    configuration.overruns = {.realtime = 3, .reduced = 5};
+    watch.begin(configuration, true);
+  }
+  bool take(Duration cycle) { return watch.account(used += cycle); }
+
+  descriptor::Configuration configuration;
+  BudgetWatch watch;
+  Duration used{7s};
+};
+
+TEST_F(ABudget, SaysNothingOfTheTimeBeforeTheFirstCycle) {
+  EXPECT_FALSE(watch.account(used));
+  EXPECT_EQ(watch.told().longest_us, 0.0F);
+  EXPECT_EQ(watch.told().exceeded, 0U);
+}
+
+TEST_F(ABudget, TellsTheLongestCycleAndHowManyTookMore) {
+  static_cast<void>(watch.account(used));
+  for (const Duration cycle : {40us, 100us, 130us, 60us, 120us}) EXPECT_FALSE(take(cycle));
+  EXPECT_EQ(watch.told().budget_us, 100.0F);
+  EXPECT_EQ(watch.told().longest_us, 130.0F);
+  EXPECT_EQ(watch.told().exceeded, 2U) << "as much as the budget is not more";
+}
+
+TEST_F(ABudget, IsToldOnceForEachRowThatIsLongEnough) {
+  static_cast<void>(watch.account(used));
+  for (int row = 0; row < 2; ++row) {
+    EXPECT_FALSE(take(101us));
+    EXPECT_FALSE(take(101us));
+    EXPECT_TRUE(take(101us));
+    EXPECT_FALSE(take(101us));
+    EXPECT_EQ(watch.in_a_row(), 4U);
+    EXPECT_FALSE(take(99us));
+  }
+}
+
+TEST_F(ABudget, HasTheLongerLimitWithoutRealTimeScheduling) {
+  watch.begin(configuration, false);
+  static_cast<void>(watch.account(used));
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(take(101us));
+  EXPECT_TRUE(take(101us));
+}
+
+TEST_F(ABudget, ThatIsNotDeclaredIsNotExceededAndTheLongestCycleIsToldAllTheSame) {
+  configuration.budget = {};
+  watch.begin(configuration, true);
+  static_cast<void>(watch.account(used));
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(take(1ms));
+  EXPECT_EQ(watch.told().exceeded, 0U);
+  EXPECT_EQ(watch.told().longest_us, 1000.0F);
+}
+
+TEST_F(ABudget, BeginsAnewWithEachConfiguration) {
+  static_cast<void>(watch.account(used));
+  static_cast<void>(take(300us));
+  watch.begin(configuration, true);
+  EXPECT_FALSE(take(5s)) << "what passed in between is no cycle";
+  EXPECT_EQ(watch.told().longest_us, 0.0F);
+  EXPECT_EQ(watch.told().exceeded, 0U);
+}
+
+}  // namespace
+}  // namespace hirosco
