@@ -42,6 +42,14 @@ struct CheckOptions {
 };
 int check(const CheckOptions& options);
 
+struct PermissionsOptions {
+  std::string mission;
+  std::string mode;                  ///< empty = all
+  bool csv{false};                   ///< a line for each request, and nothing left out
+};
+/// The table of what is permitted, as the supervisor judges it (adr 0086).
+int permissions(const PermissionsOptions& options);
+
 struct SimulateOptions {
   std::string mission;
   std::string mode;                  ///< to start in; empty = the mission's

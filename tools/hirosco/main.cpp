@@ -98,6 +98,14 @@ int read_and_do(int argc, char** argv) {
   tc_command->add_option("--limit", tc_limit, "How long to wait for the end")->capture_default_str();
   add_connection(*tc_command, tc_options.connection);
 
+  PermissionsOptions permissions_options;
+  auto* permissions_command = app.add_subcommand(
+      "permissions", "Who may ask what of whom in which mode and state, as the supervisor judges it");
+  permissions_command->add_option("mission", permissions_options.mission, "Mission: a name or a path")->required();
+  permissions_command->add_option("--mode", permissions_options.mode, "Only this mode");
+  permissions_command->add_flag("--csv", permissions_options.csv,
+                                "A line for each request; ten places, one for each state");
+
   ModeOptions mode_options;
   std::string mode_limit = "70s";
   auto* mode_command = app.add_subcommand("mode", "Bring the whole craft into a mode; without a name, list the modes");
@@ -200,6 +208,7 @@ int read_and_do(int argc, char** argv) {
   if (*report_command) return mission_program("report", judged_mission, {});
   if (*tc_command) return telecommand(tc_options);
   if (*mode_command) return mode(mode_options);
+  if (*permissions_command) return permissions(permissions_options);
   if (*status_command) return status(status_options);
   if (*log_command) return log(log_options);
   if (*safe_command) return safe(safe_options);

@@ -40,7 +40,8 @@ constexpr const char* state_member = "00020600";
 constexpr const char* des_position = "00020a01";
 
 /// The paper's Listing 2.
-HousekeepingStructure listing_2(std::uint16_t id = 4711, std::uint32_t interval = 500, std::uint16_t repetitions = 5) {
+inline HousekeepingStructure listing_2(std::uint16_t id = 4711, std::uint32_t interval = 500,
+                                       std::uint16_t repetitions = 5) {
   HousekeepingStructure structure;
   structure.id = id;
   structure.interval_cycles = interval;

@@ -182,6 +182,7 @@ def states(text):
 # What every subsystem has (docs/adr/0056): its id, and type and count of each of its numbers.
 BUILT_IN = {"CYCLE_STATS": (39, [("UINT32", 1), ("FLOAT", 1), ("FLOAT", 1)]),
             "CYCLE_TIMES": (40, [("UINT32", 16), ("UINT32", 16)]),
+            "CYCLE_BUDGET": (38, [("FLOAT", 1), ("FLOAT", 1), ("UINT32", 1)]),
             "LINK_STATS": (41, [("UINT32", 1), ("UINT32", 1)])}
 
 

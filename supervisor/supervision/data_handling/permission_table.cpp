@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/permission_table.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st20_parameter/parameter_service.hpp"
+#include "hirosco/pus/standard_services.hpp"
+#include "supervisor/supervision/data_handling/permission.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using descriptor::State;
+
+constexpr std::size_t called_name_octets = 16;
+
+[[nodiscard]] std::vector<std::byte> call_of(std::string_view function, std::optional<std::uint8_t> argument = {}) {
+  std::vector<std::byte> data(called_name_octets);
+  std::ranges::copy(std::as_bytes(std::span{function}).first(std::min(function.size(), called_name_octets)),
+                    data.begin());
+  data.push_back(argument ? std::byte{1} : std::byte{0});
+  if (argument) data.insert(data.end(), {std::byte{1}, std::byte{*argument}});
+  return data;
+}
+
+[[nodiscard]] std::vector<std::byte> set_of(std::uint16_t apid, const descriptor::Parameter& parameter) {
+  std::vector<std::byte> data(1 + sizeof(std::uint32_t) + parameter.octets());
+  OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{apid, parameter.field.type, parameter.id}.wire());
+  return data;
+}
+
+class Table {
+ public:
+  Table(const descriptor::Mission& mission, const descriptor::Mode& mode)
+      : mission_{mission}, mode_{mode}, links_{mission} {}
+
+  void ask_everything(const Origin& origin, const descriptor::Subsystem& addressee) {
+    asked_.origin = origin;
+    asked_.addressee = &addressee;
+    for (const pus::ServiceKind* kind : pus::standard_services())
+      for (const pus::RequestKind& request : kind->requests)
+        if (kind->type != pus::FunctionService::service_type) ask_service(kind->type, request);
+    for (const auto& row : EnumTexts<State>::table)
+      ask_function(fmt::format("SET_STATE {}", row.text), call_of("SET_STATE", static_cast<std::uint8_t>(row.value)));
+    ask_function("CONFIGURE", call_of("CONFIGURE", 0));
+    for (const descriptor::Function& function : addressee.functions)
+      ask_function(function.name, call_of(function.name));
+    for (const descriptor::CustomService& service : addressee.services)
+      for (const descriptor::Function& request : service.requests)
+        ask(service.type, request.subtype, fmt::format("{} {}", service.name, request.name), {});
+  }
+
+  [[nodiscard]] std::vector<PermissionRow> take() && { return std::move(rows_); }
+
+ private:
+  void ask_service(std::uint8_t type, const pus::RequestKind& request) {
+    const bool sets =
+        type == pus::ParameterService::service_type && request.subtype == pus::ParameterService::set_values;
+    if (!sets) return ask(type, request.subtype, fmt::format("TC[{},{}] {}", type, request.subtype, request.name), {});
+    for (const descriptor::Parameter& parameter : asked_.addressee->parameters)
+      ask(type, request.subtype, fmt::format("set {}", parameter.field.name), set_of(asked_.addressee->id, parameter));
+  }
+
+  void ask_function(std::string request, const std::vector<std::byte>& data) {
+    ask(pus::FunctionService::service_type, 1, std::move(request), data);
+  }
+
+  void ask(std::uint8_t service, std::uint8_t subtype, std::string request, Octets data) {
+    std::array<std::byte, 2048> buffer;
+    const auto octets = pus::write_telecommand(
+        buffer, {.apid = asked_.addressee->id, .service = service, .subtype = subtype, .source = asked_.origin.apid()},
+        data);
+    if (!octets) return;
+    const auto telecommand = pus::TelecommandView::parse(*octets);
+    if (!telecommand) return;
+    PermissionRow row = asked_;
+    row.service = service;
+    row.subtype = subtype;
+    row.request = std::move(request);
+    for (const auto& state : EnumTexts<State>::table) {
+      const auto bit = static_cast<std::uint16_t>(1U << static_cast<unsigned>(state.value));
+      Situation situation{.mission = mission_, .mode = mode_, .links = links_, .state = state.value};
+      const auto decision = decide(*telecommand, asked_.origin, situation);
+      situation.changing = true;
+      if (decision) row.permitted |= bit;
+      if (decision && decision->essential) row.essential |= bit;
+      if (decide(*telecommand, asked_.origin, situation)) row.in_change |= bit;
+    }
+    rows_.push_back(std::move(row));
+  }
+
+  const descriptor::Mission& mission_;
+  const descriptor::Mode& mode_;
+  const LinkGraph links_;
+  PermissionRow asked_;  ///< of every row: who asks whom
+  std::vector<PermissionRow> rows_;
+};
+
+}  // namespace
+
+std::vector<PermissionRow> permission_table(const descriptor::Mission& mission, const descriptor::Mode& mode) {
+  std::vector<Origin> origins{Origin::ground(), Origin::supervisor()};
+  std::vector<const descriptor::Subsystem*> addressees{&mission.supervisor};
+  for (const auto& member : mission.subsystems) {
+    addressees.push_back(&member.subsystem);
+    if (!member.subsystem.commands.empty()) origins.push_back(Origin::subsystem(member.subsystem.id));
+  }
+  Table table{mission, mode};
+  for (const Origin& origin : origins)
+    for (const descriptor::Subsystem* addressee : addressees) table.ask_everything(origin, *addressee);
+  return std::move(table).take();
+}
+
+}  // namespace hirosco::supervisor

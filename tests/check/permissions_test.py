@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""permissions_test.py HIROSCO MISSION...: `hirosco permissions --csv` against what the mission's files say, read here by rules that
+were written down apart from those on board: every sender, addressee and request, in every mode and each of the ten states."""
+import csv, pathlib, subprocess, sys, xml.etree.ElementTree as xml
+
+STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational", "ErrorOperational",
+          "PostOperational", "HardwareDeinit", "SoftwareDeinit"]
+SAFE, OPERATIONAL = 4, 5
+ALWAYS, NEVER = set(range(10)), set()
+# Requests of the framework's services that anybody may be sent.
+SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4}, 129: {1, 4}}
+
+
+def words(element, name):
+    return (element.get(name) or "").split()
+
+
+class Subsystem:
+    def __init__(self, path, renamed=None):
+        root = xml.parse(path).getroot()
+        self.name = renamed or root.get("name")
+        self.functions, self.requests, self.writable = {}, {}, {}
+        for f in root.iter("Function"):
+            states = {STATES.index(s) for s in words(f, "states")} if f.get("states") else {OPERATIONAL}
+            self.functions[f.get("name")] = (states, f.get("essential") == "yes")
+        for service in root.iter("CustomService"):
+            for r in service.findall("Request"):
+                states = {STATES.index(s) for s in words(r, "states")} if r.get("states") else {3, SAFE, OPERATIONAL, 6}
+                self.requests[int(service.get("type")), int(r.get("subtype"))] = (r.get("name"), states)
+        for p in root.find("Parameters") if root.find("Parameters") is not None else []:
+            if p.get("writable"):
+                self.writable[p.get("name")] = {STATES.index(s) for s in words(p, "writable")}
+        self.commands = {c.get("subsystem"): set(words(c, "functions")) for c in root.findall("Commands")}
+
+
+def read(mission, installed):
+    root, base = xml.parse(mission).getroot(), mission.parent
+
+    def at(text):
+        return installed / text.removeprefix("@hirosco/") if text.startswith("@hirosco/") else base / text
+
+    supervisor = Subsystem(at(root.find("Supervisor").get("descriptor")))
+    members = []
+    for s in root.findall("Subsystem"):
+        member = Subsystem(at(s.get("descriptor")), s.get("name"))
+        for c in s.findall("Commands"):
+            member.commands[c.get("to")] = member.commands.pop(c.get("subsystem"))
+        members.append(member)
+    return supervisor, members, root.find("Modes").findall("Mode")
+
+
+def expected(sender, addressee, mode, service, subtype, request, supervisor):
+    """States in which it is permitted, those in which it is forwarded past what waits, those that remain in a change of mode."""
+    ground, on_board, to_supervisor = sender == "ground", sender is supervisor, addressee is supervisor
+    function = request if service == 8 and " " not in request else None
+    target = STATES.index(request.split()[1]) if request.startswith("SET_STATE ") else None
+    plain = function or (addressee.requests.get((service, subtype), (None,))[0])
+    if service == 129 and not to_supervisor:
+        return NEVER, NEVER, NEVER
+    if service == 128 and not on_board:
+        return NEVER, NEVER, NEVER
+    if ground and to_supervisor and (target is not None or function == "CONFIGURE"):
+        return NEVER, NEVER, NEVER
+    if not ground and not on_board:
+        declared = plain in sender.commands.get(addressee.name, ())
+        if not declared and not (to_supervisor and function == "SAFE_ALL"):
+            return NEVER, NEVER, NEVER
+    # What is essential passes everywhere, whoever may ask for it at all.
+    essential = NEVER
+    if service == 129 or (service, subtype) == (17, 1) or addressee.functions.get(function, (None, False))[1]:
+        essential = ALWAYS
+    elif target is not None and STATES[target] in ("ErrorOperational", "PostOperational"):
+        essential = ALWAYS
+    elif target == SAFE:
+        essential = {OPERATIONAL}
+    elif target == 0 and on_board:
+        essential = ALWAYS
+    if on_board:
+        return ALWAYS, essential, ALWAYS
+    # The rest is the mode's to open and the state's to permit.
+    states = ALWAYS
+    if function in addressee.functions:
+        states = addressee.functions[function][0]
+    elif (service, subtype) in addressee.requests:
+        states = addressee.requests[service, subtype][1]
+    elif (service, subtype) == (17, 128):
+        states = {SAFE}
+    parameter = request.removeprefix("set ") if service == 20 and subtype == 3 else None
+    if parameter is not None:
+        states = addressee.writable.get(parameter, NEVER)
+    ours = [p for p in mode.findall("Permit") if p.get("subsystem") in ("*", addressee.name)]
+    called = "SET_STATE" if target is not None else plain
+    opened = any(str(service) in words(p, "services") or (called and {"*", called} & set(words(p, "functions"))) for p in ours)
+    if parameter is not None:
+        opened = opened and any({"*", parameter} & set(words(p, "parameters")) for p in ours)
+    bound = states if opened else NEVER
+    acts = service == 8 or service >= 192 or parameter is not None or states != ALWAYS
+    return bound | essential, essential, (NEVER if acts else bound) | essential
+
+
+def places(text):
+    assert len(text) == 10 and all(c in (".", str(i)) for i, c in enumerate(text)), text
+    return {i for i, c in enumerate(text) if c != "."}
+
+
+def requests_of(addressee, seen_parameters):
+    """Everything that can be asked of it, as (service, subtype, its name in the table or None for a framework's request)."""
+    asked = {(service, subtype, None) for service, subtypes in SERVICES.items() for subtype in subtypes}
+    asked |= {(8, 1, f"SET_STATE {state}") for state in STATES} | {(8, 1, "CONFIGURE")}
+    asked |= {(8, 1, name) for name in addressee.functions} | {(20, 3, f"set {name}") for name in seen_parameters}
+    return asked | {(*key, None) for key in addressee.requests}
+
+
+def compare(hirosco, mission, installed, tampered=lambda modes: None):
+    supervisor, members, modes = read(mission, installed)
+    tampered(modes)
+    table = subprocess.run([hirosco, "permissions", mission, "--csv"], capture_output=True, text=True, check=True).stdout
+    rows = list(csv.DictReader(table.splitlines()))
+    everybody = {s.name: s for s in [supervisor, *members]}
+    senders = {"ground", supervisor.name} | {m.name for m in members if m.commands}
+    assert {r["sender"] for r in rows} == senders and {r["mode"] for r in rows} == {m.get("name") for m in modes}
+    cells, permitted, asked = 0, 0, {}
+    for row in rows:
+        mode = next(m for m in modes if m.get("name") == row["mode"])
+        sender = "ground" if row["sender"] == "ground" else everybody[row["sender"]]
+        service, subtype = int(row["service"]), int(row["subtype"])
+        addressee = everybody[row["addressee"]]
+        told = tuple(places(row[column]) for column in ("permitted", "essential", "in_change"))
+        want = expected(sender, addressee, mode, service, subtype, row["request"], supervisor)
+        # Whether something goes past what waits says nothing of what is refused.
+        assert told == (want[0], want[1] & want[0], want[2]), f"{mission.parent.name}: {row}: expected {want}"
+        own_name = service in (8, 20) and (service, subtype) != (20, 1)
+        asked.setdefault((row["mode"], row["sender"], row["addressee"]), []).append(
+            (service, subtype, row["request"] if own_name else None))
+        cells, permitted = cells + 10, permitted + len(told[0])
+    for m in modes:
+        for s in senders:
+            for a in everybody.values():
+                got = asked[m.get("name"), s, a.name]
+                parameters = {name.removeprefix("set ") for service, subtype, name in got if (service, subtype) == (20, 3)}
+                assert parameters >= set(a.writable), (a.name, parameters)
+                assert len(got) == len(set(got)) and set(got) == requests_of(a, parameters), (m.get("name"), s, a.name)
+    assert 0 < permitted < cells
+    return cells, permitted
+
+
+def permit_less(modes):
+    """Takes one word from what one mode permits."""
+    permit = next(p for m in reversed(modes) for p in m.findall("Permit") if "functions" in p.attrib)
+    permit.set("functions", " ".join(permit.get("functions").split()[1:]))
+
+
+def main():
+    root = pathlib.Path(__file__).resolve().parents[2]
+    for mission in sys.argv[2:]:
+        cells, permitted = compare(sys.argv[1], root / mission, root)
+        try:
+            compare(sys.argv[1], root / mission, root, permit_less)
+        except AssertionError:
+            print(f"{mission}: {cells} cells, {permitted} permitted, all as its files say, and one word less is seen")
+        else:
+            sys.exit(f"{mission}: one word less in a mode's permits is not seen")
+
+
+main()
