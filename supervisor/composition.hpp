@@ -25,6 +25,7 @@
 #include "supervisor/supervision/status/housekeeping.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
+#include "supervisor/supervision/subsystem_handling/restoration.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::supervisor {
@@ -61,35 +62,40 @@ struct SupervisorParts final : OwnSubsystem::Author {
   LinkGraph graph{craft.mission};
   Unanswered unanswered;
   Restarts restarts;
+  CommandedStates commanded{craft, own};
   Traffic traffic;
   GroundRoute ground_route;
   // data handling
-  Telecommands telecommands{{craft, own, graph, power, unanswered, traffic, ground_route}};
+  Telecommands telecommands{{craft, own, graph, power, unanswered, traffic, ground_route, commanded}};
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
   Replies replies{craft, unanswered};
-  Telemetry telemetry{
-      craft, own, traffic, ground_route, {&traffic, &replies, &reception, &power, &own_telecommands, &links}};
+  Telemetry telemetry{craft,
+                      own,
+                      traffic,
+                      ground_route,
+                      {&traffic, &commanded, &replies, &reception, &power, &own_telecommands, &links}};
   Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
   // modes and procedures
-  Means means{craft, own_telecommands, graph, restarts, under_way};
+  Means means{craft, own_telecommands, graph, restarts, under_way, commanded};
   Commissioning commissioning{means};
   Modes modes{{means, own, power.ledger(), commissioning}};
   UnderWay under_way{commissioning, modes};
   Shutdown shutdown{{means, own, under_way, telecommands}};
   // event handling
   Reactions reactions{means, own};
-  SafeAll safe_all{craft, own, own_telecommands, under_way};
+  SafeAll safe_all{craft, own, own_telecommands, under_way, restoration};
   // subsystem handling, status
   GroundLinkCare ground_link{means, under_way};
-  Processes processes{
-      {craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link, restarts}};
+  Restoration restoration{means, own, under_way};
+  Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
+                       restarts, restoration}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 9> watches{&processes, &ground_link,  &housekeeping,     &power,  &links,
-                                &log_watch, &telecommands, &own_telecommands, &replies};
+  std::array<Watch*, 10> watches{&processes, &ground_link, &restoration,  &housekeeping,     &power,
+                                 &links,     &log_watch,   &telecommands, &own_telecommands, &replies};
 };
 
 }  // namespace hirosco::supervisor

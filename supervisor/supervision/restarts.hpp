@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
@@ -23,6 +24,7 @@ class Restarts {
     std::size_t limit{0};
     Duration within{};
     Duration pause{};
+    descriptor::State most{descriptor::State::Offline};  ///< as far as it comes back to what it was commanded to be
   };
   static constexpr Duration longest_pause = std::chrono::seconds{10};
   static constexpr Duration shortest_retry = std::chrono::milliseconds{100};
@@ -31,7 +33,9 @@ class Restarts {
   bool plan(std::uint16_t apid, const Rule& rule, TimePoint now, AtLimit at_limit = AtLimit::StaysDown) {
     std::vector<TimePoint>& before = history_[apid];
     std::erase_if(before, [&](TimePoint at) { return now - at >= rule.within; });
+    most_.erase(apid);
     if (before.size() >= rule.limit && at_limit == AtLimit::StaysDown) return false;
+    most_[apid] = rule.most;
     Duration pause = rule.pause;
     for (std::size_t i = 0; i < before.size() && pause < longest_pause; ++i) pause *= 2;
     pause = std::min(pause, std::max(longest_pause, rule.pause));
@@ -56,11 +60,17 @@ class Restarts {
     }
     return std::nullopt;
   }
+  /// Of the newest plan(), once; empty: it stays down, or nothing was planned.
+  [[nodiscard]] std::optional<descriptor::State> take_most(std::uint16_t apid) {
+    const auto found = most_.extract(apid);
+    return found ? std::optional{found.mapped()} : std::nullopt;
+  }
   void cancel() { due_.clear(); }
 
  private:
   std::map<std::uint16_t, std::vector<TimePoint>> history_;
   std::map<std::uint16_t, TimePoint> due_;
+  std::map<std::uint16_t, descriptor::State> most_;
   std::map<std::uint16_t, Duration> pauses_;  ///< before the newest start
 };
 

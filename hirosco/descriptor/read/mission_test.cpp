@@ -103,9 +103,22 @@ TEST(MissionDescriptor, APlanHasItsStepsInTheirOrderAndTheValuesThatAreNotGiven)
   const auto& steps = reading.value->plans.at(2).steps;
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_EQ(steps[0].kind, "restart");
-  EXPECT_EQ(steps[0].values, (std::vector<std::int64_t>{5, 60, 20}));
+  EXPECT_EQ(steps[0].values, (std::vector<std::int64_t>{5, 60, 20, 0}));
   EXPECT_EQ(steps[1].kind, "set_state");
   EXPECT_EQ(steps[1].values, (std::vector<std::int64_t>{0}));
+}
+
+TEST(MissionDescriptor, ARestartSaysAsFarAsItComesBack) {
+  for (const auto& [word, state] :
+       {std::pair{"Offline", State::Offline}, std::pair{"PreOperational", State::PreOperational},
+        std::pair{"SafeOperational", State::SafeOperational}, std::pair{"commanded", State::Operational}}) {
+    const std::string plan = std::string{R"(<When event="PROCESS_DIED"/><Do action="restart" to=")"} + word + R"("/>)";
+    const auto reading =
+        read_mission(data / "mission.xml",
+                     overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)", plan)}}));
+    ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+    EXPECT_EQ(reading.value->plans.at(2).steps.at(0).values.at(3), static_cast<std::int64_t>(state)) << word;
+  }
 }
 
 struct Mistake {
@@ -190,6 +203,8 @@ constexpr Mistake mistakes[] = {
     {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="FLYWHEEL" event="@LOG_STORE"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" limit="@3"/>)"},
+    {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" to="@commanded"/>)"},
+    {"E0113", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" to="@Operational"/>)", "commanded"},
     {"E0103", R"(<Do action="log"/>)", R"(<Do action="log" @lmit="3"/>)"},
     {"E0105", R"(<Do action="log"/>)", R"(@<Do action="set_state"/>)"},
     {"E0112", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" limit="@0"/>)"},

@@ -397,6 +397,16 @@ std::int64_t MissionReader::read_value(Attributes& attributes, const StepAttribu
   switch (described.kind) {
     case StepAttribute::Kind::SteadyState:
       return static_cast<std::int64_t>(read_steady_state(attributes, described.name, State::SafeOperational));
+    case StepAttribute::Kind::Word: {
+      const auto* at = attributes.optional(described.name);
+      if (at == nullptr) return fallback;
+      const auto word = std::ranges::find(described.words, at->value, &StepAttribute::Word::text);
+      if (word != described.words.end()) return word->value;
+      std::vector<std::string_view> known;
+      for (const auto& each : described.words) known.push_back(each.text);
+      attributes.unknown_word(*at, at->value, known);
+      return fallback;
+    }
     case StepAttribute::Kind::Number: break;
   }
   return attributes.integer_or(described.name, described.least, described.most, fallback);

@@ -9,6 +9,7 @@
 
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
+#include "supervisor/supervision/commanded_states.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 
@@ -265,6 +266,7 @@ void Telecommands::start(const WaitingForDisk::Telecommand& waited) {
   pus::Verification& verification = parts_.own.verification();
   verification.accepted(waited.request);
   verification.started(waited.request);
+  parts_.commanded.overrule(waited.apid);
   if (start_ && start_(waited.apid)) return verification.completed(waited.request);
   FailureNotice notice{FailureCode::ExecutionError};
   verification.completion_failed(waited.request,
@@ -290,8 +292,10 @@ void Telecommands::forward(const Outgoing& outgoing) {
     return reject({.packet = packet, .origin = origin}, request,
                   channel == nullptr ? is_down() : FailureNotice{FailureCode::QueueFull});
   }
-  if (const auto telecommand = pus::TelecommandView::parse(packet); !to_itself && telecommand)
+  if (const auto telecommand = pus::TelecommandView::parse(packet); !to_itself && telecommand) {
     parts_.unanswered.forwarded(apid, *telecommand, craft_.now);
+    parts_.commanded.forwarded(apid, *telecommand, origin);
+  }
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandForwarded,
                                        .source = supervisor_apid,
                                        .peer = apid,

@@ -21,6 +21,7 @@
 
 namespace hirosco::supervisor {
 
+class CommandedStates;
 class PowerHandling;
 
 /// A telecommand as it came in.
@@ -42,6 +43,7 @@ class Telecommands final : public Watch, public Accounts {
     Unanswered& unanswered;
     Traffic& traffic;
     GroundRoute& ground_route;
+    CommandedStates& commanded;
   };
   explicit Telecommands(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

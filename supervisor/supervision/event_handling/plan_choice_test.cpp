@@ -79,7 +79,7 @@ TEST(PlanChoice, OfEquallySpecificPlansTheFirstIsTaken) {
 TEST(PlanChoice, APlansStepsAreHandedOnInTheirOrder) {
   descriptor::Mission mission;
   mission.plans = {plan("stop", "HOT", "", "", {})};
-  mission.plans[0].steps = {{"restart", {3, 60, 100}}, {"set_state", {7}}};
+  mission.plans[0].steps = {{"restart", {3, 60, 100, 0}}, {"set_state", {7}}};
   const Reaction reaction = choose_reaction(mission, raised);
   ASSERT_EQ(reaction.steps.size(), 2U);
   EXPECT_EQ(reaction.steps[0].kind, "restart");

@@ -133,7 +133,7 @@ TEST_F(ReactionsTest, AfterAPlanTheNextEventBeginsItAgain) {
 }
 
 TEST_F(ReactionsTest, NobodyIsCommandedTwiceOnItsWayDownButADeathIsNeverSwallowed) {
-  plan("PROCESS_DIED", {{"restart", {1, 60, 0}}, {"shut_down_network"}});
+  plan("PROCESS_DIED", {{"restart", {1, 60, 0, 0}}, {"shut_down_network"}});
   parts.graph.set_up(1, true);
   event(arm, burning, Severity::High);
   static_cast<void>(texts(hand));
@@ -176,7 +176,7 @@ TEST_F(ReactionsTest, AStopThatIsTheLastStepOfAPlanIsDoneAtOnceAllTheSame) {
 }
 
 TEST_F(ReactionsTest, ARestartAnswersDeathsOnlyAndOfThoseNoMoreThanItsLimit) {
-  plan("", {{"restart", {1, 60, 0}}});
+  plan("", {{"restart", {1, 60, 0, 0}}});
   event(arm, burning, Severity::High);
   EXPECT_EQ(parts.restarts.take_due(clock.now()), std::nullopt);
   craft.member(arm)->died();

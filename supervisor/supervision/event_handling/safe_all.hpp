@@ -18,8 +18,8 @@ namespace hirosco::supervisor {
 /// was to stop. Thread: the supervisor's; the stop itself is the guard's.
 class SafeAll {
  public:
-  SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Undertaking& under_way)
-      : craft_{craft}, own_{own}, desk_{desk}, under_way_{under_way} {}
+  SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Undertaking& under_way, Undertaking& restoration)
+      : craft_{craft}, own_{own}, desk_{desk}, under_way_{under_way}, restoration_{restoration} {}
 
   void provide();
   /// SAFE_ALL, carried out where it is received.
@@ -42,6 +42,7 @@ class SafeAll {
   OwnSubsystem& own_;
   CommandDesk& desk_;
   Undertaking& under_way_;
+  Undertaking& restoration_;
   std::vector<Pending> pending_;
 };
 

@@ -27,6 +27,17 @@ void WayThere::add(const descriptor::Subsystem& subsystem, const descriptor::Con
   if (to >= State::Operational) operational_.push_back(to_state(subsystem.id, State::Operational));
 }
 
+void WayThere::initialise(const descriptor::Subsystem& subsystem, const Present& from) {
+  if (from.state == State::Operational) stop_.push_back(to_state(subsystem.id, State::SafeOperational));
+  if (from.state != State::PreOperational) pre_.push_back(to_state(subsystem.id, State::PreOperational));
+}
+
+void WayThere::recall(std::uint16_t apid, State to) {
+  recall_.push_back(step("recall", apid, {static_cast<std::int64_t>(State::PreOperational)}));
+  if (to >= State::SafeOperational)
+    recall_safe_.push_back(step("recall", apid, {static_cast<std::int64_t>(State::SafeOperational)}));
+}
+
 void WayThere::down(const descriptor::Subsystem& subsystem, const Present& from) {
   if (from.state == State::Operational) stop_.push_back(to_state(subsystem.id, State::SafeOperational));
   pre_.push_back(to_state(subsystem.id, State::Offline));

@@ -25,6 +25,10 @@ class WayThere {
  public:
   void add(const descriptor::Subsystem& subsystem, const descriptor::Configuration& configuration, const Present& from,
            State to);
+  /// To Pre-Operational, where no configuration is in force.
+  void initialise(const descriptor::Subsystem& subsystem, const Present& from);
+  /// What it was set to by telecommand, on its way to this state (docs/adr/0076).
+  void recall(std::uint16_t apid, State to);
   /// To Offline.
   void down(const descriptor::Subsystem& subsystem, const Present& from);
   /// A link of the mission; made between Pre-Operational and Safe-Operational (docs/adr/0021).
@@ -32,11 +36,11 @@ class WayThere {
   /// At the end.
   void enter(const descriptor::Mode& mode);
   [[nodiscard]] std::vector<Stage> stages() const {
-    return {stop_, post_, pre_, configure_, link_, safe_, self_test_, operational_, mode_};
+    return {stop_, post_, pre_, configure_, recall_, link_, safe_, recall_safe_, self_test_, operational_, mode_};
   }
 
  private:
-  Stage stop_, post_, pre_, configure_, link_, safe_, self_test_, operational_, mode_;
+  Stage stop_, post_, pre_, configure_, recall_, link_, safe_, recall_safe_, self_test_, operational_, mode_;
 };
 
 struct ModePlan {

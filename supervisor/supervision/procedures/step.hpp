@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "supervisor/supervision/command_desk.hpp"
+#include "supervisor/supervision/commanded_states.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/restarts.hpp"
@@ -23,6 +24,7 @@ struct Means {
   const LinkGraph& links;
   Restarts& restarts;
   Undertaking& under_way;
+  CommandedStates& commanded;
 };
 
 /// Why a plan runs; empty where none does.

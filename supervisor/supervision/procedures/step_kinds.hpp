@@ -13,6 +13,7 @@
 #include "supervisor/supervision/procedures/steps/enter_mode.hpp"
 #include "supervisor/supervision/procedures/steps/link.hpp"
 #include "supervisor/supervision/procedures/steps/log.hpp"
+#include "supervisor/supervision/procedures/steps/recall.hpp"
 #include "supervisor/supervision/procedures/steps/restart.hpp"
 #include "supervisor/supervision/procedures/steps/self_test.hpp"
 #include "supervisor/supervision/procedures/steps/set_state.hpp"
@@ -21,9 +22,9 @@
 namespace hirosco::supervisor {
 
 /// All kinds of steps, here and nowhere else. Those that a mission's plans may name have a word in plan_steps.hpp besides.
-inline constexpr std::array step_kinds{&steps::log,       &steps::set_state, &steps::shut_down_network,
-                                       &steps::restart,   &steps::configure, &steps::link,
-                                       &steps::self_test, &steps::enter_mode};
+inline constexpr std::array step_kinds{&steps::log,       &steps::set_state,  &steps::shut_down_network,
+                                       &steps::restart,   &steps::configure,  &steps::link,
+                                       &steps::self_test, &steps::enter_mode, &steps::recall};
 
 /// Place in the table; its size when there is none of this name. (With sanitizers a comparison with null is no constant.)
 [[nodiscard]] constexpr std::size_t place_of_step_kind(std::string_view name) noexcept {

@@ -11,6 +11,7 @@
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
+#include "supervisor/supervision/subsystem_handling/restoration.hpp"
 
 namespace hirosco::supervisor {
 
@@ -99,7 +100,9 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();
   parts_.telecommands.outcome_unknown(apid);
+  parts_.restoration.lost(apid);
   parts_.reactions.react(subject, "PROCESS_DIED", Severity::High);
+  parts_.restoration.answered(apid);
   parts_.links.forget(apid);
   parts_.desk.fail_all_to(apid, "process died");
 }
@@ -129,11 +132,12 @@ void Processes::hear_of(Member& subject, GuardFinding::Kind what) {
     case ServiceHangs: tell(" hangs: its service loop stands still"); break;
     case PageDamaged: tell(" hangs: its vital or permit page is damaged"); break;
     case Starves: return tell("'s loops kept the processor from others: they have lost their real-time priority");
-    case Back: return tell(" moves again");
+    case Back: parts_.restoration.recovered(subject.apid()); return tell(" moves again");
     case Killed: return tell(" was ended: it did not come back or had not stopped in time");
     default: return;
   }
   parts_.own.announce("HANG", {static_cast<double>(subject.apid())});
+  parts_.restoration.lost(subject.apid());
   parts_.reactions.react(subject, "HANG", Severity::High);
 }
 

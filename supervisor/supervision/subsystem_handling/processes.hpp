@@ -14,6 +14,7 @@ class LinkCommands;
 class OwnTelecommands;
 class Reactions;
 class Reception;
+class Restoration;
 class SafeAll;
 class Telecommands;
 
@@ -32,6 +33,7 @@ class Processes final : public Watch {
     OwnTelecommands& desk;
     GroundLinkCare& ground_link;
     Restarts& restarts;
+    Restoration& restoration;
   };
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

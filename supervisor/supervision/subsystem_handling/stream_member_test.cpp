@@ -82,7 +82,7 @@ struct StreamMemberTest : ::testing::Test, ProcessLauncher, Observer {
     descriptor::Plan again;
     again.name = "again";
     again.event = "PROCESS_DIED";
-    again.steps = {{"restart", {3, 60, 100}}};
+    again.steps = {{"restart", {3, 60, 100, 0}}};
     made.plans = {again};
     return made;
   }();

@@ -4,21 +4,24 @@
 
 #include <chrono>
 
+#include "hirosco/descriptor/model/plan_steps.hpp"
 #include "supervisor/supervision/procedures/step.hpp"
 
 namespace hirosco::supervisor::steps {
 
 /// Its subject, whose process ended, is started again. Values: how often, within how many seconds, after how many
-/// milliseconds; the limit does not hold for the ground link (docs/adr/0043).
+/// milliseconds, and up to which state it comes back to what it was commanded to be (docs/adr/0076); the limit does not hold for the
+/// ground link (docs/adr/0043).
 inline constexpr StepKind restart{
     .name = "restart",
-    .values = 3,
+    .values = 4,
     .run =
         [](const ProcedureStep& step, const Means& means, CommandDone done) {
           using enum Restarts::AtLimit;
           const Restarts::Rule rule{.limit = static_cast<std::size_t>(step.values[0]),
                                     .within = std::chrono::seconds{step.values[1]},
-                                    .pause = std::chrono::milliseconds{step.values[2]}};
+                                    .pause = std::chrono::milliseconds{step.values[2]},
+                                    .most = static_cast<State>(step.values[descriptor::restart_to])};
           const Member* subject = means.craft.member(step.subject);
           const bool spared = subject != nullptr && means.craft.is_ground_link(*subject);
           if (!means.restarts.plan(step.subject, rule, means.craft.now, spared ? GoesOn : StaysDown))

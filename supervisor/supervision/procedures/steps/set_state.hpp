@@ -37,6 +37,7 @@ inline constexpr StepKind set_state{
           const State state = state_step::wanted(step);
           // Again: an earlier step of the same plan may have let it go since.
           state_step::fence(step, means);
+          if (!step.occasion.plan.empty()) means.commanded.lower(step.subject, state, step.occasion.event);
           if (!step.occasion.event.empty())
             means.craft.tell("plan " + step.occasion.plan + ": " + means.craft.name_of(step.subject) + " to " +
                                  std::string{to_text(state)} + " because of " + step.occasion.event,

@@ -64,6 +64,7 @@ void shut_down(const ProcedureStep& step, const Means& means, const CommandDone&
   for (const std::uint16_t apid : members) {
     Member* member = means.craft.member(apid);
     if (member == nullptr || !member->alive()) continue;
+    means.commanded.lower(apid, State::Offline, step.occasion.event);
     if (member->recovery.goes_down()) bring_down(*member, means);
   }
   done(true, {});

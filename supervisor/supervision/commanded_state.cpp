@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/commanded_state.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
+#include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st20_parameter/parameter_service.hpp"
+#include "supervisor/supervision/data_handling/permission.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using Structures = pus::HousekeepingService;
+using EventReports = pus::EventService;
+using ParameterValues = pus::ParameterService;
+using descriptor::Subsystem;
+
+/// Of the application data of one telecommand that brings settings back.
+constexpr std::size_t most_setting_octets = 800;
+
+/// How far up it is: what is neither Offline nor Safe-Operational nor Operational has the rank of Pre-Operational.
+[[nodiscard]] constexpr int rank(State state) noexcept {
+  switch (state) {
+    case State::Offline: return 0;
+    case State::SafeOperational: return 2;
+    case State::Operational: return 3;
+    default: return 1;
+  }
+}
+[[nodiscard]] constexpr State on_the_way_up(State state) noexcept {
+  return rank(state) == 1 ? State::PreOperational : state;
+}
+
+[[nodiscard]] std::vector<std::uint16_t> ids_of(Octets data, std::size_t octets_each) {
+  std::vector<std::uint16_t> ids;
+  for (std::size_t at = 1; at + octets_each <= data.size(); at += octets_each)
+    ids.push_back(OctetReader{data.subspan(at, 2)}.get<std::uint16_t>());
+  return ids;
+}
+
+[[nodiscard]] std::vector<std::byte> copy(Octets octets) { return {octets.begin(), octets.end()}; }
+
+/// N and what follows, N times.
+[[nodiscard]] std::vector<std::byte> list_of_one(std::uint16_t id) {
+  std::vector<std::byte> data(3);
+  OctetWriter{data}.put(std::uint8_t{1}).put(id);
+  return data;
+}
+
+[[nodiscard]] bool sets_a_protection(const descriptor::Function& function, const Subsystem& subsystem) {
+  return std::ranges::any_of(function.arguments, [&](const descriptor::Function::Argument& argument) {
+    const std::string_view name = std::string_view{argument.of}.substr(0, argument.of.find('.'));
+    const auto* parameter = subsystem.find_parameter(name);
+    return !name.empty() && parameter != nullptr && parameter->protection;
+  });
+}
+
+[[nodiscard]] bool is_parameter_write(const pus::TelecommandView& telecommand) {
+  return telecommand.service() == ParameterValues::service_type && telecommand.subtype() == ParameterValues::set_values;
+}
+[[nodiscard]] bool is_event_switch(const pus::TelecommandView& telecommand) {
+  return telecommand.service() == EventReports::service_type &&
+         (telecommand.subtype() == EventReports::enable_reports ||
+          telecommand.subtype() == EventReports::disable_reports);
+}
+[[nodiscard]] bool is_definition(const pus::TelecommandView& telecommand) {
+  constexpr std::array subtypes{Structures::create_structure,  Structures::delete_structures,
+                                Structures::enable_periodic,   Structures::disable_periodic,
+                                Structures::append_parameters, Structures::modify_interval};
+  return telecommand.service() == Structures::service_type &&
+         std::ranges::find(subtypes, telecommand.subtype()) != subtypes.end();
+}
+
+}  // namespace
+
+void CommandedState::lower(State most) noexcept {
+  if (rank(most) < rank(state_)) state_ = on_the_way_up(most);
+}
+
+bool CommandedState::concerns(const pus::TelecommandView& telecommand, const Subsystem& subsystem) {
+  if (is_parameter_write(telecommand) || is_event_switch(telecommand) || is_definition(telecommand)) return true;
+  const auto call = called_function(telecommand);
+  if (!call) return false;
+  if (call->name == "SET_STATE" || call->name == "CONFIGURE") return call->first_argument.has_value();
+  const auto* function = subsystem.find_function(call->name);
+  return function != nullptr && sets_a_protection(*function, subsystem);
+}
+
+Kept CommandedState::completed(const pus::TelecommandView& telecommand, const Subsystem& subsystem) {
+  const Octets data = telecommand.application_data();
+  if (is_parameter_write(telecommand)) set_parameters(data, subsystem);
+  else if (is_event_switch(telecommand)) switch_events(data, telecommand.subtype() == EventReports::enable_reports);
+  else if (is_definition(telecommand)) return define(telecommand.subtype(), data, subsystem);
+  else if (const auto call = called_function(telecommand)) {
+    if (call->name == "SET_STATE" && call->first_argument) enter(static_cast<State>(*call->first_argument));
+    else if (call->name == "CONFIGURE" && call->first_argument) configure(*call->first_argument, subsystem);
+    else if (const auto* function = subsystem.find_function(call->name); function != nullptr)
+      protection_was_set_ = protection_was_set_ || sets_a_protection(*function, subsystem);
+  } else return Kept::NoMatter;
+  return Kept::Yes;
+}
+
+/// What a state gives back is gone with it: in Offline the values, below Safe-Operational, but by CONFIGURE, the configuration.
+void CommandedState::enter(State state) noexcept {
+  const bool from_offline = state_ == State::Offline;
+  // Error- and Post-Operational are stages of a way down: what was commanded before that is not below them.
+  if (state == State::ErrorOperational || state == State::PostOperational) lower(state);
+  else state_ = state;
+  const bool holds_configuration =
+      state == State::SafeOperational || state == State::Operational || state == State::ErrorOperational;
+  if (holds_configuration) return;
+  configuration_ = 0;
+  structures_.clear();
+  if (state != State::Offline && !from_offline) return;
+  parameters_.clear();
+  protection_was_set_ = false;
+}
+
+void CommandedState::configure(std::uint8_t id, const Subsystem& subsystem) {
+  if (configuration_ == id) return;  // it was in force: nothing has happened
+  configuration_ = id;
+  structures_.clear();
+  const auto* configuration = subsystem.find_configuration(id);
+  if (configuration == nullptr) return;
+  std::erase_if(parameters_, [&](const ParameterValue& set) {
+    const auto place = descriptor::find_parameter(subsystem, set.id);
+    return place && std::ranges::any_of(configuration->initial, [&](const auto& initial) {
+             const auto& to = initial.parameter;
+             return to.parameter == place->parameter && (!to.member || !place->member || to.member == place->member);
+           });
+  });
+}
+
+void CommandedState::set_parameters(Octets data, const Subsystem& subsystem) {
+  OctetReader reader{data};
+  const auto count = reader.get<std::uint8_t>();
+  for (unsigned i = 0; i < count && reader.good(); ++i) {
+    const auto id = reader.get<std::uint32_t>();
+    const auto place = descriptor::find_parameter(subsystem, id);
+    if (!reader.good() || !place) return;
+    const descriptor::Parameter& parameter = subsystem.parameters[place->parameter];
+    const Octets value =
+        reader.get(place->member ? parameter.members[*place->member].field.octets() : parameter.octets());
+    if (!reader.good()) return;
+    // A whole structure takes the place of its members.
+    std::erase_if(parameters_, [&](const ParameterValue& set) {
+      const auto earlier = descriptor::find_parameter(subsystem, set.id);
+      return set.id == id || (!place->member && earlier && earlier->parameter == place->parameter);
+    });
+    parameters_.push_back({id, copy(value)});
+  }
+}
+
+void CommandedState::switch_events(Octets data, bool enabled) {
+  for (const std::uint16_t id : ids_of(data, 2))
+    if (enabled) silent_events_.erase(id);
+    else silent_events_.insert(id);
+}
+
+Kept CommandedState::define(std::uint8_t subtype, Octets data, const Subsystem& subsystem) {
+  if (subtype == Structures::create_structure || subtype == Structures::append_parameters) {
+    const auto id = OctetReader{data}.get<std::uint16_t>();
+    const bool creates = subtype == Structures::create_structure;
+    if (!creates && !is_defined(id, subsystem)) return Kept::NoRoom;
+    if (definition_octets() + data.size() > most_definition_octets) return Kept::NoRoom;
+    if (creates) std::erase_if(structures_, [id](const Structure& each) { return each.id == id; });
+    if (creates) structure(id).created = copy(data);
+    else structure(id).appended.push_back(copy(data));
+    return Kept::Yes;
+  }
+  const bool intervals = subtype == Structures::modify_interval;
+  bool all = true;
+  const auto ids = ids_of(data, intervals ? 6 : 2);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (subtype == Structures::delete_structures) {
+      std::erase_if(structures_, [&](const Structure& each) { return each.id == ids[i]; });
+      continue;
+    }
+    if (!is_defined(ids[i], subsystem)) {
+      all = false;  // its definition had no room
+      continue;
+    }
+    Structure& one = structure(ids[i]);
+    if (intervals) one.interval = OctetReader{data.subspan(1 + 6 * i + 2, 4)}.get<std::uint32_t>();
+    else one.periodic = subtype == Structures::enable_periodic;
+  }
+  return all ? Kept::Yes : Kept::NoRoom;
+}
+
+bool CommandedState::is_defined(std::uint16_t id, const Subsystem& subsystem) const {
+  const auto has = [id](const std::vector<descriptor::HousekeepingStructure>& all) {
+    return std::ranges::find(all, id, &descriptor::HousekeepingStructure::id) != all.end();
+  };
+  const auto* configuration = subsystem.find_configuration(configuration_);
+  if (has(subsystem.housekeeping) || (configuration != nullptr && has(configuration->housekeeping))) return true;
+  return std::ranges::any_of(structures_,
+                             [id](const Structure& each) { return each.id == id && !each.created.empty(); });
+}
+
+CommandedState::Structure& CommandedState::structure(std::uint16_t id) {
+  const auto found = std::ranges::find(structures_, id, &Structure::id);
+  if (found != structures_.end()) return *found;
+  structures_.push_back({.id = id});
+  return structures_.back();
+}
+
+std::size_t CommandedState::definition_octets() const noexcept {
+  std::size_t sum = 0;
+  for (const Structure& each : structures_) {
+    sum += each.created.size();
+    for (const auto& part : each.appended) sum += part.size();
+  }
+  return sum;
+}
+
+std::vector<SettingCommand> CommandedState::settings_for(State state, const Subsystem& subsystem) const {
+  std::vector<SettingCommand> all;
+  for (const ParameterValue& set : parameters_) {
+    const auto place = descriptor::find_parameter(subsystem, set.id);
+    if (!place) continue;
+    const descriptor::Parameter& parameter = subsystem.parameters[place->parameter];
+    const bool earlier = state == State::SafeOperational && parameter.writable_in(State::PreOperational);
+    if (earlier || !parameter.writable_in(state)) continue;
+    const bool fits = !all.empty() && all.back().data.size() + 4 + set.value.size() <= most_setting_octets &&
+                      all.back().data.front() != std::byte{255};
+    if (!fits) all.push_back({ParameterValues::service_type, ParameterValues::set_values, {std::byte{0}}});
+    std::vector<std::byte>& data = all.back().data;
+    data.front() = static_cast<std::byte>(std::to_integer<unsigned>(data.front()) + 1);
+    const std::size_t at = data.size();
+    data.resize(at + 4);
+    OctetWriter{MutableOctets{data}.subspan(at)}.put(set.id);
+    data.insert(data.end(), set.value.begin(), set.value.end());
+  }
+  if (state != State::PreOperational) return all;
+  for (const std::uint16_t id : silent_events_)
+    all.push_back({EventReports::service_type, EventReports::disable_reports, list_of_one(id)});
+  const auto say = [&all](std::uint8_t subtype, std::vector<std::byte> data) {
+    all.push_back({Structures::service_type, subtype, std::move(data)});
+  };
+  for (const Structure& each : structures_) {
+    if (!each.created.empty()) say(Structures::create_structure, each.created);
+    // What is on is not lengthened; its interval is one that all it will have can keep.
+    else if (!each.appended.empty()) say(Structures::disable_periodic, list_of_one(each.id));
+    if (each.interval) {
+      std::vector<std::byte> data = list_of_one(each.id);
+      data.resize(7);
+      OctetWriter{MutableOctets{data}.subspan(3)}.put(*each.interval);
+      say(Structures::modify_interval, std::move(data));
+    }
+    for (const auto& part : each.appended) say(Structures::append_parameters, part);
+    if (each.periodic)
+      say(*each.periodic ? Structures::enable_periodic : Structures::disable_periodic, list_of_one(each.id));
+  }
+  return all;
+}
+
+std::vector<std::string> CommandedState::out_of_reach(const Subsystem& subsystem) const {
+  std::vector<std::string> names;
+  for (const ParameterValue& set : parameters_)
+    if (const auto place = descriptor::find_parameter(subsystem, set.id)) {
+      const descriptor::Parameter& parameter = subsystem.parameters[place->parameter];
+      if (!parameter.writable_in(State::PreOperational) && !parameter.writable_in(State::SafeOperational))
+        names.push_back(parameter.field.name);
+    }
+  return names;
+}
+
+}  // namespace hirosco::supervisor

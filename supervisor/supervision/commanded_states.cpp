@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/commanded_states.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "hirosco/descriptor/model/plan_steps.hpp"
+#include "supervisor/supervision/data_handling/permission.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+/// The state that it asks for; empty: it asks for none.
+[[nodiscard]] std::optional<State> state_asked(const pus::TelecommandView& telecommand) {
+  const auto call = called_function(telecommand);
+  if (!call || call->name != "SET_STATE" || !call->first_argument) return std::nullopt;
+  return static_cast<State>(*call->first_argument);
+}
+
+/// Of ST[03] and ST[05] a list, each of which may fail for itself; all others are done whole or not.
+[[nodiscard]] unsigned instructions_of(const pus::TelecommandView& telecommand) {
+  const bool defines = telecommand.service() == 3 && (telecommand.subtype() == 1 || telecommand.subtype() == 29);
+  const bool is_list = (telecommand.service() == 3 && !defines) || telecommand.service() == 5;
+  return is_list && !telecommand.application_data().empty()
+             ? std::to_integer<unsigned>(telecommand.application_data().front())
+             : 1;
+}
+
+/// The states are not numbered by how far up they are: Error-Operational is below what moves.
+[[nodiscard]] bool is_above(State state, State most) {
+  if (state == State::Operational) return most != State::Operational;
+  const bool higher = most == State::SafeOperational || most == State::Operational;
+  return state == State::SafeOperational ? !higher : state == State::PreOperational && most == State::Offline;
+}
+
+/// Nobody is lowered by what its own recovery asks for: what it was commanded to before is what it comes back to.
+[[nodiscard]] bool is_of_a_loss(std::string_view event) {
+  return event == descriptor::event_of_death || event == "HANG";
+}
+
+}  // namespace
+
+bool CommandedStates::in_use() const {
+  const auto brings_back = [](const descriptor::PlanStep& step) {
+    return step.kind == "restart" && step.values.at(descriptor::restart_to) != 0;
+  };
+  return std::ranges::any_of(
+      craft_.mission.plans, [&](const descriptor::Plan& plan) { return std::ranges::any_of(plan.steps, brings_back); });
+}
+
+void CommandedStates::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand, const Origin& origin) {
+  const auto* member = craft_.mission.find_subsystem(apid);
+  if (member == nullptr || !CommandedState::concerns(telecommand, member->subsystem) || !in_use()) return;
+  const auto call = called_function(telecommand);
+  const bool steers = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
+  if (steers && !origin.is_supervisor()) overrule(apid);
+  if (const auto state = state_asked(telecommand)) lower_record(apid, *state);
+  if ((telecommand.ack() & pus::ack_completion) == 0 || open_.size() == most_open)
+    return tell_not_kept(apid, telecommand);
+  open_.push_back({apid, pus::request_of(telecommand), {telecommand.packet().begin(), telecommand.packet().end()}});
+}
+
+void CommandedStates::hear(std::uint16_t from, const pus::TelemetryView& report) {
+  if (report.service() != 1 || open_.empty()) return;
+  const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
+  const bool failed = report.subtype() % 2 == 0 && report.subtype() != 6;
+  if (!failed && report.subtype() != 7) return;
+  const auto found = std::ranges::find_if(open_, [&](const Open& each) {
+    return each.apid == from && each.request.id == id && each.request.source == report.destination();
+  });
+  if (found == open_.end()) return;
+  // One of several instructions has not begun: unless none has, the end comes yet.
+  if (report.subtype() == 4 && ++found->refused < instructions_of(*pus::TelecommandView::parse(found->packet))) return;
+  const Open ended = std::move(*found);
+  open_.erase(found);
+  const auto telecommand = *pus::TelecommandView::parse(ended.packet);
+  const auto& subsystem = craft_.mission.find_subsystem(from)->subsystem;
+  if (!failed) {
+    if (members_[from].commanded.completed(telecommand, subsystem) == Kept::NoRoom) tell_not_kept(from, telecommand);
+  } else if (report.subtype() == 8 && telecommand.service() != 8) {
+    tell_not_kept(from, telecommand);  // part of it may be in force
+  }
+}
+
+void CommandedStates::lower(std::uint16_t apid, State most, std::string_view event) {
+  if (is_of_a_loss(event)) return;
+  if (Member& member = members_[apid]; event.ends_with("_STALE") && !is_just_now(member)) {
+    member.before_loss = member.commanded;
+    member.loss_at = craft_.now;
+  }
+  lower_record(apid, most);
+  if (const auto wanted = wanted_.find(apid); wanted != wanted_.end()) wanted->second.lower(most);
+}
+
+void CommandedStates::lower_record(std::uint16_t apid, State most) {
+  members_[apid].commanded.lower(most);
+  std::erase_if(open_, [&](const Open& each) {
+    if (each.apid != apid) return false;
+    const auto asked = state_asked(*pus::TelecommandView::parse(each.packet));
+    return asked && is_above(*asked, most);
+  });
+}
+
+void CommandedStates::all_stopped() {
+  for (const supervisor::Member& member : craft_.members) {
+    if (craft_.is_ground_link(member)) continue;
+    lower_record(member.apid(), State::SafeOperational);
+    members_[member.apid()].before_loss.reset();
+  }
+}
+
+void CommandedStates::ended(std::uint16_t apid) {
+  members_.erase(apid);
+  std::erase_if(open_, [apid](const Open& each) { return each.apid == apid; });
+}
+
+CommandedState CommandedStates::of(std::uint16_t apid) const {
+  const auto found = members_.find(apid);
+  return found != members_.end() ? found->second.commanded : CommandedState{};
+}
+
+CommandedState CommandedStates::of_partner(std::uint16_t apid) const {
+  const auto found = members_.find(apid);
+  return found != members_.end() && is_just_now(found->second) ? *found->second.before_loss : of(apid);
+}
+
+bool CommandedStates::is_just_now(const Member& member) const {
+  return member.before_loss && craft_.now - member.loss_at <= loss_before_death;
+}
+
+const CommandedState* CommandedStates::wanted(std::uint16_t apid) const {
+  const auto found = wanted_.find(apid);
+  return found != wanted_.end() ? &found->second : nullptr;
+}
+
+void CommandedStates::tell_not_kept(std::uint16_t apid, const pus::TelecommandView& telecommand) {
+  own_.announce("COMMAND_NOT_KEPT", {static_cast<double>(apid), static_cast<double>(telecommand.service()),
+                                     static_cast<double>(telecommand.subtype())});
+}
+
+}  // namespace hirosco::supervisor

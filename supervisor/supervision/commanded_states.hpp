@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "supervisor/supervision/commanded_state.hpp"
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/origin.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
+
+namespace hirosco::supervisor {
+
+/// What each member was commanded to be (docs/adr/0076). What leads up counts when its TM[1,7] has come by, what leads down as soon as
+/// it is sent or a plan, or a stop, asks for it. Nothing is kept in a mission without a plan that brings anybody back.
+/// Bounded: `most_open` telecommands whose end is awaited, and per member what CommandedState says; what has no room is told,
+/// COMMAND_NOT_KEPT. Thread: the supervisor's.
+class CommandedStates final : public Hearer {
+ public:
+  static constexpr std::size_t most_open = 256;
+  /// The partner of a link may see its loss before the supervisor sees the death that it comes from.
+  static constexpr Duration loss_before_death = std::chrono::seconds{1};
+
+  CommandedStates(Craft& craft, OwnSubsystem& own) : craft_{craft}, own_{own} {}
+
+  /// Some plan of the mission brings back who crashed.
+  [[nodiscard]] bool in_use() const;
+  /// It has left for a member.
+  void forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand, const Origin& origin);
+  void hear(std::uint16_t from, const pus::TelemetryView& report) override;
+  /// A plan takes it down, or makes it safe, because of this event; whatever was under way to bring it up counts no more.
+  void lower(std::uint16_t apid, State most, std::string_view event);
+  /// Nobody who may move anything goes beyond Safe-Operational until it is commanded to anew.
+  void all_stopped();
+  /// Its process is gone: it is Offline, and its settings went with it.
+  void ended(std::uint16_t apid);
+
+  [[nodiscard]] CommandedState of(std::uint16_t apid) const;
+  /// The same for the partner of who is gone: a stale link that it told of just now was the beginning of that.
+  [[nodiscard]] CommandedState of_partner(std::uint16_t apid) const;
+
+  /// It is to be brought back to this.
+  void want(std::uint16_t apid, CommandedState wanted) { wanted_.insert_or_assign(apid, std::move(wanted)); }
+  [[nodiscard]] const std::map<std::uint16_t, CommandedState>& wanted() const noexcept { return wanted_; }
+  /// Null: nothing is wanted of it.
+  [[nodiscard]] const CommandedState* wanted(std::uint16_t apid) const;
+  void forget_wanted() {
+    wanted_.clear();
+    overruled_.reset();
+  }
+  /// Somebody else has commanded one of them since: its word counts.
+  [[nodiscard]] std::optional<std::uint16_t> overruled() const noexcept { return overruled_; }
+  void overrule(std::uint16_t apid) {
+    if (wanted_.contains(apid)) overruled_ = apid;
+  }
+
+ private:
+  struct Member {
+    CommandedState commanded;
+    std::optional<CommandedState> before_loss;  ///< of a link, of which it told at `loss_at`
+    TimePoint loss_at{};
+  };
+  struct Open {
+    std::uint16_t apid{};
+    pus::Request request;
+    std::vector<std::byte> packet;
+    unsigned refused{0};  ///< of its instructions
+  };
+  void lower_record(std::uint16_t apid, State most);
+  [[nodiscard]] bool is_just_now(const Member& member) const;
+  void tell_not_kept(std::uint16_t apid, const pus::TelecommandView& telecommand);
+
+  Craft& craft_;
+  OwnSubsystem& own_;
+  std::map<std::uint16_t, Member> members_;
+  std::deque<Open> open_;
+  std::map<std::uint16_t, CommandedState> wanted_;
+  std::optional<std::uint16_t> overruled_;
+};
+
+}  // namespace hirosco::supervisor

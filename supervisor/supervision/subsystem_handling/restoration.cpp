@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/subsystem_handling/restoration.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "supervisor/supervision/modes/mode_plan.hpp"
+
+namespace hirosco::supervisor {
+
+void Restoration::lost(std::uint16_t apid) {
+  if (!means_.commanded.in_use() || craft_.shutting_down) return;
+  // Whoever of them is on its way up again goes there from the beginning.
+  if (means_.commanded.wanted(apid) != nullptr) runner_.cancel();
+  // Neither the old mode nor the new one holds while it changes, and who is commissioned is brought up by nobody else.
+  if (under_way_.running()) return;
+  const auto earlier = losses_.find(apid);
+  if (earlier != losses_.end() && craft_.now - earlier->second.at <= hang_before_death) return;
+  losses_.insert_or_assign(apid, look(apid));
+}
+
+Restoration::Loss Restoration::look(std::uint16_t apid) const {
+  Loss loss{.at = craft_.now, .members = {}, .links = {}};
+  for (const std::uint16_t member : means_.links.network_of(apid)) {
+    for (const std::uint8_t link : means_.links.links_of(member)) loss.links.insert(link);
+    const Member* one = craft_.member(member);
+    if (one == nullptr || craft_.is_ground_link(*one)) continue;
+    const CommandedState* pending = means_.commanded.wanted(member);
+    loss.members.emplace(member, pending != nullptr ? *pending
+                                 : member == apid   ? means_.commanded.of(member)
+                                                    : means_.commanded.of_partner(member));
+  }
+  return loss;
+}
+
+void Restoration::answered(std::uint16_t apid) {
+  means_.commanded.ended(apid);
+  const auto most = means_.restarts.take_most(apid);
+  auto found = losses_.extract(apid);
+  // The ground link comes back by itself in every mission (docs/adr/0043), and what hung on it waits for the ground.
+  if (craft_.is_ground_link(*craft_.member(apid))) return;
+  if (most.value_or(State::Offline) == State::Offline || found.empty()) {
+    if (means_.commanded.wanted(apid) != nullptr)
+      static_cast<void>(cancel(craft_.name_of(apid) + " does not come back"));
+    return;
+  }
+  Loss& loss = found.mapped();
+  for (auto& [member, commanded] : loss.members) {
+    commanded.lower(*most);
+    if (commanded.protection_was_set() && commanded.state() == State::Operational) {
+      commanded.lower(State::SafeOperational);
+      craft_.tell(craft_.name_of(member) + " comes back to Safe-Operational only: a function had set a protection",
+                  member);
+    }
+    for (const std::string& parameter : commanded.out_of_reach(craft_.member(member)->descriptor()))
+      craft_.tell(craft_.name_of(member) + " comes back without " + parameter + ": it is set in Operational only",
+                  member);
+    if (commanded.state() != State::Offline) means_.commanded.want(member, std::move(commanded));
+  }
+  links_.merge(loss.links);
+  deadline_ = craft_.now + patience;
+}
+
+void Restoration::all_stopped(std::string_view why) {
+  means_.commanded.all_stopped();
+  static_cast<void>(cancel(why));
+}
+
+bool Restoration::cancel(std::string_view why) {
+  losses_.clear();
+  if (means_.commanded.wanted().empty()) return false;
+  craft_.tell(fmt::format("{} not brought back: {}", names(), why), supervisor_apid);
+  for (const auto& [apid, commanded] : means_.commanded.wanted())
+    own_.announce("NOT_RESTORED", {static_cast<double>(apid)});
+  runner_.cancel();
+  means_.commanded.forget_wanted();
+  links_.clear();
+  return true;
+}
+
+void Restoration::watch(TimePoint now) {
+  if (means_.commanded.wanted().empty()) return;
+  if (const std::string why = against(); !why.empty()) return static_cast<void>(cancel(why));
+  if (runner_.running()) return;
+  if (now > deadline_) return static_cast<void>(cancel("they were not ready in time"));
+  if (ready()) begin();
+}
+
+std::string Restoration::against() const {
+  if (craft_.shutting_down) return "shutdown";
+  if (under_way_.running()) return "the mode changes";
+  if (const auto apid = means_.commanded.overruled()) return craft_.name_of(*apid) + " was commanded otherwise";
+  if (!runner_.running()) return {};
+  for (const auto& [apid, commanded] : means_.commanded.wanted()) {
+    if (craft_.member(apid)->recovery.running()) return "a recovery of " + craft_.name_of(apid);
+    const auto fences = fences_.find(apid);
+    if (fences != fences_.end() && craft_.guard.fences(apid) != fences->second)
+      return craft_.name_of(apid) + " was stopped";
+  }
+  return {};
+}
+
+bool Restoration::ready() const {
+  return std::ranges::all_of(means_.commanded.wanted(), [this](const auto& entry) {
+    const Member& member = *craft_.member(entry.first);
+    return member.alive() && member.state() && !is_transient(*member.state()) &&
+           member.state() != State::PostOperational && !member.recovery.running() && !member.closed_at;
+  });
+}
+
+void Restoration::begin() {
+  WayThere way;
+  std::set<std::uint16_t> there;  // or on the way
+  for (const auto& [apid, commanded] : means_.commanded.wanted()) {
+    const Member& member = *craft_.member(apid);
+    const Present from{member.state(), member.configuration()};
+    fences_[apid] = craft_.guard.fences(apid);
+    there.insert(apid);
+    if (from.state == commanded.state() && from.configuration == commanded.configuration()) continue;
+    const auto* configuration = member.descriptor().find_configuration(commanded.configuration());
+    if (configuration == nullptr) way.initialise(member.descriptor(), from);
+    else way.add(member.descriptor(), *configuration, from, commanded.state());
+    way.recall(apid, commanded.state());
+  }
+  const auto is_there = [&](const std::string& name) {
+    const Member& member = *craft_.member(craft_.mission.find_subsystem(name)->subsystem.id);
+    return there.contains(member.apid()) || member.configuration() != 0;
+  };
+  for (const std::uint8_t id : links_) {
+    const descriptor::MissionLink& link = *craft_.mission.find_link(id);
+    if (!means_.links.is_up(id) && is_there(link.from) && is_there(link.to)) way.link(id);
+  }
+  craft_.tell(names() + ": back to the commanded state", supervisor_apid);
+  runner_.start({.stages = way.stages(),
+                 .finished = [this](const ProcedureEnd& end) { ended(end); },
+                 .begins =
+                     [this](std::size_t) {
+                       if (const std::string why = against(); !why.empty()) static_cast<void>(cancel(why));
+                     }});
+}
+
+void Restoration::ended(const ProcedureEnd& end) {
+  if (!end.success) return static_cast<void>(cancel(end.text()));
+  craft_.tell(names() + ": as commanded", supervisor_apid);
+  for (const auto& [apid, commanded] : means_.commanded.wanted())
+    own_.announce("RESTORED", {static_cast<double>(apid), static_cast<double>(commanded.state())});
+  means_.commanded.forget_wanted();
+  links_.clear();
+}
+
+std::string Restoration::names() const {
+  std::vector<std::string> all;
+  for (const auto& [apid, commanded] : means_.commanded.wanted()) all.push_back(craft_.name_of(apid));
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
+}  // namespace hirosco::supervisor
