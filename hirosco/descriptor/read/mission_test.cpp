@@ -121,6 +121,22 @@ TEST(MissionDescriptor, ARestartSaysAsFarAsItComesBack) {
   }
 }
 
+TEST(MissionDescriptor, ALinkSaysWhatItsLossDoes) {
+  const std::string flywheel = file_system()(data / "flywheel.xml").value();
+  const auto reading = read_mission(
+      data / "mission.xml",
+      overlay(
+          {{"mission.xml",
+            changed(R"(to="FLYWHEEL.PLATE_STATE"/>)", R"(to="FLYWHEEL.PLATE_STATE" on_loss="hold" hold_ms="250"/>)")},
+           {"flywheel.xml", changed(R"(<Requires name="PLATE_STATE" from="CORONAGRAPH">)",
+                                    R"(<Requires name="PLATE_STATE" from="CORONAGRAPH" missing="hold">)", flywheel)}}));
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const MissionLink& link = reading.value->links.at(0);
+  EXPECT_EQ(link.on_loss, OnLoss::Hold);
+  EXPECT_EQ(link.hold, std::chrono::milliseconds{250});
+  EXPECT_EQ(reading.value->links.at(1).on_loss, OnLoss::Down) << "what is not said is as it always was";
+}
+
 struct Mistake {
   const char* code;
   const char* from;
@@ -212,6 +228,15 @@ constexpr Mistake mistakes[] = {
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES" label)"},
     {"E0304", R"(<Show subsystem="CORONAGRAPH" parameter="ACTIVE")", R"(<Show subsystem="@NOBODY" parameter="ACTIVE")"},
     {"E0105", R"( label="active")", ""},
+    {"E0340", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="@hold"/>)"},
+    {"E0340", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" hold_ms="@50"/>)"},
+    {"E0340", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" fallback="@COUPLED"/>)"},
+    {"E0340", R"(<Link id="2" from="FLYWHEEL.FLYWHEEL_STATE" to="CORONAGRAPH.FLYWHEEL_STATE"/>)", R"(<Link id="2" from="FLYWHEEL.FLYWHEEL_STATE" to="CORONAGRAPH.FLYWHEEL_STATE" on_loss="@ignore"/>)", "leave on_loss out"},
+    {"E0341", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="@ignore"/>)", "missing="},
+    {"E0316", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="fallback" fallback="@COUPELD"/>)", "COUPLED"},
+    {"E0340", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="fallback" fallback="@COUPLED"/>)", "without it"},
+    {"E0113", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="@perhaps"/>)"},
+    {"E0112", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="hold" hold_ms="@0"/>)"},
     {"E0329", R"(<Ground subsystem="GROUNDSTATION")", R"(<Ground subsystem="@CORONAGRAPH")", "another subsystem"},
 };
 // clang-format on
