@@ -138,6 +138,7 @@ void GenericSubsystem::dispatch(const Message& message) {
         requester_.hear(*report);
     return author_.telemetry(message.packet);
   }
+  if (pus::to_be_discarded(message.packet)) return;
   const auto telecommand = pus::TelecommandView::parse(message.packet);
   if (!telecommand) return verification_.rejected({header->request_id, 0, 0}, telecommand.error());
   const pus::Request request = pus::request_of(*telecommand);

@@ -155,6 +155,24 @@ TEST(ParameterWrites, InAStateThatTheDescriptorDoesNotNameAreRefused) {
   EXPECT_THAT(set(kp), StartsWith("1 4:0107"));
 }
 
+/// Nobody could tell whose request it was (docs/failure-codes.md, docs/interfaces/packets.md).
+TEST(WhatIsNoTelecommandAtAll, IsPassedOverInSilence) {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  rig.forget_telemetry();
+  std::array<std::byte, 32> buffer{};
+  const auto packet = pus::write_telecommand(buffer, {.apid = 10, .service = 17, .subtype = 1}, {}).value();
+  const auto said_of = [&](std::byte flipped) {
+    buffer[0] ^= flipped;
+    EXPECT_TRUE(rig.channels.supervisor_end().send({.packet = packet}));
+    buffer[0] ^= flipped;
+    rig.service();
+    return rig.telemetry.size();
+  };
+  EXPECT_EQ(said_of(std::byte{0x20}), 0U) << "another packet version";
+  EXPECT_GT(said_of(std::byte{0x01}), 0U) << "another APID is one, and is refused";
+}
+
 TEST(FailedPostOperational, GivesBackConfigurationPlanAndFlowsWhenTheCycleHasComeToRest) {
   Probe probe;
   Rig rig{probe, probe_descriptor};

@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""tools/conform/conform finds good what is good, in whatever language, and finds each planted mistake.
+
+    suite_test.py PROGRAM DESCRIPTOR      the program keeps every duty
+    suite_test.py --mutants               each of mutants.py is found by its duty
+"""
+import concurrent.futures
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+CONFORM = HERE.parents[1] / "tools/conform/conform"
+
+
+def judge(program, descriptor, *more):
+    return subprocess.run([CONFORM, program, descriptor, *more], capture_output=True, text=True, check=False)
+
+
+def found(mutant):
+    """Words, and whether the suite found it."""
+    file, stands, planted, duty = mutant
+    text = (HERE / file).read_text()
+    if text.count(stands) != 1:
+        return f"{stands!r} stands {text.count(stands)} times in {file}", False
+    with tempfile.TemporaryDirectory() as folder:
+        for each in HERE.glob("metronome*"):
+            shutil.copy(each, folder)
+        (pathlib.Path(folder) / file).write_text(text.replace(stands, planted))
+        judged = judge(f"{folder}/metronome.py", f"{folder}/metronome.xml", "--only", duty)
+    lines = judged.stdout.splitlines() or [judged.stderr[-200:]]
+    return f"{planted.strip()[:60]!r}: {lines[0][:150]}", judged.returncode == 1 and lines[0].startswith(f"FAILED {duty}")
+
+
+def mutants():
+    sys.path.insert(0, str(HERE))
+    from mutants import MUTANTS
+    missed = 0
+    with concurrent.futures.ThreadPoolExecutor(3) as several:       # they mostly wait
+        for words, good in several.map(found, MUTANTS):
+            missed += not good
+            print(f"{'found ' if good else 'MISSED'} {words}", flush=True)
+    print(f"{len(MUTANTS)} mutants, {missed} missed")
+    return missed != 0
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--mutants"]:
+        sys.exit(mutants())
+    outcome = judge(*sys.argv[1:])
+    print(outcome.stdout + outcome.stderr)
+    sys.exit(outcome.returncode)
