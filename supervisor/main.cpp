@@ -69,9 +69,13 @@ struct Options {
   return options;
 }
 
-[[nodiscard]] std::unique_ptr<Database> make_store(DatabaseStrategy strategy, std::filesystem::path path) {
-  if (strategy == DatabaseStrategy::Ascii) path.replace_extension(".log");
-  return std::make_unique<LogStore>(strategy, std::move(path));
+[[nodiscard]] std::unique_ptr<Database> make_store(DatabaseStrategy strategy, const std::filesystem::path& log,
+                                                   const descriptor::DatabaseUse& use) {
+  constexpr std::uint64_t mega = 1'000'000;
+  return std::make_unique<LogStore>(strategy, log,
+                                    LogLimits{.rotate_octets = use.rotate_mb * mega,
+                                              .rotate_age = std::chrono::hours{use.rotate_h},
+                                              .keep_octets = use.keep_mb * mega});
 }
 
 /// Those reactions that no injection into a simulated device had caused: each device writes the monotonic time of what it
@@ -154,7 +158,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   UnprovokedReactions causes{clock, console};
   ThreadedPacketLog::Options log_options;
   log_options.on_progress = [&] { log_progress->notify(); };
-  ThreadedPacketLog log{clock, make_store(strategy, log_path), std::move(log_options)};
+  ThreadedPacketLog log{clock, make_store(strategy, log_path, mission.database), std::move(log_options)};
   if (const auto why_not = begin_log(log, clock, log_start_limit)) {
     fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
     return exit_environment;
@@ -179,7 +183,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
        .guard = guard,
        .log = log,
        .open_database = [&](DatabaseStrategy wanted) -> std::unique_ptr<Database> {
-         return make_store(wanted, log_path);
+         return make_store(wanted, log_path, mission.database);
        },
        .observer = causes,
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384)}};

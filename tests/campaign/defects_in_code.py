@@ -323,11 +323,11 @@ DEFECTS = [
            "static_cast<std::uint32_t>(PLANTED ? 1 : first);",
            "platform_test", "EpochFileTest.*"),
     # Telecommands went on as if durable after somebody had deleted the log.
-    Defect("deleted log", LOG_STORE, "if (!store_ || file_ == Identity{}) return false;",
-           "if (!store_ || file_ == Identity{} || PLANTED) return false;",
+    Defect("deleted log", LOG_STORE, "if (file_.none()) return Look::Whole;",
+           "if (file_.none() || PLANTED) return Look::Whole;",
            "platform_test", "*NoticesThatItsFileWasDeletedBeginsAnewAndCountsWhatWentWithIt*"),
     # One failed fsync was the end of the log.
-    Defect("failed fsync", LOG_STORE, "  leave_segment();\n", "  if (!PLANTED) leave_segment();\n",
+    Defect("failed fsync", LOG_STORE, "  leave_piece();\n", "  if (!PLANTED) leave_piece();\n",
            "platform_test", "LogStore.LeavesASegmentAfterAFailedFsyncAndWritesWhatWasNotAcknowledgedToTheNext"),
     # After a full disk storing did not resume by itself.
     Defect("full disk for ever", LOG_STORE, "  if (fault != StoreFault::Locked) store_.reset();",

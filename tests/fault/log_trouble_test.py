@@ -47,6 +47,7 @@ class LogTrouble(unittest.TestCase):
                     rokviss.wait_told("no space for log", 20.0, begin)
                     filler.unlink()
                     rokviss.wait_told("log storage works", 10.0, begin)
+                    rokviss.wait_told("SUPERVISOR low LOG_RESUMED", 5.0, begin)
                     self.assertEqual(rokviss.tc("manipulator", "SET_STATE", "SafeOperational")[0], 0)
                     self.assertEqual(rokviss.end(), 0, rokviss.errors)
                     records = rokviss.log()

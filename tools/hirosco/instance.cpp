@@ -13,6 +13,7 @@
 #include <charconv>
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
+#include "supervisor/platform/storage/log_pieces.hpp"
 
 namespace hirosco::tools {
 
@@ -165,8 +166,7 @@ std::expected<FoundLog, int> find_log(const char* command, const std::string& mi
     auto flown = only_mission(mission);
     if (!flown) return std::unexpected{flown.error()};
     auto path = instance_log(flown->mission, instance);
-    std::error_code failed;
-    if (fs::exists(path, failed)) return FoundLog{std::move(flown->mission), std::move(path)};
+    if (!supervisor::pieces_of(path).empty()) return FoundLog{std::move(flown->mission), std::move(path)};
   }
   auto found = find_flight(command, mission, instance);
   if (!found) return std::unexpected{found.error()};

@@ -3,26 +3,23 @@
 #include <fmt/format.h>
 
 #include "hirosco/pus/words/describe.hpp"
-#include "supervisor/platform/storage/log_store.hpp"
+#include "supervisor/platform/storage/log_pieces.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
 int log(const LogOptions& options) {
   std::filesystem::path path = options.path;
-  std::string strategy = path.extension() == ".log" ? "ascii" : "sqlite";
   std::optional<descriptor::Mission> mission;
   if (path.empty()) {
     auto found = find_log("log", options.mission, options.instance);
     if (!found) return found.error();
     path = std::move(found->path);
     mission = std::move(found->mission);
-    strategy = mission->database.strategy;
   } else if (const std::string name = options.mission.empty() ? usual_mission() : options.mission;
              !find_mission(name).empty()) {
     mission = load_mission(name);
   }
-  const auto kind = from_text<supervisor::DatabaseStrategy>(strategy).value_or(supervisor::DatabaseStrategy::Sqlite);
   const auto describer = mission ? std::optional<pus::PacketDescriber>{*mission} : std::nullopt;
   const auto text_of = [&](const supervisor::LogRecord& record) {
     if (!describer || record.packet.empty()) return supervisor::describe(record);
@@ -32,8 +29,8 @@ int log(const LogOptions& options) {
     return text;
   };
   // What is searched is what is shown.
-  const auto page = supervisor::read_segments(
-      kind, path,
+  const auto page = supervisor::read_log(
+      path,
       {.apid = options.apid, .service = options.service, .text = options.text, .words = text_of, .last = options.last});
   if (!page) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);

@@ -150,6 +150,10 @@ struct GroundAddresses {
 struct DatabaseUse {
   std::string strategy{"sqlite"};  ///< sqlite | ascii
   std::filesystem::path path;  ///< relative to the working directory
+  /// When the log goes on in another file, and how much stays; 0 = never, all of it.
+  std::uint32_t rotate_mb{0};
+  std::uint32_t rotate_h{0};
+  std::uint32_t keep_mb{0};
 };
 
 /// What the live line of a terminal shows of the newest housekeeping.

@@ -122,6 +122,13 @@ void MissionReader::read_database(const xml::Element& element) {
     if (strategy->value != "sqlite" && strategy->value != "ascii")
       attributes.unknown_word(*strategy, strategy->value, {"sqlite", "ascii"});
   }
+  mission_.database.rotate_mb = attributes.integer_or<std::uint32_t>("rotate_MB", 1, 1'000'000, 0);
+  mission_.database.rotate_h = attributes.integer_or<std::uint32_t>("rotate_h", 1, 100'000, 0);
+  mission_.database.keep_mb = attributes.integer_or<std::uint32_t>("keep_MB", 2, 100'000'000, 0);
+  if (const auto* keep = attributes.optional("keep_MB"); keep != nullptr && mission_.database.keep_mb != 0)
+    if (mission_.database.rotate_mb == 0 || mission_.database.keep_mb / 2 < mission_.database.rotate_mb)
+      problems_.add(*keep, "E0340", "a bounded log needs pieces, of which the newest two have room",
+                    "give 'rotate_MB', at most half of 'keep_MB'");
   const auto* path = attributes.optional("path");
   if (path == nullptr) return;
   mission_.database.path = path->value;

@@ -200,6 +200,7 @@ Result<LogPage> AsciiDatabase::do_read(const LogQuery& query) {
     }
     if (!matches(*record, query) || !seen.emplace(record->run, record->number).second) continue;
     found.push_back(std::move(*record));
+    if (query.end == LogEnd::Oldest && found.size() == query.last) break;
     if (found.size() <= query.last) continue;
     seen.erase({found.front().run, found.front().number});
     found.pop_front();

@@ -143,6 +143,11 @@ Result<> MemoryDatabase::do_append(std::span<const LogRecord> batch) {
 Result<LogPage> MemoryDatabase::do_read(const LogQuery& query) {
   const std::lock_guard lock{mutex_};
   LogPage page;
+  if (query.end == LogEnd::Oldest) {
+    for (auto record = records_.begin(); record != records_.end() && page.records.size() < query.last; ++record)
+      if (matches(*record, query)) page.records.push_back(*record);
+    return page;
+  }
   for (auto record = records_.rbegin(); record != records_.rend() && page.records.size() < query.last; ++record)
     if (matches(*record, query)) page.records.push_back(*record);
   std::ranges::reverse(page.records);

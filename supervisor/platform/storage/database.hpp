@@ -83,7 +83,9 @@ struct PacketLabel {
 [[nodiscard]] std::string time_text(OnboardTime time);
 [[nodiscard]] Result<OnboardTime> time_from_text(std::string_view text);
 
-/// All conditions hold together; of what remains the last `last` records are answered, in order of storage.
+enum class LogEnd : std::uint8_t { Newest, Oldest };
+
+/// All conditions hold together; of what remains `last` records at one end are answered, in order of storage.
 struct LogQuery {
   std::optional<std::uint16_t> apid{};  ///< source, peer or the packet's own APID
   std::optional<std::uint8_t> service{};
@@ -92,6 +94,7 @@ struct LogQuery {
   std::uint64_t since{0};  ///< numbers from here on
   std::optional<OnboardTime> run{};  ///< one run only
   std::size_t last{1000};
+  LogEnd end{LogEnd::Newest};
 };
 [[nodiscard]] bool matches(const LogRecord& record, const LogQuery& query);
 
@@ -113,8 +116,18 @@ struct StoreTrouble {
   std::uint64_t count{0};  ///< how often one began; 0 = never
   StoreFault fault{};
   bool present{false};  ///< not over yet: nothing was stored since
+  std::uint64_t lost{0};  ///< records that went with it
   Error error{};
   std::string text{};  ///< cause and cure in one line
+};
+
+/// What a store in pieces has done by its limits, since it was made.
+struct StoreTurnover {
+  std::uint64_t begun{0};  ///< pieces, because the one before was large or old enough
+  std::uint64_t removed_pieces{0};
+  std::uint64_t removed_octets{0};
+  std::uint64_t removed_records{0};  ///< of those that this store has written itself
+  std::string newest_removed{};  ///< name of its file
 };
 
 /// Strategy seam: where records live. Longest packet: 65,542 octets.
@@ -134,12 +147,15 @@ class Database {
   [[nodiscard]] std::string_view strategy() const noexcept { return do_strategy(); }
   /// Of a store that heals by itself (`LogStore`); others have none.
   [[nodiscard]] StoreTrouble trouble() const { return do_trouble(); }
+  /// Of a store in pieces; others have none.
+  [[nodiscard]] StoreTurnover turnover() const { return do_turnover(); }
 
  private:
   virtual Result<> do_append(std::span<const LogRecord> batch) = 0;
   virtual Result<LogPage> do_read(const LogQuery& query) = 0;
   [[nodiscard]] virtual std::string_view do_strategy() const noexcept = 0;
   [[nodiscard]] virtual StoreTrouble do_trouble() const { return {}; }
+  [[nodiscard]] virtual StoreTurnover do_turnover() const { return {}; }
 
   std::optional<Error> failed_{};
 };

@@ -11,6 +11,7 @@
 #include "hirosco/utilities/os/clock.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
+#include "supervisor/platform/storage/testing/batches.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
@@ -18,33 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<LogRecord> batch_of(std::uint64_t first, std::uint64_t last) {
-  std::vector<LogRecord> batch;
-  for (std::uint64_t number = first; number <= last; ++number)
-    batch.push_back({.run = OnboardTime{Duration{7}}, .number = number, .kind = LogKind::TelecommandReceived});
-  return batch;
-}
-
-std::uint64_t covered(const LogPage& page) {
-  std::uint64_t sum = 0;
-  for (const LogRecord& record : page.records) sum += record.kind == LogKind::Gap ? record.lost : 1;
-  return sum;
-}
-
 class EveryLogStore : public testing::TestWithParam<DatabaseStrategy> {
  protected:
   [[nodiscard]] fs::path path() const { return folder_.path() / "log.sqlite"; }
-  void remove_all() const {
-    for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(path().string() + suffix);
-  }
-  [[nodiscard]] LogPage page() const { return *read_segments(GetParam(), path(), {.last = 1000}); }
+  [[nodiscard]] fs::path piece(int number = 1) const { return piece_path(path(), GetParam(), number); }
+  [[nodiscard]] LogPage page() const { return *read_log(path(), {.last = 1000}); }
   TestFolder folder_;
 };
 
 TEST_P(EveryLogStore, NoticesThatItsFileWasDeletedBeginsAnewAndCountsWhatWentWithIt) {
   LogStore store{GetParam(), path()};
   ASSERT_TRUE(store.append(batch_of(1, 5)));
-  remove_all();
+  remove_piece(piece());
   ASSERT_TRUE(store.append(batch_of(6, 8)));
   EXPECT_EQ(store.trouble().count, 1U);
   EXPECT_EQ(store.trouble().fault, StoreFault::Deleted);
@@ -59,7 +45,7 @@ TEST_P(EveryLogStore, NoticesThatItsFileWasDeletedBeginsAnewAndCountsWhatWentWit
 TEST_P(EveryLogStore, NoticesThatAnotherFileWasPutInItsPlace) {
   LogStore store{GetParam(), path()};
   ASSERT_TRUE(store.append(batch_of(1, 5)));
-  fs::rename(path(), folder_.path() / "away");
+  fs::rename(piece(), folder_.path() / "away");
   ASSERT_TRUE(store.append(batch_of(6, 6)));
   EXPECT_EQ(store.trouble().fault, StoreFault::Deleted);
   EXPECT_EQ(covered(page()), 6U);
@@ -82,7 +68,7 @@ TEST_P(EveryLogStore, StoresNothingWhileItsFolderIsGoneAndNotWritableAndResumesB
   fs::remove(inner);
   ASSERT_TRUE(store.append(batch_of(3, 4)));
   EXPECT_FALSE(store.trouble().present);
-  EXPECT_EQ(covered(*read_segments(GetParam(), inner / "log.sqlite", {})), 4U);
+  EXPECT_EQ(covered(*read_log(inner / "log.sqlite", {})), 4U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Strategies, EveryLogStore, testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
@@ -117,7 +103,7 @@ class DiskDatabase final : public Database {
 };
 
 LogStore store_on(Disk& disk, const fs::path& path) {
-  return {DatabaseStrategy::Ascii, path, [&disk](const fs::path& file) -> Result<std::unique_ptr<Database>> {
+  return {DatabaseStrategy::Ascii, path, {}, [&disk](const fs::path& file) -> Result<std::unique_ptr<Database>> {
             ++disk.opened;
             std::ofstream{file, std::ios::app};
             return std::make_unique<DiskDatabase>(disk, file);
@@ -130,15 +116,15 @@ constexpr Error no_space{ErrorCode::ResourceExhausted, "writing the log file", E
 TEST(LogStore, LeavesASegmentAfterAFailedFsyncAndWritesWhatWasNotAcknowledgedToTheNext) {
   const TestFolder folder;
   Disk disk{.answers = {std::nullopt, failed_fsync}, .files = {}};
-  LogStore store = store_on(disk, folder.path() / "log.txt");
+  LogStore store = store_on(disk, folder.path() / "log.log");
   ASSERT_TRUE(store.append(batch_of(1, 3)));
   EXPECT_EQ(store.append(batch_of(4, 6)).error().code, ErrorCode::Unavailable) << "not durable";
   EXPECT_EQ(store.trouble().fault, StoreFault::Damaged);
   EXPECT_TRUE(store.trouble().present);
   ASSERT_TRUE(store.append(batch_of(4, 6)));
   EXPECT_FALSE(store.trouble().present);
-  EXPECT_EQ(disk.files[folder.path() / "log.txt"].size(), 3U) << "the doubtful segment is not touched again";
-  EXPECT_EQ(disk.files[folder.path() / "log.2.txt"].size(), 3U);
+  EXPECT_EQ(disk.files[folder.path() / "log.log"].size(), 3U) << "the doubtful segment is not touched again";
+  EXPECT_EQ(disk.files[folder.path() / "log.2.log"].size(), 3U);
 }
 
 /// One error at the start left the craft uncommissioned, with exit code 0.
@@ -148,12 +134,12 @@ TEST(BeginLog, GetsOverErrorsOfTheDiskAndSaysWhyWhereTheyLast) {
     const TestFolder folder;
     Disk disk{.answers = {errors, failed_fsync}, .files = {}};
     ThreadedPacketLog log{
-        clock, std::unique_ptr<Database>{new LogStore{store_on(disk, folder.path() / "log.txt")}}, {}};
+        clock, std::unique_ptr<Database>{new LogStore{store_on(disk, folder.path() / "log.log")}}, {}};
     EXPECT_EQ(begin_log(log, clock, 1min), std::nullopt) << errors;
   }
   const TestFolder folder;
   Disk disk{.answers = {100'000, failed_fsync}, .files = {}};
-  ThreadedPacketLog log{clock, std::unique_ptr<Database>{new LogStore{store_on(disk, folder.path() / "log.txt")}}, {}};
+  ThreadedPacketLog log{clock, std::unique_ptr<Database>{new LogStore{store_on(disk, folder.path() / "log.log")}}, {}};
   const auto why_not = begin_log(log, clock, 100ms);
   ASSERT_TRUE(why_not);
   EXPECT_NE(why_not->find("fdatasync of the log file, 5"), std::string::npos) << *why_not;
@@ -162,7 +148,7 @@ TEST(BeginLog, GetsOverErrorsOfTheDiskAndSaysWhyWhereTheyLast) {
 TEST(LogStore, LeavesNoTrailOfSegmentsOnADiskThatFailsForGood) {
   const TestFolder folder;
   Disk disk{.answers = {200, failed_fsync}, .files = {}};
-  LogStore store = store_on(disk, folder.path() / "log.txt");
+  LogStore store = store_on(disk, folder.path() / "log.log");
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(store.append(batch_of(1, 1)));
   EXPECT_LE(std::distance(fs::directory_iterator{folder.path()}, fs::directory_iterator{}), 2);
   EXPECT_EQ(store.trouble().count, 1U) << "said once";
@@ -171,7 +157,7 @@ TEST(LogStore, LeavesNoTrailOfSegmentsOnADiskThatFailsForGood) {
 TEST(LogStore, StaysInItsSegmentWhenTheDiskIsFullAndResumesByItself) {
   const TestFolder folder;
   Disk disk{.answers = {std::nullopt, no_space, no_space, no_space}, .files = {}};
-  LogStore store = store_on(disk, folder.path() / "log.txt");
+  LogStore store = store_on(disk, folder.path() / "log.log");
   ASSERT_TRUE(store.append(batch_of(1, 1)));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(store.append(batch_of(2, 2)).error().code, ErrorCode::Unavailable);
   EXPECT_EQ(store.trouble().fault, StoreFault::Full);
@@ -186,7 +172,7 @@ TEST(LogStore, APacketLogHoldsBackDurableWhileItsStoreIsInTroubleAndRecordsTheGa
   const SystemClock clock;
   const TestFolder folder;
   Disk disk{.answers = {50, no_space}, .files = {}};
-  const fs::path path = folder.path() / "log.txt";
+  const fs::path path = folder.path() / "log.log";
   DirectPacketLog log{clock,
                       std::make_unique<LogStore>(store_on(disk, path)),
                       {.telemetry_records = 10, .telemetry_octets = 1000, .vital_records = 10, .vital_octets = 1000}};
@@ -206,8 +192,9 @@ TEST(LogStore, IsReadAsOneThingWhateverSegmentARecordStandsIn) {
   const TestFolder folder;
   const fs::path path = folder.path() / "log.log";
   ASSERT_TRUE((*open_database(DatabaseStrategy::Ascii, path))->append(batch_of(1, 4)));
-  ASSERT_TRUE((*open_database(DatabaseStrategy::Ascii, segment_of(path, 2)))->append(batch_of(3, 6)));
-  const auto page = read_segments(DatabaseStrategy::Ascii, path, {.last = 5});
+  ASSERT_TRUE(
+      (*open_database(DatabaseStrategy::Ascii, piece_path(path, DatabaseStrategy::Ascii, 2)))->append(batch_of(3, 6)));
+  const auto page = read_log(path, {.last = 5});
   ASSERT_TRUE(page);
   ASSERT_EQ(page->records.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(page->records[i].number, i + 2);

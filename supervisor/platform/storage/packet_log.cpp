@@ -20,6 +20,16 @@ constexpr std::size_t records_per_lock = 64;
 /// A database locked by somebody else is asked again this often.
 constexpr Duration locked_database_pause = 50ms;
 
+/// What the databases before had done, and what the present one has.
+StoreTurnover together(StoreTurnover before, const StoreTurnover& now) {
+  before.begun += now.begun;
+  before.removed_pieces += now.removed_pieces;
+  before.removed_octets += now.removed_octets;
+  before.removed_records += now.removed_records;
+  if (!now.newest_removed.empty()) before.newest_removed = now.newest_removed;
+  return before;
+}
+
 LogEntry switch_note(const Database& next) {
   std::string text = "the log goes on in: ";
   text += next.strategy();
@@ -59,6 +69,7 @@ void DirectPacketLog::store_waiting() {
 
 void DirectPacketLog::do_switch_to(std::unique_ptr<Database> next) {
   if (!failure_) static_cast<void>(append(switch_note(*next)));
+  counted_.turnover = together(counted_.turnover, database_->turnover());
   database_ = std::move(next);
   failure_.reset();
   ++counted_.switches;
@@ -77,6 +88,7 @@ LogCounters DirectPacketLog::do_counters() const {
   counters.refused = queue_.refused();
   counters.accepted = queue_.last_number() - queue_.lost() - queue_.refused();
   counters.durable = durable_;
+  counters.turnover = together(counted_.turnover, database_->turnover());
   return counters;
 }
 
@@ -147,7 +159,8 @@ class ThreadedPacketLog::Writer {
             .batches = batches_,
             .failures = failures_,
             .switches = switches_,
-            .high_water = high_water_};
+            .high_water = high_water_,
+            .turnover = together(turnover_before_, turnover_)};
   }
 
   Result<> flush(TimePoint deadline) {
@@ -245,6 +258,7 @@ class ThreadedPacketLog::Writer {
     failure_.reset();
     trouble_.present = false;
     seen_troubles_ = 0;
+    turnover_before_ = together(turnover_before_, std::exchange(turnover_, {}));
     pause_ = false;
   }
 
@@ -263,6 +277,7 @@ class ThreadedPacketLog::Writer {
     if (batch_.empty()) return;
     const Result<> stored = database_->append(batch_.records());
     StoreTrouble trouble = database_->trouble();
+    StoreTurnover turnover = database_->turnover();
     {
       const LockGuard lock{mutex_};
       // Counted over all databases of this log.
@@ -270,6 +285,7 @@ class ThreadedPacketLog::Writer {
       seen_troubles_ = trouble.count;
       trouble.count = trouble_count_;
       trouble_ = std::move(trouble);
+      turnover_ = std::move(turnover);
       if (stored) {
         ++batches_;
         batch_.clear();
@@ -303,6 +319,8 @@ class ThreadedPacketLog::Writer {
   StoreTrouble trouble_;
   std::uint64_t trouble_count_{0};
   std::uint64_t seen_troubles_{0};
+  StoreTurnover turnover_;
+  StoreTurnover turnover_before_;
   std::uint64_t batches_{0};
   std::uint64_t failures_{0};
   std::uint64_t switches_{0};

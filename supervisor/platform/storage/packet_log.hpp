@@ -25,6 +25,7 @@ struct LogCounters {
   std::uint64_t failures{0};      ///< databases that failed
   std::uint64_t switches{0};
   std::uint64_t high_water{0};    ///< most records ever waiting
+  StoreTurnover turnover{};       ///< pieces begun and removed by all databases of this log
 };
 
 /// Seam: takes records in order and makes them durable.

@@ -81,6 +81,10 @@ Error SqliteDatabase::error_of(const SQLite::Exception& refused, const char* wha
 }
 
 Result<> SqliteDatabase::set_up(DatabaseAccess access) {
+  empty_ = access == DatabaseAccess::Read &&
+           connection_.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() == 0 &&
+           connection_.execAndGet("PRAGMA application_id").getInt() == 0;
+  if (empty_) return ok();
   if (access == DatabaseAccess::Write) {
     HIROSCO_TRY(make_or_check_schema());
     insert_.emplace(connection_,
@@ -168,13 +172,22 @@ Result<> SqliteDatabase::check_same(const LogRecord& record) {
 }
 
 Result<LogPage> SqliteDatabase::do_read(const LogQuery& query) {
+  if (empty_) {
+    try {
+      HIROSCO_TRY(set_up(DatabaseAccess::Read));
+    } catch (const SQLite::Exception& refused) {
+      return fail(error_of(refused, "reading the log database"));
+    }
+    if (empty_) return LogPage{};
+  }
   // The statement narrows what is fetched; `matches` alone decides, as in every strategy.
+  const bool oldest = query.end == LogEnd::Oldest;
   std::string sql = std::string{"SELECT "} + columns + " FROM log WHERE number >= ?1";
   if (query.run) sql += " AND run = ?2";
   if (query.apid) sql += " AND (source = ?3 OR peer = ?3 OR apid = ?3)";
   if (query.service) sql += " AND service = ?4";
   try {
-    SQLite::Statement row{connection_, sql + " ORDER BY position DESC"};
+    SQLite::Statement row{connection_, sql + (oldest ? " ORDER BY position" : " ORDER BY position DESC")};
     row.bind(1, static_cast<std::int64_t>(std::min<std::uint64_t>(query.since, INT64_MAX)));
     if (query.run) row.bind(2, nanoseconds(*query.run));
     if (query.apid) row.bind(3, *query.apid);
@@ -186,7 +199,7 @@ Result<LogPage> SqliteDatabase::do_read(const LogQuery& query) {
       if (!record) ++page.damaged;
       else if (matches(*record, query)) page.records.push_back(std::move(*record));
     }
-    std::ranges::reverse(page.records);
+    if (!oldest) std::ranges::reverse(page.records);
     return page;
   } catch (const SQLite::Exception& refused) {
     return fail(error_of(refused, "reading the log database"));

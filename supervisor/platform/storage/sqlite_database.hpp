@@ -31,6 +31,7 @@ class SqliteDatabase final : public Database {
   Result<LogPage> do_read(const LogQuery& query) override;
   [[nodiscard]] std::string_view do_strategy() const noexcept override { return "sqlite"; }
 
+  bool empty_{false};  ///< for reading: begun, and without a table yet
   SQLite::Database connection_;   // closed after its statements
   std::optional<SQLite::Statement> insert_;
   std::optional<SQLite::Statement> find_;

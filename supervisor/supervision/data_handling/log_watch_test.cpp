@@ -72,6 +72,47 @@ TEST_F(LogWatchTest, ATroubleOfTheStoreIsSaidOnceWithItsCauseAndTheNextOnlyASeco
   EXPECT_EQ(times(), 2);
 }
 
+TEST_F(LogWatchTest, WhatHadNoRoomWhileTheLogFailedIsAnEventWhenItWorksAgain) {
+  parts.own.start(craft.mode_epoch);
+  own_step();
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  log.switch_to(std::make_unique<HeldDatabase>(hold, open_database(DatabaseStrategy::Memory, {}).value()));
+  hold->tries = 1'000'000;
+  hold->troubles = 1;
+  craft.tell("a line");
+  look();
+  const std::uint64_t before = log.counters().refused;
+  while (log.counters().refused < before + 3) static_cast<void>(log.append({.kind = LogKind::Action, .packet = {}}));
+  hold->tries = 0;
+  hold->troubles = 0;
+  static_cast<void>(log.append({.kind = LogKind::Action, .packet = {}}));
+  const std::uint64_t lost = log.counters().refused;
+  for (int i = 0; i < 2; ++i) {
+    look();
+    own_step();
+  }
+  EXPECT_EQ(times_told("SUPERVISOR low LOG_RESUMED LOST=" + std::to_string(lost)), 1U);
+  EXPECT_EQ(times_told("log storage works: " + std::to_string(lost) + " records had no room meanwhile"), 1U);
+}
+
+TEST_F(LogWatchTest, APieceThatIsBegunOrRemovedIsAnEventOnceWithItsCounts) {
+  parts.own.start(craft.mode_epoch);
+  own_step();
+  auto hold = std::make_shared<HeldDatabase::Hold>();
+  log.switch_to(std::make_unique<HeldDatabase>(hold, open_database(DatabaseStrategy::Memory, {}).value()));
+  look();
+  hold->turnover = {
+      .begun = 2, .removed_pieces = 1, .removed_octets = 500, .removed_records = 40, .newest_removed = "a.db"};
+  for (int i = 0; i < 2; ++i) {
+    look();
+    own_step();
+  }
+  EXPECT_EQ(times_told("SUPERVISOR info LOG_ROTATED PIECES=2"), 1U);
+  EXPECT_EQ(times_told("SUPERVISOR low LOG_REMOVED PIECES=1 RECORDS=40"), 1U);
+  EXPECT_EQ(
+      times_told("log: 1 oldest piece removed as keep_MB says, up to a.db, 500 octets, 40 records of this flight"), 1U);
+}
+
 TEST_F(LogWatchTest, ATelecommandThatWaitsForTheDiskForASecondIsAFailure) {
   start_all(Operational);
   auto hold = std::make_shared<HeldDatabase::Hold>();

@@ -73,6 +73,7 @@ class HeldDatabase final : public Database {
     std::atomic<int> tries{0};
     std::atomic<std::uint64_t> troubles{0};
     Semaphore tried;
+    StoreTurnover turnover;  ///< what it says of its pieces
   };
   HeldDatabase(std::shared_ptr<Hold> hold, std::shared_ptr<Database> real)
       : hold_{std::move(hold)}, real_{std::move(real)} {}
@@ -92,6 +93,7 @@ class HeldDatabase final : public Database {
     trouble.error = {ErrorCode::SystemFailure, "held", ENOSPC};
     return trouble;
   }
+  [[nodiscard]] StoreTurnover do_turnover() const override { return hold_->turnover; }
   std::shared_ptr<Hold> hold_;
   std::shared_ptr<Database> real_;
 };
