@@ -108,35 +108,6 @@ TEST(MissionDescriptor, APlanHasItsStepsInTheirOrderAndTheValuesThatAreNotGiven)
   EXPECT_EQ(steps[1].values, (std::vector<std::int64_t>{0}));
 }
 
-TEST(MissionDescriptor, ARestartSaysAsFarAsItComesBack) {
-  for (const auto& [word, state] :
-       {std::pair{"Offline", State::Offline}, std::pair{"PreOperational", State::PreOperational},
-        std::pair{"SafeOperational", State::SafeOperational}, std::pair{"commanded", State::Operational}}) {
-    const std::string plan = std::string{R"(<When event="PROCESS_DIED"/><Do action="restart" to=")"} + word + R"("/>)";
-    const auto reading =
-        read_mission(data / "mission.xml",
-                     overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)", plan)}}));
-    ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
-    EXPECT_EQ(reading.value->plans.at(2).steps.at(0).values.at(3), static_cast<std::int64_t>(state)) << word;
-  }
-}
-
-TEST(MissionDescriptor, ALinkSaysWhatItsLossDoes) {
-  const std::string flywheel = file_system()(data / "flywheel.xml").value();
-  const auto reading = read_mission(
-      data / "mission.xml",
-      overlay(
-          {{"mission.xml",
-            changed(R"(to="FLYWHEEL.PLATE_STATE"/>)", R"(to="FLYWHEEL.PLATE_STATE" on_loss="hold" hold_ms="250"/>)")},
-           {"flywheel.xml", changed(R"(<Requires name="PLATE_STATE" from="CORONAGRAPH">)",
-                                    R"(<Requires name="PLATE_STATE" from="CORONAGRAPH" missing="hold">)", flywheel)}}));
-  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
-  const MissionLink& link = reading.value->links.at(0);
-  EXPECT_EQ(link.on_loss, OnLoss::Hold);
-  EXPECT_EQ(link.hold, std::chrono::milliseconds{250});
-  EXPECT_EQ(reading.value->links.at(1).on_loss, OnLoss::Down) << "what is not said is as it always was";
-}
-
 struct Mistake {
   const char* code;
   const char* from;
