@@ -24,6 +24,7 @@
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
+#include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
 #include "supervisor/supervisor.hpp"
@@ -80,21 +81,22 @@ struct SupervisorParts final : OwnSubsystem::Author {
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
   // modes and procedures
-  Means means{craft, own_telecommands, graph, restarts, under_way, commanded};
+  Means means{craft, own_telecommands, graph, restarts, under_way, commanded, losses};
   Commissioning commissioning{means};
   Modes modes{{means, own, power.ledger(), commissioning}};
   UnderWay under_way{commissioning, modes};
   Shutdown shutdown{{means, own, under_way, telecommands}};
   // event handling
   Reactions reactions{means, own};
-  SafeAll safe_all{craft, own, own_telecommands, under_way, restoration};
+  SafeAll safe_all{craft, own, own_telecommands, {&under_way, &restoration, &losses}};
   // subsystem handling, status
   GroundLinkCare ground_link{means, under_way};
   Restoration restoration{means, own, under_way};
+  LinkLosses losses{means, own, links};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
                        restarts, restoration}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 10> watches{&processes, &ground_link, &restoration,  &housekeeping,     &power,
+  std::array<Watch*, 11> watches{&processes, &ground_link, &restoration,  &losses,           &housekeeping, &power,
                                  &links,     &log_watch,   &telecommands, &own_telecommands, &replies};
 };
 

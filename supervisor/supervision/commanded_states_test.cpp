@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/commanded_states.hpp"
 
+#include <fmt/format.h>
+
 #include "hirosco/parameter/type.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 

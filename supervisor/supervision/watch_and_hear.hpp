@@ -49,4 +49,14 @@ class Undertaking {
   virtual void all_stopped(std::string_view why) = 0;
 };
 
+/// What the mission says of the loss of a link, done (docs/adr/0077).
+class LossHandling {
+ public:
+  virtual ~LossHandling() = default;
+  /// The producer of this link goes down, and its consumer does not.
+  virtual void lost(std::uint8_t link) = 0;
+  /// True: this event of a member tells of a link whose loss is answered here, by no plan.
+  virtual bool answers(std::uint16_t apid, std::string_view event) = 0;
+};
+
 }  // namespace hirosco::supervisor

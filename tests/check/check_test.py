@@ -125,6 +125,13 @@ class Check(unittest.TestCase):
         self.expect(self.folder, 1, "is a folder")
         self.expect(large, 1, "is larger than 4 MiB")
 
+    def test_what_the_plans_would_do_is_told_without_a_flight(self):
+        code, told = hirosco("check", "--recovery", self.mission("rokviss", old='within_s="60"', new='within_s="60" to="commanded"'))
+        self.assertEqual(code, 0)
+        self.assertIn("JOYSTICK high PROCESS_DIED: plan died: restart limit=3 within_s=60 pause_ms=100 to=commanded, "
+                      "shut_down_network", told)
+        self.assertIn("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED: plan to-safe: set_state state=SafeOperational", told)
+
     def test_json_has_a_line_for_each(self):
         mission = self.mission("hello", old='"hirosco-hello"', new='"hirosco-hallo"')
         code, told = hirosco("check", "--json", mission)

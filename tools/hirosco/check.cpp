@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -11,6 +12,7 @@
 #include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/xml/reader.hpp"
+#include "supervisor/supervision/event_handling/dry_run.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/readiness.hpp"
 
@@ -67,6 +69,21 @@ void show_mission(const descriptor::Mission& mission) {
     fmt::print("mode {} ({}): cycles take {:.0f} % of their processor\n", mode.name, mode.id,
                100 * descriptor::cycle_share(mission, mode));
     for (const auto& cycle : descriptor::cycle_responses(mission, mode)) show_cycle(cycle);
+  }
+}
+
+/// Nothing is flown: which plan would answer, event by event.
+void show_recovery(const descriptor::Mission& mission) {
+  for (const supervisor::PlannedReaction& each : supervisor::planned_reactions(mission)) {
+    const bool everywhere = each.modes.size() == mission.modes.size();
+    fmt::print("{} {} {}: plan {}: {}{}\n", each.subsystem, to_text(each.severity), each.event, each.plan, each.steps,
+               everywhere ? std::string{} : fmt::format(" (in {})", fmt::join(each.modes, ", ")));
+  }
+  for (const descriptor::MissionLink& link : mission.links) {
+    if (link.on_loss == descriptor::OnLoss::Down) continue;
+    fmt::print("{} without {} of {}: {}", link.to, link.requires_, link.from, to_text(link.on_loss));
+    if (link.on_loss == descriptor::OnLoss::Hold) fmt::print(" {} ms", link.hold / 1ms);
+    fmt::print("{}{}\n", link.fallback.empty() ? "" : " to ", link.fallback);
   }
 }
 
@@ -138,6 +155,7 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   }
   auto reading = descriptor::read_mission(file, source);
   if (options.show && reading.value) show_mission(*reading.value);
+  if (options.recovery && reading.value) show_recovery(*reading.value);
   findings.add(std::move(reading.problems));
   findings.add(std::move(reading.warnings));
   if (!reading.value) return;

@@ -38,6 +38,7 @@ struct CheckOptions {
   std::vector<std::string> files;
   bool json{false};
   bool show{false};                  ///< print what was read
+  bool recovery{false};              ///< print which plan each event would get, and in which modes
   bool fly{false};                   ///< what is missing on this computer is an error, not a warning
 };
 int check(const CheckOptions& options);

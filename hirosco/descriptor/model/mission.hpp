@@ -66,11 +66,22 @@ struct SimulatedDevice {
   Location at;
 };
 
+/// What becomes of the consumer of a link whose set it has lost (docs/adr/0077).
+enum class OnLoss : std::uint8_t {
+  Down,  ///< down with the network of who has failed; of a stale set: the plan for its event
+  Fallback,  ///< stopped, and on in another configuration
+  Hold,  ///< on for a time, then down with its own network
+  Ignore,  ///< on without it
+};
+
 struct MissionLink {
   std::uint8_t id{};
   std::string from, provides;  ///< producing subsystem and its set
   std::string to, requires_;  ///< consuming subsystem and its set
   Location at;
+  OnLoss on_loss{OnLoss::Down};
+  Duration hold{};  ///< Hold: for how long
+  std::string fallback{};  ///< Fallback: which configuration
 };
 
 /// What a mode lets through: functions, services and parameters of one subsystem, or of all ("*").
@@ -183,3 +194,12 @@ struct Mission {
 [[nodiscard]] double cycle_share(const Mission& mission) noexcept;
 
 }  // namespace hirosco::descriptor
+
+namespace hirosco {
+template <>
+struct EnumTexts<descriptor::OnLoss> {
+  using enum descriptor::OnLoss;
+  static constexpr auto table =
+      enum_table<descriptor::OnLoss>({{Down, "down"}, {Fallback, "fallback"}, {Hold, "hold"}, {Ignore, "ignore"}});
+};
+}  // namespace hirosco

@@ -108,19 +108,6 @@ TEST(MissionDescriptor, APlanHasItsStepsInTheirOrderAndTheValuesThatAreNotGiven)
   EXPECT_EQ(steps[1].values, (std::vector<std::int64_t>{0}));
 }
 
-TEST(MissionDescriptor, ARestartSaysAsFarAsItComesBack) {
-  for (const auto& [word, state] :
-       {std::pair{"Offline", State::Offline}, std::pair{"PreOperational", State::PreOperational},
-        std::pair{"SafeOperational", State::SafeOperational}, std::pair{"commanded", State::Operational}}) {
-    const std::string plan = std::string{R"(<When event="PROCESS_DIED"/><Do action="restart" to=")"} + word + R"("/>)";
-    const auto reading =
-        read_mission(data / "mission.xml",
-                     overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)", plan)}}));
-    ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
-    EXPECT_EQ(reading.value->plans.at(2).steps.at(0).values.at(3), static_cast<std::int64_t>(state)) << word;
-  }
-}
-
 struct Mistake {
   const char* code;
   const char* from;
@@ -212,6 +199,15 @@ constexpr Mistake mistakes[] = {
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES" label)"},
     {"E0304", R"(<Show subsystem="CORONAGRAPH" parameter="ACTIVE")", R"(<Show subsystem="@NOBODY" parameter="ACTIVE")"},
     {"E0105", R"( label="active")", ""},
+    {"E0340", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="@hold"/>)"},
+    {"E0340", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" hold_ms="@50"/>)"},
+    {"E0340", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" fallback="@COUPLED"/>)"},
+    {"E0340", R"(<Link id="2" from="FLYWHEEL.FLYWHEEL_STATE" to="CORONAGRAPH.FLYWHEEL_STATE"/>)", R"(<Link id="2" from="FLYWHEEL.FLYWHEEL_STATE" to="CORONAGRAPH.FLYWHEEL_STATE" on_loss="@ignore"/>)", "leave on_loss out"},
+    {"E0341", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="@ignore"/>)", "missing="},
+    {"E0316", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="fallback" fallback="@COUPELD"/>)", "COUPLED"},
+    {"E0340", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="fallback" fallback="@COUPLED"/>)", "without it"},
+    {"E0113", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="@perhaps"/>)"},
+    {"E0112", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE"/>)", R"(<Link id="1" from="CORONAGRAPH.PLATE_STATE" to="FLYWHEEL.PLATE_STATE" on_loss="hold" hold_ms="@0"/>)"},
     {"E0329", R"(<Ground subsystem="GROUNDSTATION")", R"(<Ground subsystem="@CORONAGRAPH")", "another subsystem"},
 };
 // clang-format on

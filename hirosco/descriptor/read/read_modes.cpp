@@ -37,6 +37,7 @@ void MissionReader::read_link(const xml::Element& element) {
   const Subsystem* producer = read_end(attributes, "from", link.from, link.provides);
   const Subsystem* consumer = read_end(attributes, "to", link.to, link.requires_);
   if (producer != nullptr && consumer != nullptr) check_link(element, *producer, *consumer, link);
+  read_loss(attributes, consumer, link);
   if (link.id != 0)
     link_ids_.add(std::to_string(link.id), place(element.find("id")->value_at), problems_,
                   element.find("id")->value.size());

@@ -60,6 +60,7 @@ void Reactions::act_first(const Member& origin, std::string_view event, Severity
 }
 
 void Reactions::react(Member& origin, std::string_view event, Severity told) {
+  if (means_.losses.answers(origin.apid(), event)) return;
   const auto [severity, steps] = answer_to(origin, event, told);
   if (steps.empty()) return;
   // One plan at a time for a subsystem; only something worse overrides it.

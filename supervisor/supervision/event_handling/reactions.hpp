@@ -23,7 +23,7 @@ class Reactions {
   Reactions(const Means& means, OwnSubsystem& own)
       : craft_{means.craft},
         desk_{means.desk, own},
-        means_{means.craft, desk_, means.links, means.restarts, means.under_way, means.commanded},
+        means_{means.craft, desk_, means.links, means.restarts, means.under_way, means.commanded, means.losses},
         describer_{craft_.mission} {}
 
   /// False: it cannot be read.

@@ -25,8 +25,7 @@ void SafeAll::asked() {
 void SafeAll::after_stop(std::string_view why) {
   craft_.tell(std::string{why} + ": every actuator inhibited", supervisor_apid);
   // Commissioning, or a change of mode, would lift the fences again with its next step.
-  under_way_.all_stopped(why);
-  restoration_.all_stopped(why);
+  for (Undertaking* each : under_way_) each->all_stopped(why);
   for (Member& subject : craft_.members) {
     // The ground link has no actuators and is needed now more than ever.
     if (!subject.alive() || craft_.is_ground_link(subject) || subject.state() != State::Operational) continue;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "supervisor/supervision/command_desk.hpp"
@@ -18,8 +19,8 @@ namespace hirosco::supervisor {
 /// was to stop. Thread: the supervisor's; the stop itself is the guard's.
 class SafeAll {
  public:
-  SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, Undertaking& under_way, Undertaking& restoration)
-      : craft_{craft}, own_{own}, desk_{desk}, under_way_{under_way}, restoration_{restoration} {}
+  SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, std::vector<Undertaking*> under_way)
+      : craft_{craft}, own_{own}, desk_{desk}, under_way_{std::move(under_way)} {}
 
   void provide();
   /// SAFE_ALL, carried out where it is received.
@@ -41,8 +42,7 @@ class SafeAll {
   Craft& craft_;
   OwnSubsystem& own_;
   CommandDesk& desk_;
-  Undertaking& under_way_;
-  Undertaking& restoration_;
+  std::vector<Undertaking*> under_way_;
   std::vector<Pending> pending_;
 };
 

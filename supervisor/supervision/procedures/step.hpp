@@ -25,6 +25,7 @@ struct Means {
   Restarts& restarts;
   Undertaking& under_way;
   CommandedStates& commanded;
+  LossHandling& losses;
 };
 
 /// Why a plan runs; empty where none does.

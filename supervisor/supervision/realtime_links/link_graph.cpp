@@ -11,8 +11,11 @@ LinkGraph::LinkGraph(const descriptor::Mission& mission) {
     const auto* from = mission.find_subsystem(link.from);
     const auto* to = mission.find_subsystem(link.to);
     if (from == nullptr || to == nullptr) continue;  // refused when the mission was read
-    edges_.push_back(
-        {.link = link.id, .from = from->subsystem.id, .to = to->subsystem.id, .required_set = link.requires_});
+    edges_.push_back({.link = link.id,
+                      .from = from->subsystem.id,
+                      .to = to->subsystem.id,
+                      .required_set = link.requires_,
+                      .takes_down = link.on_loss == descriptor::OnLoss::Down});
   }
 }
 
@@ -84,6 +87,38 @@ std::vector<std::uint16_t> LinkGraph::network_of(std::uint16_t apid) const {
   }
   std::ranges::sort(members);
   return members;
+}
+
+std::vector<std::uint16_t> LinkGraph::taken_down_with(std::uint16_t apid) const {
+  std::vector<std::uint16_t> members{apid};
+  // A consumer who is to go on does so only where each of its links from there says so.
+  const auto goes_on = [this](std::uint16_t lost, std::uint16_t other) {
+    bool spared = false;
+    for (const Edge& edge : edges_) {
+      if (!edge.joins() || edge.from != lost || edge.to != other) continue;
+      if (edge.takes_down) return false;
+      spared = true;
+    }
+    return spared;
+  };
+  for (std::size_t next = 0; next < members.size(); ++next) {
+    for (const Edge& edge : edges_) {
+      if (!edge.joins()) continue;
+      const std::uint16_t lost = members[next];
+      const std::uint16_t other = edge.from == lost ? edge.to : edge.to == lost ? edge.from : apid;
+      if (std::ranges::find(members, other) == members.end() && !goes_on(lost, other)) members.push_back(other);
+    }
+  }
+  std::ranges::sort(members);
+  return members;
+}
+
+std::vector<std::uint8_t> LinkGraph::links_out_of(const std::vector<std::uint16_t>& members) const {
+  const auto within = [&](std::uint16_t apid) { return std::ranges::find(members, apid) != members.end(); };
+  std::vector<std::uint8_t> links;
+  for (const Edge& edge : edges_)
+    if (edge.up && within(edge.from) && !within(edge.to)) links.push_back(edge.link);
+  return links;
 }
 
 std::vector<std::uint8_t> LinkGraph::links_of(std::uint16_t apid) const {

@@ -41,6 +41,11 @@ class LinkGraph {
   /// The real-time network of a subsystem: all that are transitively connected to it by links that are up or that one end
   /// still holds, itself included, in ascending order.
   [[nodiscard]] std::vector<std::uint16_t> network_of(std::uint16_t apid) const;
+  /// Of those the ones whom its loss takes down: who only goes on, or falls back, without its sets is not joined by their links
+  /// (docs/adr/0077), nor is anybody behind it.
+  [[nodiscard]] std::vector<std::uint16_t> taken_down_with(std::uint16_t apid) const;
+  /// Links that are up from one of these to somebody else.
+  [[nodiscard]] std::vector<std::uint8_t> links_out_of(const std::vector<std::uint16_t>& members) const;
   /// Links that are up with this subsystem at either end.
   [[nodiscard]] std::vector<std::uint8_t> links_of(std::uint16_t apid) const;
   /// The mission's link into a required set: the one that is up, else the first; 0 when there is none.
@@ -55,6 +60,7 @@ class LinkGraph {
     std::uint16_t from{};
     std::uint16_t to{};
     std::string_view required_set;
+    bool takes_down{true};  ///< its consumer, who has lost it
     bool up{false};
     bool from_holds{false};
     bool to_holds{false};

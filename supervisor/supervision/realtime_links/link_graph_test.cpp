@@ -54,6 +54,23 @@ TEST_F(LinkGraphTest, ANetworkIsWhateverIsConnectedWhicheverWayTheLinksPoint) {
   for (const int member : {14, 15}) EXPECT_THAT(network_of(member), ElementsAre(14, 15));
 }
 
+/// 11 and 12 need each other, 13 needs 12, 12 needs nothing of 13.
+TEST_F(LinkGraphTest, WhoIsToGoOnWithoutASetIsNotTakenDownNorAnybodyBehindIt) {
+  descriptor::Mission said = mission;
+  said.links[0].on_loss = descriptor::OnLoss::Hold;  // 11 -> 12
+  said.links[2].on_loss = descriptor::OnLoss::Ignore;  // 12 -> 13
+  LinkGraph telling{said};
+  for (const std::uint8_t link : std::initializer_list<std::uint8_t>{1, 2, 3}) telling.set_up(link, true);
+  EXPECT_THAT(telling.taken_down_with(11), ElementsAre(11));
+  EXPECT_THAT(telling.links_out_of({11}), ElementsAre(1));
+  EXPECT_THAT(telling.taken_down_with(12), ElementsAre(11, 12)) << "11 says nothing of its loss";
+  EXPECT_THAT(telling.links_out_of({11, 12}), ElementsAre(3));
+  EXPECT_THAT(telling.taken_down_with(13), ElementsAre(11, 12, 13)) << "12 goes down for it, and so does who needs 12";
+  EXPECT_THAT(graph.taken_down_with(11), ElementsAre(11)) << "nothing is up here";
+  for (const std::uint8_t link : std::initializer_list<std::uint8_t>{1, 2, 3}) graph.set_up(link, true);
+  EXPECT_EQ(graph.taken_down_with(13), graph.network_of(13)) << "where nobody says anything it is the network";
+}
+
 TEST_F(LinkGraphTest, ALinkThatBothEndsLetGoOfSplitsItsNetwork) {
   graph.set_up(1, true);
   graph.set_up(2, true);

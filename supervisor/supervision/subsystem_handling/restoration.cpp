@@ -24,7 +24,7 @@ void Restoration::lost(std::uint16_t apid) {
 
 Restoration::Loss Restoration::look(std::uint16_t apid) const {
   Loss loss{.at = craft_.now, .members = {}, .links = {}};
-  for (const std::uint16_t member : means_.links.network_of(apid)) {
+  for (const std::uint16_t member : means_.links.taken_down_with(apid)) {
     for (const std::uint8_t link : means_.links.links_of(member)) loss.links.insert(link);
     const Member* one = craft_.member(member);
     if (one == nullptr || craft_.is_ground_link(*one)) continue;
@@ -125,13 +125,21 @@ void Restoration::begin() {
     else way.add(member.descriptor(), *configuration, from, commanded.state());
     way.recall(apid, commanded.state());
   }
-  const auto is_there = [&](const std::string& name) {
+  // Who went on without may do so in another configuration by now: its own ends of links are made with that.
+  const auto is_there = [&](const std::string& name, const auto& sets_of, const std::string& set) {
     const Member& member = *craft_.member(craft_.mission.find_subsystem(name)->subsystem.id);
-    return there.contains(member.apid()) || member.configuration() != 0;
+    if (there.contains(member.apid())) return true;
+    const auto* configuration = member.descriptor().find_configuration(member.configuration());
+    return configuration != nullptr &&
+           std::ranges::any_of(sets_of(*configuration), [&](const auto& each) { return each.name == set; });
   };
+  const auto provides = [](const descriptor::Configuration& one) -> const auto& { return one.provides; };
+  const auto requires_of = [](const descriptor::Configuration& one) -> const auto& { return one.requires_; };
   for (const std::uint8_t id : links_) {
     const descriptor::MissionLink& link = *craft_.mission.find_link(id);
-    if (!means_.links.is_up(id) && is_there(link.from) && is_there(link.to)) way.link(id);
+    if (!means_.links.is_up(id) && is_there(link.from, provides, link.provides) &&
+        is_there(link.to, requires_of, link.requires_))
+      way.link(id);
   }
   craft_.tell(names() + ": back to the commanded state", supervisor_apid);
   runner_.start({.stages = way.stages(),

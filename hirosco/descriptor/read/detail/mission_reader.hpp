@@ -68,6 +68,8 @@ class MissionReader {
                                           std::string& set);
   void check_link(const xml::Element& element, const Subsystem& producer, const Subsystem& consumer,
                   const MissionLink& link);
+  /// read_link_loss.cpp
+  void read_loss(Attributes& attributes, const Subsystem* consumer, MissionLink& link);
   void read_modes(const xml::Element& element);
   void read_mode(const xml::Element& element);
 

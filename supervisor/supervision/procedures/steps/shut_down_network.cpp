@@ -15,7 +15,7 @@ namespace {
 
 /// The ground link may carry sets of the network; it has no actuators, and ground must hear what goes on.
 std::vector<std::uint16_t> members_of(const ProcedureStep& step, const Means& means) {
-  auto members = means.links.network_of(step.subject);
+  auto members = means.links.taken_down_with(step.subject);
   std::erase_if(members, [&](std::uint16_t apid) {
     const Member* subject = means.craft.member(apid);
     return subject != nullptr && apid != step.subject && means.craft.is_ground_link(*subject);
@@ -67,6 +67,7 @@ void shut_down(const ProcedureStep& step, const Means& means, const CommandDone&
     means.commanded.lower(apid, State::Offline, step.occasion.event);
     if (member->recovery.goes_down()) bring_down(*member, means);
   }
+  for (const std::uint8_t link : means.links.links_out_of(members)) means.losses.lost(link);
   done(true, {});
 }
 

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/descriptor/testing.hpp"
+
+/// What a mission says of who crashed (docs/adr/0076) and of lost links (docs/adr/0077), as it is read.
+namespace hirosco::descriptor {
+namespace {
+
+using testing::changed;
+using testing::data;
+using testing::overlay;
+using testing::rendered;
+
+TEST(MissionRecovery, ARestartSaysAsFarAsItComesBack) {
+  for (const auto& [word, state] :
+       {std::pair{"Offline", State::Offline}, std::pair{"PreOperational", State::PreOperational},
+        std::pair{"SafeOperational", State::SafeOperational}, std::pair{"commanded", State::Operational}}) {
+    const std::string plan = std::string{R"(<When event="PROCESS_DIED"/><Do action="restart" to=")"} + word + R"("/>)";
+    const auto reading =
+        read_mission(data / "mission.xml",
+                     overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)", plan)}}));
+    ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+    EXPECT_EQ(reading.value->plans.at(2).steps.at(0).values.at(3), static_cast<std::int64_t>(state)) << word;
+  }
+}
+
+TEST(MissionRecovery, ALinkSaysWhatItsLossDoes) {
+  const std::string flywheel = file_system()(data / "flywheel.xml").value();
+  const auto reading = read_mission(
+      data / "mission.xml",
+      overlay(
+          {{"mission.xml",
+            changed(R"(to="FLYWHEEL.PLATE_STATE"/>)", R"(to="FLYWHEEL.PLATE_STATE" on_loss="hold" hold_ms="250"/>)")},
+           {"flywheel.xml", changed(R"(<Requires name="PLATE_STATE" from="CORONAGRAPH">)",
+                                    R"(<Requires name="PLATE_STATE" from="CORONAGRAPH" missing="hold">)", flywheel)}}));
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const MissionLink& link = reading.value->links.at(0);
+  EXPECT_EQ(link.on_loss, OnLoss::Hold);
+  EXPECT_EQ(link.hold, std::chrono::milliseconds{250});
+  EXPECT_EQ(reading.value->links.at(1).on_loss, OnLoss::Down) << "what is not said is as it always was";
+}
+
+}  // namespace
+}  // namespace hirosco::descriptor

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/subsystem_handling/link_losses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "supervisor/supervision/modes/mode_plan.hpp"
+#include "supervisor/supervision/procedures/step_kinds.hpp"
+
+namespace hirosco::supervisor {
+
+using descriptor::OnLoss;
+
+Member& LinkLosses::consumer_of(const descriptor::MissionLink& link) {
+  return *craft_.member(craft_.mission.find_subsystem(link.to)->subsystem.id);
+}
+
+void LinkLosses::lost(std::uint8_t id) {
+  const descriptor::MissionLink& link = *craft_.mission.find_link(id);
+  Member& consumer = consumer_of(link);
+  // Who goes down anyway needs no word, nor who is told already.
+  if (link.on_loss == OnLoss::Down || craft_.shutting_down || !consumer.alive() || consumer.recovery.running()) return;
+  if (holds_.contains(id) || fallbacks_.contains(consumer.apid())) return;
+  own_.announce("LINK_LOST", {static_cast<double>(id), static_cast<double>(consumer.apid())});
+  craft_.tell(fmt::format("{} has lost {} of {}: {}", link.to, link.requires_, link.from, to_text(link.on_loss)),
+              consumer.apid());
+  if (link.on_loss == OnLoss::Hold) holds_[id] = {craft_.now, craft_.now + link.hold};
+  if (link.on_loss == OnLoss::Ignore) holds_[id] = {craft_.now, TimePoint::max()};  // told once
+  if (link.on_loss == OnLoss::Fallback) fall_back(link, consumer);
+}
+
+/// The event of the consumer's own cycle: its producer may live and say nothing, or this be quicker than its end.
+bool LinkLosses::answers(std::uint16_t apid, std::string_view event) {
+  constexpr std::string_view stale = "_STALE";
+  if (!event.ends_with(stale)) return false;
+  const std::uint8_t id = means_.links.link_into(apid, event.substr(0, event.size() - stale.size()));
+  const auto* link = craft_.mission.find_link(id);
+  if (link == nullptr || link->on_loss == OnLoss::Down) return false;
+  lost(id);
+  return true;
+}
+
+void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer) {
+  const auto* configuration = consumer.descriptor().find_configuration(link.fallback);
+  const auto state = consumer.state();
+  const bool acts = state == State::SafeOperational || state == State::Operational;
+  if (!acts || consumer.configuration() == configuration->id) return;
+  const std::uint16_t apid = consumer.apid();
+  // With what is lost nobody goes on acting, whoever obeys and whenever.
+  craft_.guard.fence(apid);
+  WayThere way;
+  way.add(consumer.descriptor(), *configuration, {state, consumer.configuration()}, *state);
+  Fallback& fallback = fallbacks_.try_emplace(apid, means_).first->second;
+  fallback.fences = craft_.guard.fences(apid);
+  fallback.runner.start({.stages = way.stages(),
+                         .finished =
+                             [this, &link, apid](const ProcedureEnd& end) {
+                               if (!craft_.member(apid)->alive() || craft_.shutting_down) return;
+                               if (!end.success) return bring_down(link, end.text());
+                               craft_.tell(fmt::format("{} goes on in configuration {}", link.to, link.fallback), apid);
+                             },
+                         .begins =
+                             [this, apid](std::size_t) {
+                               const auto found = fallbacks_.find(apid);
+                               const bool stopped =
+                                   found != fallbacks_.end() && craft_.guard.fences(apid) != found->second.fences;
+                               const bool other =
+                                   craft_.changing_to != nullptr || craft_.member(apid)->recovery.running();
+                               if (found != fallbacks_.end() && (stopped || other)) found->second.runner.cancel();
+                             }});
+}
+
+bool LinkLosses::is_back(std::uint8_t link, TimePoint since) const {
+  const auto glance = links_.glance(link);
+  return means_.links.is_up(link) && glance && glance->sampled_at > since;
+}
+
+/// Its consumer may have another configuration by now, or have gone down in good order.
+bool LinkLosses::is_needed(const descriptor::MissionLink& link) {
+  const Member& consumer = consumer_of(link);
+  const auto* configuration = consumer.descriptor().find_configuration(consumer.configuration());
+  return configuration != nullptr &&
+         std::ranges::any_of(configuration->requires_, [&](const auto& set) { return set.name == link.requires_; });
+}
+
+void LinkLosses::watch(TimePoint now) {
+  std::erase_if(fallbacks_, [](const auto& entry) { return !entry.second.runner.running(); });
+  // However it went: no plan may have taken its producer down, which may have left in good order.
+  for (const descriptor::MissionLink& link : craft_.mission.links) {
+    if (link.on_loss == OnLoss::Down) continue;
+    const Member& consumer = consumer_of(link);
+    const std::uint8_t in_use = means_.links.link_into(consumer.apid(), link.requires_);
+    if (consumer.state() == State::Operational && is_needed(link) && !means_.links.is_up(in_use)) lost(link.id);
+  }
+  std::vector<std::uint8_t> over;
+  std::erase_if(holds_, [&](const auto& entry) {
+    if (is_back(entry.first, entry.second.since)) return true;
+    if (now < entry.second.until) return false;
+    over.push_back(entry.first);
+    return true;
+  });
+  for (const std::uint8_t id : over) {
+    const descriptor::MissionLink& link = *craft_.mission.find_link(id);
+    if (!is_needed(link)) continue;
+    bring_down(link, fmt::format("{} did not come back in time", link.requires_));
+  }
+}
+
+void LinkLosses::bring_down(const descriptor::MissionLink& link, const std::string& why) {
+  const Member& consumer = consumer_of(link);
+  const bool can = consumer.alive() && consumer.state() && *consumer.state() != State::Offline;
+  if (!can || craft_.shutting_down || consumer.recovery.running()) return;
+  craft_.tell(fmt::format("{}: {}", link.to, why), consumer.apid());
+  ProcedureStep down = step("shut_down_network", consumer.apid(), {});
+  down.occasion.plan = fmt::format("on loss of link {}", link.id);
+  ProcedureRunner{means_}.start({.stages = {{down}}});
+}
+
+bool LinkLosses::cancel(std::string_view why) {
+  std::erase_if(fallbacks_, [](const auto& entry) { return !entry.second.runner.running(); });
+  const bool running = !fallbacks_.empty();
+  for (auto& [apid, fallback] : fallbacks_) {
+    fallback.runner.cancel();
+    craft_.tell(fmt::format("{} does not go on in another configuration: {}", craft_.name_of(apid), why), apid);
+  }
+  fallbacks_.clear();
+  return running;
+}
+
+}  // namespace hirosco::supervisor
