@@ -195,7 +195,7 @@ constexpr Mistake mistakes[] = {
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" limit="@3"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" to="@commanded"/>)"},
-    {"E0113", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" to="@Operational"/>)", "commanded"},
+    {"E0113", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" to="@Operational"/>)", "PreOperational"},
     {"E0103", R"(<Do action="log"/>)", R"(<Do action="log" @lmit="3"/>)"},
     {"E0105", R"(<Do action="log"/>)", R"(@<Do action="set_state"/>)"},
     {"E0112", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" limit="@0"/>)"},
