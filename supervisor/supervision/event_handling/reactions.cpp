@@ -65,13 +65,7 @@ void Reactions::react(Member& origin, std::string_view event, Severity told) {
   if (steps.empty()) return;
   // One plan at a time for a subsystem; only something worse overrides it.
   if (origin.recovery.outweighs(severity) && !is_loss(event)) return;
-  begin(origin, severity, steps, [this, apid = origin.apid()](const ProcedureEnd& end) {
-    Member* subject = craft_.member(apid);
-    if (end.success || !subject->alive()) return;
-    // A plan that fails escalates once, to the whole network; shutting down has no further step.
-    craft_.tell("plan failed (" + end.why + "): escalating", apid);
-    react(*subject, "RECOVERY_FAILED", Severity::High);
-  });
+  begin(origin, severity, steps);
 }
 
 /// Of a plan, what there is to do for this subsystem about this event.
@@ -89,17 +83,19 @@ Stage Reactions::steps_for(const Member& subject, const Reaction& reaction, std:
 }
 
 /// The steps of a plan, one after the other; while one that holds its subject runs, nothing lesser begins for that.
-void Reactions::begin(Member& subject, Severity severity, const Stage& steps,
-                      std::function<void(const ProcedureEnd&)> finished) {
+void Reactions::begin(Member& subject, Severity severity, const Stage& steps) {
   const bool holds = std::ranges::any_of(
       steps, [](const ProcedureStep& each) { return each.kind->holds == StepKind::Holds::Subject; });
   if (holds) subject.recovery.plan_begins(severity);
   Procedure procedure;
   for (const ProcedureStep& each : steps) procedure.stages.push_back({each});
-  procedure.finished = [this, apid = subject.apid(), severity, holds,
-                        finished = std::move(finished)](const ProcedureEnd& end) {
-    if (holds) craft_.member(apid)->recovery.plan_ended(severity);
-    if (finished) finished(end);
+  procedure.finished = [this, apid = subject.apid(), severity, holds](const ProcedureEnd& end) {
+    Member& its = *craft_.member(apid);
+    if (holds) its.recovery.plan_ended(severity);
+    if (end.success || !its.alive()) return;
+    // A plan that fails escalates once, to the whole network; shutting down has no further step.
+    craft_.tell("plan failed (" + end.why + "): escalating", apid);
+    react(its, "RECOVERY_FAILED", Severity::High);
   };
   ProcedureRunner{means_}.start(std::move(procedure));
 }
@@ -118,7 +114,7 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
   for (Member& subject : craft_.members) {
     if (!subject.alive() || craft_.is_ground_link(subject) || subject.recovery.running()) continue;
     const Stage steps = steps_for(subject, reaction, event, {std::string{reaction.plan}});
-    if (!steps.empty()) begin(subject, severity, steps, nullptr);
+    if (!steps.empty()) begin(subject, severity, steps);
   }
 }
 

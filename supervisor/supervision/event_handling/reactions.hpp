@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string_view>
 
 #include "hirosco/pus/words/describe.hpp"
@@ -42,8 +41,7 @@ class Reactions {
   void react_to_own(std::string_view event, descriptor::Severity severity);
   [[nodiscard]] Stage steps_for(const Member& subject, const Reaction& reaction, std::string_view event,
                                 const Occasion& occasion) const;
-  void begin(Member& subject, descriptor::Severity severity, const Stage& steps,
-             std::function<void(const ProcedureEnd&)> finished);
+  void begin(Member& subject, descriptor::Severity severity, const Stage& steps);
 
   class Desk final : public CommandDesk {
    public:

@@ -200,6 +200,20 @@ TEST_F(ReactionsTest, APlanForAnEventOfTheSupervisorItselfConcernsAllThatAct) {
   EXPECT_TRUE(was_told("plan test: all subsystems because of LOG_STORE"));
 }
 
+TEST_F(ReactionsTest, APlanForAnEventOfTheSupervisorItselfThatFailsEscalatesForWhomItFailed) {
+  plan("LOG_STORE", {to_be(SafeOperational)});
+  parts.own.start(craft.mode_epoch);
+  own_step();
+  parts.own.announce("LOG_STORE");
+  own_step();
+  completed(hand);
+  completed(arm, 8);
+  EXPECT_TRUE(was_told("plan failed (" + std::string{to_text(pus::FailureCode::ExecutionError)} + "): escalating"));
+  EXPECT_THAT(texts(arm), ElementsAre(to(ErrorOperational)));
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_THAT(texts(hand), IsEmpty()) << "it did as it was told";
+}
+
 TEST_F(ReactionsTest, GroundIsToldOfEachStateThatAPlanCommands) {
   parts.own.start(craft.mode_epoch);
   own_step();
