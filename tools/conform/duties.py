@@ -106,6 +106,10 @@ class Flown:
             self.devices[name] = PlayedDevice(transfer, place, octets)
             self.craft.partners.append(self.devices[name])
         self.craft.configure(self.configuration.id).expect_done("CONFIGURE")
+        # A device that was not heard yet inhibits at once in Safe-Operational.
+        if self.devices:
+            self.craft.until(lambda: all(len(device.commands) > 2 for device in self.devices.values()), 1 + 5 * self.configuration.period_s)
+            self.craft.wait(2 * self.configuration.period_s)
         return self
 
     def agreement_for(self, required, **changes):
