@@ -428,6 +428,9 @@ int main(int argc, char** argv) {
     return fprintf(stderr, "lantern: what should be the supervisor's pages are none\n"), 3;
   if (load32(vital_ + 4) != 3 || load32(permit_ + 4) != 3)
     return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 3\n", load32(permit_ + 4)), 3;
+  const char* instance = getenv("HIROSCO_INSTANCE");
+  size_t named = strlen(address_);
+  if (instance && *instance) snprintf(address_ + named, sizeof address_ - named, ".%s", instance);
   const char* epoch = getenv("HIROSCO_EPOCH_NS");
   epoch_ns_ = epoch ? atoll(epoch) : clock_ns(CLOCK_REALTIME) - now_ns() + (378691200LL + 37) * 1000000000;
   store_checked(vital_ + 24, 0);

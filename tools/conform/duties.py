@@ -7,7 +7,7 @@ import xml.etree.ElementTree
 import pathlib
 
 import wire
-from craft import OPERATIONAL, PRE, SAFE, Craft, Passed, expect
+from craft import INSTANCE, OPERATIONAL, PRE, SAFE, Craft, Passed, expect
 from described import Configuration, Descriptor
 from partners import PlayedDevice, PlayedProducer
 
@@ -102,7 +102,7 @@ class Flown:
             inputs = self.judged.described.devices[name].findall("Input/Field")
             octets = sum(wire.octets_of(wire.TYPES[each.get("type")]) * int(each.get("count", 1)) for each in inputs)
             transfer, address = device.find("Endnode").get("transfer"), self.craft.addresses[name]
-            place = str(self.judged.folder / address) if transfer == "unix" else address
+            place = str(self.judged.folder / f"{address}.{INSTANCE}") if transfer == "unix" else address
             self.devices[name] = PlayedDevice(transfer, place, octets)
             self.craft.partners.append(self.devices[name])
         self.craft.configure(self.configuration.id).expect_done("CONFIGURE")
