@@ -261,16 +261,17 @@ class Metronome(Services):
             self.find("TEMPO").value = [given[0]]
             self.find("LABEL").value = list(given[1].ljust(12, b"\0"))
         else:
-            self.find("PENDULUM.STRUCK").value = [1]
             self.event(6001, struct.pack(">I", self.find("PENDULUM.BEAT").value[0]))
 
     def control(self):
         """The pendulum swings in Safe-Operational and Operational."""
         if self.state not in (SAFE, OPERATIONAL):
             return
-        beat, swing = self.find("PENDULUM.BEAT"), self.find("PENDULUM.SWING")
+        beat, swing = self.find("PENDULUM.BEAT"), self.find("PENDULUM.POSITION")
         phase = 2 * math.pi * self.find("TEMPO").value[0] * beat.value[0] * self.period_ns / 1e9
         swing.value = [0.3 * math.sin(phase), 0.3 * math.cos(phase)]
+        self.find("PENDULUM.TORQUE").value = [-0.1 * angle for angle in swing.value]
+        self.find("PENDULUM.ACTIVE").value = [int(self.state == OPERATIONAL)]
         beat.value = [beat.value[0] + 1 & 0xFFFFFFFF]
 
     # --- both loops --------------------------------------------------------------------------------------------------------

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""Mistakes that somebody who writes a subsystem makes: the file of the metronome, what stands there, what would stand there, and the
+"""Mistakes that somebody who writes a subsystem makes: the file of the metronome or the lantern, what stands there, what would stand there, and the
 duty that must find it. The suite is proved by them (suite_test.py)."""
 M, S, P = "metronome.py", "metronome_services.py", "metronome_parts.py"
+C, L, W = "lantern.c", "lantern_services.h", "lantern_wire.h"
 MUTANTS = [
     (M, "        return 2\n", "        return 0\n", "begin.usage"),
     (M, "if page.narrow[1] != VERSION:", "if False:", "begin.version"),
@@ -13,6 +14,7 @@ MUTANTS = [
      "packet.ping"),
     (S, "0xC000 | sequence, len(data) + 15", "0x4000 | sequence, len(data) + 15", "packet.stamp"),
     (S, "stamp = struct.pack(\">I\", now // 10**9)", "stamp = struct.pack(\">I\", now // 10**9 - 378_691_200)", "packet.stamp"),
+    (M, "int(epoch) if epoch else time", "time", "packet.stamp"),
     (S, "self.report(17, 2, request.source", "self.report(17, 2, 0", "packet.stamp"),
     (S, "sequence + 1 & 0x3FFF)", "sequence + 1)", "packet.counters"),
     (S, "if flag is None or request.ack & flag:", "if True:", "packet.acknowledged"),
@@ -62,4 +64,28 @@ MUTANTS = [
     (M, "SILENCE_S = 2\n", "SILENCE_S = 20\n", "permit.heartbeat"),
     (M, "                self.finished = True\n", "                pass\n", "end.offline"),
     (M, "            elif self.state != OFFLINE:\n", "            elif False:\n", "end.killed"),
+    # Of who requires a set and has a device.
+    (L, "  put64(data + at, period_ns);\n", "  put64(data + at, period_ns / 1000);\n", "link.offer"),
+    (L, "  if (state_ == 3 && target == 4 && !consumer_.words) return", "  if (0) return", "link.consume"),
+    (L, "    store32(vital_ + 96, link);\n", "", "link.consume"),
+    (C, "  if (stale) inhibit(link_bit);\n", "", "link.stale"),
+    (C, " && (status == 1 || status == 2);", ";", "link.stale"),
+    (C, "attached && status != 3) event", "attached) event", "link.stale"),
+    (C, "  fresh_ = attached && consumer_.count != 0 && age_ <= age_cycles * factor_", "  fresh_ = attached && consumer_.count != 0", "link.stale"),
+    (W, "  else if (load64(made->words + 24) != agreed->hash) why", "  else if (0) why", "link.refused"),
+    (W, "(producer ? 0 : seal_future_write)", "0", "link.refused"),
+    (C, "|| !moves_))) inhibit(stop_bit);", "|| !moves_))) inhibit(0);", "permit.withdrawn"),
+    (C, "  int active = state_ == 5 && inhibited_ == 0;", "  int active = state_ == 5;", "permit.withdrawn"),
+    (C, "  int active = state_ == 5 && inhibited_ == 0;", "  int active = state_ == 4 || state_ == 5;", "device.frames"),
+    (C, "put_le32(frame + 4, epoch_now_)", "put_le32(frame + 4, 1)", "device.frames"),
+    (C, "put_le32(frame + 4, epoch_now_)", "put_le32(frame + 4, entered_epoch_ + 1)", "permit.moves"),
+    (C, "put_le32(frame + 16, 200000);", "put_le32(frame + 16, 200);", "device.frames"),
+    (C, "float power = active ? glow_ : 0.25f;", "float power = active ? glow_ : 0;", "device.frames"),
+    (C, "  if (instance && *instance)", "  if (0)", "permit.moves"),
+    (C, "++sequence_);", "sequence_ += 2);", "device.frames"),
+    (C, "state_ == 6 ? 2 : 0", "0", "device.stop"),
+    (C, "      news = !heard_ || le32(kept + 8) != echoed_;", "      news = 1;", "device.silent"),
+    (C, "sum == crc16(kept, (size_t)newest - 2)", "1", "device.silent"),
+    (C, "  if (controls && !lamp_alive_) inhibit(device_bit);\n", "", "device.silent"),
+    (C, "  if (state_ == 5 && (lost_ || (silent_ > silence_real && way_size_ == 0)))", "  if (0)", "permit.heartbeat"),
 ]

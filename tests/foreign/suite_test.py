@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """tools/conform/conform finds good what is good, in whatever language, and finds each planted mistake.
 
-    suite_test.py PROGRAM DESCRIPTOR      the program keeps every duty
+    suite_test.py PROGRAM DESCRIPTOR      the program keeps every duty; one in C is compiled first
     suite_test.py --mutants               each of mutants.py is found by its duty
 """
 import concurrent.futures
+import os
 import pathlib
 import shutil
 import subprocess
@@ -20,6 +21,13 @@ def judge(program, descriptor, *more):
     return subprocess.run([CONFORM, program, descriptor, *more], capture_output=True, text=True, check=False)
 
 
+def compiled(source, folder):
+    """A program in C11; the warnings of one with a planted mistake are not looked at."""
+    program = f"{folder}/{pathlib.Path(source).stem}"
+    subprocess.run([os.environ.get("CC", "cc"), "-std=c11", "-O2", "-o", program, source, "-lm"], check=True, capture_output=True)
+    return program
+
+
 def found(mutant):
     """Words, and whether the suite found it."""
     file, stands, planted, duty = mutant
@@ -27,10 +35,12 @@ def found(mutant):
     if text.count(stands) != 1:
         return f"{stands!r} stands {text.count(stands)} times in {file}", False
     with tempfile.TemporaryDirectory() as folder:
-        for each in HERE.glob("metronome*"):
+        whose = file.partition("_")[0].partition(".")[0]
+        for each in HERE.glob(f"{whose}*"):
             shutil.copy(each, folder)
         (pathlib.Path(folder) / file).write_text(text.replace(stands, planted))
-        judged = judge(f"{folder}/metronome.py", f"{folder}/metronome.xml", "--only", duty)
+        program = compiled(f"{folder}/lantern.c", folder) if whose == "lantern" else f"{folder}/metronome.py"
+        judged = judge(program, f"{folder}/{whose}.xml", "--only", duty)
     lines = judged.stdout.splitlines() or [judged.stderr[-200:]]
     return f"{planted.strip()[:60]!r}: {lines[0][:150]}", judged.returncode == 1 and lines[0].startswith(f"FAILED {duty}")
 
@@ -50,6 +60,8 @@ def mutants():
 if __name__ == "__main__":
     if sys.argv[1:] == ["--mutants"]:
         sys.exit(mutants())
-    outcome = judge(*sys.argv[1:])
+    with tempfile.TemporaryDirectory() as place:
+        given = [compiled(word, place) if word.endswith(".c") else word for word in sys.argv[1:]]
+        outcome = judge(*given)
     print(outcome.stdout + outcome.stderr)
     sys.exit(outcome.returncode)

@@ -22,6 +22,7 @@ VITAL_OCTETS, PERMIT_OCTETS, MAGIC, VERSION = 744, 48, 0x48495243, 3
 SEAL_SEAL, SEAL_SHRINK, SEAL_GROW, SEAL_FUTURE_WRITE = 1, 2, 4, 16
 ADD_SEALS, GET_SEALS = 1033, 1034
 BEAT_S, SOURCE, FENCE = 0.01, 1, 0x3FF0
+INSTANCE = "conform"
 OFFLINE, PRE, SAFE, OPERATIONAL, ERROR, POST = 0, 3, 4, 5, 6, 7
 ENDS = {2, 4, 7, 8, 10}
 
@@ -143,6 +144,7 @@ class Craft:
         # As the supervisor gives them: 3, 4 and 5.
         parked = [fcntl.fcntl(number, fcntl.F_DUPFD_CLOEXEC, 100) for number in given]
         self.errors = tempfile.TemporaryFile()
+        epoch_ns = time.time_ns() - time.monotonic_ns() + (wire.EPOCH_S + wire.SHIFT_S) * 10**9
 
         def place():
             os.setpgid(0, 0)
@@ -151,7 +153,8 @@ class Craft:
 
         self.process = subprocess.Popen(
             [*self.command, *words, "--channel", "3", "--vital", "4", "--permit", "5"], stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL, stderr=self.errors, close_fds=False, preexec_fn=place, cwd=self.folder)
+            stdout=subprocess.DEVNULL, stderr=self.errors, close_fds=False, preexec_fn=place, cwd=self.folder,
+            env={**os.environ, "HIROSCO_INSTANCE": INSTANCE, "HIROSCO_EPOCH_NS": str(epoch_ns)})
         for number in parked:
             os.close(number)
         self.theirs.close()

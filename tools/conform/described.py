@@ -17,6 +17,7 @@ NATIVE = 1 if sys.byteorder == "little" else 2
 # Structures that every subsystem has where its descriptor names them: members are name, id, type, count.
 FRAMEWORK = {"CYCLE_STATS": [("OVERRUNS", 244, 5, 1), ("MAX_US", 240, 9, 1), ("AVG_US", 241, 9, 1)],
              "CYCLE_TIMES": [("EXECUTION", 240, 5, 16), ("LATENCY", 241, 5, 16)],
+             "CYCLE_BUDGET": [("BUDGET_US", 242, 9, 1), ("LONGEST_US", 243, 9, 1), ("EXCEEDED", 245, 5, 1)],
              "LINK_STATS": [("RECEIVED", 242, 5, 1), ("LOST", 243, 5, 1)]}
 
 
@@ -74,8 +75,9 @@ class Descriptor:
             self.enumerations[each.get("name")] = {text.text: int(text.get("value")) for text in each.iter("Text")}
         self.parameters = [self._parameter(each) for each in self.root.findall("Parameters/*") if each.tag in ("ParamRef", "StructRef")]
         # Those that it has without declaring them; a foreign one may leave them out.
-        self.framework = [Value(name, STRUCT, id=39 + i, members=[Value(*member[:1], member[2], member[3], member[1]) for member in members])
-                          for i, (name, members) in enumerate(FRAMEWORK.items())]
+        ids = {"CYCLE_STATS": 39, "CYCLE_TIMES": 40, "LINK_STATS": 41, "CYCLE_BUDGET": 38}
+        self.framework = [Value(name, STRUCT, id=ids[name], members=[Value(word, kind, count, place) for word, place, kind, count in members])
+                          for name, members in FRAMEWORK.items()]
         self.functions = [Function(each.get("name"), self._states(each.get("states", "Operational")),
                                    [self._argument(i, argument) for i, argument in enumerate(each.iter("Argument"), 1)])
                           for each in self.root.iter("Function")]

@@ -7,7 +7,7 @@ import xml.etree.ElementTree
 import pathlib
 
 import wire
-from craft import OPERATIONAL, PRE, SAFE, Craft, Passed, expect
+from craft import INSTANCE, OPERATIONAL, PRE, SAFE, Craft, Passed, expect
 from described import Configuration, Descriptor
 from partners import PlayedDevice, PlayedProducer
 
@@ -102,10 +102,14 @@ class Flown:
             inputs = self.judged.described.devices[name].findall("Input/Field")
             octets = sum(wire.octets_of(wire.TYPES[each.get("type")]) * int(each.get("count", 1)) for each in inputs)
             transfer, address = device.find("Endnode").get("transfer"), self.craft.addresses[name]
-            place = str(self.judged.folder / address) if transfer == "unix" else address
+            place = str(self.judged.folder / f"{address}.{INSTANCE}") if transfer == "unix" else address
             self.devices[name] = PlayedDevice(transfer, place, octets)
             self.craft.partners.append(self.devices[name])
         self.craft.configure(self.configuration.id).expect_done("CONFIGURE")
+        # A device that was not heard yet inhibits at once in Safe-Operational.
+        if self.devices:
+            self.craft.until(lambda: all(len(device.commands) > 2 for device in self.devices.values()), 1 + 5 * self.configuration.period_s)
+            self.craft.wait(2 * self.configuration.period_s)
         return self
 
     def agreement_for(self, required, **changes):

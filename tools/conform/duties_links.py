@@ -236,7 +236,9 @@ def refused(judged):
             memory = sealed_memory("conform-wrong", size)
             refusal(attach(memory, name="NOBODY"), 9, None, f"{words} of an unknown set")
             if role == 2:
-                refusal(attach(memory), 9, None, "consumer, memory that others could still write")
+                writable = PlayedProducer(agreement, 77)
+                refusal(attach(writable.memory), 9, None, "consumer, memory that others could still write")
+                writable.close()
                 for what, at, value in (("magic", 0, 1), ("version", 8, 9 << 32 | 77), ("epoch", 8, 2 << 32 | 76), ("size", 16, 1), ("layout", 24, 1)):
                     producer = PlayedProducer(agreement, 77)
                     producer.page.set64(at, value)

@@ -13,6 +13,7 @@ TYPES = {"UINT8": 1, "INT8": 2, "UINT16": 3, "INT16": 4, "UINT32": 5, "INT32": 6
 FORMS = {1: "B", 2: "b", 3: "H", 4: "h", 5: "I", 6: "i", 7: "Q", 8: "q", 9: "f", 10: "d", 33: "B"}
 ACCEPTANCE, START, PROGRESS, COMPLETION, ALL = 1, 2, 4, 8, 15
 EPOCH_S = 378_691_200 + 37
+SHIFT_S = 1000                # of the on-board time that the environment gives, so that a program is seen to look there
 
 
 def crc(octets):
@@ -102,7 +103,7 @@ class Report:
     def time_s(self):
         """On-board time in the calendar of this computer."""
         seconds, fraction = struct.unpack_from(">IB", self.octets, 13)
-        return seconds + (fraction << 16 | struct.unpack_from(">H", self.octets, 18)[0]) / (1 << 24) - EPOCH_S
+        return seconds + (fraction << 16 | struct.unpack_from(">H", self.octets, 18)[0]) / (1 << 24) - EPOCH_S - SHIFT_S
 
     @property
     def data(self):
