@@ -22,6 +22,7 @@
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
+#include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
@@ -74,6 +75,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
+  ResourceHandling resources{craft, own};
   // modes and procedures
   Means means{craft, own_telecommands, graph, restarts, under_way};
   Commissioning commissioning{means};
@@ -85,11 +87,11 @@ struct SupervisorParts final : OwnSubsystem::Author {
   SafeAll safe_all{craft, own, own_telecommands, under_way};
   // subsystem handling, status
   GroundLinkCare ground_link{means, under_way};
-  Processes processes{
-      {craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link, restarts}};
+  Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
+                       restarts, resources}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 9> watches{&processes, &ground_link,  &housekeeping,     &power,  &links,
-                                &log_watch, &telecommands, &own_telecommands, &replies};
+  std::array<Watch*, 10> watches{&processes, &ground_link,  &housekeeping,     &power,   &links,
+                                 &log_watch, &telecommands, &own_telecommands, &replies, &resources};
 };
 
 }  // namespace hirosco::supervisor

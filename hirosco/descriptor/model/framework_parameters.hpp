@@ -20,9 +20,11 @@ inline constexpr const char* cycle_stats = "CYCLE_STATS";
 inline constexpr const char* cycle_times = "CYCLE_TIMES";
 /// hirosco::LinkStatistics
 inline constexpr const char* link_stats = "LINK_STATS";
+/// hirosco::ResourceStatistics
+inline constexpr const char* resource_stats = "RESOURCE_STATS";
 }  // namespace framework_parameter
 
-/// CYCLE_STATS, CYCLE_TIMES and LINK_STATS, with the ids that are theirs where a descriptor gives no other.
+/// CYCLE_STATS, CYCLE_TIMES, LINK_STATS and RESOURCE_STATS, with the ids that are theirs where a descriptor gives no other.
 [[nodiscard]] std::vector<Parameter> framework_parameters();
 
 /// "NAME_OUTPUT": what is put out to an actuator, or what its author would put out (adr 0073).

@@ -157,6 +157,7 @@ struct Mission {
   DatabaseUse database;
   GroundAddresses ground;
   std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
+  Amounts budget{};  ///< of all subsystems together; what is empty is not limited
   std::vector<MissionSubsystem> subsystems;
   std::vector<SimulatedDevice> devices;
   std::vector<MissionLink> links;

@@ -46,7 +46,7 @@ Mission MissionReader::read(const xml::Element& root) {
     mission_.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
   }
   // What is referred to is read before what refers to it, whatever the order in the file.
-  std::vector<const xml::Element*> grounds, devices, links, modes, recoveries, consoles;
+  std::vector<const xml::Element*> grounds, budgets, devices, links, modes, recoveries, consoles;
   const auto later = [](auto& list) { return [&list](const xml::Element& element) { list.push_back(&element); }; };
   bool supervised = false;
   each_child(root, problems_,
@@ -57,6 +57,7 @@ Mission MissionReader::read(const xml::Element& root) {
                },
                1},
               {"Power", [this](const auto& element) { read_power(element); }, 1},
+              {"Resources", later(budgets), 1},
               {"Subsystem", [this](const auto& element) { read_member(element); }, 255},
               {"SimulatedDevice", later(devices), 255},
               {"Links", later(links), 1},
@@ -74,6 +75,10 @@ Mission MissionReader::read(const xml::Element& root) {
     break;
   }
   resolve_commands();
+  for (const auto* element : budgets) {
+    read_resources(*element);
+    if (whole()) check_resources(*element);
+  }
   for (const auto* element : devices) read_simulated_device(*element);
   for (const auto* element : links) {
     const Attributes none{*element, problems_};

@@ -8,6 +8,7 @@
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 #include "supervisor/platform/launch/member_port.hpp"
@@ -62,6 +63,8 @@ class ProcessLauncher {
   /// Empty while it runs.
   [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
   virtual void kill(std::uint32_t process) = 0;
+  /// What it has taken; empty where it has no process of its own or has ended. Allocates nothing.
+  [[nodiscard]] virtual std::optional<ProcessUsage> usage(std::uint32_t /*process*/) noexcept { return std::nullopt; }
   /// Memory that a process has in RAM, 0 = the supervisor's own; 0 where it has no process of its own or has ended.
   /// Allocates nothing.
   [[nodiscard]] virtual std::uint32_t resident_kb(std::uint32_t /*process*/) noexcept { return 0; }

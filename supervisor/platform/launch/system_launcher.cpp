@@ -204,6 +204,18 @@ Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process) {
   return std::make_shared<LinuxGrip>(std::move(second));
 }
 
+ProcessLimits limits_of(const descriptor::Resources& resources) noexcept {
+  using descriptor::Resource;
+  ProcessLimits limits;
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  constexpr std::uint64_t octets_per_kb = 1024;
+  if (const auto memory_kb = amount_of(resources.most, Resource::Memory))
+    limits.memory_octets = *memory_kb * octets_per_kb;
+#endif
+  if (const auto descriptors = amount_of(resources.most, Resource::Descriptors)) limits.descriptors = *descriptors;
+  return limits;
+}
+
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
   std::filesystem::path& program = programs_[subsystem.executable];
   if (program.empty()) program = find_program(subsystem.executable);
@@ -228,6 +240,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   start.inherited = {{ends.second.get(), channel_number},
                      {SealedMemory::descriptor(vital.first), vital_number},
                      {SealedMemory::descriptor(permit.first), permit_number}};
+  start.limits = limits_of(subsystem.subsystem.resources);
   // What it writes to its standard error is shown with its name, within limits.
   const auto errors = errors_.open(subsystem.subsystem.name);
   if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
@@ -252,6 +265,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   launched.grip = std::move(*grip);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
   if (!memory_use_[0]) memory_use_[0] = open_statm("self");
+  if (auto meter = ProcessMeter::of(process.pid())) meters_.emplace(launched.process, std::move(*meter));
   processes_.emplace(launched.process, std::move(process));
   return launched;
 }
@@ -264,12 +278,18 @@ std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
   const ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
   processes_.erase(found);
   memory_use_.erase(process);
+  meters_.erase(process);
   return end;
 }
 
 void SystemLauncher::kill(std::uint32_t process) {
   if (const auto found = processes_.find(process); found != processes_.end())
     static_cast<void>(found->second.send_signal(SIGKILL));
+}
+
+std::optional<ProcessUsage> SystemLauncher::usage(std::uint32_t process) noexcept {
+  const auto found = meters_.find(process);
+  return found != meters_.end() ? found->second.look() : std::nullopt;
 }
 
 std::uint32_t SystemLauncher::resident_kb(std::uint32_t process) noexcept {

@@ -17,6 +17,9 @@ namespace hirosco::supervisor {
 /// What can be done to it whatever it does, kept beside whoever else holds it. SystemFailure: no descriptor is left.
 [[nodiscard]] Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process);
 
+/// What the system itself refuses beyond. Memory is not limited where a sanitizer needs more than there is.
+[[nodiscard]] ProcessLimits limits_of(const descriptor::Resources& resources) noexcept;
+
 /// Starts each subsystem as a process of its own that inherits its end of the control channel and its two pages; who is
 /// who is proven by the inherited socket (decision 2).  Thread: the supervisor's.
 class SystemLauncher final : public ProcessLauncher {
@@ -24,6 +27,7 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
+  [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
   [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override;
   /// Ends what still runs: nobody would be left to do it.
   void kill_all();
@@ -36,6 +40,7 @@ class SystemLauncher final : public ProcessLauncher {
   SealedMemory memory_;
   ErrorLines errors_;
   std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
+  std::map<std::uint32_t, ProcessMeter> meters_;
   std::map<std::uint32_t, Process> processes_;
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
   /// Where each executable was found: a disk is not searched again in flight, where it might hang.

@@ -10,6 +10,7 @@
 #include "supervisor/supervision/event_handling/reactions.hpp"
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
+#include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 
 namespace hirosco::supervisor {
@@ -44,8 +45,11 @@ void Processes::launch(Member& member) {
           "cannot hold the second inhibit of " + member.descriptor().name + "'s devices: " + held.error().text,
           member.apid());
   }
+  if (const auto short_of = parts_.resources.claim(member))
+    return craft_.tell("cannot start " + member.descriptor().name + ": " + *short_of, member.apid());
   auto launched = craft_.launcher.launch(member.described());
   if (!launched) {
+    parts_.resources.release(member.apid());
     craft_.tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
     return;
   }
@@ -86,6 +90,7 @@ void Processes::watch_ends(Whom whom) {
 
 void Processes::died(Member& subject, const ProcessEnd& end) {
   const std::uint16_t apid = subject.apid();
+  parts_.resources.release(apid);
   if (craft_.shutting_down) {
     subject.died();
     parts_.telecommands.outcome_unknown(apid);

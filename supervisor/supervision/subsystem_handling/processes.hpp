@@ -14,6 +14,7 @@ class LinkCommands;
 class OwnTelecommands;
 class Reactions;
 class Reception;
+class ResourceHandling;
 class SafeAll;
 class Telecommands;
 
@@ -32,6 +33,7 @@ class Processes final : public Watch {
     OwnTelecommands& desk;
     GroundLinkCare& ground_link;
     Restarts& restarts;
+    ResourceHandling& resources;
   };
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
