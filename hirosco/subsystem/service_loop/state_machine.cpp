@@ -122,7 +122,6 @@ Result<Step> GenericSubsystem::initialise_software() {
   publish(descriptor::framework_parameter::cycle_times, cycle_.times());
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
   publish(descriptor::framework_parameter::resource_stats, cycle_.resource_statistics());
-  if (!resources_.problem().empty()) mistake(resources_.problem());
   for (const auto& output : cycle_.outputs()) publish(output->name(), *output);
   if (step) check_introduction();
   if (!problems_.empty()) {
