@@ -58,6 +58,7 @@ Mission MissionReader::read(const xml::Element& root) {
                1},
               {"Power", [this](const auto& element) { read_power(element); }, 1},
               {"Resources", later(budgets), 1},
+              {"Isolation", [this](const auto& element) { read_isolation(element); }, 1},
               {"Subsystem", [this](const auto& element) { read_member(element); }, 255},
               {"SimulatedDevice", later(devices), 255},
               {"Links", later(links), 1},

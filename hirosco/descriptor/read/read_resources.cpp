@@ -75,6 +75,12 @@ void MissionReader::read_resources(const xml::Element& element) {
   mission_.budget = read_amounts(attributes);
 }
 
+void MissionReader::read_isolation(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  mission_.isolation_required = attributes.yes("required", false);
+}
+
 /// Whoever says nothing would take from what is promised to the others.
 void MissionReader::check_resources(const xml::Element& element) {
   for (std::size_t i = 0; i < counted_resources; ++i) {

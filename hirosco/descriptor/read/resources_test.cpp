@@ -41,6 +41,17 @@ TEST(Resources, AMissionThatLimitsOneHasItSaidByEverySubsystem) {
   for (const auto& found : reading.problems) EXPECT_EQ(found.code, "E0340");
 }
 
+TEST(Isolation, IsDemandedByAMissionThatSaysSo) {
+  const auto required = [](const std::string& element) {
+    return read_mission(data / "mission.xml", overlay({{"mission.xml", with(element)}}))
+        .value.value()
+        .isolation_required;
+  };
+  EXPECT_FALSE(required(""));
+  EXPECT_TRUE(required("<Isolation required=\"yes\"/>"));
+  EXPECT_FALSE(required("<Isolation required=\"no\"/>"));
+}
+
 TEST(Resources, OfAMissionThatCannotHaveAllAtOnceAreAWarning) {
   std::map<std::string, std::string> files{{"mission.xml", with("<Resources threads=\"8\"/>")}};
   const auto source = [&files](const std::filesystem::path& file) -> Result<std::string> {

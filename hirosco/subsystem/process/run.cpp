@@ -23,6 +23,7 @@
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/process_usage.hpp"
+#include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
@@ -257,6 +258,7 @@ void serve(const char* program, GenericSubsystem& subsystem, const Clock& clock,
 
 int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Subsystem>()>& make) {
   say_last_words(argv[0]);
+  name_refused_calls(argv[0]);
   // A terminal or pipe that is gone takes no words any more; that must not end a subsystem.
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
   const Options options = read_options(argc, argv);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/result.hpp"
 
 namespace hirosco {
@@ -46,6 +47,7 @@ struct ProcessStart {
   /// Signals that it begins with as blocked: it takes them up itself, and none ends it before it can.
   std::vector<int> blocked{};
   ProcessLimits limits{};
+  const PreparedSandbox* sandbox{nullptr};  ///< null: none; outlives the call
 };
 
 /// A process in a group of its own. It outlives this object and this process: nothing here kills it but send_signal().

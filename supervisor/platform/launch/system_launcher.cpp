@@ -20,6 +20,7 @@
 #include "hirosco/data_transfer/control/socket_channel.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -204,18 +205,6 @@ Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process) {
   return std::make_shared<LinuxGrip>(std::move(second));
 }
 
-ProcessLimits limits_of(const descriptor::Resources& resources) noexcept {
-  using descriptor::Resource;
-  ProcessLimits limits;
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  constexpr std::uint64_t octets_per_kb = 1024;
-  if (const auto memory_kb = amount_of(resources.most, Resource::Memory))
-    limits.memory_octets = *memory_kb * octets_per_kb;
-#endif
-  if (const auto descriptors = amount_of(resources.most, Resource::Descriptors)) limits.descriptors = *descriptors;
-  return limits;
-}
-
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
   std::filesystem::path& program = programs_[subsystem.executable];
   if (program.empty()) program = find_program(subsystem.executable);
@@ -241,6 +230,12 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
                      {SealedMemory::descriptor(vital.first), vital_number},
                      {SealedMemory::descriptor(permit.first), permit_number}};
   start.limits = limits_of(subsystem.subsystem.resources);
+  std::optional<PreparedSandbox> sandbox;
+  const bool script = is_script(program);
+  if (!sandbox_is_off() && !script) {
+    HIROSCO_TRY_LET(sandbox, PreparedSandbox::prepare(sandbox_of(subsystem, program)));
+    start.sandbox = &*sandbox;
+  }
   // What it writes to its standard error is shown with its name, within limits.
   const auto errors = errors_.open(subsystem.subsystem.name);
   if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
@@ -262,6 +257,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   launched.port = std::make_unique<LocalMemberPort>(std::make_unique<SocketChannel>(std::move(ends.first)),
                                                     launched.vital, launched.permit);
   launched.process = next_++;
+  if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
   launched.grip = std::move(*grip);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
   if (!memory_use_[0]) memory_use_[0] = open_statm("self");

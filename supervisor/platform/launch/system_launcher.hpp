@@ -17,9 +17,6 @@ namespace hirosco::supervisor {
 /// What can be done to it whatever it does, kept beside whoever else holds it. SystemFailure: no descriptor is left.
 [[nodiscard]] Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process);
 
-/// What the system itself refuses beyond. Memory is not limited where a sanitizer needs more than there is.
-[[nodiscard]] ProcessLimits limits_of(const descriptor::Resources& resources) noexcept;
-
 /// Starts each subsystem as a process of its own that inherits its end of the control channel and its two pages; who is
 /// who is proven by the inherited socket (decision 2).  Thread: the supervisor's.
 class SystemLauncher final : public ProcessLauncher {
@@ -27,6 +24,7 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
+  [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return hirosco::isolation_lacks(); }
   [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
   [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override;
   /// Ends what still runs: nobody would be left to do it.

@@ -23,6 +23,8 @@ constexpr Duration closed_channel_limit = 1s;
 }  // namespace
 
 void Processes::start_all() {
+  for (const std::string& open : craft_.launcher.isolation_lacks())
+    craft_.tell("subsystems are not isolated as they should be: " + open, supervisor_apid);
   for (Member& member : craft_.members) {
     const std::string& name = member.descriptor().name;
     launch(member);
@@ -45,6 +47,11 @@ void Processes::launch(Member& member) {
           "cannot hold the second inhibit of " + member.descriptor().name + "'s devices: " + held.error().text,
           member.apid());
   }
+  if (craft_.mission.isolation_required)
+    if (const auto open = craft_.launcher.isolation_lacks(); !open.empty())
+      return craft_.tell(
+          "cannot start " + member.descriptor().name + ": the mission wants it isolated, and " + open.front(),
+          member.apid());
   if (const auto short_of = parts_.resources.claim(member))
     return craft_.tell("cannot start " + member.descriptor().name + ": " + *short_of, member.apid());
   auto launched = craft_.launcher.launch(member.described());
@@ -52,6 +59,15 @@ void Processes::launch(Member& member) {
     parts_.resources.release(member.apid());
     craft_.tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
     return;
+  }
+  if (!launched->not_isolated.empty()) {
+    const std::string open = member.descriptor().name + " is not isolated: " + std::string{launched->not_isolated};
+    craft_.tell(open, member.apid());
+    if (craft_.mission.isolation_required) {
+      craft_.launcher.kill(launched->process);
+      parts_.resources.release(member.apid());
+      return craft_.tell("cannot start " + member.descriptor().name + ": the mission wants it isolated", member.apid());
+    }
   }
   craft_.guard.adopt(member.apid(), *launched);
   member.started(std::move(*launched));

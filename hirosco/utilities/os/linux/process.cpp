@@ -36,6 +36,7 @@ struct Plan {
   const char* directory{};
   sigset_t blocked{};
   ProcessLimits limits;
+  const PreparedSandbox* sandbox{nullptr};
   int report{-1};  ///< the child writes errno here when it fails
 };
 
@@ -61,6 +62,7 @@ void add_texts(std::vector<char*>& texts, const std::vector<std::string>& values
   for (const int number : start.blocked) sigaddset(&plan.blocked, number);
   plan.executable = start.executable.c_str();
   plan.limits = start.limits;
+  plan.sandbox = start.sandbox;
   if (!start.working_directory.empty()) plan.directory = start.working_directory.c_str();
   return plan;
 }
@@ -107,6 +109,9 @@ void set_limit(const Plan& plan, int resource, const std::optional<std::uint64_t
   (void)::sched_setscheduler(0, SCHED_OTHER, &ordinary);
   if (plan.directory != nullptr && ::chdir(plan.directory) != 0) give_up(plan.report, errno);
   reset_signals(plan.blocked);
+  if (plan.sandbox != nullptr)
+    if (const int error = plan.sandbox->enter(); error != 0) give_up(plan.report, error);
+  // Last: until then all of ours are still open, and a sandbox opens one more.
   set_limit(plan, RLIMIT_DATA, plan.limits.memory_octets);
   set_limit(plan, RLIMIT_NOFILE, plan.limits.descriptors);
   ::execve(plan.executable, plan.arguments.data(), plan.environment_used);
