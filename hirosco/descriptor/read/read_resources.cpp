@@ -92,7 +92,7 @@ void MissionReader::check_resources(const xml::Element& element) {
       const auto most = amount_of(member.subsystem.resources.most, resource);
       sum += most.value_or(0);
       if (!most)
-        problems_.add(element, "E0340",
+        problems_.add(element, "E0350",
                       fmt::format("the mission limits {}, and '{}' does not say how much it takes", to_text(resource),
                                   member.subsystem.name),
                       "say it in <Resources> of its descriptor");

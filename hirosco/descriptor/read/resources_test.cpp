@@ -38,7 +38,7 @@ TEST(Resources, AMissionThatLimitsOneHasItSaidByEverySubsystem) {
   const auto reading =
       read_mission(data / "mission.xml", overlay({{"mission.xml", with("<Resources threads=\"9\"/>")}}));
   ASSERT_EQ(reading.problems.size(), 3U);
-  for (const auto& found : reading.problems) EXPECT_EQ(found.code, "E0340");
+  for (const auto& found : reading.problems) EXPECT_EQ(found.code, "E0350");
 }
 
 TEST(Isolation, IsDemandedByAMissionThatSaysSo) {
