@@ -26,7 +26,7 @@ endfunction()
 # What an author includes. Whatever else these include is installed with them, and nothing else is.
 hirosco_headers_of(HIROSCO_AUTHOR_HEADERS
   hirosco/descriptor/read/read.hpp hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp hirosco/subsystem/author/module.hpp hirosco/subsystem/process/run.hpp
-  hirosco/subsystem/author/subsystem.hpp hirosco/subsystem/testing/rig.hpp
+  hirosco/subsystem/author/subsystem.hpp hirosco/subsystem/testing/rig.hpp hirosco/resource/counted.hpp hirosco/resource/pool_allocator.hpp hirosco/resource/pool_resource.hpp
   simulation/devices/device_shell.hpp simulation/devices/module.hpp simulation/devices/simulated_device.hpp)
 
 # hirosco_install_libraries(targets...): hirosco_NAME becomes hirosco::NAME of the package.
@@ -40,7 +40,7 @@ function(hirosco_install_libraries)
 endfunction()
 
 function(hirosco_install)
-  hirosco_install_libraries(hirosco_options hirosco_utilities hirosco_xml hirosco_parameter
+  hirosco_install_libraries(hirosco_options hirosco_utilities hirosco_resource hirosco_xml hirosco_parameter
     hirosco_data_transfer hirosco_descriptor hirosco_pus hirosco_subsystem hirosco_subsystem_main hirosco_subsystem_testing
     hirosco_simulated_device hirosco_simulation_device_shell hirosco_device_main)
   foreach(header IN LISTS HIROSCO_AUTHOR_HEADERS)

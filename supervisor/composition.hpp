@@ -22,6 +22,7 @@
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
+#include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/link_losses.hpp"
@@ -80,6 +81,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
+  ResourceHandling resources{craft, own};
   // modes and procedures
   Means means{craft, own_telecommands, graph, restarts, under_way, commanded, losses};
   Commissioning commissioning{means};
@@ -94,10 +96,10 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Restoration restoration{means, own, under_way};
   LinkLosses losses{means, own, links};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
-                       restarts, restoration}};
+                       restarts, restoration, resources}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 11> watches{&processes, &ground_link, &restoration,  &losses,           &housekeeping, &power,
-                                 &links,     &log_watch,   &telecommands, &own_telecommands, &replies};
+  std::array<Watch*, 12> watches{&processes, &ground_link, &restoration,  &losses,           &housekeeping, &power,
+                                 &links,     &log_watch,   &telecommands, &own_telecommands, &replies,      &resources};
 };
 
 }  // namespace hirosco::supervisor

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Who may include whom (CONTRIBUTING.md). Prints what breaks the rules; `planted` breaks each rule once, to be caught."""
 import pathlib, re, sys
-libraries = ["utilities", "xml", "parameter", "data_transfer", "descriptor", "pus", "subsystem"]  # lowest first
+libraries = ["utilities", "resource", "xml", "parameter", "data_transfer", "descriptor", "pus", "subsystem"]  # lowest first
 may = {"hirosco": ["hirosco"], "subsystems": ["hirosco"], "supervisor": ["hirosco", "supervisor"],
        "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything; nobody but missions and tests a mission
 shells = ("hirosco/utilities/os/", "hirosco/data_transfer/device/datagram_flow", "hirosco/data_transfer/device/shared_memory_flow",

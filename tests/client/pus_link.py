@@ -236,6 +236,9 @@ class GroundLink:
 BUILT_IN = {"CYCLE_STATS": (("OVERRUNS", "UINT32", 1), ("MAX_US", "FLOAT", 1), ("AVG_US", "FLOAT", 1)),
             "CYCLE_BUDGET": (("BUDGET_US", "FLOAT", 1), ("LONGEST_US", "FLOAT", 1), ("EXCEEDED", "UINT32", 1)),
             "CYCLE_TIMES": (("EXECUTION", "UINT32", 16), ("LATENCY", "UINT32", 16)),
+            "RESOURCE_STATS": tuple((name, "UINT32", 8 if name in ("POOL_USED", "POOL_HIGH") else 1) for name in
+                                    ("MEMORY", "MEMORY_HIGH", "DESCRIPTORS", "DESCRIPTORS_HIGH", "THREADS", "THREADS_HIGH", "POOL_USED",
+                                     "POOL_HIGH", "POOL_REFUSED")),
             "LINK_STATS": (("RECEIVED", "UINT32", 1), ("LOST", "UINT32", 1))}
 
 

@@ -5,7 +5,10 @@
 #include <pthread.h>
 #include <signal.h>
 #include <sys/mman.h>
+#include <sys/ptrace.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/uio.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -24,7 +27,7 @@
 
 /// A real subsystem that turns on its supervisor when it is sent SIGUSR2 (hazard SF13). It tries to change every page that
 /// it may only read, by everything that the system offers for memory it was handed, and writes what came of each attempt to
-/// hostile.txt. Then it puts a page of its own making, which permits for ever, where the cycle looks for its permission, and
+/// a report. Then it puts a page of its own making, which permits for ever, where the cycle looks for its permission, and
 /// hears and says nothing any more. Linked beside its main() for tests only.
 namespace {
 
@@ -55,11 +58,12 @@ std::vector<Region> read_only_regions() {
   return found;
 }
 
+/// In memory of its own, where the test looks for it: its sandbox lets it write no file.
 class Report {
  public:
-  explicit Report(const char* path) : file_{std::fopen(path, "we")} {}
+  explicit Report(const char* name) : file_{::fdopen(::memfd_create(name, MFD_CLOEXEC), "w")} {}
   ~Report() {
-    if (file_ != nullptr) std::fclose(file_);
+    if (file_ != nullptr) std::fflush(file_);  // stays open: whoever reads it does so by way of the descriptor
   }
   Report(const Report&) = delete;
   Report& operator=(const Report&) = delete;
@@ -114,6 +118,35 @@ void attack_mapping(const Report& report, const Region& region) {
   if (writable) static_cast<void>(::mprotect(region.at, region.octets, PROT_READ));
 }
 
+/// What its sandbox is to refuse (docs/adr/0081).
+void attack_others(const Report& report) {
+  const std::string supervisor = "/proc/" + std::to_string(::getppid());
+  const auto opens = [&](const std::string& path, int how) {
+    const int file = ::open(path.c_str(), how | O_CLOEXEC, 0600);
+    if (file >= 0) ::close(file);
+    report.tried("others: open " + path, file >= 0);
+  };
+  opens(supervisor + "/mem", O_RDWR);
+  opens(supervisor + "/maps", O_RDONLY);
+  opens("/dev/kmsg", O_RDONLY);
+  opens("/dev/mem", O_RDWR);
+  opens("/etc/passwd", O_RDONLY);
+  opens("hostile.made", O_RDWR | O_CREAT);
+  std::uint64_t octets = 0;
+  iovec here{&octets, sizeof octets};
+  report.tried("others: ptrace", ::ptrace(PTRACE_SEIZE, ::getppid(), nullptr, nullptr) == 0);
+  report.tried("others: process_vm_readv", ::process_vm_readv(::getppid(), &here, 1, &here, 1, 0) > 0);
+  report.tried("others: signal", ::kill(::getppid(), 0) == 0);
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  report.tried("others: fork", child > 0);
+  report.tried("others: raw socket", ::socket(AF_PACKET, SOCK_RAW, 0) >= 0);
+  rlimit more{};
+  ::getrlimit(RLIMIT_NOFILE, &more);
+  more.rlim_cur = ++more.rlim_max;
+  report.tried("others: more descriptors", ::setrlimit(RLIMIT_NOFILE, &more) == 0);
+}
+
 /// A page that permits under its present epoch for ever, in place of the true one from one access to the next.
 hirosco::PermitPage* put_look_alike(const Region& permit) {
   const int own = ::memfd_create("look-alike", MFD_CLOEXEC);
@@ -142,7 +175,8 @@ void* turn(void* argument) {
   ::sigwait(&wanted, &number);
   hirosco::PermitPage* look_alike = nullptr;
   {
-    const Report report{"hostile.new"};
+    const Report report{"hostile-report"};
+    attack_others(report);
     attack_descriptor(report, "hirosco-permit", permit);
     const auto regions = read_only_regions();
     for (const Region& region : regions) attack_mapping(report, region);
@@ -152,7 +186,7 @@ void* turn(void* argument) {
     ::close(permit);
     turn_deaf();
   }
-  std::rename("hostile.new", "hostile.txt");
+  static_cast<void>(::memfd_create("hostile-done", MFD_CLOEXEC));
   while (look_alike != nullptr) {
     look_alike->heartbeat.fetch_add(1, std::memory_order_release);
     const timespec pause{0, 1'000'000};

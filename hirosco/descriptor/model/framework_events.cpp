@@ -13,6 +13,7 @@ namespace {
 // A dot: no author can declare an enumeration of this name.
 constexpr const char* losses_enumeration = "FRAMEWORK.DEVICE_LOSS";
 constexpr const char* errors_enumeration = "FRAMEWORK.ERRORS";
+constexpr const char* resources_enumeration = "FRAMEWORK.RESOURCES";
 
 template <class E>
 void add_enumeration(Subsystem& subsystem, const char* name) {
@@ -60,6 +61,7 @@ void add_framework_events(Subsystem& subsystem) {
   add_framework_parameters(subsystem);
   add_enumeration<DeviceLoss>(subsystem, losses_enumeration);
   add_enumeration<ErrorCode>(subsystem, errors_enumeration);
+  add_enumeration<Resource>(subsystem, resources_enumeration);
   const auto add = [&](std::string name, std::uint16_t id, Severity severity, std::vector<Field> arguments) {
     if (std::ranges::find(subsystem.events, id, &Event::id) != subsystem.events.end()) return;
     subsystem.events.push_back({std::move(name), id, severity, std::move(arguments), {}});
@@ -77,6 +79,9 @@ void add_framework_events(Subsystem& subsystem) {
   add("CYCLE_OVER_BUDGET", cycle_over_budget, Severity::Low,
       {argument("IN_A_ROW", Type::Uint32), argument("LONGEST_US", Type::Float)});
   add("SUPERVISOR_SILENT", supervisor_silent, Severity::Low, {argument("CYCLES", Type::Uint32)});
+  add("RESOURCE_WARNING", resource_warning, Severity::Low,
+      {argument("RESOURCE", Type::Uint8, resources_enumeration), argument("BLOCK", Type::Uint32),
+       argument("USED", Type::Uint32), argument("LIMIT", Type::Uint32), argument("CROSSINGS", Type::Uint32)});
   for (std::size_t i = 0; i < subsystem.devices.size(); ++i)
     add(event_name(subsystem.devices[i].name, "_LOST"), device_lost(i), Severity::High,
         {argument("REASON", Type::Uint8, losses_enumeration), argument("SILENT_CYCLES", Type::Uint32),

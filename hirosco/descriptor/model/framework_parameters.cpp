@@ -43,7 +43,13 @@ std::vector<Parameter> framework_parameters() {
       structure(framework_parameter::cycle_budget, 38,
                 {member("BUDGET_US", 242, Float, "us"), member("LONGEST_US", 243, Float, "us"),
                  member("EXCEEDED", 245, Uint32)}),
-      structure(framework_parameter::link_stats, 41, {member("RECEIVED", 242, Uint32), member("LOST", 243, Uint32)})};
+      structure(framework_parameter::link_stats, 41, {member("RECEIVED", 242, Uint32), member("LOST", 243, Uint32)}),
+      structure(
+          framework_parameter::resource_stats, 37,
+          {member("MEMORY", 246, Uint32, "kB"), member("MEMORY_HIGH", 247, Uint32, "kB"),
+           member("DESCRIPTORS", 248, Uint32), member("DESCRIPTORS_HIGH", 249, Uint32), member("THREADS", 250, Uint32),
+           member("THREADS_HIGH", 251, Uint32), member("POOL_USED", 252, Uint32, "", most_pools),
+           member("POOL_HIGH", 253, Uint32, "", most_pools), member("POOL_REFUSED", 254, Uint32)})};
 }
 
 std::string output_parameter(const Device& device) {

@@ -172,6 +172,8 @@ struct Mission {
   DatabaseUse database;
   GroundAddresses ground;
   std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
+  bool isolation_required{false};  ///< no subsystem is started where this computer cannot isolate it (adr 0081)
+  Amounts budget{};  ///< of all subsystems together; what is empty is not limited
   std::vector<MissionSubsystem> subsystems;
   std::vector<SimulatedDevice> devices;
   std::vector<MissionLink> links;

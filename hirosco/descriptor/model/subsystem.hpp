@@ -13,6 +13,7 @@
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/descriptor/model/resources.hpp"
 #include "hirosco/parameter/exact_number.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/enum_text.hpp"
@@ -333,6 +334,7 @@ struct Subsystem {
   std::vector<Device> devices;
   std::vector<Configuration> configurations;
   CycleLimit hang{20, 200};  ///< cycles the vital page may stand still
+  Resources resources;
 
   [[nodiscard]] const Parameter* find_parameter(std::string_view parameter) const noexcept;
   [[nodiscard]] const Event* find_event(std::string_view event) const noexcept;

@@ -46,7 +46,7 @@ Mission MissionReader::read(const xml::Element& root) {
     mission_.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
   }
   // What is referred to is read before what refers to it, whatever the order in the file.
-  std::vector<const xml::Element*> grounds, devices, links, modes, recoveries, consoles;
+  std::vector<const xml::Element*> grounds, budgets, devices, links, modes, recoveries, consoles;
   const auto later = [](auto& list) { return [&list](const xml::Element& element) { list.push_back(&element); }; };
   bool supervised = false;
   each_child(root, problems_,
@@ -57,6 +57,8 @@ Mission MissionReader::read(const xml::Element& root) {
                },
                1},
               {"Power", [this](const auto& element) { read_power(element); }, 1},
+              {"Resources", later(budgets), 1},
+              {"Isolation", [this](const auto& element) { read_isolation(element); }, 1},
               {"Subsystem", [this](const auto& element) { read_member(element); }, 255},
               {"SimulatedDevice", later(devices), 255},
               {"Links", later(links), 1},
@@ -74,6 +76,10 @@ Mission MissionReader::read(const xml::Element& root) {
     break;
   }
   resolve_commands();
+  for (const auto* element : budgets) {
+    read_resources(*element);
+    if (whole()) check_resources(*element);
+  }
   for (const auto* element : devices) read_simulated_device(*element);
   for (const auto* element : links) {
     const Attributes none{*element, problems_};
@@ -127,7 +133,7 @@ void MissionReader::read_database(const xml::Element& element) {
   mission_.database.keep_mb = attributes.integer_or<std::uint32_t>("keep_MB", 2, 100'000'000, 0);
   if (const auto* keep = attributes.optional("keep_MB"); keep != nullptr && mission_.database.keep_mb != 0)
     if (mission_.database.rotate_mb == 0 || mission_.database.keep_mb / 2 < mission_.database.rotate_mb)
-      problems_.add(*keep, "E0340", "a bounded log needs pieces, of which the newest two have room",
+      problems_.add(*keep, "E0342", "a bounded log needs pieces, of which the newest two have room",
                     "give 'rotate_MB', at most half of 'keep_MB'");
   const auto* path = attributes.optional("path");
   if (path == nullptr) return;

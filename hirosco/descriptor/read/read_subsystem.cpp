@@ -34,11 +34,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                                  subsystem_.description = element.text;
                                },
                                1},
-                              {"Resources",
-                               [this](const xml::Element& element) {
-                                 problems_.not_built_in(element, "leave it out: nothing limits what a subsystem takes");
-                               },
-                               1},
+                              {"Resources", [this](const auto& element) { read_resources(element); }, 1},
                               {"Parameters", later(parameters), 1},
                               {"StructRef", later(parameters)},
                               {"ParamRef", later(parameters)},

@@ -45,7 +45,7 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
        {"<ParamRef name=\"X\" id=\"1\" type=\"DUBLE\"/>", "<Paramters/>", "<TestService x=\"1\"/>",
         "<TestService self_test_within_ms=\"0\"/>",
         "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\" self_test=\"yes\"/>",
-        "<ParamRef name=\"X\" id=\"256\" type=\"DOUBLE\"/>", "<Resources/>",
+        "<ParamRef name=\"X\" id=\"256\" type=\"DOUBLE\"/>", "<Resources memory_kB=\"0\"/>",
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" persistent=\"yes\"/>",
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" read_only=\"yes\"/>",
         "<FunctionService><Function name=\"X\" id=\"1\"/></FunctionService>",

@@ -27,6 +27,7 @@ namespace hirosco {
 
 class CustomService;
 class GenericSubsystem;
+class PoolResource;
 
 /// Outcome of one phase of a transient state.
 enum class Step : std::uint8_t { Again, Done };
@@ -158,6 +159,10 @@ class Subsystem {
   void raise_in_service(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) {
     raise_encoded_in_service(event, event.encode(arguments...));
   }
+  /// The pools of its descriptor's <Resources> (hirosco/resource/pool_resource.hpp), there from offline() to the end: for the
+  /// containers of std::pmr and by try_allocate(). What they refuse is never taken from elsewhere; without pools they refuse
+  /// everything.  Realtime: lock-free, but a refusal to a container throws. Thread: any.
+  [[nodiscard]] PoolResource& resources() noexcept;
   [[nodiscard]] State state() const noexcept;
   [[nodiscard]] const descriptor::Subsystem& own_descriptor() const noexcept;
 

@@ -294,6 +294,9 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   times_parameter_.store(times_);
   count_links();
   hold_to_budget();
+  // They change slowly and are many words: not in each cycle.
+  constexpr std::uint64_t cycles_between = 16;
+  if (count_ % cycles_between == 1) resource_statistics_.store(parts_.resources.statistics());
 
   const descriptor::CycleLimit& limit = plan_.configuration->overruns;
   // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007). Work that

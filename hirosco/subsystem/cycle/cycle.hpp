@@ -17,6 +17,7 @@
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 #include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
+#include "hirosco/subsystem/cycle/resource_meter.hpp"
 #include "hirosco/subsystem/cycle/self_test_run.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 
@@ -72,6 +73,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
     VitalPage& vital;
     const PermitPage& permit;
     bool realtime;
+    const ResourceMeter& resources;
   };
   explicit CycleLoop(const Parts& parts);
 
@@ -88,6 +90,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   /// One for each actuator of the descriptor.
   [[nodiscard]] std::span<const std::unique_ptr<OutputParameter>> outputs() const noexcept { return outputs_; }
   [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
+  [[nodiscard]] Parameter<ResourceStatistics>& resource_statistics() noexcept { return resource_statistics_; }
 
   /// Whether the author's node wrote this parameter in the newest cycle: what anybody else writes would not last.
   /// Realtime: wait-free. Thread: any.
@@ -144,6 +147,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   Parameter<CycleTimes> times_parameter_;
   Parameter<CycleBudget> budget_parameter_;
   Parameter<LinkStatistics> link_statistics_;
+  Parameter<ResourceStatistics> resource_statistics_;
   std::vector<std::unique_ptr<OutputParameter>> outputs_;
   std::vector<std::byte> event_buffer_;  ///< room for the largest event of the descriptor
   struct Watched {

@@ -22,6 +22,8 @@
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/os/process_usage.hpp"
+#include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
@@ -256,6 +258,7 @@ void serve(const char* program, GenericSubsystem& subsystem, const Clock& clock,
 
 int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Subsystem>()>& make) {
   say_last_words(argv[0]);
+  name_refused_calls(argv[0]);
   // A terminal or pipe that is gone takes no words any more; that must not end a subsystem.
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
   const Options options = read_options(argc, argv);
@@ -294,13 +297,15 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     static_cast<void>(lock_memory());
     static_cast<void>(set_shared_priority(service_priority));
   }
+  auto meter = ProcessMeter::own();
   const Platform platform{
       .clock = clock,
       .memory = memory,
       .flows = flows,
       .realtime = realtime,
       .wakes = true,
-      .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); }};
+      .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); },
+      .usage = [&meter]() -> std::optional<ProcessUsage> { return meter ? meter->look() : std::nullopt; }};
   const auto author = make();
   GenericSubsystem subsystem{*author,
                              std::move(*reading.value),

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <memory_resource>
+
 #include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/resource/counted.hpp"
+#include "hirosco/resource/pool_resource.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
@@ -31,6 +35,7 @@ std::string descriptor_with_everything() {
     <Device name="ARM"><Endnode transfer="shared_memory" address="arm"/></Device>
     <Device name="LAMP"><Endnode transfer="shared_memory" address="lamp"/></Device>
   </Configuration>
+  <Resources><Pool block="64" count="16"/><Pool block="1024" count="4"/></Resources>
 </Subsystem>)";
   return text.replace(text.find("</Subsystem>"), std::string::npos, everything);
 }
@@ -193,6 +198,37 @@ TEST(CycleAllocations, ThereAreNoneForAQueueOfSamplesEither) {
   EXPECT_EQ(uses.frees, 0u);
   EXPECT_EQ(collector.taken, 500u * (66 + 12 * 8));
   EXPECT_EQ(collector.ticks.lost(), 500u * (1 + 2 + 3 + 4 + 5 + 6 + 7));
+}
+
+/// Lives in its pools: a container and blocks of its own in each cycle, more of them than there are.
+struct Pooled final : Probe {
+  std::array<void*, 8> kept{};
+  std::uint64_t refusals{0};
+  double sum{0};
+  Result<> work(const Cycle& cycle) noexcept override {
+    void*& block = kept[cycle.count % kept.size()];
+    if (block != nullptr) static_cast<void>(resources().give_back(block));
+    block = resources().try_allocate(cycle.count % 900 + 1);
+    if (block == nullptr) ++refusals;
+    std::pmr::vector<double> numbers{&resources()};
+    numbers.reserve(8);
+    for (int i = 0; i < 8; ++i) numbers.push_back(i);
+    sum += numbers.back();
+    const auto shared = make_counted<double>(*resources().pools(), 1.0);
+    if (shared) sum += **shared;
+    return Probe::work(cycle);
+  }
+};
+
+TEST(CycleAllocations, ThereAreNoneInPools) {
+  Pooled pooled;
+  CountedFlight flight{pooled};
+  pooled.sum = 0;
+  for (int i = 0; i < 10'000; ++i) flight.cycle();
+  EXPECT_EQ(pooled.sum, 10'000 * (7.0 + 1.0));
+  EXPECT_GT(pooled.refusals, 0U) << "4 large blocks for 8";
+  EXPECT_EQ(flight.uses().allocations, 0u);
+  EXPECT_EQ(flight.uses().frees, 0u);
 }
 
 /// Its node grows a vector in one cycle of a thousand.

@@ -3,6 +3,8 @@
 #include "hirosco/subsystem/service_loop/backlog.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <new>
 
 namespace hirosco {
 namespace {
@@ -12,12 +14,24 @@ namespace {
   return error.code == ErrorCode::ResourceExhausted || error.code == ErrorCode::Unavailable;
 }
 
+constexpr std::size_t short_octets = 112, middle_octets = 512, middle_blocks = 256;
+
 }  // namespace
+
+Backlog::Backlog() {
+  const std::array pools{PoolSpec{short_octets, most_waiting}, PoolSpec{middle_octets, middle_blocks},
+                         PoolSpec{sizeof(Unsent) + max_packet_octets, most_long_waiting}};
+  for (Queue& queue : queues_) {
+    auto made = LocalBlockPools::create(pools, {.warning_percent = 0, .on_warning = {}, .on_refusal = {}});
+    if (!made) throw std::bad_alloc{};
+    queue.pools = std::move(*made);
+  }
+}
 
 void Backlog::send(Channel& channel, const Message& message, Worth worth) {
   const auto own = static_cast<std::size_t>(worth);
   const bool free = std::all_of(queues_.begin(), queues_.begin() + static_cast<std::ptrdiff_t>(own) + 1,
-                                [](const Queue& queue) { return queue.waiting.empty(); });
+                                [](const Queue& queue) { return queue.waiting == 0; });
   Queue& queue = queues_[own];
   if (free) {
     const auto sent = try_send(channel, message);
@@ -27,21 +41,52 @@ void Backlog::send(Channel& channel, const Message& message, Worth worth) {
       return;
     }
   }
-  if (queue.waiting.size() == most_waiting) {
-    queue.waiting.pop_front();
+  keep(queue, message);
+}
+
+void Backlog::keep(Queue& queue, const Message& message) {
+  const std::size_t octets = sizeof(Unsent) + message.packet.size();
+  while (queue.waiting >= most_waiting) {
+    drop_oldest(queue);
     ++queue.lost;
   }
-  queue.waiting.push_back({message.kind, {message.packet.begin(), message.packet.end()}});
+  void* block = queue.pools->allocate(octets);
+  while (block == nullptr && queue.waiting != 0 && octets <= queue.pools->largest_block()) {
+    drop_oldest(queue);
+    ++queue.lost;
+    block = queue.pools->allocate(octets);
+  }
+  if (block == nullptr) {
+    ++queue.lost;
+    return;
+  }
+  auto* const unsent =
+      ::new (block) Unsent{.octets = static_cast<std::uint32_t>(message.packet.size()), .kind = message.kind};
+  if (!message.packet.empty()) std::memcpy(unsent + 1, message.packet.data(), message.packet.size());
+  (queue.newest != nullptr ? queue.newest->next : queue.oldest) = unsent;
+  queue.newest = unsent;
+  ++queue.waiting;
+}
+
+void Backlog::drop_oldest(Queue& queue) noexcept {
+  Unsent* const oldest = queue.oldest;
+  queue.oldest = oldest->next;
+  if (queue.oldest == nullptr) queue.newest = nullptr;
+  --queue.waiting;
+  static_cast<void>(queue.pools->deallocate(oldest));
+}
+
+Message Backlog::message_of(const Unsent& unsent) noexcept {
+  return {.kind = unsent.kind, .packet = {reinterpret_cast<const std::byte*>(&unsent + 1), unsent.octets}};
 }
 
 void Backlog::flush(Channel& channel) {
   for (Queue& queue : queues_)
-    while (!queue.waiting.empty()) {
-      const Unsent& next = queue.waiting.front();
-      const auto sent = try_send(channel, {.kind = next.kind, .packet = next.packet});
+    while (queue.waiting != 0) {
+      const auto sent = try_send(channel, message_of(*queue.oldest));
       if (!sent && worth_another_try(sent.error())) return;
       if (!sent) ++queue.lost;
-      queue.waiting.pop_front();
+      drop_oldest(queue);
     }
 }
 
@@ -52,7 +97,13 @@ Result<> Backlog::try_send(Channel& channel, const Message& message) {
 }
 
 bool Backlog::empty() const noexcept {
-  return std::ranges::all_of(queues_, [](const Queue& queue) { return queue.waiting.empty(); });
+  return std::ranges::all_of(queues_, [](const Queue& queue) { return queue.waiting == 0; });
+}
+
+bool Backlog::answers_have_room() const noexcept {
+  const Queue& answers = queue(Worth::Answer);
+  const PoolUsage longest = answers.pools->usage(answers.pools->size() - 1);
+  return peer_gone_ || (answers.waiting < most_waiting / 2 && longest.used < longest.count / 2);
 }
 
 }  // namespace hirosco

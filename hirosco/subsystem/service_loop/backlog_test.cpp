@@ -69,6 +69,23 @@ TEST_F(BacklogTest, AFloodOfOneKindCostsNothingOfAnother) {
   EXPECT_TRUE(received().starts_with("1 2 3 4 99 8 "));
 }
 
+TEST_F(BacklogTest, LongMessagesHaveBlocksOfTheirOwnAndLoseTheirOldestBeyond) {
+  for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
+  std::vector<std::byte> longest(max_packet_octets);
+  for (std::size_t i = 0; i < Backlog::most_long_waiting + 2; ++i) {
+    longest[0] = static_cast<std::byte>(100 + i);
+    backlog.send(channels.subsystem_end(), {.packet = longest}, Worth::Housekeeping);
+  }
+  EXPECT_EQ(backlog.lost(Worth::Housekeeping), 2U);
+  EXPECT_TRUE(backlog.answers_have_room());
+  const std::string all = received();
+  EXPECT_TRUE(all.starts_with("1 2 3 4 102 103 ")) << all;
+  for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
+  for (std::size_t i = 0; i < Backlog::most_long_waiting / 2; ++i)
+    backlog.send(channels.subsystem_end(), {.packet = longest}, Worth::Answer);
+  EXPECT_FALSE(backlog.answers_have_room()) << "those to one more telecommand could be as long";
+}
+
 TEST_F(BacklogTest, AFullQueueLosesItsOldest) {
   for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
   for (std::size_t i = 0; i < Backlog::most_waiting; ++i) send(i == 0 ? 50 : 60, Worth::Answer);

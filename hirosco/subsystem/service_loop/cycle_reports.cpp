@@ -130,6 +130,20 @@ void GenericSubsystem::tell_losses(TimePoint now) {
   raise_in_service(descriptor::framework_event::reports_lost, arguments);
 }
 
+/// An event once for each crossing of the level that the descriptor says.
+void GenericSubsystem::look_at_resources(TimePoint now) {
+  if (now < look_at_resources_at_) return;
+  look_at_resources_at_ = now + ResourceMeter::look_every;
+  if (platform_.usage)
+    if (const auto usage = platform_.usage()) resources_.note(*usage);
+  resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
+    const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),
+                                          static_cast<double>(found.used), static_cast<double>(found.limit),
+                                          static_cast<double>(found.times)};
+    raise_in_service(descriptor::framework_event::resource_warning, arguments);
+  });
+}
+
 Result<> GenericSubsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
   // Its own reports come first: telecommands that overtake them would keep them from ever being sent.
   if (!backlog_.empty()) return fail(ErrorCode::ResourceExhausted, "reports wait for the supervisor");

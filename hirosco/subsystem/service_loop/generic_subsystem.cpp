@@ -59,7 +59,9 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       permit_{permit},
       dictionary_{make_dictionary(descriptor_, dictionary_problem_)},
       writes_{32, 2048},
-      cycle_{{author, descriptor_, platform.clock, dictionary_, writes_, handover_, vital, permit, platform.realtime}},
+      resources_{descriptor_.resources},
+      cycle_{{author, descriptor_, platform.clock, dictionary_, writes_, handover_, vital, permit, platform.realtime,
+              resources_}},
       counters_{vital.counters},
       verification_{*this},
       event_service_{descriptor_.events, verification_, *this},
@@ -106,6 +108,7 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
   author_.service(now);
   backlog_.flush(channel_);
   tell_losses(now);
+  look_at_resources(now);
   vital_.service_steps.fetch_add(1, std::memory_order_relaxed);
   const bool looks = wanted_.load(std::memory_order_relaxed) && !platform_.wakes;
   const bool busy = way_.has_value() || looks || !backlog_.empty();

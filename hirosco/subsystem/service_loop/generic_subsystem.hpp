@@ -49,6 +49,8 @@ struct Platform {
   /// Explains to a developer why something was refused (standard error, a test's list). Service loop only.
   std::function<void(std::string_view)> explain{};
   LinkMechanisms links{standard_link_mechanisms()};
+  /// What the process has taken, empty when nobody can tell; asked ten times in a second. Service loop only.
+  std::function<std::optional<ProcessUsage>()> usage{};
 };
 
 /// What an author did not do as the descriptor says, in words.
@@ -123,6 +125,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void uses_all_events() noexcept { uses_all_events_ = true; }
   void bind_function(std::string_view name, BoundHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
+  [[nodiscard]] PoolResource& resources() noexcept { return resources_.pools(); }
 
   /// All that Software-Init finds, tried in Offline before any flight. Nothing is kept of it.
   [[nodiscard]] std::vector<Mistake> try_introduction();
@@ -206,6 +209,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   /// STATE_FAILED and CONFIGURATION_FAILED of `what`.
   void raise_failure(std::uint16_t event, std::uint8_t what, const Failure& why);
   void tell_losses(TimePoint now);
+  void look_at_resources(TimePoint now);
 
   Subsystem& author_;
   descriptor::Subsystem descriptor_;
@@ -219,6 +223,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Dictionary dictionary_;
   WriteQueue writes_;
   Handover handover_;
+  ResourceMeter resources_;
+  TimePoint look_at_resources_at_{};
   CycleLoop cycle_;
   pus::PacketCounters counters_;
   pus::Verification verification_;

@@ -132,6 +132,7 @@ void GenericSubsystem::check_settings() {
 /// What is missing when the author has said all.
 void GenericSubsystem::check_introduction() {
   if (!dictionary_problem_.empty()) mistake(dictionary_problem_);
+  if (!resources_.problem().empty()) mistake(resources_.problem());
   std::string missing;
   if (!dictionary_.all_published(missing)) mistake("parameters declared but not published: " + missing);
   for (std::size_t i = 0; i < descriptor_.functions.size(); ++i)

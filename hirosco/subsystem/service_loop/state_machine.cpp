@@ -122,6 +122,7 @@ Result<Step> GenericSubsystem::initialise_software() {
   publish(descriptor::framework_parameter::cycle_times, cycle_.times());
   publish(descriptor::framework_parameter::cycle_budget, cycle_.budget());
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
+  publish(descriptor::framework_parameter::resource_stats, cycle_.resource_statistics());
   for (const auto& output : cycle_.outputs()) publish(output->name(), *output);
   if (step) check_introduction();
   if (!problems_.empty()) {

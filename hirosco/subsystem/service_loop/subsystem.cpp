@@ -67,6 +67,7 @@ Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, pus::Giv
 Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
   return framework_->submit_ground_telecommand(client, packet);
 }
+PoolResource& Subsystem::resources() noexcept { return framework_->resources(); }
 State Subsystem::state() const noexcept { return framework_->state(); }
 const descriptor::Subsystem& Subsystem::own_descriptor() const noexcept { return framework_->descriptor(); }
 

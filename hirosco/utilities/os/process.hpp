@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/result.hpp"
 
 namespace hirosco {
@@ -25,6 +26,12 @@ struct ExitStatus {
   friend bool operator==(const ExitStatus&, const ExitStatus&) = default;
 };
 
+/// What a started process may take; what is empty is as it is for us. Beyond it the system refuses it, whatever it tries.
+struct ProcessLimits {
+  std::optional<std::uint64_t> memory_octets{};  ///< that it may write and shares with nobody
+  std::optional<std::uint64_t> descriptors{};
+};
+
 /// What to start.
 struct ProcessStart {
   /// A descriptor of ours that the new process finds under `number`.
@@ -32,13 +39,15 @@ struct ProcessStart {
     int ours{-1};
     int number{-1};
   };
-  std::string executable{};              ///< path; not searched for
+  std::string executable{};  ///< path; not searched for
   std::vector<std::string> arguments{};  ///< without the executable's own name, which becomes argv[0]
-  std::vector<Inherited> inherited{};    ///< besides 0, 1 and 2, the new process has these descriptors and no others
+  std::vector<Inherited> inherited{};  ///< besides 0, 1 and 2, the new process has these descriptors and no others
   std::optional<std::vector<std::string>> environment{};  ///< "NAME=value"; ours when absent
-  std::string working_directory{};       ///< ours when empty
+  std::string working_directory{};  ///< ours when empty
   /// Signals that it begins with as blocked: it takes them up itself, and none ends it before it can.
   std::vector<int> blocked{};
+  ProcessLimits limits{};
+  const PreparedSandbox* sandbox{nullptr};  ///< null: none; outlives the call
 };
 
 /// A process in a group of its own. It outlives this object and this process: nothing here kills it but send_signal().

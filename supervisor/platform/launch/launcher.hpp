@@ -5,9 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 #include "supervisor/platform/launch/member_port.hpp"
@@ -46,6 +50,7 @@ struct LaunchedSubsystem {
   Mapping permit;                    ///< the same; written
   std::uint32_t process{0};          ///< names it to the launcher
   std::shared_ptr<ProcessGrip> grip; ///< null where a process cannot be gripped
+  std::string_view not_isolated{};   ///< why this one is in no sandbox, where others are; empty: it is, or none is
 };
 
 /// How a subsystem's process ended.
@@ -62,6 +67,10 @@ class ProcessLauncher {
   /// Empty while it runs.
   [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
   virtual void kill(std::uint32_t process) = 0;
+  /// What those that it starts are not kept from, in words; empty: they are isolated (docs/adr/0081).
+  [[nodiscard]] virtual std::vector<std::string> isolation_lacks() const { return {}; }
+  /// What it has taken; empty where it has no process of its own or has ended. Allocates nothing.
+  [[nodiscard]] virtual std::optional<ProcessUsage> usage(std::uint32_t /*process*/) noexcept { return std::nullopt; }
   /// Memory that a process has in RAM, 0 = the supervisor's own; 0 where it has no process of its own or has ended.
   /// Allocates nothing.
   [[nodiscard]] virtual std::uint32_t resident_kb(std::uint32_t /*process*/) noexcept { return 0; }

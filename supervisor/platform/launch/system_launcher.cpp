@@ -20,6 +20,7 @@
 #include "hirosco/data_transfer/control/socket_channel.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -228,6 +229,13 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   start.inherited = {{ends.second.get(), channel_number},
                      {SealedMemory::descriptor(vital.first), vital_number},
                      {SealedMemory::descriptor(permit.first), permit_number}};
+  start.limits = limits_of(subsystem.subsystem.resources);
+  std::optional<PreparedSandbox> sandbox;
+  const bool script = is_script(program);
+  if (!sandbox_is_off() && !script) {
+    HIROSCO_TRY_LET(sandbox, PreparedSandbox::prepare(sandbox_of(subsystem, program)));
+    start.sandbox = &*sandbox;
+  }
   // What it writes to its standard error is shown with its name, within limits.
   const auto errors = errors_.open(subsystem.subsystem.name);
   if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
@@ -249,9 +257,11 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   launched.port = std::make_unique<LocalMemberPort>(std::make_unique<SocketChannel>(std::move(ends.first)),
                                                     launched.vital, launched.permit);
   launched.process = next_++;
+  if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
   launched.grip = std::move(*grip);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
   if (!memory_use_[0]) memory_use_[0] = open_statm("self");
+  if (auto meter = ProcessMeter::of(process.pid())) meters_.emplace(launched.process, std::move(*meter));
   processes_.emplace(launched.process, std::move(process));
   return launched;
 }
@@ -264,12 +274,18 @@ std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
   const ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
   processes_.erase(found);
   memory_use_.erase(process);
+  meters_.erase(process);
   return end;
 }
 
 void SystemLauncher::kill(std::uint32_t process) {
   if (const auto found = processes_.find(process); found != processes_.end())
     static_cast<void>(found->second.send_signal(SIGKILL));
+}
+
+std::optional<ProcessUsage> SystemLauncher::usage(std::uint32_t process) noexcept {
+  const auto found = meters_.find(process);
+  return found != meters_.end() ? found->second.look() : std::nullopt;
 }
 
 std::uint32_t SystemLauncher::resident_kb(std::uint32_t process) noexcept {

@@ -24,6 +24,8 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
+  [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return hirosco::isolation_lacks(); }
+  [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
   [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override;
   /// Ends what still runs: nobody would be left to do it.
   void kill_all();
@@ -36,6 +38,7 @@ class SystemLauncher final : public ProcessLauncher {
   SealedMemory memory_;
   ErrorLines errors_;
   std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
+  std::map<std::uint32_t, ProcessMeter> meters_;
   std::map<std::uint32_t, Process> processes_;
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
   /// Where each executable was found: a disk is not searched again in flight, where it might hang.

@@ -27,52 +27,36 @@ PowerLedger::PowerLedger(std::optional<double> budget_w) {
   if (budget_w) set_budget(*budget_w);
 }
 
-void PowerLedger::set_budget(double budget_w) noexcept { budget_mw_ = milliwatts(budget_w); }
+void PowerLedger::set_budget(double budget_w) noexcept { book_.set_budget(milliwatts(budget_w)); }
 
 std::optional<PowerShortage> PowerLedger::shortage(std::uint16_t apid, double demand_w) const noexcept {
-  const std::uint32_t requested = milliwatts(demand_w);
-  if (!limited() || requested == 0) return std::nullopt;
-  const std::uint32_t others = reserved_mw() - held_mw(apid);
-  if (others + requested <= *budget_mw_) return std::nullopt;
-  return PowerShortage{.budget_mw = *budget_mw_, .reserved_mw = others, .requested_mw = requested};
+  const auto found = book_.shortage(apid, milliwatts(demand_w));
+  if (!found) return std::nullopt;
+  return PowerShortage{.budget_mw = found->budget, .reserved_mw = found->reserved, .requested_mw = found->requested};
 }
 
 void PowerLedger::reserve(std::uint16_t apid, double demand_w, const pus::Request& request, TimePoint until) {
-  Reservation& reservation = of(apid);
-  reservation.demand_mw = milliwatts(demand_w);
-  reservation.pending = request;
-  reservation.until = until;
+  forget(apid);
+  book_.hold(apid, milliwatts(demand_w));
+  pending_.push_back({apid, request, until});
 }
 
 void PowerLedger::ended(const pus::Request& request) noexcept {
-  for (Reservation& reservation : reservations_)
-    if (reservation.pending && reservation.pending->id == request.id && reservation.pending->source == request.source)
-      reservation.pending.reset();
+  std::erase_if(pending_, [&](const Pending& pending) {
+    return pending.request.id == request.id && pending.request.source == request.source;
+  });
 }
 
 void PowerLedger::observe(std::uint16_t apid, std::optional<State> state, double demand_w, TimePoint now) {
   if (state && in_use(*state)) {
-    Reservation& reservation = of(apid);
-    reservation.demand_mw = milliwatts(demand_w);
-    reservation.pending.reset();
-    return;
+    book_.hold(apid, milliwatts(demand_w));
+    return forget(apid);
   }
-  std::erase_if(reservations_, [&](const Reservation& reservation) {
-    if (reservation.apid != apid) return false;
-    const bool on_its_way = state.has_value() && reservation.pending.has_value() && now <= reservation.until;
-    return !on_its_way;
-  });
-}
-
-std::uint32_t PowerLedger::reserved_mw() const noexcept {
-  std::uint32_t sum_mw = 0;
-  for (const Reservation& reservation : reservations_) sum_mw += reservation.demand_mw;
-  return sum_mw;
-}
-
-std::uint32_t PowerLedger::held_mw(std::uint16_t apid) const noexcept {
-  const auto found = std::ranges::find(reservations_, apid, &Reservation::apid);
-  return found == reservations_.end() ? 0 : found->demand_mw;
+  const auto found = std::ranges::find(pending_, apid, &Pending::apid);
+  const bool on_its_way = state.has_value() && found != pending_.end() && now <= found->until;
+  if (on_its_way) return;
+  book_.hold(apid, 0);
+  forget(apid);
 }
 
 bool PowerLedger::newly_overdrawn() noexcept {
@@ -80,10 +64,8 @@ bool PowerLedger::newly_overdrawn() noexcept {
   return overdraft_told_ && !told;
 }
 
-PowerLedger::Reservation& PowerLedger::of(std::uint16_t apid) {
-  const auto found = std::ranges::find(reservations_, apid, &Reservation::apid);
-  if (found != reservations_.end()) return *found;
-  return reservations_.emplace_back(Reservation{.apid = apid, .demand_mw = 0, .pending = std::nullopt, .until = {}});
+void PowerLedger::forget(std::uint16_t apid) {
+  std::erase_if(pending_, [&](const Pending& pending) { return pending.apid == apid; });
 }
 
 }  // namespace hirosco::supervisor

@@ -9,6 +9,7 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/utilities/time.hpp"
+#include "supervisor/supervision/resource_management/book.hpp"
 
 /// Electrical power (paper 4.3): a subsystem is refused what the budget does not carry, before it is commissioned.
 /// Books only: what is promised, to whom. A subsystem counts with the power_W of its configuration from the permission
@@ -38,26 +39,26 @@ class PowerLedger {
   /// The state and its configuration's demand are what counts, whatever was asked for; without state it is not running.
   void observe(std::uint16_t apid, std::optional<descriptor::State> state, double demand_w, TimePoint now);
 
-  [[nodiscard]] bool limited() const noexcept { return budget_mw_.has_value(); }
-  [[nodiscard]] std::uint32_t budget_mw() const noexcept { return budget_mw_.value_or(0); }
-  [[nodiscard]] std::uint32_t reserved_mw() const noexcept;
-  [[nodiscard]] std::uint32_t held_mw(std::uint16_t apid) const noexcept;
+  [[nodiscard]] bool limited() const noexcept { return book_.limited(); }
+  [[nodiscard]] std::uint32_t budget_mw() const noexcept { return book_.budget(); }
+  [[nodiscard]] std::uint32_t reserved_mw() const noexcept { return book_.reserved(); }
+  [[nodiscard]] std::uint32_t held_mw(std::uint16_t apid) const noexcept { return book_.held(apid); }
   /// More is in use than the budget carries: it was lowered, or a configuration changed behind a permission.
-  [[nodiscard]] bool overdrawn() const noexcept { return limited() && reserved_mw() > budget_mw(); }
+  [[nodiscard]] bool overdrawn() const noexcept { return book_.overdrawn(); }
   /// True once from when it is overdrawn until it no longer is.
   [[nodiscard]] bool newly_overdrawn() noexcept;
 
  private:
-  struct Reservation {
+  /// What is held for a telecommand on its way.
+  struct Pending {
     std::uint16_t apid{};
-    std::uint32_t demand_mw{};
-    std::optional<pus::Request> pending;
+    pus::Request request;
     TimePoint until{};
   };
-  [[nodiscard]] Reservation& of(std::uint16_t apid);
+  void forget(std::uint16_t apid);
 
-  std::optional<std::uint32_t> budget_mw_;
-  std::vector<Reservation> reservations_;
+  Book book_;  ///< in mW
+  std::vector<Pending> pending_;
   bool overdraft_told_{false};
 };
 

@@ -10,6 +10,7 @@
 #include "supervisor/supervision/event_handling/reactions.hpp"
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
+#include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
 
@@ -23,6 +24,8 @@ constexpr Duration closed_channel_limit = 1s;
 }  // namespace
 
 void Processes::start_all() {
+  for (const std::string& open : craft_.launcher.isolation_lacks())
+    craft_.tell("subsystems are not isolated as they should be: " + open, supervisor_apid);
   for (Member& member : craft_.members) {
     const std::string& name = member.descriptor().name;
     launch(member);
@@ -45,10 +48,27 @@ void Processes::launch(Member& member) {
           "cannot hold the second inhibit of " + member.descriptor().name + "'s devices: " + held.error().text,
           member.apid());
   }
+  if (craft_.mission.isolation_required)
+    if (const auto open = craft_.launcher.isolation_lacks(); !open.empty())
+      return craft_.tell(
+          "cannot start " + member.descriptor().name + ": the mission wants it isolated, and " + open.front(),
+          member.apid());
+  if (const auto short_of = parts_.resources.claim(member))
+    return craft_.tell("cannot start " + member.descriptor().name + ": " + *short_of, member.apid());
   auto launched = craft_.launcher.launch(member.described());
   if (!launched) {
+    parts_.resources.release(member.apid());
     craft_.tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
     return;
+  }
+  if (!launched->not_isolated.empty()) {
+    const std::string open = member.descriptor().name + " is not isolated: " + std::string{launched->not_isolated};
+    craft_.tell(open, member.apid());
+    if (craft_.mission.isolation_required) {
+      craft_.launcher.kill(launched->process);
+      parts_.resources.release(member.apid());
+      return craft_.tell("cannot start " + member.descriptor().name + ": the mission wants it isolated", member.apid());
+    }
   }
   craft_.guard.adopt(member.apid(), *launched);
   member.started(std::move(*launched));
@@ -87,6 +107,7 @@ void Processes::watch_ends(Whom whom) {
 
 void Processes::died(Member& subject, const ProcessEnd& end) {
   const std::uint16_t apid = subject.apid();
+  parts_.resources.release(apid);
   if (craft_.shutting_down) {
     subject.died();
     parts_.telecommands.outcome_unknown(apid);

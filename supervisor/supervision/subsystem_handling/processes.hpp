@@ -15,6 +15,7 @@ class OwnTelecommands;
 class Reactions;
 class Reception;
 class Restoration;
+class ResourceHandling;
 class SafeAll;
 class Telecommands;
 
@@ -34,6 +35,7 @@ class Processes final : public Watch {
     GroundLinkCare& ground_link;
     Restarts& restarts;
     Restoration& restoration;
+    ResourceHandling& resources;
   };
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

@@ -16,10 +16,15 @@ using ::testing::ElementsAre;
 using enum descriptor::State;
 
 struct ProcessesTest : PartsTest {
+  std::vector<std::string> lacks;
+  const char* open{""};  ///< why those that are started are in no sandbox
+  [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return lacks; }
   int starts_that_fail{0};  ///< from now on
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override {
     if (starts_that_fail-- > 0) return fail(ErrorCode::SystemFailure, "new process", 11);
-    return PartsTest::launch(subsystem);
+    auto launched = PartsTest::launch(subsystem);
+    if (launched) launched->not_isolated = open;
+    return launched;
   }
   void dies(std::uint16_t apid) {
     ends[played[apid].process] = {.by_signal = true, .value = 9};
@@ -32,6 +37,28 @@ TEST_F(ProcessesTest, EachIsStartedInTheOrderOfTheMission) {
   parts.processes.start_all();
   EXPECT_THAT(story, ElementsAre("started ARM", "started HAND", "started CAMERA"));
   for (const Member& member : craft.members) EXPECT_TRUE(member.alive());
+}
+
+TEST_F(ProcessesTest, WhatKeepsNobodyFromOthersIsToldAndRefusedWhereTheMissionWantsIt) {
+  lacks = {"files are open to all"};
+  parts.processes.start_all();
+  EXPECT_EQ(story.front(), "subsystems are not isolated as they should be: files are open to all");
+  EXPECT_TRUE(craft.member(arm)->alive()) << "told, and flown";
+  craft.member(arm)->died();
+  craft.mission.isolation_required = true;
+  EXPECT_FALSE(parts.processes.start(arm));
+  EXPECT_TRUE(was_told("cannot start ARM: the mission wants it isolated, and files are open to all"));
+  lacks.clear();
+  EXPECT_TRUE(parts.processes.start(arm));
+}
+
+TEST_F(ProcessesTest, OneThatIsInNoSandboxIsToldAndEndedWhereTheMissionWantsIt) {
+  open = "it is a script";
+  EXPECT_TRUE(parts.processes.start(arm));
+  EXPECT_TRUE(was_told("ARM is not isolated: it is a script"));
+  craft.mission.isolation_required = true;
+  EXPECT_FALSE(parts.processes.start(hand));
+  EXPECT_THAT(killed, ElementsAre(played[hand].process));
 }
 
 TEST_F(ProcessesTest, ADeathIsToldWithItsKindAndItsNetworkGoesDown) {

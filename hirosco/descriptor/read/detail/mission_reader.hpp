@@ -39,6 +39,10 @@ class MissionReader {
   void read_ground(const xml::Element& element);
   void read_address(Attributes& attributes, std::string_view name, std::string& into);
   void read_power(const xml::Element& element);
+  // read_resources.cpp
+  void read_resources(const xml::Element& element);
+  void read_isolation(const xml::Element& element);
+  void check_resources(const xml::Element& element);
   void read_member(const xml::Element& element);
   /// Name and id of an instance, where they are not the descriptor's.
   void read_identity(Attributes& attributes, MissionSubsystem& member);

@@ -22,6 +22,9 @@ inline constexpr std::size_t max_event_octets = 4096 - 22 - 2;
 /// One <Setting> of a device, or of its simulation.
 void read_setting(const xml::Element& element, Problems& problems, Unique& names, std::vector<Setting>& settings);
 
+/// Amounts of resources, as a subsystem and a mission say them.
+[[nodiscard]] Amounts read_amounts(Attributes& attributes);
+
 /// Reads one <Subsystem>. Declarations first, then what refers to them, whatever their order in the file.
 class SubsystemReader {
  public:
@@ -51,6 +54,10 @@ class SubsystemReader {
   void read_stop(Attributes& attributes, Device& device);
   void read_enable(const xml::Element& element, Device& device);
   void read_output(const xml::Element& element, Device& device, Unique& names);
+
+  // read_resources.cpp
+  void read_resources(const xml::Element& element);
+  void read_pool(const xml::Element& element);
 
   // read_configuration.cpp
   void read_configuration(const xml::Element& element);

@@ -6,6 +6,7 @@
 #include <linux/close_range.h>
 #include <poll.h>
 #include <sched.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,6 +35,8 @@ struct Plan {
   const char* executable{};
   const char* directory{};
   sigset_t blocked{};
+  ProcessLimits limits;
+  const PreparedSandbox* sandbox{nullptr};
   int report{-1};  ///< the child writes errno here when it fails
 };
 
@@ -58,6 +61,8 @@ void add_texts(std::vector<char*>& texts, const std::vector<std::string>& values
   sigemptyset(&plan.blocked);
   for (const int number : start.blocked) sigaddset(&plan.blocked, number);
   plan.executable = start.executable.c_str();
+  plan.limits = start.limits;
+  plan.sandbox = start.sandbox;
   if (!start.working_directory.empty()) plan.directory = start.working_directory.c_str();
   return plan;
 }
@@ -90,6 +95,13 @@ void reset_signals(const sigset_t& blocked) noexcept {
   (void)::sigprocmask(SIG_SETMASK, &blocked, nullptr);
 }
 
+/// Neither can be raised again by who is not privileged.
+void set_limit(const Plan& plan, int resource, const std::optional<std::uint64_t>& most) noexcept {
+  if (!most) return;
+  const rlimit limit{.rlim_cur = *most, .rlim_max = *most};
+  if (::setrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0) give_up(plan.report, errno);
+}
+
 [[noreturn]] void run_child(Plan& plan) noexcept {
   (void)::setpgid(0, 0);
   place_descriptors(plan);
@@ -97,6 +109,11 @@ void reset_signals(const sigset_t& blocked) noexcept {
   (void)::sched_setscheduler(0, SCHED_OTHER, &ordinary);
   if (plan.directory != nullptr && ::chdir(plan.directory) != 0) give_up(plan.report, errno);
   reset_signals(plan.blocked);
+  if (plan.sandbox != nullptr)
+    if (const int error = plan.sandbox->enter(); error != 0) give_up(plan.report, error);
+  // Last: until then all of ours are still open, and a sandbox opens one more.
+  set_limit(plan, RLIMIT_DATA, plan.limits.memory_octets);
+  set_limit(plan, RLIMIT_NOFILE, plan.limits.descriptors);
   ::execve(plan.executable, plan.arguments.data(), plan.environment_used);
   give_up(plan.report, errno);
 }

@@ -57,6 +57,18 @@ TEST(Process, TellsItsExitCode) {
   EXPECT_FALSE(process->poll()->value().success());
 }
 
+TEST(Process, IsRefusedWhatIsBeyondItsLimits) {
+  ProcessStart start = shell("ulimit -n; ulimit -d; ulimit -n 65 2>/dev/null; ulimit -Hn");
+  Pipe pipe;
+  start.inherited = {{pipe.write_end.get(), STDOUT_FILENO}};
+  start.limits = {.memory_octets = 64 << 20, .descriptors = 64};
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process) << process.error().text;
+  const std::string said = pipe.rest();
+  EXPECT_TRUE(said.starts_with("64\n65536\n")) << said;
+  EXPECT_TRUE(end_of(*process).success());
+}
+
 TEST(Process, RunsUntilASignalEndsIt) {
   auto process = Process::spawn(shell("kill -STOP $$; exit 0"));
   ASSERT_TRUE(process);

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+
+/// What a subsystem takes, and what a mission has of it (docs/adr/0080).
+namespace hirosco::descriptor::detail {
+namespace {
+
+constexpr std::int64_t most_kb = std::int64_t{1} << 30;
+constexpr std::int64_t largest_block = std::int64_t{1} << 24, most_blocks = std::int64_t{1} << 24;
+/// Of all pools of a subsystem.
+constexpr std::uint64_t most_pool_octets = std::uint64_t{1} << 31;
+/// What a process has open before its author opens anything: standard streams, channel, pages, its waits, links and devices.
+constexpr std::int64_t least_descriptors = 24;
+/// What the framework itself starts: service loop and cycle.
+constexpr std::int64_t least_threads = 2;
+
+}  // namespace
+
+Amounts read_amounts(Attributes& attributes) {
+  Amounts amounts;
+  const auto take = [&](Resource resource, std::optional<std::int64_t> value) {
+    if (value) amounts[static_cast<std::size_t>(resource)] = static_cast<std::uint32_t>(*value);
+  };
+  constexpr std::int64_t least_kb = 4096;
+  take(Resource::Memory, attributes.integer("memory_kB", least_kb, most_kb));
+  take(Resource::SharedMemory, attributes.integer("shared_memory_kB", 64, most_kb));
+  take(Resource::Threads, attributes.integer("threads", least_threads, 1'000'000));
+  take(Resource::Descriptors, attributes.integer("descriptors", least_descriptors, 1'000'000));
+  take(Resource::Processor, attributes.integer("processor_percent", 1, 100'000));
+  return amounts;
+}
+
+void SubsystemReader::read_resources(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  Resources& resources = subsystem_.resources;
+  resources.most = read_amounts(attributes);
+  resources.warning_percent = attributes.integer_or<std::uint32_t>("warning_percent", 1, 100, default_warning_percent);
+  each_child(element, problems_, {{"Pool", [this](const auto& pool) { read_pool(pool); }, most_pools}});
+  std::ranges::sort(resources.pools, {}, &Pool::block_octets);
+  std::uint64_t octets = 0;
+  for (const Pool& pool : resources.pools) octets += std::uint64_t{pool.block_octets} * pool.blocks;
+  const auto memory_kb = amount_of(resources.most, Resource::Memory);
+  const std::uint64_t limit = memory_kb ? std::uint64_t{*memory_kb} * 1024 : most_pool_octets;
+  if (octets > limit)
+    problems_.add(element, "E0240", fmt::format("the pools take {} octets together", octets),
+                  fmt::format("at most {}{}", limit, memory_kb ? ", the memory that it says" : ""));
+}
+
+void SubsystemReader::read_pool(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  Pool pool;
+  pool.block_octets = attributes.required_integer<std::uint32_t>("block", 16, largest_block);
+  pool.blocks = attributes.required_integer<std::uint32_t>("count", 1, most_blocks);
+  if (pool.block_octets == 0 || pool.blocks == 0) return;
+  // As large as they are in memory: two pools of one size would be one.
+  constexpr std::uint32_t grain = 16;
+  pool.block_octets = (pool.block_octets + grain - 1) / grain * grain;
+  const auto twice = std::ranges::find(subsystem_.resources.pools, pool.block_octets, &Pool::block_octets);
+  if (twice != subsystem_.resources.pools.end())
+    return problems_.add(element, "E0240", fmt::format("a second pool of blocks of {} octets", pool.block_octets),
+                         "sizes are rounded up to 16 octets: make it one pool");
+  subsystem_.resources.pools.push_back(pool);
+}
+
+void MissionReader::read_resources(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  mission_.budget = read_amounts(attributes);
+}
+
+void MissionReader::read_isolation(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  mission_.isolation_required = attributes.yes("required", false);
+}
+
+/// Whoever says nothing would take from what is promised to the others.
+void MissionReader::check_resources(const xml::Element& element) {
+  for (std::size_t i = 0; i < counted_resources; ++i) {
+    const auto resource = static_cast<Resource>(i);
+    const auto budget = amount_of(mission_.budget, resource);
+    if (!budget) continue;
+    std::uint64_t sum = 0;
+    for (const MissionSubsystem& member : mission_.subsystems) {
+      const auto most = amount_of(member.subsystem.resources.most, resource);
+      sum += most.value_or(0);
+      if (!most)
+        problems_.add(element, "E0350",
+                      fmt::format("the mission limits {}, and '{}' does not say how much it takes", to_text(resource),
+                                  member.subsystem.name),
+                      "say it in <Resources> of its descriptor");
+    }
+    if (sum > *budget)
+      problems_.warn(place(element.at), "E0410",
+                     fmt::format("all subsystems together take {}{} of {}, the mission has {}{}", sum,
+                                 unit_of(resource), to_text(resource), *budget, unit_of(resource)),
+                     "whoever is started last is refused", element.name.size() + 1);
+  }
+}
+
+}  // namespace hirosco::descriptor::detail

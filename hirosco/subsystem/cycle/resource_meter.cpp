@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/cycle/resource_meter.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace hirosco {
+
+using descriptor::Resource;
+
+ResourceMeter::ResourceMeter(const descriptor::Resources& declared) : declared_{declared} {
+  if (declared.pools.empty()) return;
+  std::vector<PoolSpec> specs;
+  for (const descriptor::Pool& pool : declared.pools) specs.push_back({pool.block_octets, pool.blocks});
+  PoolNotices notices;
+  notices.warning_percent = declared.warning_percent;
+  // Possibly in the cycle: it is only counted here.
+  notices.on_warning = [this](std::size_t pool, const PoolUsage&) {
+    pool_crossings_[pool].fetch_add(1, std::memory_order_relaxed);
+  };
+  auto made = BlockPools::create(specs, std::move(notices));
+  if (!made) {
+    problem_ = "its pools: " + std::string{made.error().text} + " (" + std::to_string(made.error().value) + ")";
+    return;
+  }
+  pools_ = std::move(*made);
+  resource_ = PoolResource{pools_.get()};
+}
+
+void ResourceMeter::note(const ProcessUsage& usage) noexcept {
+  note(Resource::Memory, usage.memory_kb);
+  note(Resource::SharedMemory, usage.shared_memory_kb);
+  note(Resource::Threads, usage.threads);
+  note(Resource::Descriptors, usage.descriptors);
+}
+
+void ResourceMeter::note(Resource resource, std::uint32_t amount) noexcept {
+  Seen& seen = seen_[static_cast<std::size_t>(resource)];
+  seen.now.store(amount, std::memory_order_relaxed);
+  if (amount > seen.high.load(std::memory_order_relaxed)) seen.high.store(amount, std::memory_order_relaxed);
+  const auto most = amount_of(declared_.most, resource);
+  if (!most) return;
+  constexpr std::uint64_t whole = 100;
+  const bool above = amount * whole >= std::uint64_t{*most} * declared_.warning_percent;
+  if (above && !seen.above) ++seen.crossings;
+  seen.above = above;
+}
+
+void ResourceMeter::tell_crossings(const std::function<void(const Crossing&)>& tell) {
+  for (std::size_t i = 0; i < seen_.size(); ++i)
+    if (const auto times = std::exchange(seen_[i].crossings, 0); times != 0)
+      tell({.resource = static_cast<Resource>(i),
+            .used = seen_[i].now.load(std::memory_order_relaxed),
+            .limit = declared_.most[i].value_or(0),
+            .times = times});
+  for (std::size_t i = 0; pools_ != nullptr && i < pools_->size(); ++i) {
+    const auto times = pool_crossings_[i].exchange(0, std::memory_order_relaxed);
+    if (times == 0) continue;
+    const PoolUsage usage = pools_->usage(i);
+    tell({.resource = Resource::Pool,
+          .block_octets = static_cast<std::uint32_t>(usage.block_octets),
+          .used = usage.used,
+          .limit = usage.count,
+          .times = times});
+  }
+}
+
+ResourceStatistics ResourceMeter::statistics() const noexcept {
+  const auto of = [this](Resource resource) -> const Seen& { return seen_[static_cast<std::size_t>(resource)]; };
+  const auto now = [&](Resource resource) { return of(resource).now.load(std::memory_order_relaxed); };
+  const auto high = [&](Resource resource) { return of(resource).high.load(std::memory_order_relaxed); };
+  ResourceStatistics all{now(Resource::Memory),       high(Resource::Memory), now(Resource::Descriptors),
+                         high(Resource::Descriptors), now(Resource::Threads), high(Resource::Threads)};
+  if (pools_ == nullptr) return all;
+  for (std::size_t i = 0; i < pools_->size(); ++i) {
+    const PoolUsage usage = pools_->usage(i);
+    all.pool_used[i] = usage.used;
+    all.pool_high[i] = usage.high_water;
+  }
+  all.pool_refused = static_cast<std::uint32_t>(pools_->refused());
+  return all;
+}
+
+}  // namespace hirosco

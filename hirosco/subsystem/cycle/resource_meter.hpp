@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "hirosco/descriptor/model/subsystem.hpp"
+#include "hirosco/resource/pool_resource.hpp"
+#include "hirosco/utilities/os/process_usage.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco {
+
+/// What a subsystem has taken, as a parameter of every subsystem: RESOURCE_STATS (descriptor/model/framework_parameters.hpp).
+struct ResourceStatistics {
+  std::uint32_t memory_kb{0};  ///< 0 where nobody can tell, like the next five: in simulation
+  std::uint32_t memory_high_kb{0};  ///< most that was seen, ten times in a second
+  std::uint32_t descriptors{0};
+  std::uint32_t descriptors_high{0};
+  std::uint32_t threads{0};
+  std::uint32_t threads_high{0};
+  std::array<std::uint32_t, descriptor::most_pools> pool_used{};  ///< blocks, by ascending size
+  std::array<std::uint32_t, descriptor::most_pools> pool_high{};  ///< most ever
+  std::uint32_t pool_refused{0};  ///< requests for which there was no block
+};
+
+/// The resources of one subsystem: its pools, how much it has taken, and where that crosses the warning level of its descriptor.
+/// It keeps the pools from its start to its end.
+class ResourceMeter {
+ public:
+  static constexpr Duration look_every = std::chrono::milliseconds{100};
+
+  explicit ResourceMeter(const descriptor::Resources& declared);
+  ResourceMeter(const ResourceMeter&) = delete;
+  ResourceMeter& operator=(const ResourceMeter&) = delete;
+
+  /// Why there are no pools although the descriptor says so; empty: all is there.
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+  [[nodiscard]] PoolResource& pools() noexcept { return resource_; }
+
+  /// Use that has reached the warning level from below since it was told last.
+  struct Crossing {
+    descriptor::Resource resource{};
+    std::uint32_t block_octets{0};  ///< of a pool
+    std::uint32_t used{0};  ///< now: it may be less again
+    std::uint32_t limit{0};
+    std::uint32_t times{0};
+  };
+  /// What was seen of the process.  Thread: service loop.
+  void note(const ProcessUsage& usage) noexcept;
+  /// Tells each crossing once.  Realtime: bounded. Thread: service loop.
+  void tell_crossings(const std::function<void(const Crossing&)>& tell);
+
+  /// Realtime: wait-free. Thread: any.
+  [[nodiscard]] ResourceStatistics statistics() const noexcept;
+
+ private:
+  /// Of the process: newest, highest, and whether it stands above the level.
+  struct Seen {
+    std::atomic<std::uint32_t> now{0};
+    std::atomic<std::uint32_t> high{0};
+    bool above{false};
+    std::uint32_t crossings{0};
+  };
+  void note(descriptor::Resource resource, std::uint32_t amount) noexcept;
+
+  const descriptor::Resources& declared_;
+  std::array<Seen, descriptor::counted_resources> seen_;
+  std::array<std::atomic<std::uint32_t>, descriptor::most_pools> pool_crossings_{};  ///< by who allocates
+  std::unique_ptr<BlockPools> pools_;
+  PoolResource resource_;
+  std::string problem_;
+};
+
+}  // namespace hirosco

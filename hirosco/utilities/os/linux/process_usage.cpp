@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/utilities/os/process_usage.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <string>
+
+namespace hirosco {
+namespace {
+
+/// Its size is their number since Linux 6.2; before that they are not counted.
+[[nodiscard]] std::uint32_t own_descriptors() noexcept {
+  struct stat folder{};
+  return ::stat("/proc/self/fd", &folder) == 0 ? static_cast<std::uint32_t>(folder.st_size) : 0;
+}
+
+[[nodiscard]] Result<FileDescriptor> open_status(const std::string& process) {
+  FileDescriptor status{::open(("/proc/" + process + "/status").c_str(), O_RDONLY | O_CLOEXEC)};
+  if (!status) return fail(ErrorCode::NotFound, "status of a process", errno);
+  return status;
+}
+
+}  // namespace
+
+std::uint32_t number_in_status(std::string_view status, std::string_view name) noexcept {
+  for (std::size_t at = status.find(name); at != std::string_view::npos; at = status.find(name, at + 1)) {
+    const std::size_t behind = at + name.size();
+    if ((at != 0 && status[at - 1] != '\n') || behind >= status.size() || status[behind] != ':') continue;
+    const std::size_t digits = status.find_first_not_of(" \t", behind + 1);
+    std::uint32_t number = 0;
+    if (digits != std::string_view::npos)
+      std::from_chars(status.data() + digits, status.data() + status.size(), number);
+    return number;
+  }
+  return 0;
+}
+
+Result<ProcessMeter> ProcessMeter::own() {
+  HIROSCO_TRY_LET(FileDescriptor status, open_status("self"));
+  return ProcessMeter{std::move(status), Whose::Own, CLOCK_PROCESS_CPUTIME_ID};
+}
+
+Result<ProcessMeter> ProcessMeter::of(int pid) {
+  HIROSCO_TRY_LET(FileDescriptor status, open_status(std::to_string(pid)));
+  clockid_t clock{};
+  if (const int error = ::clock_getcpuclockid(pid, &clock); error != 0)
+    return fail(ErrorCode::NotFound, "processor time of a process", error);
+  return ProcessMeter{std::move(status), Whose::Others, clock};
+}
+
+std::optional<ProcessUsage> ProcessMeter::look() noexcept {
+  std::array<char, 4096> text;
+  const auto octets = ::pread(status_.get(), text.data(), text.size(), 0);
+  if (octets <= 0) return std::nullopt;
+  const std::string_view status{text.data(), static_cast<std::size_t>(octets)};
+  ProcessUsage usage;
+  usage.memory_kb = number_in_status(status, "VmData") + number_in_status(status, "VmStk");
+  usage.shared_memory_kb = number_in_status(status, "RssShmem");
+  usage.threads = number_in_status(status, "Threads");
+  if (whose_ == Whose::Own) usage.descriptors = own_descriptors();
+  timespec time{};
+  if (::clock_gettime(clock_, &time) == 0) usage.processor = std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
+  return usage;
+}
+
+}  // namespace hirosco

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/utilities/os/process_usage.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "hirosco/utilities/os/semaphore.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+
+namespace hirosco {
+namespace {
+
+TEST(ProcessStatus, GivesTheNumberBehindAName) {
+  constexpr std::string_view status = "Name:\tVmData: 3\nVmData:\t    1234 kB\nThreads:\t7\n";
+  EXPECT_EQ(number_in_status(status, "VmData"), 1234U);
+  EXPECT_EQ(number_in_status(status, "Threads"), 7U);
+  EXPECT_EQ(number_in_status(status, "Thread"), 0U);
+  EXPECT_EQ(number_in_status(status, "Name"), 0U);
+  EXPECT_EQ(number_in_status("VmData:", "VmData"), 0U);
+}
+
+TEST(ProcessMeter, SeesMemoryThreadsAndDescriptorsThatWeTake) {
+  auto meter = ProcessMeter::own().value();
+  const ProcessUsage before = meter.look().value();
+  EXPECT_GT(before.memory_kb, 0U);
+  constexpr std::size_t octets = std::size_t{32} << 20;
+  void* const taken = ::mmap(nullptr, octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(taken, MAP_FAILED);
+  const FileDescriptor one{::dup(0)}, another{::dup(0)};
+  Semaphore end{0};
+  auto thread = Thread::start("idle", [&] { end.wait(); }).value();
+  const ProcessUsage after = meter.look().value();
+  end.post();
+  ::munmap(taken, octets);
+  EXPECT_GE(after.memory_kb, before.memory_kb + octets / 1024);
+  EXPECT_EQ(after.threads, before.threads + 1);
+  EXPECT_EQ(after.descriptors, before.descriptors == 0 ? 0 : before.descriptors + 2) << "or they cannot be counted";
+  EXPECT_GE(after.processor, before.processor);
+}
+
+TEST(ProcessMeter, OfAnotherSaysWhenThatHasEnded) {
+  const pid_t child = ::fork();
+  if (child == 0)
+    for (;;) ::pause();
+  auto meter = ProcessMeter::of(child).value();
+  EXPECT_EQ(meter.look().value().threads, 1U);
+  ::kill(child, SIGKILL);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_FALSE(meter.look());
+  EXPECT_FALSE(ProcessMeter::of(child));
+}
+
+}  // namespace
+}  // namespace hirosco

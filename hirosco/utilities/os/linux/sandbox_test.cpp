@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/utilities/os/sandbox.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/ptrace.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hirosco/utilities/os/process.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+
+namespace hirosco {
+namespace {
+
+constexpr int could_not_enter = 99;
+
+/// What a process in a sandbox returns; 128 and more: the signal that ended it.
+int inside(const Sandbox& sandbox, const std::function<int()>& work) {
+  const auto prepared = PreparedSandbox::prepare(sandbox);
+  EXPECT_TRUE(prepared) << prepared.error().text << " " << prepared.error().value;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ::_exit(prepared->enter() == 0 ? work() : could_not_enter);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+struct SandboxTest : testing::Test {
+  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("sandbox." + std::to_string(::getpid()));
+  void SetUp() override {
+    if (const auto lacks = isolation_lacks(); !lacks.empty()) GTEST_SKIP() << lacks.front();
+    std::filesystem::create_directories(folder / "own");
+    for (const char* name : {"secret", "own/data"}) {
+      const FileDescriptor file{::open((folder / name).c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600)};
+      EXPECT_TRUE(file);
+    }
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+  static bool opens(const std::string& path, int how) {
+    const FileDescriptor file{::open(path.c_str(), how | O_CLOEXEC, 0600)};
+    return static_cast<bool>(file);
+  }
+};
+
+TEST_F(SandboxTest, OpensTheFilesThatItNamesAndNoOthersNorDevices) {
+  const std::string own = folder / "own", secret = folder / "secret",
+                    supervisor = "/proc/" + std::to_string(::getpid());
+  const int wrong = inside({.readable = {}, .executable = {}, .writable = {own, "/dev/null"}}, [&] {
+    if (!opens(own + "/data", O_RDWR) || !opens(own + "/new", O_RDWR | O_CREAT) || !opens("/dev/null", O_RDWR))
+      return 1;
+    if (!opens("/proc/self/status", O_RDONLY)) return 2;
+    if (opens(secret, O_RDONLY)) return 3;
+    if (opens(secret + "2", O_WRONLY | O_CREAT)) return 4;
+    if (opens("/etc/passwd", O_RDONLY) || opens("/dev/kmsg", O_RDONLY) || opens("/dev/zero", O_RDWR)) return 5;
+    if (opens(supervisor + "/mem", O_RDWR) || opens(supervisor + "/status", O_RDONLY)) return 6;
+    if (opens("/proc/self/mem", O_RDWR)) return 7;
+    return 0;
+  });
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(inside({.readable = {own}, .executable = {}, .writable = {}},
+                   [&] { return opens(own + "/data", O_RDONLY) && !opens(own + "/data", O_RDWR) ? 0 : 1; }),
+            0)
+      << "what may be read may not be written";
+}
+
+TEST_F(SandboxTest, ReachesNoOtherProcessAndStartsNone) {
+  const int wrong = inside({}, [] {
+    name_refused_calls("test");
+    std::array<char, 8> there{};
+    iovec local{there.data(), there.size()}, remote{there.data(), there.size()};
+    if (::ptrace(PTRACE_ATTACH, ::getppid(), nullptr, nullptr) == 0 || errno != EPERM) return 1;
+    if (::process_vm_readv(::getppid(), &local, 1, &remote, 1, 0) >= 0 || errno != EPERM) return 2;
+    if (::kill(::getppid(), 0) == 0) return 3;
+    if (::fork() >= 0 || errno != EPERM) return 4;
+    if (::vfork() >= 0) return 5;
+    if (::socket(AF_PACKET, SOCK_RAW, 0) >= 0 || ::socket(AF_NETLINK, SOCK_RAW, 0) >= 0) return 6;
+    ::execl("/bin/sh", "sh", "-c", "exit 7", nullptr);
+    return errno == EACCES ? 0 : 8;
+  });
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(SandboxTest, ARefusedCallEndsWhoDoesNotNameIt) {
+  EXPECT_EQ(inside({}, [] { return static_cast<int>(::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr)); }), 128 + SIGSYS);
+}
+
+TEST_F(SandboxTest, KeepsWhatACycleNeeds) {
+  const bool realtime = realtime_permitted();
+  const int wrong = inside({.readable = {}, .executable = {}, .writable = {"/dev/shm"}}, [&] {
+    const std::string name = "/hirosco-sandbox." + std::to_string(::getpid());
+    const FileDescriptor shared{::shm_open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)};
+    if (!shared || ::shm_unlink(name.c_str()) != 0) return 1;
+    const FileDescriptor link{::memfd_create("link", MFD_CLOEXEC | MFD_ALLOW_SEALING)};
+    if (!link || ::ftruncate(link.get(), 4096) != 0) return 2;
+    bool fifo = !realtime;
+    auto cycle = Thread::start("cycle", [&] { fifo = fifo || set_fifo_priority(1).has_value(); });
+    if (!cycle) return 3;
+    cycle->join();
+    if (!fifo) return 4;
+    const FileDescriptor local{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)},
+        internet{::socket(AF_INET, SOCK_DGRAM, 0)};
+    return local && internet ? 0 : 5;
+  });
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(SandboxTest, AStartedProcessIsInIt) {
+  const Sandbox sandbox{
+      .readable = {"/etc"}, .executable = {"/bin", "/usr", "/lib", "/lib64"}, .writable = {"/dev/null"}};
+  const auto prepared = PreparedSandbox::prepare(sandbox).value();
+  std::vector<FileDescriptor> ours;  // more than it may have
+  for (int i = 0; i < 80; ++i) ours.emplace_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  ProcessStart start{.executable = "/bin/sh",
+                     .arguments = {"-c", "exec 2>/dev/null; read x < " + (folder / "secret").string() +
+                                             " && exit 1; ulimit -n 100000 && exit 2; exit 7"}};
+  start.limits.descriptors = 64;
+  start.sandbox = &prepared;
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process) << process.error().text << " " << process.error().value;
+  int status = 0;
+  ::waitpid(process->pid(), &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 7);
+}
+
+}  // namespace
+}  // namespace hirosco

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco {
+
+/// What a process has taken of its computer.
+struct ProcessUsage {
+  std::uint32_t memory_kb{0};  ///< that it may write and shares with nobody, in RAM or not: what its limit counts
+  std::uint32_t shared_memory_kb{0};  ///< in RAM
+  std::uint32_t threads{0};
+  std::uint32_t descriptors{0};  ///< 0 where they cannot be counted: of another process
+  Duration processor{};  ///< of all its threads since its start
+};
+
+/// Looks at one process again and again.  Realtime: system calls, bounded, no heap. Thread: one at a time.
+class ProcessMeter {
+ public:
+  /// Of ourselves; NotFound: the system does not tell.
+  [[nodiscard]] static Result<ProcessMeter> own();
+  /// Of another one, whose number is not used anew as long as its parent has not taken its end.
+  [[nodiscard]] static Result<ProcessMeter> of(int pid);
+  /// Empty: it has ended.
+  [[nodiscard]] std::optional<ProcessUsage> look() noexcept;
+
+ private:
+  enum class Whose : std::uint8_t { Own, Others };
+  ProcessMeter(FileDescriptor status, Whose whose, int clock) noexcept
+      : status_{std::move(status)}, whose_{whose}, clock_{clock} {}
+  FileDescriptor status_;
+  Whose whose_;
+  int clock_;  ///< of its processor time
+};
+
+/// Of the lines that the system tells of a process: the number behind "NAME:"; 0 when there is none.
+[[nodiscard]] std::uint32_t number_in_status(std::string_view status, std::string_view name) noexcept;
+
+}  // namespace hirosco

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/result.hpp"
+
+namespace hirosco {
+
+/// What of its computer a started process reaches (docs/adr/0081). Files and folders with all below; what is not there counts as
+/// not named.
+struct Sandbox {
+  std::vector<std::string> readable;
+  std::vector<std::string> executable;
+  std::vector<std::string> writable;  ///< also made and removed, and read
+};
+
+/// What this computer or build cannot keep a process from, in words; empty: all of it.
+[[nodiscard]] std::vector<std::string> isolation_lacks();
+
+/// Nothing is isolated: built with a sanitizer, which needs what a sandbox refuses, or HIROSCO_SANDBOX=off in the environment, for
+/// tools that look into processes or have them write files.
+[[nodiscard]] bool sandbox_is_off() noexcept;
+
+/// A sandbox made ready, to be entered between fork and exec. No way leads out of it, for nothing that is started in it either: no new
+/// rights, of root's rights those only that real time needs, files as Sandbox says, signals and memory of nobody outside, and
+/// no system calls that no subsystem needs, among them those that start a process.
+class PreparedSandbox {
+ public:
+  /// Files are left open where the system cannot refuse them (isolation_lacks()).
+  [[nodiscard]] static Result<PreparedSandbox> prepare(const Sandbox& sandbox);
+  /// 0, or the system's error number.  Async-signal-safe.
+  [[nodiscard]] int enter() const noexcept;
+  [[nodiscard]] const FileDescriptor& rules() const noexcept { return rules_; }
+
+ private:
+  explicit PreparedSandbox(FileDescriptor rules) noexcept : rules_{std::move(rules)} {}
+  FileDescriptor rules_;  ///< empty: no rules of files
+};
+
+/// From now on each system call that the sandbox refuses is named on standard error, at most ten times, and fails with EPERM; without this
+/// it ends the process.
+void name_refused_calls(const char* program) noexcept;
+
+}  // namespace hirosco

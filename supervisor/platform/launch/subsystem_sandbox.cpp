@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/platform/launch/subsystem_sandbox.hpp"
+
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "hirosco/utilities/os/installation.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+/// Where a file that a mission names really is.
+[[nodiscard]] std::filesystem::path place_of(const std::filesystem::path& file) {
+  const std::string text = file.string();
+  if (!text.starts_with(shipped_prefix)) return std::filesystem::absolute(file);
+  return find_shipped(std::string_view{text}.substr(shipped_prefix.size()));
+}
+
+void add_address(const descriptor::Endnode& endnode, Sandbox& sandbox) {
+  if (endnode.transfer == Transfer::SharedMemory) sandbox.writable.emplace_back("/dev/shm");
+  // A socket is made beside the other's.
+  if (endnode.transfer == Transfer::Unix)
+    sandbox.writable.push_back(std::filesystem::absolute(endnode.address).parent_path().string());
+}
+
+}  // namespace
+
+ProcessLimits limits_of(const descriptor::Resources& resources) noexcept {
+  using descriptor::Resource;
+  ProcessLimits limits;
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  constexpr std::uint64_t octets_per_kb = 1024;
+  if (const auto memory_kb = amount_of(resources.most, Resource::Memory))
+    limits.memory_octets = *memory_kb * octets_per_kb;
+#endif
+  if (const auto descriptors = amount_of(resources.most, Resource::Descriptors)) limits.descriptors = *descriptors;
+  return limits;
+}
+
+bool is_script(const std::filesystem::path& program) {
+  std::ifstream file{program, std::ios::binary};
+  return file.get() == '#' && file.get() == '!';
+}
+
+Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program) {
+  Sandbox sandbox;
+  for (const char* library : {"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/lib32"}) {
+    sandbox.executable.emplace_back(library);  // the loader stands there, too
+  }
+  for (const char* file : {"/etc/ld.so.cache", "/etc/ld.so.preload", "/etc/localtime", "/usr/share/zoneinfo",
+                           "/dev/urandom", "/sys/devices/system/cpu"})
+    sandbox.readable.emplace_back(file);
+  sandbox.executable.push_back(std::filesystem::absolute(program).string());
+  sandbox.readable.push_back(place_of(subsystem.subsystem.file).string());
+  for (const auto& commanded : subsystem.subsystem.commands)
+    if (!commanded.file.empty()) sandbox.readable.push_back(place_of(commanded.file).string());
+  sandbox.writable.emplace_back("/dev/null");
+  for (const auto& configuration : subsystem.subsystem.configurations)
+    for (const auto& use : configuration.devices) add_address(use.endnode, sandbox);
+  return sandbox;
+}
+
+}  // namespace hirosco::supervisor

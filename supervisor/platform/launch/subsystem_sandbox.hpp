@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/utilities/os/process.hpp"
+
+/// What the process of a subsystem may take and reach, as its descriptor says (docs/adr/0080, 0081).
+namespace hirosco::supervisor {
+
+/// What the system itself refuses beyond. Memory is not limited where a sanitizer needs more than there is.
+[[nodiscard]] ProcessLimits limits_of(const descriptor::Resources& resources) noexcept;
+
+/// Its program, descriptors and libraries to read, what its devices' transfers need to write, and nothing else.
+[[nodiscard]] Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program);
+
+/// A script reaches what its interpreter needs, which nobody says.
+[[nodiscard]] bool is_script(const std::filesystem::path& program);
+
+}  // namespace hirosco::supervisor

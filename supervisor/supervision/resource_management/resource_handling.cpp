@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/resource_management/resource_handling.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace hirosco::supervisor {
+
+using descriptor::Resource;
+
+namespace {
+
+[[nodiscard]] std::string words(std::uint32_t amount, Resource resource) {
+  return std::to_string(amount) + unit_of(resource);
+}
+
+}  // namespace
+
+ResourceHandling::ResourceHandling(Craft& craft, OwnSubsystem& own) : craft_{craft}, own_{own} {
+  for (std::size_t i = 0; i < books_.size(); ++i) books_[i].set_budget(craft.mission.budget[i]);
+}
+
+std::optional<std::string> ResourceHandling::claim(const Member& member) {
+  const descriptor::Amounts& most = member.descriptor().resources.most;
+  for (std::size_t i = 0; i < books_.size(); ++i) {
+    const auto resource = static_cast<Resource>(i);
+    const auto shortage = books_[i].shortage(member.apid(), most[i].value_or(0));
+    if (!shortage) continue;
+    own_.announce("RESOURCE_REFUSED",
+                  {static_cast<double>(member.apid()), static_cast<double>(i), static_cast<double>(shortage->budget),
+                   static_cast<double>(shortage->reserved), static_cast<double>(shortage->requested)});
+    return fmt::format("{} short: it asks for {}, {} of {} are reserved", to_text(resource),
+                       words(shortage->requested, resource), words(shortage->reserved, resource),
+                       words(shortage->budget, resource));
+  }
+  for (std::size_t i = 0; i < books_.size(); ++i) books_[i].hold(member.apid(), most[i].value_or(0));
+  return std::nullopt;
+}
+
+void ResourceHandling::release(std::uint16_t apid) {
+  for (Book& book : books_) book.hold(apid, 0);
+  seen_.erase(apid);
+}
+
+void ResourceHandling::watch(TimePoint) {
+  if (craft_.members.empty()) return;
+  turn_ = (turn_ + 1) % craft_.members.size();
+  const Member& member = craft_.members[turn_];
+  if (!member.alive()) return;
+  const auto usage = craft_.launcher.usage(member.process());
+  if (!usage) return;
+  Seen& seen = seen_[member.apid()];
+  if (std::exchange(seen.process, member.process()) != member.process())
+    seen = {.process = member.process(), .processor = usage->processor, .at = craft_.now};
+  if (seen.ended) return;
+  if (const auto excess = excess_of(member, seen, *usage)) {
+    seen.ended = true;
+    end(member, *excess);
+  }
+}
+
+std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member& member, Seen& seen,
+                                                                    const ProcessUsage& usage) {
+  const descriptor::Amounts& most = member.descriptor().resources.most;
+  const std::pair<Resource, std::uint32_t> taken[]{{Resource::Memory, usage.memory_kb},
+                                                   {Resource::SharedMemory, usage.shared_memory_kb},
+                                                   {Resource::Threads, usage.threads}};
+  for (const auto& [resource, used] : taken)
+    if (const auto limit = amount_of(most, resource); limit && used > *limit) return Excess{resource, used, *limit};
+  const auto limit = amount_of(most, Resource::Processor);
+  const auto percent = limit ? processor_percent(seen, usage) : std::nullopt;
+  if (!percent) return std::nullopt;
+  seen.too_much = *percent > *limit ? seen.too_much + 1 : 0;
+  if (seen.too_much < windows_too_much) return std::nullopt;
+  return Excess{Resource::Processor, *percent, *limit};
+}
+
+/// Of the window that has just ended; empty while none has.
+std::optional<std::uint32_t> ResourceHandling::processor_percent(Seen& seen, const ProcessUsage& usage) const {
+  const Duration passed = craft_.now - seen.at;
+  if (passed < processor_window) return std::nullopt;
+  const Duration had = usage.processor - std::exchange(seen.processor, usage.processor);
+  seen.at = craft_.now;
+  constexpr int whole = 100;
+  return static_cast<std::uint32_t>(std::max<std::int64_t>(had * whole / passed, 0));
+}
+
+void ResourceHandling::end(const Member& member, const Excess& excess) {
+  craft_.tell(
+      fmt::format("{} has taken {} of {}, its descriptor says {} at most: it is ended", member.descriptor().name,
+                  words(excess.used, excess.resource), to_text(excess.resource), words(excess.limit, excess.resource)),
+      member.apid());
+  own_.announce("RESOURCE_EXCEEDED", {static_cast<double>(member.apid()), static_cast<double>(excess.resource),
+                                      static_cast<double>(excess.used), static_cast<double>(excess.limit)});
+  // What it moves is stopped before it is gone: its end takes the way of every death.
+  craft_.guard.fence(member.apid());
+  craft_.launcher.kill(member.process());
+}
+
+}  // namespace hirosco::supervisor

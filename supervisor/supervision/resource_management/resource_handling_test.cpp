@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/resource_management/resource_handling.hpp"
+
+#include "supervisor/supervision/testing/parts_rig.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using descriptor::Resource;
+using enum descriptor::State;
+
+/// The members say what they take in a mission that has enough.
+struct ResourceHandlingTest : PartsTest {
+  std::map<std::uint32_t, ProcessUsage> uses;  ///< by process
+  ResourceHandling& resources = parts.resources;
+  ResourceHandlingTest() {
+    for (auto& member : craft.mission.subsystems) says(member, Resource::Memory, 30'000);
+    says(craft.mission.subsystems[0], Resource::Threads, 4);
+    says(craft.mission.subsystems[0], Resource::Processor, 40);
+  }
+  static void says(descriptor::MissionSubsystem& member, Resource resource, std::uint32_t amount) {
+    member.subsystem.resources.most[static_cast<std::size_t>(resource)] = amount;
+  }
+  std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override {
+    const auto found = uses.find(process);
+    return found != uses.end() ? std::optional{found->second} : std::nullopt;
+  }
+  void look() {
+    for (std::size_t i = 0; i < craft.members.size(); ++i) resources.watch(clock.now());
+  }
+  ProcessUsage& use_of(std::uint16_t apid) { return uses[craft.member(apid)->process()]; }
+};
+
+TEST_F(ResourceHandlingTest, WhatEachSaysIsReservedFromItsStartToItsEnd) {
+  start_all(PreOperational);
+  EXPECT_EQ(resources.book(Resource::Memory).reserved(), 90'000U);
+  EXPECT_EQ(resources.book(Resource::Threads).reserved(), 4U);
+  ends[played[arm].process] = {.by_signal = true, .value = 9};
+  parts.processes.watch(clock.now());
+  EXPECT_EQ(resources.book(Resource::Memory).reserved(), 60'000U);
+  EXPECT_EQ(resources.book(Resource::Threads).reserved(), 0U);
+}
+
+TEST_F(ResourceHandlingTest, WhoDoesNotFitBesideTheOthersIsNotStartedAndTheReasonIsTold) {
+  ResourceHandling scarce{[this]() -> Craft& {
+                            craft.mission.budget[static_cast<std::size_t>(Resource::Memory)] = 50'000;
+                            return craft;
+                          }(),
+                          parts.own};
+  EXPECT_FALSE(scarce.claim(*craft.member(arm)));
+  EXPECT_EQ(scarce.claim(*craft.member(hand)), "memory short: it asks for 30000 kB, 30000 kB of 50000 kB are reserved");
+  EXPECT_EQ(scarce.book(Resource::Memory).held(hand), 0U);
+  scarce.release(arm);
+  EXPECT_FALSE(scarce.claim(*craft.member(hand)));
+}
+
+TEST_F(ResourceHandlingTest, WhoTakesMoreThanItSaysIsFencedEndedAndNamedOnce) {
+  start_all(Operational);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  use_of(arm) = {.memory_kb = 30'000, .threads = 4};
+  look();
+  EXPECT_TRUE(killed.empty()) << "to the last of them";
+  use_of(arm).threads = 5;
+  look();
+  look();
+  EXPECT_THAT(killed, ::testing::ElementsAre(played[arm].process));
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_TRUE(was_told("ARM has taken 5 of threads, its descriptor says 4 at most: it is ended"));
+}
+
+TEST_F(ResourceHandlingTest, ProcessorTimeIsARunawaysWhenItIsTooMuchForThreeSeconds) {
+  start_all(Operational);
+  for (const int percent : {90, 90, 30, 90, 90}) {
+    look();
+    use_of(arm).processor += 10ms * percent;
+    wait(1s);
+    EXPECT_TRUE(killed.empty());
+  }
+  look();
+  use_of(arm).processor += 410ms;
+  wait(1s);
+  look();
+  EXPECT_TRUE(was_told("ARM has taken 41 % of processor, its descriptor says 40 % at most: it is ended"));
+}
+
+TEST_F(ResourceHandlingTest, OfWhoSaysNothingNothingIsTooMuch) {
+  start_all(Operational);
+  use_of(hand) = {.memory_kb = 1, .shared_memory_kb = 1'000'000, .threads = 1'000};
+  look();
+  EXPECT_TRUE(killed.empty());
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
