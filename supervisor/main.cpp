@@ -28,6 +28,7 @@
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/epoch_file.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
+#include "supervisor/platform/storage/postgresql_database.hpp"
 #include "supervisor/supervisor.hpp"
 #include "supervisor/unprovoked_reactions.hpp"
 
@@ -69,8 +70,14 @@ struct Options {
   return options;
 }
 
+/// Null: the mission names no server, or PostgreSQL is not here.
 [[nodiscard]] std::unique_ptr<Database> make_store(DatabaseStrategy strategy, const std::filesystem::path& log,
                                                    const descriptor::DatabaseUse& use) {
+  if (strategy == DatabaseStrategy::Postgresql) {
+    if (use.server.empty()) return nullptr;
+    auto opened = open_postgresql({.connection = use.server, .log = log_name(log)});
+    return opened ? std::move(*opened) : nullptr;
+  }
   constexpr std::uint64_t mega = 1'000'000;
   return std::make_unique<LogStore>(strategy, log,
                                     LogLimits{.rotate_octets = use.rotate_mb * mega,
@@ -154,11 +161,16 @@ int serve(const descriptor::Mission& mission, const Options& options) {
                std::strerror(static_cast<int>(why.value)));
     return exit_environment;
   }
+  auto store = make_store(strategy, log_path, mission.database);
+  if (!store) {
+    fmt::print(stderr, "hirosco: no flight without a log: libpq.so.5 is not installed (libpq5)\n");
+    return exit_environment;
+  }
   Console console{mission, options.style};
   UnprovokedReactions causes{clock, console};
   ThreadedPacketLog::Options log_options;
   log_options.on_progress = [&] { log_progress->notify(); };
-  ThreadedPacketLog log{clock, make_store(strategy, log_path, mission.database), std::move(log_options)};
+  ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};
   if (const auto why_not = begin_log(log, clock, log_start_limit)) {
     fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
     return exit_environment;

@@ -166,7 +166,7 @@ std::vector<descriptor::EnumerationText> Catalogue::texts_of(const descriptor::S
   if (supervisor && (function.name == "LINK" || function.name == "UNLINK"))
     for (const auto& link : mission_.links)
       texts.push_back({link.id, link.from + "." + link.provides + " to " + link.to});
-  if (supervisor && function.name == "SET_DATABASE") texts = {{0, "sqlite"}, {1, "ascii"}};
+  if (supervisor && function.name == "SET_DATABASE") texts = {{0, "sqlite"}, {1, "ascii"}, {2, "postgresql"}};
   return texts;
 }
 

@@ -4,6 +4,7 @@
 
 #include "hirosco/pus/words/describe.hpp"
 #include "supervisor/platform/storage/log_pieces.hpp"
+#include "supervisor/platform/storage/postgresql_database.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 
@@ -20,6 +21,17 @@ int log(const LogOptions& options) {
              !find_mission(name).empty()) {
     mission = load_mission(name);
   }
+  // What the log has in a server; a server that it never was in has no table.
+  std::unique_ptr<supervisor::Database> server;
+  if (mission && !mission->database.server.empty()) {
+    auto opened = supervisor::open_postgresql(
+        {.connection = mission->database.server, .log = supervisor::log_name(path)}, supervisor::DatabaseAccess::Read);
+    const auto seen = opened ? (*opened)->read({.last = 1}) : fail(opened.error());
+    if (seen) server = std::move(*opened);
+    else if (seen.error().code != ErrorCode::NotFound)
+      fmt::print(stderr, "hirosco log: what stands in the server is left out: {}\n", seen.error().text);
+  }
+  const std::vector<supervisor::Database*> beside(server ? 1 : 0, server.get());
   const auto describer = mission ? std::optional<pus::PacketDescriber>{*mission} : std::nullopt;
   const auto text_of = [&](const supervisor::LogRecord& record) {
     if (!describer || record.packet.empty()) return supervisor::describe(record);
@@ -31,7 +43,8 @@ int log(const LogOptions& options) {
   // What is searched is what is shown.
   const auto page = supervisor::read_log(
       path,
-      {.apid = options.apid, .service = options.service, .text = options.text, .words = text_of, .last = options.last});
+      {.apid = options.apid, .service = options.service, .text = options.text, .words = text_of, .last = options.last},
+      beside);
   if (!page) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
     return exit_environment;

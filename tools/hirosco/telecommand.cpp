@@ -12,6 +12,7 @@
 #include "hirosco/pus/requests.hpp"
 #include "hirosco/pus/words/describe.hpp"
 #include "hirosco/utilities/lower_case.hpp"
+#include "supervisor/platform/storage/database.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
@@ -34,7 +35,8 @@ namespace {
     for (const auto& mode : mission.modes)
       if (lower_case(mode.name) == wanted) return mode.id;
   if (function == "SET_DATABASE")
-    return wanted == "sqlite" ? std::optional{Number{0}} : wanted == "ascii" ? std::optional{Number{1}} : std::nullopt;
+    for (const int number : {0, 1, 2})
+      if (to_text(static_cast<supervisor::DatabaseStrategy>(number)) == wanted) return Number{number};
   if (wanted == "on") return 1;
   if (wanted == "off") return 0;
   return std::nullopt;

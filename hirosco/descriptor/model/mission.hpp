@@ -148,7 +148,8 @@ struct GroundAddresses {
 };
 
 struct DatabaseUse {
-  std::string strategy{"sqlite"};  ///< sqlite | ascii
+  std::string strategy{"sqlite"};  ///< sqlite | ascii | postgresql
+  std::string server{};  ///< of postgresql, as libpq takes it, without a password; empty = none
   std::filesystem::path path;  ///< relative to the working directory
   /// When the log goes on in another file, and how much stays; 0 = never, all of it.
   std::uint32_t rotate_mb{0};

@@ -165,6 +165,8 @@ constexpr Mistake mistakes[] = {
     {"E0111", R"(path="log/orbiter.db")", R"(path="log/orbiter.db" rotate_h="@day")"},
     {"E0342", R"(path="log/orbiter.db")", R"(path="log/orbiter.db" keep_MB="@100")", "rotate_MB"},
     {"E0342", R"(path="log/orbiter.db")", R"(path="log/orbiter.db" rotate_MB="51" keep_MB="@100")", "at most half"},
+    {"E0346", R"(path="log/orbiter.db")", R"(server="@host=db.example.org password=x" path="log/orbiter.db")", "passfile"},
+    {"E0346", R"(path="log/orbiter.db")", R"(server="@postgresql://me:secret@db.example.org/log" path="log/orbiter.db")"},
     {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@/etc/passwd")"},
     {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@../../../flywheel.xml")"},
     {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@@hirosco/../flywheel.xml")"},

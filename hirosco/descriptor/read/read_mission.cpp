@@ -9,11 +9,24 @@
 #include "hirosco/descriptor/model/status_rows.hpp"
 #include "hirosco/descriptor/read/detail/mission_reader.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+#include "hirosco/utilities/lower_case.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::descriptor {
 namespace detail {
 namespace {
+
+constexpr const char* without_postgresql = "install libpq-dev and configure anew, or take sqlite or ascii";
+
+/// Where a secret may stand, which has no place in a file that is shown, checked in and printed.
+[[nodiscard]] bool has_password(std::string_view connection) {
+  const std::string text = lower_case(std::string{connection});
+  const auto user = text.find("://");
+  const auto host = user == std::string::npos ? user : text.find('@', user);
+  const bool in_address =
+      host != std::string::npos && text.substr(user + 3, host - user - 3).find(':') != std::string::npos;
+  return in_address || text.find("password") != std::string::npos;
+}
 
 constexpr std::uint16_t supervisor_id = 1;
 /// A mission stands in missions/NAME/, what it may name in the tree two folders above.
@@ -120,14 +133,31 @@ void MissionReader::read_supervisor(const xml::Element& element) {
               {"Ground", [](const xml::Element&) {}, 1}});
 }
 
+void MissionReader::read_log_server(Attributes& attributes) {
+  const auto* server = attributes.optional("server");
+  if (server == nullptr && mission_.database.strategy == "postgresql" && HIROSCO_POSTGRESQL)
+    problems_.add(attributes.element(), "E0105", "a log in a server needs attribute 'server'",
+                  "as libpq takes it: server=\"service=hirosco\" or \"host=/run/postgresql dbname=hirosco\"");
+  if (server == nullptr) return;
+  mission_.database.server = server->value;
+  if (!HIROSCO_POSTGRESQL) problems_.not_built_in(*server, without_postgresql);
+  if (server->value.empty()) problems_.add(*server, "E0109", "attribute 'server' is empty");
+  if (has_password(server->value))
+    problems_.add(*server, "E0346", "a password has no place in a mission",
+                  "libpq finds it in a passfile, a service file or the environment");
+}
+
 void MissionReader::read_database(const xml::Element& element) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   if (const auto* strategy = attributes.optional("strategy"); strategy != nullptr) {
     mission_.database.strategy = strategy->value;
-    if (strategy->value != "sqlite" && strategy->value != "ascii")
-      attributes.unknown_word(*strategy, strategy->value, {"sqlite", "ascii"});
+    if (strategy->value == "postgresql" && !HIROSCO_POSTGRESQL)
+      problems_.not_built_in(*strategy, strategy->value, without_postgresql);
+    else if (strategy->value != "sqlite" && strategy->value != "ascii" && strategy->value != "postgresql")
+      attributes.unknown_word(*strategy, strategy->value, {"sqlite", "ascii", "postgresql"});
   }
+  read_log_server(attributes);
   mission_.database.rotate_mb = attributes.integer_or<std::uint32_t>("rotate_MB", 1, 1'000'000, 0);
   mission_.database.rotate_h = attributes.integer_or<std::uint32_t>("rotate_h", 1, 100'000, 0);
   mission_.database.keep_mb = attributes.integer_or<std::uint32_t>("keep_MB", 2, 100'000'000, 0);

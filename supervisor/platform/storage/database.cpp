@@ -159,9 +159,10 @@ Result<std::unique_ptr<Database>> open_database(DatabaseStrategy strategy, const
   switch (strategy) {
     case DatabaseStrategy::Sqlite: return SqliteDatabase::open(path, access);
     case DatabaseStrategy::Ascii: return AsciiDatabase::open(path, access);
+    case DatabaseStrategy::Postgresql: break;
     case DatabaseStrategy::Memory: return std::make_unique<MemoryDatabase>();
   }
-  return fail(ErrorCode::InvalidArgument, "no such database strategy", std::to_underlying(strategy));
+  return fail(ErrorCode::InvalidArgument, "no such database strategy for a path", std::to_underlying(strategy));
 }
 
 }  // namespace hirosco::supervisor

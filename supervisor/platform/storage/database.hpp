@@ -110,6 +110,7 @@ enum class StoreFault : std::uint8_t {
   Unwritable,  ///< owner, rights, a read-only disk
   Damaged,  ///< an error after which nobody knows what the file holds; a new segment was begun
   Locked,  ///< another program holds it
+  Unreachable,  ///< a server that does not answer, or not now
 };
 /// The newest trouble of a store that heals by itself.
 struct StoreTrouble {
@@ -143,7 +144,7 @@ class Database {
   /// go to another database. May block.
   [[nodiscard]] Result<> append(std::span<const LogRecord> batch);
   [[nodiscard]] Result<LogPage> read(const LogQuery& query) { return do_read(query); }
-  /// `sqlite`, `ascii`, `memory`.
+  /// `sqlite`, `ascii`, `postgresql`, `memory`.
   [[nodiscard]] std::string_view strategy() const noexcept { return do_strategy(); }
   /// Of a store that heals by itself (`LogStore`); others have none.
   [[nodiscard]] StoreTrouble trouble() const { return do_trouble(); }
@@ -171,12 +172,14 @@ class MemoryDatabase final : public Database {
   std::vector<LogRecord> records_;
 };
 
-enum class DatabaseStrategy : std::uint8_t { Sqlite, Ascii, Memory };
+/// The first three in the numbers of SET_DATABASE.
+enum class DatabaseStrategy : std::uint8_t { Sqlite, Ascii, Postgresql, Memory };
 enum class DatabaseAccess : std::uint8_t { Write, Read };  ///< Read never creates or changes the store
 
 /// Opens another database while a flight goes on (SET_DATABASE); null when it cannot.
 using DatabaseOpener = std::function<std::unique_ptr<Database>(DatabaseStrategy)>;
 
+/// What needs no more than a path (PostgreSQL: `open_postgresql`, InvalidArgument here).
 /// NotFound: nothing to read there; Mismatch: another program's file or a later version; SystemFailure: errno.
 [[nodiscard]] Result<std::unique_ptr<Database>> open_database(DatabaseStrategy strategy,
                                                               const std::filesystem::path& path,
@@ -202,7 +205,7 @@ struct EnumTexts<supervisor::LogKind> {
 template <>
 struct EnumTexts<supervisor::DatabaseStrategy> {
   using enum supervisor::DatabaseStrategy;
-  static constexpr auto table =
-      enum_table<supervisor::DatabaseStrategy>({{Sqlite, "sqlite"}, {Ascii, "ascii"}, {Memory, "memory"}});
+  static constexpr auto table = enum_table<supervisor::DatabaseStrategy>(
+      {{Sqlite, "sqlite"}, {Ascii, "ascii"}, {Postgresql, "postgresql"}, {Memory, "memory"}});
 };
 }  // namespace hirosco

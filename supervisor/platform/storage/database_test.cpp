@@ -13,7 +13,10 @@
 #include <random>
 
 #include "supervisor/platform/storage/ascii_database.hpp"
+#include "supervisor/platform/storage/log_pieces.hpp"
+#include "supervisor/platform/storage/postgresql_database.hpp"
 #include "supervisor/platform/storage/sqlite_database.hpp"
+#include "supervisor/platform/storage/testing/postgresql_server.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
@@ -52,8 +55,20 @@ std::vector<std::uint64_t> numbers(const LogPage& page) {
 /// What every strategy must do alike.
 class Databases : public testing::TestWithParam<DatabaseStrategy> {
  protected:
+  void SetUp() override {
+    if (GetParam() != DatabaseStrategy::Postgresql) return;
+    if (const auto opened = open_postgresql({}); !opened) GTEST_SKIP() << opened.error().text;
+    if (!PostgresqlServer::installed()) GTEST_SKIP() << "no PostgreSQL server is installed here";
+    std::string why_not;
+    server_ = PostgresqlServer::shared(why_not);
+    ASSERT_NE(server_, nullptr) << why_not;
+  }
+  Result<std::unique_ptr<Database>> try_to_open(DatabaseAccess access) {
+    if (server_ == nullptr) return open_database(GetParam(), path(), access);
+    return open_postgresql({.connection = server_->connection(), .log = log_name(path())}, access);
+  }
   std::unique_ptr<Database> open(DatabaseAccess access = DatabaseAccess::Write) {
-    auto database = open_database(GetParam(), path(), access);
+    auto database = try_to_open(access);
     EXPECT_TRUE(database) << (database ? "" : database.error().text);
     return std::move(*database);
   }
@@ -61,6 +76,7 @@ class Databases : public testing::TestWithParam<DatabaseStrategy> {
 
  private:
   TestFolder folder_;
+  PostgresqlServer* server_{nullptr};
 };
 
 /// What every strategy must do that outlives its process.
@@ -79,6 +95,13 @@ TEST_P(Databases, GiveBackExactlyWhatWasStored) {
   ASSERT_TRUE(page);
   EXPECT_TRUE(page->records == batch);
   EXPECT_EQ(page->damaged, 0U);
+}
+
+TEST_P(Databases, AnswerTheOldestRecordsWhereTheseAreAskedFor) {
+  auto database = open();
+  ASSERT_TRUE(database->append(std::vector{record(1), record(2), record(3), record(4)}));
+  EXPECT_THAT(numbers(*database->read({.last = 2, .end = LogEnd::Oldest})), ElementsAre(1, 2));
+  EXPECT_THAT(numbers(*database->read({.since = 3, .last = 5, .end = LogEnd::Oldest})), ElementsAre(3, 4));
 }
 
 TEST_P(DatabasesOnDisk, KeepRecordsBeyondTheirOwnLife) {
@@ -157,7 +180,8 @@ TEST_P(DatabasesOnDisk, ReportAFolderThatDoesNotExist) {
 
 const auto strategy_name = [](const auto& strategy) { return std::string{to_text(strategy.param)}; };
 INSTANTIATE_TEST_SUITE_P(Strategies, Databases,
-                         testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii, DatabaseStrategy::Memory),
+                         testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii, DatabaseStrategy::Memory,
+                                         DatabaseStrategy::Postgresql),
                          strategy_name);
 INSTANTIATE_TEST_SUITE_P(Strategies, DatabasesOnDisk,
                          testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii), strategy_name);

@@ -70,6 +70,11 @@ std::vector<LogPiece> pieces_of(const fs::path& log) {
   return pieces;
 }
 
+std::string log_name(const fs::path& log) {
+  std::error_code failed;
+  return fs::absolute(log, failed).lexically_normal().replace_extension().string();
+}
+
 std::uint64_t piece_octets(const fs::path& piece) {
   std::uint64_t octets = 0;
   for (const char* suffix : {"", "-wal"}) {

@@ -25,6 +25,8 @@ struct LogPiece {
 [[nodiscard]] std::filesystem::path piece_path(const std::filesystem::path& log, DatabaseStrategy strategy, int number);
 /// The pieces that exist, the oldest first.
 [[nodiscard]] std::vector<LogPiece> pieces_of(const std::filesystem::path& log);
+/// What the log is called where it is in no file: its absolute path, without what follows the last dot.
+[[nodiscard]] std::string log_name(const std::filesystem::path& log);
 /// Octets on the disk, with what SQLite keeps beside it.
 [[nodiscard]] std::uint64_t piece_octets(const std::filesystem::path& piece);
 /// The piece is gone at once; what SQLite keeps beside it follows.

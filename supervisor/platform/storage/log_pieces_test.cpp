@@ -19,7 +19,6 @@ namespace hirosco::supervisor {
 namespace {
 
 namespace fs = std::filesystem;
-using enum DatabaseStrategy;
 using testing::ElementsAre;
 
 class LogPieces : public testing::TestWithParam<DatabaseStrategy> {
@@ -96,7 +95,8 @@ TEST_P(LogPieces, AreNeverMoreThanDeclaredAndWhatWasRemovedIsCounted) {
 }
 
 TEST_P(LogPieces, OfAnotherStrategyAreNotGoneOnIn) {
-  const DatabaseStrategy other = GetParam() == Sqlite ? Ascii : Sqlite;
+  const DatabaseStrategy other =
+      GetParam() == DatabaseStrategy::Sqlite ? DatabaseStrategy::Ascii : DatabaseStrategy::Sqlite;
   ASSERT_TRUE((LogStore{GetParam(), log()}.append(batch_of(1, 4))));
   ASSERT_TRUE((LogStore{other, log()}.append(batch_of(5, 6))));
   ASSERT_TRUE((LogStore{GetParam(), log()}.append(batch_of(7, 9))));
@@ -154,7 +154,7 @@ TEST_P(LogPieces, ThatSomebodyEmptiesAreNoticedAndCounted) {
   LogStore store{GetParam(), log()};
   ASSERT_TRUE(store.append(batch_of(1, 100)));
   fs::resize_file(piece_path(log(), GetParam(), 1), 0);
-  if (GetParam() == Sqlite) fs::resize_file(piece_path(log(), GetParam(), 1) += "-wal", 0);
+  if (GetParam() == DatabaseStrategy::Sqlite) fs::resize_file(piece_path(log(), GetParam(), 1) += "-wal", 0);
   ASSERT_TRUE(store.append(batch_of(101, 110)));
   EXPECT_EQ(store.trouble().count, 1U);
   EXPECT_EQ(store.trouble().lost, 100U);
@@ -164,9 +164,9 @@ TEST_P(LogPieces, ThatSomebodyEmptiesAreNoticedAndCounted) {
 TEST(AsciiPieces, ThatSomebodyCutsKeepTheirBeginningAndTheGapIsWhatWentWithTheEnd) {
   const TestFolder folder;
   const fs::path log = folder.path() / "log.db";
-  LogStore store{Ascii, log};
+  LogStore store{DatabaseStrategy::Ascii, log};
   ASSERT_TRUE(store.append(batch_of(1, 100)));
-  const fs::path first = piece_path(log, Ascii, 1);
+  const fs::path first = piece_path(log, DatabaseStrategy::Ascii, 1);
   fs::resize_file(first, fs::file_size(first) / 2);
   ASSERT_TRUE(store.append(batch_of(101, 110)));
   const LogPage all = *read_log(log, {});
@@ -193,16 +193,16 @@ TEST_P(LogPieces, ThatGoWhileTheDiskIsFullAreAGap) {
   EXPECT_EQ(page().records.front().lost, 5U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Strategies, LogPieces, testing::Values(Sqlite, Ascii),
+INSTANTIATE_TEST_SUITE_P(Strategies, LogPieces, testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
                          [](const auto& strategy) { return std::string{to_text(strategy.param)}; });
 
 TEST(PieceNames, AreThoseOfTheLogWhicheverOfThemIsGiven) {
-  EXPECT_EQ(piece_path("log/a.db", Sqlite, 1), "log/a.db");
-  EXPECT_EQ(piece_path("log/a.db", Sqlite, 12), "log/a.12.db");
-  EXPECT_EQ(piece_path("log/a.db", Ascii, 2), "log/a.2.log");
-  EXPECT_EQ(piece_path("log/a.log", Ascii, 1), "log/a.log");
-  EXPECT_EQ(piece_path("log/a.log", Sqlite, 3), "log/a.3.db");
-  EXPECT_EQ(piece_path("a.sqlite", Sqlite, 3), "a.3.sqlite");
+  EXPECT_EQ(piece_path("log/a.db", DatabaseStrategy::Sqlite, 1), "log/a.db");
+  EXPECT_EQ(piece_path("log/a.db", DatabaseStrategy::Sqlite, 12), "log/a.12.db");
+  EXPECT_EQ(piece_path("log/a.db", DatabaseStrategy::Ascii, 2), "log/a.2.log");
+  EXPECT_EQ(piece_path("log/a.log", DatabaseStrategy::Ascii, 1), "log/a.log");
+  EXPECT_EQ(piece_path("log/a.log", DatabaseStrategy::Sqlite, 3), "log/a.3.db");
+  EXPECT_EQ(piece_path("a.sqlite", DatabaseStrategy::Sqlite, 3), "a.3.sqlite");
   const TestFolder folder;
   for (const char* name : {"a.db", "a.2.log", "a.10.db", "a.9.db", "a-ground.db", "a.x.db", "a.0.db", "a.07.db",
                            "a.1.db", "a.2.db-wal", "a.epoch", "aa.db", "a..db", "a.99999999999.db"})
@@ -217,7 +217,7 @@ TEST(PieceNames, AreThoseOfTheLogWhicheverOfThemIsGiven) {
 [[noreturn]] void write_until_killed(const fs::path& log, std::uint64_t first, int told) {
   const LogLimits small{.rotate_octets = 40 * kilo};
   for (int i = 0;; ++i) {
-    LogStore store{i % 2 == 0 ? Sqlite : Ascii, log, small};
+    LogStore store{i % 2 == 0 ? DatabaseStrategy::Sqlite : DatabaseStrategy::Ascii, log, small};
     for (int batch = 0; batch < 20; ++batch, first += 5) {
       if (!store.append(batch_of(first, first + 4, kilo))) ::_exit(1);
       const std::uint64_t last = first + 4;

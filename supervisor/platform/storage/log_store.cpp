@@ -240,6 +240,7 @@ void LogStore::heal_from(const Error& error) {
     case StoreFault::Unwritable:
       return note(fault, error, fmt::format("log {} cannot be written: see its folder, owner and rights", name));
     case StoreFault::Deleted:
+    case StoreFault::Unreachable:
     case StoreFault::Damaged: break;
   }
   leave_piece();

@@ -15,7 +15,10 @@ constexpr Duration patience = 1s;
 void LogWatch::provide() {
   own_.on_function("SET_DATABASE", [this](double strategy) -> Outcome {
     auto database = open_database_(static_cast<DatabaseStrategy>(strategy));
-    if (!database) return refused(pus::FailureCode::ExecutionError);
+    if (!database) {
+      craft_.tell("log stays where it is: the mission names no server for that, or what reaches it is not installed");
+      return refused(pus::FailureCode::ExecutionError);
+    }
     craft_.tell("log switched to " + std::string{database->strategy()});
     craft_.log.switch_to(std::move(database));
     return ok();

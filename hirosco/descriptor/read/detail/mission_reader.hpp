@@ -36,6 +36,7 @@ class MissionReader {
   // read_mission.cpp
   void read_supervisor(const xml::Element& element);
   void read_database(const xml::Element& element);
+  void read_log_server(Attributes& attributes);
   void read_ground(const xml::Element& element);
   void read_address(Attributes& attributes, std::string_view name, std::string& into);
   void read_power(const xml::Element& element);
