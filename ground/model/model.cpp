@@ -183,11 +183,12 @@ void Model::take_links(OnboardTime t, Duration since, Heard& heard) {
     if (id == 0 || found == links.end()) continue;
     LinkView& view = links_[static_cast<std::size_t>(found - links.begin())];
     const bool up = told(overview_.up, i) != 0.0;
-    const auto samples = static_cast<std::uint32_t>(told(overview_.samples, i));
+    const bool seen = told(overview_.samples, i) != not_told;
+    const auto samples = seen ? static_cast<std::uint32_t>(told(overview_.samples, i)) : 0;
     if (!view.known || view.up != up) heard.changes.push_back({t, "link", std::to_string(id), up ? "up" : "down"});
     view.rate_hz.reset();
     view.age_cycles.reset();
-    if (up && view.up && samples >= view.samples && since > Duration{0} && since < std::chrono::seconds{5})
+    if (seen && up && view.up && samples >= view.samples && since > Duration{0} && since < std::chrono::seconds{5})
       view.rate_hz = static_cast<double>(samples - view.samples) / seconds(since);
     const auto* consumer = catalogue_.find(found->to);
     const auto place = std::ranges::find(catalogue_.subsystems(), consumer) - catalogue_.subsystems().begin();
