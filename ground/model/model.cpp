@@ -183,18 +183,21 @@ void Model::take_links(OnboardTime t, Duration since, Heard& heard) {
     if (id == 0 || found == links.end()) continue;
     LinkView& view = links_[static_cast<std::size_t>(found - links.begin())];
     const bool up = told(overview_.up, i) != 0.0;
-    const auto samples = static_cast<std::uint32_t>(told(overview_.samples, i));
+    std::optional<std::uint32_t> samples;
+    if (const double number = told(overview_.samples, i); number != not_told)
+      samples = static_cast<std::uint32_t>(number);
     if (!view.known || view.up != up) heard.changes.push_back({t, "link", std::to_string(id), up ? "up" : "down"});
     view.rate_hz.reset();
     view.age_cycles.reset();
-    if (up && view.up && samples >= view.samples && since > Duration{0} && since < std::chrono::seconds{5})
-      view.rate_hz = static_cast<double>(samples - view.samples) / seconds(since);
+    const bool counted = samples && view.samples && *samples >= *view.samples;
+    if (counted && up && view.up && since > Duration{0} && since < std::chrono::seconds{5})
+      view.rate_hz = static_cast<double>(*samples - *view.samples) / seconds(since);
     const auto* consumer = catalogue_.find(found->to);
     const auto place = std::ranges::find(catalogue_.subsystems(), consumer) - catalogue_.subsystems().begin();
     const auto* configuration =
         consumer != nullptr ? consumer->find_configuration(subsystems_[static_cast<std::size_t>(place)].configuration)
                             : nullptr;
-    if (up && samples != 0 && configuration != nullptr && configuration->sampling > Duration{0})
+    if (up && samples.value_or(0) != 0 && configuration != nullptr && configuration->sampling > Duration{0})
       view.age_cycles = told(overview_.age, i) * 1e-6 / seconds(configuration->sampling);
     const auto by_consumer = [&](const auto& column) {
       const double number = told(column, i);

@@ -42,7 +42,7 @@ struct LinkView {
   bool up{false};
   std::optional<double> rate_hz;
   std::optional<double> age_cycles;  ///< in cycles of the consumer
-  std::uint32_t samples{0};
+  std::optional<std::uint32_t> samples;  ///< none: they pass nobody who could tell
   // As the consumer tells while the link is up; empty = it cannot.
   std::optional<double> lost;        ///< samples that it never saw
   std::optional<double> latency_mean_ns, latency_max_ns;  ///< from the instant of a sample to its first use

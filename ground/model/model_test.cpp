@@ -94,6 +94,7 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
     told["LINK_STATUS.LOST" + index] = row;
   }
   told["LINK_STATUS.LOST[18]"] = 0xFFFF'FFFF;  // its consumer has no room to tell
+  told["LINK_STATUS.SAMPLES[3]"] = told["LINK_STATUS.AGE[3]"] = 0xFFFF'FFFF;  // they pass nobody else
   const auto data = report_with(catalogue, told);
   std::array<std::byte, pus::max_telemetry_octets> buffer;
   constexpr OnboardTime t{std::chrono::seconds{2'145'916'900}};
@@ -112,7 +113,12 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
   for (std::size_t row = 0; row < crowd; ++row) {
     EXPECT_EQ(status["links"][row]["id"], row + 1);
     EXPECT_EQ(status["links"][row]["up"], true) << row;
-    EXPECT_EQ(status["links"][row]["samples"], 500 + row);
+    if (row == 3) {
+      EXPECT_TRUE(status["links"][row]["samples"].is_null());
+      EXPECT_TRUE(status["links"][row]["age_cycles"].is_null());
+    } else {
+      EXPECT_EQ(status["links"][row]["samples"], 500 + row);
+    }
     if (row == 18) EXPECT_TRUE(status["links"][row]["lost"].is_null());
     else EXPECT_EQ(status["links"][row]["lost"], row);
   }

@@ -74,7 +74,7 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
                      {"up", view.known ? json(view.up) : json(nullptr)},
                      {"age_cycles", number(view.age_cycles)},
                      {"rate_hz", number(view.rate_hz)},
-                     {"samples", view.known ? json(view.samples) : json(nullptr)},
+                     {"samples", view.known && view.samples ? json(*view.samples) : json(nullptr)},
                      {"lost", while_up(view.lost)},
                      {"latency_mean_ns", while_up(view.latency_mean_ns)},
                      {"latency_max_ns", while_up(view.latency_max_ns)}});

@@ -137,6 +137,8 @@ TEST_F(Table, DescribesTheHandshakeThatIsRead) {
   EXPECT_TRUE(st128::read_offer_request(data(st128::request_offer)));
   EXPECT_TRUE(st128::read_terms_request(data(st128::negotiate_terms)));
   EXPECT_TRUE(st128::read_attach_request(data(st128::attach)));
+  EXPECT_TRUE(st128::read_reach_request(data(st128::reach)));
+  EXPECT_TRUE(st128::read_attached(reported(st128::attached)));
   EXPECT_TRUE(st128::read_offer(reported(st128::offer)));
   EXPECT_TRUE(st128::read_agreement(reported(st128::agreement)));
   EXPECT_TRUE(st128::read_refusal(reported(st128::refusal)));

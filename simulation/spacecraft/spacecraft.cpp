@@ -66,7 +66,8 @@ struct Spacecraft::Member {
                        .memory = platform.memory,
                        .flows = platform.flows,
                        .realtime = platform.realtime,
-                       .explain = std::move(platform.explain)};
+                       .explain = std::move(platform.explain),
+                       .links = platform.links};
     engine.emplace(*author, what.subsystem, own, channels.subsystem_end(), *vital, *permit);
   }
 
@@ -166,8 +167,12 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
                                                   value + "': " + taken.error().text);
     devices_.push_back({&described, std::move(device)});
   }
-  const Platform platform{
-      .clock = clock_, .memory = memory_, .flows = flows_, .realtime = parts.realtime, .explain = {}};
+  const Platform platform{.clock = clock_,
+                          .memory = memory_,
+                          .flows = flows_,
+                          .realtime = parts.realtime,
+                          .explain = {},
+                          .links = local_link_mechanisms()};
   guard_.emplace(supervisor::Guard::Parts{.clock = clock_, .flows = flows_, .first_epoch = 1, .on_finding = [this] {
                                             if (supervisor_wake_ != never) supervisor_wake_ = clock_.now();
                                           }});
@@ -199,7 +204,8 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
                           .memory = memory_,
                           .flows = flows_,
                           .realtime = parts_.realtime,
-                          .explain = [this](std::string_view text) { parts_.observer.told(clock_.onboard(), text); }};
+                          .explain = [this](std::string_view text) { parts_.observer.told(clock_.onboard(), text); },
+                          .links = local_link_mechanisms()};
   const Member* before = nullptr;
   for (const auto& earlier : members_)
     if (earlier->described->subsystem.id == described.subsystem.id) before = earlier.get();

@@ -10,7 +10,7 @@ STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOper
 SAFE, OPERATIONAL = 4, 5
 ALWAYS, NEVER = set(range(10)), set()
 # Requests of the framework's services that anybody may be sent.
-SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4}, 129: {1, 4}}
+SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4}}
 
 
 def words(element, name):

@@ -14,6 +14,7 @@ LONGEST_INPUT = 400
 MOST_RUNS_OF_A_PLANT = 2_000_000
 ARGUMENTS = "hirosco/pus/service/arguments.cpp"
 FRAMES = "hirosco/data_transfer/control/stream_frame.cpp"
+DATAGRAMS = "hirosco/data_transfer/link/link_datagram.cpp"
 DICTIONARY = "hirosco/parameter/dictionary.cpp"
 PARAMETERS = "hirosco/pus/st20_parameter/parameter_service.cpp"
 # The files of a target, and its plants: what stands in a file, and what does in its place.
@@ -48,7 +49,21 @@ TARGETS = {"arguments": (
          (FRAMES, "if (received.size() < whole)", "if (received.size() + 1 < whole)"),
      "there is a fourth kind of frame":
          (FRAMES, "kind > static_cast<std::uint8_t>(StreamFrameKind::Permit)",
-          "kind > static_cast<std::uint8_t>(StreamFrameKind::Permit) + 1")})}
+          "kind > static_cast<std::uint8_t>(StreamFrameKind::Permit) + 1")}),
+    "link_datagram": (
+    [DATAGRAMS],
+    {"the check sum is not looked at":
+         (DATAGRAMS, " || crc16(received) != 0)", ")"),
+     "a datagram may be longer than it says":
+         (DATAGRAMS, "payload.size() != said.payload_octets", "payload.size() < said.payload_octets"),
+     "a datagram is taken twice":
+         (DATAGRAMS, "head.sequence <= last_.sequence", "head.sequence < last_.sequence"),
+     "an earlier sample replaces a later one":
+         (DATAGRAMS, " || head.count < last_.count)", ")"),
+     "a status that no producer has is handed on":
+         (DATAGRAMS, "status > worst", "status > worst + 1"),
+     "what another handshake agreed on is taken":
+         (DATAGRAMS, "if (said != agreed_)", "if (said.link != agreed_.link)")})}
 
 
 def compiler():

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <iostream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -61,6 +63,30 @@ TEST(Determinism, OneMinuteGivesTheSameLogTwiceAndAnotherWithAnotherSeed) {
   const auto robot = robot_housekeeping(first.records);
   ASSERT_FALSE(robot.empty());
   EXPECT_NE(robot, robot_housekeeping(other.records)) << "another seed moves the hand in another way";
+}
+
+/// The addresses are of nobody's (RFC 5737): on virtual time no socket is opened.
+TEST(Determinism, LinksByUdpCarryInAWorldOfOneProcessWhatMemoryCarries) {
+  const auto robot = [](const std::function<void(descriptor::Mission&)>& edit) {
+    Flight flight{{.edit = edit}};
+    flight.craft().run(5s);
+    EXPECT_TRUE(flight.craft().supervisor().commissioned());
+    return std::pair{robot_housekeeping(flight.records()), flight.story().count("up: udp, ")};
+  };
+  const auto by_udp = [](descriptor::Mission& mission) {
+    for (descriptor::MissionLink& link : mission.links) {
+      if (link.id > 2) continue;
+      link.method = LinkMethod::Udp;
+      link.from_address = "192.0.2.1";
+      link.to_address = "192.0.2.2:4000";
+    }
+  };
+  const auto memory = robot({}), udp = robot(by_udp), again = robot(by_udp);
+  EXPECT_EQ(memory.second, 0u);
+  EXPECT_EQ(udp.second, 2u);
+  ASSERT_FALSE(udp.first.empty());
+  EXPECT_EQ(udp.first, again.first);
+  EXPECT_EQ(udp.first, memory.first);
 }
 
 }  // namespace

@@ -230,7 +230,8 @@ class LatestView final : public LinkView {
 }  // namespace
 
 Result<MemoryHandle> LatestLink::establish(MemoryProvider& provider, const LinkLayout& layout) const {
-  if (!plausible(layout)) return fail(ErrorCode::Mismatch, "link payload size", layout.payload_octets);
+  if (!plausible(layout) || layout.payload_octets > max_payload_)
+    return fail(ErrorCode::Mismatch, "link payload size", layout.payload_octets);
   return provider.create("hirosco-link", link_memory_octets(layout.payload_octets));
 }
 

@@ -82,11 +82,16 @@ class LatestReader final : public LinkReader {
   Mapping mapping_;
 };
 
-/// The newest value in shared memory: one writer, any number of readers.
+/// The newest value in shared memory: one writer, any number of readers. In a simulated craft it stands in for other methods,
+/// with the size of sample that they carry.
 class LatestLink final : public LinkMechanism {
  public:
-  [[nodiscard]] LinkMethod method() const noexcept override { return LinkMethod::SharedMemory; }
+  explicit LatestLink(LinkMethod method = LinkMethod::SharedMemory,
+                      std::uint32_t max_payload = max_link_payload_octets) noexcept
+      : method_{method}, max_payload_{max_payload} {}
+  [[nodiscard]] LinkMethod method() const noexcept override { return method_; }
   [[nodiscard]] LinkKind kind() const noexcept override { return LinkKind::Latest; }
+  [[nodiscard]] std::uint32_t max_payload() const noexcept override { return max_payload_; }
   [[nodiscard]] Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const override;
   [[nodiscard]] Result<std::unique_ptr<LinkWriter>> produce(MemoryProvider& provider, const MemoryHandle& shared,
                                                             const LinkLayout& layout) const override;
@@ -94,6 +99,10 @@ class LatestLink final : public LinkMechanism {
                                                             const LinkLayout& layout) const override;
   [[nodiscard]] Result<std::unique_ptr<LinkView>> look(MemoryProvider& provider,
                                                        const MemoryHandle& shared) const override;
+
+ private:
+  LinkMethod method_;
+  std::uint32_t max_payload_;
 };
 
 }  // namespace hirosco

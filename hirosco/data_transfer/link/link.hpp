@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/utilities/enum_text.hpp"
@@ -49,6 +50,15 @@ inline constexpr std::uint32_t max_queue_octets = 64U << 20;
 /// fault into something to rely on (hazard SF19).
 enum class LinkStatus : std::uint32_t { None = 0, Valid = 1, Degraded = 2, Stopping = 3, Fault = 4 };
 
+/// Where the ends of a link are that is not memory, each in the words of its method; of a link in memory nothing. An address
+/// without a port is where an end is to stand, with one where it does.
+struct LinkRoute {
+  std::uint8_t link{0};  ///< in the mission
+  std::string producer{}, consumer{};  ///< addresses, empty = not known yet
+  std::uint64_t key{0};  ///< drawn by the producer: what an earlier one sent, or another's, is not taken for its own
+  friend bool operator==(const LinkRoute&, const LinkRoute&) = default;
+};
+
 /// What both sides agreed on and find again at the other end.
 struct LinkLayout {
   std::uint32_t epoch{};  ///< of the handshake that made this link
@@ -56,6 +66,7 @@ struct LinkLayout {
   std::uint64_t layout_hash{};  ///< of the agreed fields, byte order and kind
   Duration period{};  ///< of the producer
   std::uint32_t depth{0};  ///< of kind Queued: samples kept, min_link_depth .. max_link_depth; of others 0
+  LinkRoute route{};  ///< of a link that is not memory
 };
 
 /// What a read found. `flow` None: never a sample yet. Old: the same sample as last time, or none could be had whole and
@@ -84,6 +95,13 @@ class LinkWriter {
   virtual void write(Octets payload, TimePoint sampled_at, LinkStatus status) noexcept = 0;
   /// Changes the status without a new sample (stopping, fault).
   virtual void set_status(LinkStatus status) noexcept = 0;
+  /// What a consumer has to know to hear this end; of a link in memory nothing.  Realtime: allocates. Thread: any.
+  [[nodiscard]] virtual LinkRoute route() const { return {}; }
+  /// From now on samples go to where a consumer stands (its route()'s `consumer`). Mismatch: they do not fit the way to it.
+  /// Realtime: system calls. Thread: any one, beside write().
+  [[nodiscard]] virtual Result<> reach(const std::string&) {
+    return fail(ErrorCode::NotPermitted, "who is joined by memory is reached already");
+  }
 };
 
 /// A consumer's end. Keeps the last whole sample itself, so that no producer can take it away. What is next depends on the
@@ -96,6 +114,8 @@ class LinkReader {
   /// Copies the next sample into `payload` (agreed size, invariant), never a torn one, none twice and none after a later
   /// one; on Old the last one again, on None nothing.
   virtual LinkSample read(MutableOctets payload) noexcept = 0;
+  /// What the producer has to know to reach this end; of a link in memory nothing.  Realtime: allocates. Thread: any.
+  [[nodiscard]] virtual LinkRoute route() const { return {}; }
 };
 
 /// The producer's end of a link that lends: a sample is made where its consumers look at it, and nothing is copied.
@@ -142,6 +162,11 @@ class LinkMechanism {
   virtual ~LinkMechanism() = default;
   [[nodiscard]] virtual LinkMethod method() const noexcept = 0;
   [[nodiscard]] virtual LinkKind kind() const noexcept = 0;
+  /// Both ends and the supervisor share memory. False: they share addresses (LinkRoute), there is nothing to hand over and
+  /// nothing to look at, and the producer is told afterwards where its consumer is.
+  [[nodiscard]] virtual bool in_memory() const noexcept { return true; }
+  /// Octets of one sample, at most.
+  [[nodiscard]] virtual std::uint32_t max_payload() const noexcept { return max_payload_octets(kind()); }
   /// Mismatch: the layout is impossible.
   [[nodiscard]] virtual Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const = 0;
   /// From now on nobody else can become the producer. Mismatch: what was handed over is not what such a link needs.
@@ -169,6 +194,9 @@ class LinkMechanism {
 using LinkMechanisms = std::span<const LinkMechanism* const>;
 /// Those that are built in, one row each in `mechanisms.cpp`.
 [[nodiscard]] LinkMechanisms standard_link_mechanisms() noexcept;
+/// Of the same methods and kinds, for a craft in one process on virtual time: in memory, whatever their method, so that
+/// nothing depends on the host's network.
+[[nodiscard]] LinkMechanisms local_link_mechanisms() noexcept;
 /// Null: there is none for this method and kind.
 [[nodiscard]] const LinkMechanism* find_link_mechanism(LinkMechanisms mechanisms, LinkMethod method,
                                                        LinkKind kind) noexcept;

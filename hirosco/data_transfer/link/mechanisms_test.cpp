@@ -20,6 +20,10 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, LinkConformance,
                          ::testing::ValuesIn(standard_link_mechanisms().begin(), standard_link_mechanisms().end()),
                          mechanism_name);
 
+INSTANTIATE_TEST_SUITE_P(Local, LinkConformance,
+                         ::testing::ValuesIn(local_link_mechanisms().begin(), local_link_mechanisms().end()),
+                         mechanism_name);
+
 std::vector<const LinkMechanism*> mechanisms_of(LinkKind kind) {
   std::vector<const LinkMechanism*> found;
   std::ranges::copy_if(standard_link_mechanisms(), std::back_inserter(found),
@@ -36,6 +40,12 @@ TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
   for (const LinkMechanism* mechanism : standard_link_mechanisms())
     EXPECT_EQ(find_link_mechanism(standard_link_mechanisms(), mechanism->method(), mechanism->kind()), mechanism);
   EXPECT_EQ(find_link_mechanism(standard_link_mechanisms(), LinkMethod::Tipc, LinkKind::Latest), nullptr);
+  for (const LinkMechanism* mechanism : standard_link_mechanisms()) {
+    const auto* twin = find_link_mechanism(local_link_mechanisms(), mechanism->method(), mechanism->kind());
+    ASSERT_NE(twin, nullptr) << "a simulated craft carries what a real one does";
+    EXPECT_TRUE(twin->in_memory());
+    EXPECT_EQ(twin->max_payload(), mechanism->max_payload());
+  }
   EXPECT_EQ(find_link_mechanism({}, LinkMethod::SharedMemory, LinkKind::Latest), nullptr);
 }
 

@@ -78,6 +78,8 @@ struct MissionLink {
   std::uint8_t id{};
   std::string from, provides;  ///< producing subsystem and its set
   std::string to, requires_;  ///< consuming subsystem and its set
+  std::optional<LinkMethod> method{};  ///< none: the first that both ends have, in the producer's order
+  std::string from_address{}, to_address{};  ///< of its ends, method Udp; empty: in this computer, at any port
   Location at;
   OnLoss on_loss{OnLoss::Down};
   Duration hold{};  ///< Hold: for how long

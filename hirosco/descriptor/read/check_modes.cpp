@@ -33,7 +33,8 @@ std::string describe(const Field& field) {
 
 }  // namespace
 
-std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_) {
+std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_,
+                     std::optional<LinkMethod> method) {
   std::vector<Field> offered;
   for (const ParameterRef& reference : provides.parameters)
     std::ranges::move(fields_of(producer, reference), std::back_inserter(offered));
@@ -50,9 +51,20 @@ std::string mismatch(const Subsystem& producer, const Provides& provides, const 
   if (!share(provides.terms.methods, requires_.terms.methods)) return "no common method";
   if (!share(provides.terms.byte_orders, requires_.terms.byte_orders)) return "no common byte order";
   if (!share(provides.terms.kinds, requires_.terms.kinds)) return "no common kind";
-  if (requires_.depth == 0) return {};
   std::size_t octets = 0;
   for (const Field& field : offered) octets += field.octets();
+  if (method) {
+    const bool known = std::ranges::find(provides.terms.methods, *method) != provides.terms.methods.end() &&
+                       std::ranges::find(requires_.terms.methods, *method) != requires_.terms.methods.end();
+    if (!known) return fmt::format("not both ends have method '{}'", to_text(*method));
+    const LinkMechanism* mechanism = find_link_mechanism(standard_link_mechanisms(), *method, requires_.kind());
+    if (mechanism == nullptr)
+      return fmt::format("'{}' does not carry '{}'", to_text(*method), to_text(requires_.kind()));
+    if (octets > mechanism->max_payload())
+      return fmt::format("a sample of {} octets is more than the {} of '{}'", octets, mechanism->max_payload(),
+                         to_text(*method));
+  }
+  if (requires_.depth == 0) return {};
   if (octets * requires_.depth > max_queue_octets)
     return fmt::format("{} samples of {} octets are more than {}", requires_.depth, octets, max_queue_octets);
   return {};
@@ -130,7 +142,7 @@ std::string MissionReader::refuse_link(const Mode& mode, const MissionLink& link
                        link.requires_);
   if (!required->from.empty() && required->from != link.from)
     return fmt::format("'{}' is required from '{}'", required->name, required->from);
-  return mismatch(*producer.subsystem, *provided, *required);
+  return mismatch(*producer.subsystem, *provided, *required, link.method);
 }
 
 void MissionReader::check_established(const xml::Element& element, const Mode& mode) {

@@ -439,7 +439,8 @@ TEST(MissionErrors, ALentSetHasTheSameFieldsInTheSameOrderAtBothEnds) {
     const auto reading = testing::read_text(text + "</RealTimeLinkService></Configuration></Subsystem>");
     if (!reading.value) return rendered(reading.problems, file_system());
     const Configuration& configuration = reading.value->configurations.front();
-    return detail::mismatch(*reading.value, configuration.provides.front(), configuration.requires_.front());
+    return detail::mismatch(*reading.value, configuration.provides.front(), configuration.requires_.front(),
+                            std::nullopt);
   };
   const std::string both = std::string{a} + std::string{b}, reverse = std::string{b} + std::string{a};
   EXPECT_EQ(why(both, both), "");
@@ -461,7 +462,8 @@ TEST(MissionErrors, AQueueOfAllThatIsProvidedFitsItsMemory) {
     const auto reading = testing::read_text(text + "</RealTimeLinkService></Configuration></Subsystem>");
     if (!reading.value) return rendered(reading.problems, file_system());
     const Configuration& configuration = reading.value->configurations.front();
-    return detail::mismatch(*reading.value, configuration.provides.front(), configuration.requires_.front());
+    return detail::mismatch(*reading.value, configuration.provides.front(), configuration.requires_.front(),
+                            std::nullopt);
   };
   EXPECT_EQ(why("1024"), "");
   EXPECT_EQ(why("1025"), "1025 samples of 65536 octets are more than 67108864");

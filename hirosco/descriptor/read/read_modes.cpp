@@ -36,6 +36,7 @@ void MissionReader::read_link(const xml::Element& element) {
   const std::size_t before = problems_.count();
   const Subsystem* producer = read_end(attributes, "from", link.from, link.provides);
   const Subsystem* consumer = read_end(attributes, "to", link.to, link.requires_);
+  read_way(attributes, link);
   if (producer != nullptr && consumer != nullptr) check_link(element, *producer, *consumer, link);
   read_loss(attributes, consumer, link);
   if (link.id != 0)
@@ -84,7 +85,7 @@ void MissionReader::check_link(const xml::Element& element, const Subsystem& pro
     for (const Provides* offered : provides) {
       std::string reason = !wanted->from.empty() && wanted->from != link.from
                                ? fmt::format("'{}' is required from '{}'", wanted->name, wanted->from)
-                               : mismatch(producer, *offered, *wanted);
+                               : mismatch(producer, *offered, *wanted, link.method);
       if (reason.empty()) return;
       if (why.empty()) why = std::move(reason);
     }

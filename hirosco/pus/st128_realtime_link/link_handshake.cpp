@@ -405,6 +405,26 @@ Result<std::size_t> write_attach_request(MutableOctets to, const AttachRequest& 
   writer.number(request.epoch);
   writer.text(request.set);
   writer.agreement(request.agreement);
+  writer.text(request.route.producer);
+  writer.text(request.route.consumer);
+  writer.number(request.route.key);
+  return writer.finish();
+}
+
+Result<std::size_t> write_attached(MutableOctets to, const Attached& report) {
+  Writer writer{to};
+  writer.number(report.route.link);
+  writer.enumerator(report.role);
+  writer.text(report.role == Role::Producer ? report.route.producer : report.route.consumer);
+  writer.number(report.route.key);
+  return writer.finish();
+}
+
+Result<std::size_t> write_reach_request(MutableOctets to, const ReachRequest& request) {
+  Writer writer{to};
+  writer.number(request.link);
+  writer.number(request.epoch);
+  writer.text(request.consumer);
   return writer.finish();
 }
 
@@ -436,7 +456,30 @@ Result<AttachRequest> read_attach_request(Octets data) {
   reader.number(message.epoch);
   reader.name(message.set);
   reader.agreement(message.agreement);
+  message.route.link = message.link;
+  reader.text(message.route.producer);
+  reader.text(message.route.consumer);
+  reader.number(message.route.key);
   return reader.finish(std::move(message), "link attach request");
+}
+
+Result<Attached> read_attached(Octets data) {
+  Reader reader{data};
+  Attached message;
+  reader.number(message.route.link);
+  reader.enumerator(message.role, {Role::Producer, Role::Consumer});
+  reader.text(message.role == Role::Producer ? message.route.producer : message.route.consumer);
+  reader.number(message.route.key);
+  return reader.finish(std::move(message), "link attached report");
+}
+
+Result<ReachRequest> read_reach_request(Octets data) {
+  Reader reader{data};
+  ReachRequest message;
+  reader.number(message.link);
+  reader.number(message.epoch);
+  reader.name(message.consumer);
+  return reader.finish(std::move(message), "link reach request");
 }
 
 }  // namespace hirosco::pus::st128

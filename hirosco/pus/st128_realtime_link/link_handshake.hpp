@@ -23,8 +23,10 @@
 ///   TC[128,2]   supervisor -> producer   negotiate: link id, set name + that Offer
 ///   TM[128,130] producer -> supervisor   agreement: link id + Agreement
 ///   TM[128,131] either -> supervisor     refusal: link id + Refusal
-///   TC[128,3]   supervisor -> producer, then consumer   attach: link id, role, epoch + Agreement; memory beside the packet
-///   TM[128,132] both -> supervisor       attached: link id, role
+///   TC[128,3]   supervisor -> producer, then consumer   attach: link id, role, epoch + Agreement + route; memory beside the packet
+///   TM[128,132] both -> supervisor       attached: link id, role, where this end stands
+///   TC[128,5]   supervisor -> producer   reach: link id, epoch, where the consumer stands; of a link that is not memory only,
+///                                        and answered as attach is
 ///   TC[128,4]   supervisor -> both       detach: link id
 ///   TM[128,133] both -> supervisor       detached: link id, role
 namespace hirosco::pus::st128 {
@@ -36,6 +38,7 @@ enum Subtype : std::uint8_t {
   negotiate_terms = 2,
   attach = 3,
   detach = 4,
+  reach = 5,
   offer = 129,
   agreement = 130,
   refusal = 131,
@@ -130,6 +133,18 @@ struct AttachRequest {
   std::uint32_t epoch{};
   std::string set;
   Agreement agreement;
+  LinkRoute route{};  ///< its `link` is the one above
+};
+/// TM[128,132]: of a link in memory the route is empty.
+struct Attached {
+  Role role{};
+  LinkRoute route{};  ///< the link, where this end stands, and the producer's key
+};
+/// TC[128,5].
+struct ReachRequest {
+  std::uint8_t link{};
+  std::uint32_t epoch{};
+  std::string consumer;
 };
 [[nodiscard]] Result<std::size_t> write_offer_request(MutableOctets to, const OfferRequest& request);
 [[nodiscard]] Result<std::size_t> write_terms_request(MutableOctets to, const TermsRequest& request);
@@ -137,5 +152,9 @@ struct AttachRequest {
 [[nodiscard]] Result<OfferRequest> read_offer_request(Octets data);
 [[nodiscard]] Result<TermsRequest> read_terms_request(Octets data);
 [[nodiscard]] Result<AttachRequest> read_attach_request(Octets data);
+[[nodiscard]] Result<std::size_t> write_attached(MutableOctets to, const Attached& report);
+[[nodiscard]] Result<Attached> read_attached(Octets data);
+[[nodiscard]] Result<std::size_t> write_reach_request(MutableOctets to, const ReachRequest& request);
+[[nodiscard]] Result<ReachRequest> read_reach_request(Octets data);
 
 }  // namespace hirosco::pus::st128

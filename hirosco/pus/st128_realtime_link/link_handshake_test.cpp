@@ -354,12 +354,26 @@ TEST(LinkMessages, AreReadAsTheyWereWritten) {
   Agreement of_a_queue = agreement();
   of_a_queue.kind = queued;
   of_a_queue.depth = 300;
-  const AttachRequest attach_request{8, Role::Consumer, 0xDEADBEEF, "JOINTS", of_a_queue};
+  const LinkRoute route{.link = 8, .producer = "192.0.2.1:4000", .consumer = "::1", .key = 0xFEED'BEEF'0123'4567};
+  const AttachRequest attach_request{8, Role::Consumer, 0xDEADBEEF, "JOINTS", of_a_queue, route};
   const Bytes attach_data = written([&](MutableOctets to) { return write_attach_request(to, attach_request); });
   sweep(attach_data, read_attach_request);
   EXPECT_EQ(read_attach_request(attach_data)->role, Role::Consumer);
   EXPECT_EQ(read_attach_request(attach_data)->epoch, 0xDEADBEEF);
   expect_equal(read_attach_request(attach_data)->agreement, of_a_queue);
+  EXPECT_EQ(read_attach_request(attach_data)->route, route);
+
+  const Bytes attached_data = written([&](MutableOctets to) {
+    return write_attached(to,
+                          {.role = Role::Producer, .route = {.link = 8, .producer = "::1", .consumer = {}, .key = 5}});
+  });
+  sweep(attached_data, read_attached);
+  EXPECT_EQ(read_attached(attached_data)->route.producer, "::1");
+  EXPECT_EQ(read_attached(attached_data)->route.key, 5u);
+
+  const Bytes reach_data = written([&](MutableOctets to) { return write_reach_request(to, {8, 3, "::1"}); });
+  sweep(reach_data, read_reach_request);
+  EXPECT_EQ(read_reach_request(reach_data)->consumer, "::1");
 }
 
 TEST(LinkMessages, CarryTheConsumersOfferWhole) {
@@ -449,6 +463,8 @@ TEST(LinkMessages, SurviveRandomOctets) {
     std::ignore = read_offer_request(noise);
     std::ignore = read_terms_request(noise);
     std::ignore = read_attach_request(noise);
+    std::ignore = read_attached(noise);
+    std::ignore = read_reach_request(noise);
   }
 }
 

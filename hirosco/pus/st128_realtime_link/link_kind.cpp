@@ -38,17 +38,24 @@ constexpr Part attachment[]{number("LINK", Type::Uint8),
                             number("DEPTH", Type::Uint16),
                             number("PRODUCER_PERIOD_NS", Type::Int64),
                             number("CONSUMER_PERIOD_NS", Type::Int64),
-                            list("FIELDS", field)};
+                            list("FIELDS", field),
+                            word("PRODUCER_AT"),
+                            word("CONSUMER_AT"),
+                            number("KEY", Type::Uint64)};
+constexpr Part standing[]{number("LINK", Type::Uint8), number("ROLE", Type::Uint8), word("AT"),
+                          number("KEY", Type::Uint64)};
+constexpr Part reached[]{number("LINK", Type::Uint8), number("EPOCH", Type::Uint32), word("CONSUMER_AT")};
 constexpr Part refused[]{number("LINK", Type::Uint8), number("ITEM", Type::Uint8), word("WHY")};
 
 constexpr RequestKind requests[]{{request_offer, "REQUEST_OFFER", asked},
                                  {negotiate_terms, "NEGOTIATE", terms},
                                  {attach, "ATTACH", attachment},
-                                 {detach, "DETACH", link}};
+                                 {detach, "DETACH", link},
+                                 {reach, "REACH", reached}};
 constexpr ReportKind reports[]{{offer, "OFFER", offered},
                                {agreement, "AGREEMENT", agreed},
                                {refusal, "REFUSAL", refused},
-                               {attached, "ATTACHED", link_end},
+                               {attached, "ATTACHED", standing},
                                {detached, "DETACHED", link_end}};
 
 }  // namespace kind

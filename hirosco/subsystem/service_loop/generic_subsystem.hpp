@@ -154,7 +154,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::string refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) override;
   Duration period() override;
   bool carries(LinkMethod method, LinkKind kind) override;
-  Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) override;
+  Result<LinkRoute> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) override;
+  Result<LinkRoute> reach(const pus::st128::ReachRequest& request) override;
   bool detach(std::uint8_t link) override;
 
   // SelfTest

@@ -43,8 +43,7 @@ bool GenericSubsystem::carries(LinkMethod method, LinkKind kind) {
 
 Duration GenericSubsystem::period() { return configuration_ != nullptr ? configuration_->sampling : Duration{}; }
 
-Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) {
-  if (!memory) return fail(ErrorCode::Malformed, "no memory beside the attach request");
+Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) {
   if (configuration_ == nullptr) return fail(ErrorCode::NotPermitted, "no configuration in force");
   // A later epoch: the partner left without this end and came back, and what this end still holds is the link as it was.
   const auto earlier = link_ends_.find(request.link);
@@ -54,9 +53,11 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
   if (!refusal_.empty()) return fail(ErrorCode::NotPermitted, refusal_.c_str());
   const bool producer = request.role == pus::st128::Role::Producer;
   const pus::st128::Agreement& agreement = request.agreement;
-  const LinkLayout layout = agreement.layout(request.epoch);
+  LinkLayout layout = agreement.layout(request.epoch);
+  layout.route = request.route;
   const LinkMechanism* mechanism = find_link_mechanism(platform_.links, agreement.method, agreement.kind);
   if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
+  if (mechanism->in_memory() && !memory) return fail(ErrorCode::Malformed, "no memory beside the attach request");
   auto link = std::make_unique<AttachedLink>();
   link->id = request.link;
   link->agreement = agreement;
@@ -95,9 +96,21 @@ Result<> GenericSubsystem::attach(const pus::st128::AttachRequest& request, cons
   const auto kind = producer ? CommandKind::AttachOutput : CommandKind::AttachInput;
   if (!push({.kind = kind, .index = end.slot, .link = link.get()}))
     return fail(ErrorCode::ResourceExhausted, "the cycle's command queue is full");
+  const LinkRoute route = link->writer ? link->writer->route() : link->reader ? link->reader->route() : LinkRoute{};
   end.link = std::move(link);
   link_ends_.emplace(request.link, std::move(end));
-  return ok();
+  return route;
+}
+
+/// The cycle may be writing: an end is told beside that where its samples go.
+Result<LinkRoute> GenericSubsystem::reach(const pus::st128::ReachRequest& request) {
+  const auto found = link_ends_.find(request.link);
+  if (found == link_ends_.end() || found->second.role != pus::st128::Role::Producer ||
+      found->second.epoch != request.epoch || found->second.link->writer == nullptr)
+    return fail(ErrorCode::NotFound, "no such end of a link is attached here");
+  LinkWriter& writer = *found->second.link->writer;
+  HIROSCO_TRY(writer.reach(request.consumer));
+  return writer.route();
 }
 
 bool GenericSubsystem::detach(std::uint8_t link) {

@@ -17,6 +17,7 @@ void LinkService::handle(const pus::TelecommandView& telecommand, const pus::Req
     case st128::negotiate_terms: negotiate(data, request); break;
     case st128::attach: attach(data, request); break;
     case st128::detach: detach(data, request); break;
+    case st128::reach: reach(data, request); break;
     default:
       verification_.rejected(
           request,
@@ -74,11 +75,26 @@ void LinkService::attach(Octets data, const pus::Request& request) {
   const auto asked = st128::read_attach_request(data);
   if (!asked) return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::DataLength});
   verification_.accepted(request);
-  const auto outcome = owner_.attach(*asked, memory_);
-  if (!outcome) return refuse(asked->link, {0, outcome.error().text}, request);
+  answer(asked->link, asked->role, owner_.attach(*asked, memory_), request);
+}
+
+void LinkService::reach(Octets data, const pus::Request& request) {
+  const auto asked = st128::read_reach_request(data);
+  if (!asked) return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::DataLength});
+  verification_.accepted(request);
+  answer(asked->link, st128::Role::Producer, owner_.reach(*asked), request);
+}
+
+void LinkService::answer(std::uint8_t link, st128::Role role, const Result<LinkRoute>& outcome,
+                         const pus::Request& request) {
+  if (!outcome) return refuse(link, {0, outcome.error().text}, request);
+  st128::Attached report{.role = role, .route = *outcome};
+  report.route.link = link;
+  std::array<std::byte, max_packet_octets> buffer;
+  const auto octets = st128::write_attached(buffer, report);
+  if (!octets) return refuse(link, {0, "where this end stands does not fit a packet"}, request);
   verification_.started(request);
-  const std::array answer{std::byte{asked->link}, static_cast<std::byte>(asked->role)};
-  sink_.report(type(), st128::attached, request.source, answer);
+  sink_.report(type(), st128::attached, request.source, Octets{buffer}.first(*octets));
   verification_.completed(request);
 }
 

@@ -26,8 +26,10 @@ class LinkServiceOwner {
   virtual Duration period() = 0;
   /// Whether a mechanism of the platform carries such links.
   virtual bool carries(LinkMethod method, LinkKind kind) = 0;
-  /// Maps the memory and hands this end to the cycle.
-  virtual Result<> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) = 0;
+  /// Makes this end of the memory, or at its address, and hands it to the cycle; where it stands.
+  virtual Result<LinkRoute> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) = 0;
+  /// Tells a producer's end where its consumer stands; where it stands itself.
+  virtual Result<LinkRoute> reach(const pus::st128::ReachRequest& request) = 0;
   /// Takes an end back from the cycle; false when there is no such link here.
   virtual bool detach(std::uint8_t link) = 0;
 };
@@ -46,7 +48,10 @@ class LinkService final : public pus::Service {
   void offer(Octets data, const pus::Request& request);
   void negotiate(Octets data, const pus::Request& request);
   void attach(Octets data, const pus::Request& request);
+  void reach(Octets data, const pus::Request& request);
   void detach(Octets data, const pus::Request& request);
+  /// The outcome of attach and reach.
+  void answer(std::uint8_t link, pus::st128::Role role, const Result<LinkRoute>& outcome, const pus::Request& request);
   void refuse(std::uint8_t link, const pus::st128::Refusal& refusal, const pus::Request& request);
 
   pus::Verification& verification_;

@@ -66,7 +66,7 @@ const std::vector<Case> cases{
     {"its answer sent as a request", 1, 129, 2, {}, "7 129 2"},
     {"a report sent as a request", arm, 3, 25, {}, "7 3 25"},
     {"another unknown subtype", arm, 8, 2, {}, "7 8 2"},
-    {"an unknown subtype of links", arm, 128, 5, {}, "7 128 5", Origin::supervisor()},
+    {"an unknown subtype of links", arm, 128, 6, {}, "7 128 6", Origin::supervisor()},
     // --- modes ----------------------------------------------------------------------------------------------------
     {"a service that the mode permits", arm, 3, 5, {}, "ok"},
     {"a service that the mode does not permit", arm, 3, 5, {}, "13 2", Origin::ground(), narrow_mode},
@@ -242,7 +242,7 @@ TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
                                                  {8, {1}},
                                                  {17, {1, 128, 130}},
                                                  {20, {1, 3}},
-                                                 {128, {1, 2, 3, 4}}};
+                                                 {128, {1, 2, 3, 4, 5}}};
   for (int service = 0; service < 256; ++service)
     for (int subtype = 0; subtype < 256; ++subtype) {
       const auto packet =

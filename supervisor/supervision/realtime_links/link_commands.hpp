@@ -31,6 +31,8 @@ class LinkCommands final : public Watch, public Hearer, private LinkOperator {
   [[nodiscard]] const LinkGraph& graph() const noexcept { return handling_.graph(); }
   /// How a link does. Empty: it is not up, nothing was produced yet, or it cannot be seen.
   [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept { return handling_.glance(link); }
+  /// Whether a link that is up can be looked at from here.
+  [[nodiscard]] bool can_look(std::uint8_t link) const noexcept { return handling_.can_look(link); }
   /// A subsystem is gone without reporting: all its links are down.
   void forget(std::uint16_t apid) { handling_.forget(apid); }
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;

@@ -29,7 +29,11 @@ struct LinksTest : PartsTest {
     report(from, st128::service_type, subtype, Octets{buffer}.first(octets.value()));
   }
   void says(std::uint16_t from, std::uint8_t subtype, st128::Role role) {
-    report(from, st128::service_type, subtype, std::array{std::byte{2}, static_cast<std::byte>(role)});
+    if (subtype != st128::attached)
+      return report(from, st128::service_type, subtype, std::array{std::byte{2}, static_cast<std::byte>(role)});
+    std::array<std::byte, 64> buffer{};
+    const auto octets = st128::write_attached(buffer, {.role = role, .route = {.link = 2}});
+    report(from, st128::service_type, subtype, Octets{buffer}.first(octets.value()));
   }
   void bring_up() {
     EXPECT_EQ(call_own("LINK", 2), "") << "it goes on";

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/realtime_links/link_handshakes.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/link/internet_address.hpp"
 
 namespace hirosco::supervisor {
 
@@ -21,6 +23,15 @@ constexpr Duration stage_limit = 2s;
          std::string{to_text(agreement.kind)} + ", " + hertz(agreement.producer_period) + " to " +
          hertz(agreement.consumer_period) + ", " + std::to_string(agreement.payload_octets()) + " octets" +
          (agreement.depth == 0 ? "" : ", " + std::to_string(agreement.depth) + " samples deep");
+}
+
+/// Where the mission puts an end, else in this computer at a port that the system chooses.
+[[nodiscard]] std::string place_of(const std::string& declared) { return declared.empty() ? "127.0.0.1" : declared; }
+
+/// An end may choose a port that the mission leaves open, and nothing else: it would draw samples to where nobody wants them.
+[[nodiscard]] bool is_at(const std::string& told, const std::string& declared) {
+  const auto at = read_internet_address(told), wanted = read_internet_address(declared);
+  return at && wanted && at->same_host(*wanted) && at->port != 0 && (wanted->port == 0 || at->port == wanted->port);
 }
 
 }  // namespace
@@ -83,12 +94,11 @@ void LinkHandshakes::handle(std::uint16_t from, const pus::TelemetryView& report
     case st128::refusal:
       if (const auto refusal = st128::read_refusal(data)) give_up(link, refusal->refusal.text, from);
       break;
-    case st128::attached: {
-      const auto role = data.size() == 2 ? static_cast<st128::Role>(data[1]) : st128::Role{};
-      if ((role == st128::Role::Producer && of_producer) || (role == st128::Role::Consumer && of_consumer))
-        attached(handshake, role);
+    case st128::attached:
+      if (const auto said = st128::read_attached(data);
+          said && (said->role == st128::Role::Producer ? of_producer : of_consumer))
+        attached(handshake, *said);
       break;
-    }
     default: break;
   }
 }
@@ -101,12 +111,21 @@ void LinkHandshakes::detached(std::uint8_t link, std::uint16_t from) {
   // Reports of one subsystem come in order: a producer that attached in this handshake and detached since has left it.
   // Before that the report is a late one of the link's earlier life.
   const Handshake& handshake = found->second;
-  if (handshake.stage == Stage::AwaitConsumer && from == handshake.producer) give_up(link, "the producer left", from);
+  if (handshake.stage >= Stage::AwaitConsumer && from == handshake.producer) give_up(link, "the producer left", from);
+  else if (handshake.stage == Stage::AwaitReached) give_up(link, "the consumer left", from);
 }
 
 void LinkHandshakes::offered(Handshake& handshake, const st128::Offer& offer) {
   std::array<std::byte, max_packet_octets> buffer;
-  const auto octets = st128::write_terms_request(buffer, {handshake.link->id, handshake.link->provides, offer});
+  st128::TermsRequest request{handshake.link->id, handshake.link->provides, offer};
+  // A mission that knows its network says how this link travels; the ends say how they could.
+  if (const auto& method = handshake.link->method) {
+    if (std::ranges::find(offer.terms.methods, *method) == offer.terms.methods.end())
+      return give_up(handshake.link->id,
+                     "the mission wants " + std::string{to_text(*method)} + ", the consumer has it not");
+    request.consumer.terms.methods = {*method};
+  }
+  const auto octets = st128::write_terms_request(buffer, request);
   if (!octets) return give_up(handshake.link->id, "the offer does not fit a packet");
   handshake.stage = Stage::AwaitAgreement;
   handshake.deadline += stage_limit;
@@ -125,6 +144,11 @@ void LinkHandshakes::agreed(Handshake& handshake, const st128::Agreement& agreem
   handshake.agreement = agreement;
   handshake.shared = std::move(*shared);
   handshake.epoch = epoch_ = epoch;
+  if (!mechanism->in_memory())
+    handshake.route = {.link = handshake.link->id,
+                       .producer = place_of(handshake.link->from_address),
+                       .consumer = place_of(handshake.link->to_address),
+                       .key = 0};
   handshake.stage = Stage::AwaitProducer;
   handshake.deadline += stage_limit;
   attach(handshake, st128::Role::Producer);
@@ -138,19 +162,47 @@ void LinkHandshakes::attach(const Handshake& handshake, st128::Role role) {
                                            .role = role,
                                            .epoch = handshake.epoch,
                                            .set = producer ? handshake.link->provides : handshake.link->requires_,
-                                           .agreement = handshake.agreement});
+                                           .agreement = handshake.agreement,
+                                           .route = handshake.route});
   if (!octets) return;  // the same agreement came in a packet: it fits; else the stage's time limit ends it
   operator_.send_link_command(producer ? handshake.producer : handshake.consumer, st128::attach,
                               Octets{buffer}.first(*octets), handshake.shared);
 }
 
-void LinkHandshakes::attached(Handshake& handshake, st128::Role role) {
-  if (handshake.stage == Stage::AwaitProducer && role == st128::Role::Producer) {
+void LinkHandshakes::attached(Handshake& handshake, const st128::Attached& report) {
+  const bool has_route = !handshake.route.producer.empty();
+  if (handshake.stage == Stage::AwaitProducer && report.role == st128::Role::Producer) {
+    if (has_route && !is_at(report.route.producer, handshake.route.producer))
+      return give_up(handshake.link->id, "the producer stands at '" + report.route.producer + "'");
     handshake.stage = Stage::AwaitConsumer;
     handshake.deadline += stage_limit;
+    if (has_route) {
+      handshake.route.producer = report.route.producer;
+      handshake.route.key = report.route.key;
+    }
     return attach(handshake, st128::Role::Consumer);
   }
-  if (handshake.stage != Stage::AwaitConsumer || role != st128::Role::Consumer) return;
+  if (handshake.stage == Stage::AwaitConsumer && report.role == st128::Role::Consumer) {
+    if (!has_route) return up(handshake);
+    if (!is_at(report.route.consumer, handshake.route.consumer))
+      return give_up(handshake.link->id, "the consumer stands at '" + report.route.consumer + "'");
+    handshake.route.consumer = report.route.consumer;
+    return reach(handshake);
+  }
+  if (handshake.stage == Stage::AwaitReached && report.role == st128::Role::Producer) up(handshake);
+}
+
+void LinkHandshakes::reach(Handshake& handshake) {
+  std::array<std::byte, max_packet_octets> buffer;
+  const auto octets = st128::write_reach_request(
+      buffer, {.link = handshake.link->id, .epoch = handshake.epoch, .consumer = handshake.route.consumer});
+  if (!octets) return;  // an address came in a packet: it fits; else the stage's time limit ends it
+  handshake.stage = Stage::AwaitReached;
+  handshake.deadline += stage_limit;
+  operator_.send_link_command(handshake.producer, st128::reach, Octets{buffer}.first(*octets), {});
+}
+
+void LinkHandshakes::up(Handshake& handshake) {
   const std::uint8_t link = handshake.link->id;
   Handshake finished = std::move(handshake);
   handshakes_.erase(link);
@@ -158,7 +210,9 @@ void LinkHandshakes::attached(Handshake& handshake, st128::Role role) {
   const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, finished.agreement.method, finished.agreement.kind);
   if (auto view = mechanism->look(memory_, finished.shared)) views_[link] = std::move(*view);
   graph_.set_up(link, true);
-  operator_.link_changed(*finished.link, true, terms_text(finished.agreement));
+  const LinkRoute& route = finished.route;
+  const std::string where = route.producer.empty() ? "" : ", " + route.producer + " to " + route.consumer;
+  operator_.link_changed(*finished.link, true, terms_text(finished.agreement) + where);
   if (finished.done) finished.done(true);
 }
 
@@ -169,7 +223,7 @@ void LinkHandshakes::give_up(std::uint8_t link, const std::string& why, std::uin
   handshakes_.erase(found);
   // Whoever was told to attach may have done so or may still do it: an end that stays attached would refuse the next try.
   const std::array data{std::byte{link}};
-  if (failed.stage == Stage::AwaitConsumer && failed.consumer != without)
+  if (failed.stage >= Stage::AwaitConsumer && failed.consumer != without)
     operator_.send_link_command(failed.consumer, st128::detach, data, {});
   if (failed.stage >= Stage::AwaitProducer && failed.producer != without)
     operator_.send_link_command(failed.producer, st128::detach, data, {});
@@ -220,6 +274,7 @@ void LinkHandshakes::failed(std::uint16_t apid, std::uint8_t subtype, std::uint8
       handshake.stage == Stage::AwaitOffer       ? subtype == st128::request_offer && apid == handshake.consumer
       : handshake.stage == Stage::AwaitAgreement ? subtype == st128::negotiate_terms && apid == handshake.producer
       : handshake.stage == Stage::AwaitProducer  ? subtype == st128::attach && apid == handshake.producer
+      : handshake.stage == Stage::AwaitReached   ? subtype == st128::reach && apid == handshake.producer
                                                  : subtype == st128::attach && apid == handshake.consumer;
   if (of_stage) handshake.failure = why;
 }

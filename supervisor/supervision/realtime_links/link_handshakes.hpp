@@ -52,6 +52,8 @@ class LinkHandshakes {
   [[nodiscard]] bool releases(std::uint8_t link) const { return releases_.contains(link); }
   /// How a link does. Empty: it is not up, nothing was produced yet, or it cannot be seen.
   [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept;
+  /// Whether a link that is up can be looked at from here: what passes a network nobody sees but its consumer.
+  [[nodiscard]] bool can_look(std::uint8_t link) const noexcept { return views_.contains(link); }
   /// Reports of service 128.
   void handle(std::uint16_t from, const pus::TelemetryView& report);
   /// What was sent for a handshake or a release, TC[128,subtype], did not reach its addressee or failed there: it ends with the
@@ -63,7 +65,7 @@ class LinkHandshakes {
   void step(TimePoint now);
 
  private:
-  enum class Stage : std::uint8_t { AwaitOffer, AwaitAgreement, AwaitProducer, AwaitConsumer };
+  enum class Stage : std::uint8_t { AwaitOffer, AwaitAgreement, AwaitProducer, AwaitConsumer, AwaitReached };
   struct Handshake {
     const descriptor::MissionLink* link{};
     std::uint16_t producer{};
@@ -74,12 +76,16 @@ class LinkHandshakes {
     std::uint32_t epoch{};
     pus::st128::Agreement agreement;
     MemoryHandle shared;  ///< by both ends
+    LinkRoute route;  ///< as far as it is known, of a link that is not memory
     Done done;
   };
   void offered(Handshake& handshake, const pus::st128::Offer& offer);
   void agreed(Handshake& handshake, const pus::st128::Agreement& agreement);
   void attach(const Handshake& handshake, pus::st128::Role role);
-  void attached(Handshake& handshake, pus::st128::Role role);
+  void attached(Handshake& handshake, const pus::st128::Attached& report);
+  /// Of a link that is not memory: the producer learns where its consumer stands.
+  void reach(Handshake& handshake);
+  void up(Handshake& handshake);
   void detached(std::uint8_t link, std::uint16_t from);
   /// Ends a handshake; `without`: the partner that needs no word of it because it refused, left or died.
   void give_up(std::uint8_t link, const std::string& why, std::uint16_t without = 0);

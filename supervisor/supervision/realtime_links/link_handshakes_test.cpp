@@ -8,8 +8,7 @@
 #include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/link/loaned_link.hpp"
 #include "hirosco/data_transfer/link/queued_link.hpp"
-#include "hirosco/data_transfer/memory/heap_memory.hpp"
-#include "supervisor/supervision/testing/small_mission.hpp"
+#include "supervisor/supervision/testing/handshakes_rig.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -21,78 +20,8 @@ using testing::camera;
 using ::testing::ElementsAre;
 using testing::hand;
 using ::testing::IsEmpty;
+using testing::LinkHandshakesTest;
 using enum LinkHandshakes::Released;
-
-/// Writes down what link handling does: "11<-1" is TC[128,1] to subsystem 11, "+" behind it memory beside the packet.
-struct Operator final : LinkOperator {
-  void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) override {
-    sent.push_back(std::to_string(apid) + "<-" + std::to_string(subtype) + (memory ? "+" : ""));
-    last.assign(data.begin(), data.end());
-    if (memory) last_memory = memory;
-  }
-  void link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) override {
-    changes.push_back(std::to_string(link.id) + (up ? " up: " : " down: ") + text);
-  }
-  std::vector<std::string> take() { return std::exchange(sent, {}); }
-  std::vector<std::string> sent;
-  std::vector<std::string> changes;
-  std::vector<std::byte> last;
-  MemoryHandle last_memory;
-};
-
-/// Link 2 goes from HAND (11, producer) to ARM (10, consumer); the test speaks for both.
-struct LinkHandshakesTest : ::testing::Test {
-  descriptor::Mission mission = testing::small_mission();
-  HeapMemory memory;
-  Operator supervisor;
-  LinkGraph graph{mission};
-  LinkHandshakes links{mission, graph, memory, standard_link_mechanisms(), supervisor};
-  std::vector<bool> ends;
-  std::vector<LinkHandshakes::Released> released;
-  TimePoint now{};
-  const st128::Offer offer{
-      .set = "HAND_STATE", .period = 1ms, .terms = {}, .depth = 0, .fields = {{"ANGLE", Type::Double, 2}}};
-  const st128::Agreement agreement{
-      LinkMethod::SharedMemory,    descriptor::ByteOrder::Little, LinkKind::Latest, 0, 500us, 1ms,
-      {{"ANGLE", Type::Double, 2}}};
-
-  LinkHandshakes::Done done() {
-    return [this](bool success) { ends.push_back(success); };
-  }
-  LinkHandshakes::ReleaseDone on_release() {
-    return [this](LinkHandshakes::Released how) { released.push_back(how); };
-  }
-  void report(std::uint16_t from, std::uint8_t subtype, Octets data) {
-    std::array<std::byte, 4096> buffer{};
-    const auto packet = pus::write_telemetry(buffer, {.apid = from, .service = 128, .subtype = subtype}, data);
-    links.handle(from, pus::TelemetryView::parse(packet.value()).value());
-  }
-  template <class Write, class Value>
-  void say(std::uint16_t from, std::uint8_t subtype, Write write, const Value& value, std::uint8_t link = 2) {
-    std::array<std::byte, 4096> buffer{};
-    const auto octets = write(MutableOctets{buffer}, link, value);
-    report(from, subtype, Octets{buffer}.first(octets.value()));
-  }
-  void offers(std::uint16_t from = arm) { say(from, st128::offer, st128::write_offer, offer); }
-  void agrees(std::uint16_t from = hand) { say(from, st128::agreement, st128::write_agreement, agreement); }
-  void refuses(std::uint16_t from) {
-    say(from, st128::refusal, st128::write_refusal, st128::Refusal{4, "no such field"});
-  }
-  void says(std::uint16_t from, std::uint8_t subtype, Role role, std::uint8_t link = 2) {
-    report(from, subtype, std::array{std::byte{link}, static_cast<std::byte>(role)});
-  }
-  void attaches(std::uint16_t from, Role role) { says(from, st128::attached, role); }
-  void detaches(std::uint16_t from, Role role) { says(from, st128::detached, role); }
-
-  /// Handshake up to and including a stage: 0 asked, 1 offered, 2 agreed, 3 producer attached, 4 up.
-  void advance(int stage) {
-    ASSERT_TRUE(links.establish(2, now, done()));
-    if (stage > 0) offers();
-    if (stage > 1) agrees();
-    if (stage > 2) attaches(hand, Role::Producer);
-    if (stage > 3) attaches(arm, Role::Consumer);
-  }
-};
 
 TEST_F(LinkHandshakesTest, TheHandshakeAsksTheConsumerThenTheProducerThenAttachesProducerAndConsumer) {
   ASSERT_TRUE(links.establish(2, now, done()));
@@ -169,11 +98,11 @@ TEST_F(LinkHandshakesTest, WhatNoMechanismCarriesIsNotAttached) {
   advance(1);
   supervisor.take();
   auto by_datagrams = agreement;
-  by_datagrams.method = LinkMethod::Udp;
+  by_datagrams.method = LinkMethod::Tipc;
   say(hand, st128::agreement, st128::write_agreement, by_datagrams);
   EXPECT_THAT(supervisor.take(), ::testing::IsEmpty());
   ASSERT_EQ(supervisor.changes.size(), 1U);
-  EXPECT_THAT(supervisor.changes.front(), ::testing::StartsWith("2 down: no mechanism here carries udp"));
+  EXPECT_THAT(supervisor.changes.front(), ::testing::StartsWith("2 down: no mechanism here carries tipc"));
   EXPECT_THAT(ends, ElementsAre(false));
 }
 

@@ -108,6 +108,7 @@ LinkRow Housekeeping::status_of(const descriptor::MissionLink& link) const noexc
   status.link = link.id;
   status.up = parts_.links.graph().is_up(link.id) ? 1 : 0;
   add_consumer(link, status);
+  if (status.up != 0 && !parts_.links.can_look(link.id)) status.samples = status.age_us = LinkRow::not_told;
   const auto glance = parts_.links.glance(link.id);
   if (!glance) return status;
   const auto age_us = std::chrono::duration_cast<std::chrono::microseconds>(craft_.now - glance->sampled_at).count();

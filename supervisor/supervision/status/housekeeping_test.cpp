@@ -116,7 +116,8 @@ TEST_F(HousekeepingTest, LinksAreToldAsTheirConsumerSeesThem) {
   EXPECT_THAT(std::vector(up.begin(), up.begin() + 3), ElementsAre(0, 1, 0));
   EXPECT_EQ(lost[1], 6U);
   EXPECT_EQ(latency_max_ns[1], 1234U);
-  EXPECT_EQ(samples[1], 0U) << "there is no memory to look into";
+  EXPECT_EQ(samples[1], LinkRow::not_told) << "there is nothing to look into";
+  EXPECT_EQ(age_us[1], LinkRow::not_told);
 }
 
 TEST_F(HousekeepingTest, ModeAndRejectionsAreThose) {

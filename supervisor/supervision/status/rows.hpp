@@ -26,7 +26,8 @@ struct MemberRow {
 };
 
 struct LinkRow {
-  /// What the consumer cannot tell: it has room for some of its links only.
+  /// What the consumer cannot tell, as it has room for some of its links only; of a link that is not memory, samples and age, too,
+  /// as they pass nobody else.
   static constexpr std::uint32_t not_told = std::numeric_limits<std::uint32_t>::max();
   std::uint8_t link{0};
   std::uint8_t up{0};

@@ -4,18 +4,21 @@
 
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "hirosco/data_transfer/link/internet_address.hpp"
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/descriptor/model/plan_steps.hpp"
 #include "hirosco/descriptor/read/detail/element_reader.hpp"
 
 namespace hirosco::descriptor::detail {
 
-/// Why the producer's set cannot feed the consumer's; empty when it can.
-[[nodiscard]] std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_);
+/// Why the producer's set cannot feed the consumer's, by this method where there is one; empty when it can.
+[[nodiscard]] std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_,
+                                   std::optional<LinkMethod> method);
 
 /// Somebody can be found in it; the others are passed through.
 [[nodiscard]] constexpr bool is_steady(State state) noexcept {
@@ -75,6 +78,11 @@ class MissionReader {
                   const MissionLink& link);
   /// read_link_loss.cpp
   void read_loss(Attributes& attributes, const Subsystem* consumer, MissionLink& link);
+  // read_way.cpp
+  void read_way(Attributes& attributes, MissionLink& link);
+  [[nodiscard]] std::optional<InternetAddress> read_link_address(const xml::Attribute* at, const MissionLink& link,
+                                                                 std::string& into);
+  // read_modes.cpp
   void read_modes(const xml::Element& element);
   void read_mode(const xml::Element& element);
 
@@ -126,6 +134,7 @@ class MissionReader {
   Unique device_names_{"simulated device", "E0201"};
   Unique played_{"device", "E0201"};
   Unique link_ids_{"link id", "E0202"};
+  Unique link_addresses_{"address of a link", "E0313"};
   Unique mode_names_{"mode name", "E0201"};
   Unique mode_ids_{"mode id", "E0202"};
   Unique plan_names_{"plan name", "E0201"};
