@@ -96,7 +96,7 @@ class Check(unittest.TestCase):
                 (robot, '<ParamRef name="TIP_FORCE"', '<ParamRef name="Tip_Force"', "refers to 'TIP_FORCE'"),
                 (hand, 'name="PASSIVITY" id="3"', 'name="force_scale" id="3"', "in case only"),
                 (hand, 'transfer="shared_memory"', 'transfer="serial"', "'serial' is not built in"),
-                (hand, 'methods="shared_memory"', 'methods="udp"', "'udp' is not built in"),
+                (hand, 'methods="shared_memory"', 'methods="tcp"', "'tcp' is not built in"),
                 (hand, 'kind="latest"', 'kind="queued"', "no common kind"),
                 (hand, 'watchdog_ms="10"', 'watchdog_ms="0.4"', "trips between cycles"),
                 (hand, '"rokviss-joystick"', '"rokviss-robot"', "'rokviss-robot' is a device's of 'MANIPULATOR'"),
