@@ -15,8 +15,10 @@ void MissionReader::read_way(Attributes& attributes, MissionLink& link) {
   if (const auto* method = attributes.optional("method")) {
     link.method = attributes.word<LinkMethod>(*method, method->value);
     if (link.method && std::ranges::find(standard_link_mechanisms(), *link.method, &LinkMechanism::method) ==
-                           standard_link_mechanisms().end())
+                           standard_link_mechanisms().end()) {
       problems_.not_built_in(*method, method->value, are_built_in(standard_link_mechanisms(), &LinkMechanism::method));
+      link.method.reset();
+    }
   }
   const auto from = read_link_address(attributes.optional("from_address"), link, link.from_address);
   const auto to = read_link_address(attributes.optional("to_address"), link, link.to_address);

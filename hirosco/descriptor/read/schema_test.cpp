@@ -50,7 +50,7 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" read_only=\"yes\"/>",
         "<FunctionService><Function name=\"X\" id=\"1\"/></FunctionService>",
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\"/><RealTimeLinkService><Provides name=\"P\" "
-        "methods=\"udp\"><ParamRef name=\"X\"/></Provides></RealTimeLinkService>",
+        "methods=\"tipc\"><ParamRef name=\"X\"/></Provides></RealTimeLinkService>",
         "<Device name=\"D\" actuator=\"yes\"><Output><Field name=\"F\" type=\"INT8\" safe=\"0\"/></Output>"
         "<Enable transfer=\"serial\" address=\"x\"/></Device>",
         "<Device name=\"D\"><Input><Field name=\"F\" type=\"INT8\" enumeration=\"E\"/></Input></Device>"}) {

@@ -176,7 +176,7 @@ constexpr Bad bad_meaning[] = {
     {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="@tcp" address="127.0.0.1:5000"/></Device></Configuration>)", "udp"},
     {"E0224", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="@serial" address="/dev/ttyS0"/></Device></Configuration>)"},
     {"E0224", R"(<Device name="L" actuator="yes"><Output><Field name="Q" type="INT8" safe="0"/></Output><Enable transfer="@serial" address="/dev/ttyS0"/></Device>)"},
-    {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@udp"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)", "shared_memory is"},
+    {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@tipc"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)", "shared_memory and udp are"},
     {"E0224", R"(<RealTimeLinkService><Provides name="A" methods="@shared_memory dds"><ParamRef name="GOAL"/></Provides></RealTimeLinkService>)"},
     {"E0233", R"(<RealTimeLinkService><Requires name="A" depth="@8"><Field name="X" type="INT8"/></Requires></RealTimeLinkService>)", "queued"},
     {"E0233", R"(<RealTimeLinkService><Requires name="A" kind="latest" depth="@8"><Field name="X" type="INT8"/></Requires></RealTimeLinkService>)"},
