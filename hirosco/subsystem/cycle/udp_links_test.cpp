@@ -156,11 +156,14 @@ TEST_F(UdpLinks, OfAProducerThatDiesGetOldAndInhibit) {
   joint_rig->cycle();
   observer_rig.cycle();
   for (const State state : {State::SafeOperational, State::Operational}) {
-    joint_rig->cycle();
-    ASSERT_EQ(observer_rig.set_state_now(state), "1 3 7");
+    const auto sent = observer_rig.set_state(state);
+    for (int i = 0; i < 12; ++i) {  // on the way up a sample in each cycle
+      joint_rig->cycle();
+      observer_rig.service();
+      observer_rig.cycle();
+    }
+    ASSERT_EQ(observer_rig.outcome(sent), "1 3 7");
   }
-  joint_rig->cycle();
-  observer_rig.cycle();
   ASSERT_EQ(observer_rig.inhibited(), 0u);
   // Who is killed says nothing any more, and nobody says it for him.
   observer_rig.cycle(5);
