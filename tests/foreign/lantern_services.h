@@ -243,8 +243,13 @@ static void attach(const request* of, uint8_t role, const char* set, const agree
     store32(vital_ + 100, 0);
   }
   done(of, 3);
-  report(128, 132, of->source, (uint8_t[]){link, role}, 2);
+  report(128, 132, of->source, (uint8_t[11]){link, role}, 11);  // it stands in memory: no address, no key
   done(of, 7);
+}
+
+/// Where an end stands: empty in memory.
+static void pass_place(reader* in) {
+  for (uint8_t left = get8(in); left > 0 && in->good; --left) get8(in);
 }
 
 static void links(const request* of, uint8_t subtype, const uint8_t* data, size_t size, int memory) {
@@ -257,7 +262,7 @@ static void links(const request* of, uint8_t subtype, const uint8_t* data, size_
   if (subtype == 3) role = get8(&in), agreed.epoch = get32(&in), agreed.link = link;
   if (subtype != 4) get_string(&in, set);
   if (subtype == 2) in.good = in.good && get8(&in) == link, get_offer(&in, &theirs);
-  if (subtype == 3) in.good = in.good && (role == 1 || role == 2), get_agreement(&in, &agreed);
+  if (subtype == 3) in.good = in.good && (role == 1 || role == 2), get_agreement(&in, &agreed), pass_place(&in), pass_place(&in), get32(&in), get32(&in);
   if (!in.good || in.at != size) return fail(of, 2, 8, NULL, 0);
   done(of, 1);
   if (subtype == 4) {

@@ -199,6 +199,14 @@ class Reader:
         self.at += struct.calcsize(">" + form)
         return values if len(values) > 1 else values[0]
 
+    def place(self):
+        """Where an end of a link stands: empty in memory."""
+        length = self.take("B")
+        if self.at + length > len(self.octets):
+            raise ValueError("cut")
+        self.at += length
+        return self.octets[self.at - length:self.at]
+
     def string(self):
         length = self.take("B")
         text = self.octets[self.at:self.at + length]
@@ -260,7 +268,8 @@ class Reader:
                 raise ValueError("another link")
             asked["offer"] = self.offer()
         elif subtype == 3:
-            asked |= {"role": self.take("B"), "epoch": self.take("I"), "set": self.string(), "agreement": self.agreement()}
+            asked |= {"role": self.take("B"), "epoch": self.take("I"), "set": self.string(), "agreement": self.agreement(),
+                      "producer_at": self.place(), "consumer_at": self.place(), "key": self.take("Q")}
             if asked["role"] not in (1, 2):
                 raise ValueError("a role")
         if self.at != len(self.octets):

@@ -438,7 +438,7 @@ class Services:
             else:
                 self.attach(request, asked, set_, memory)
                 self.verify(request, 3)
-                self.report(128, 132, request.source, bytes([link, 1]))
+                self.report(128, 132, request.source, bytes([link, 1]) + bytes(9))  # it stands in memory: no address, no key
             self.verify(request, 7)
 
     def agree(self, request, link, set_, offer):

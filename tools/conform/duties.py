@@ -13,6 +13,8 @@ from partners import PlayedDevice, PlayedProducer
 
 DUTIES = {}
 LATE_S = 0.03                # partners that are played answer within this, on a machine that has other work, too
+# Of a link in memory: neither end stands anywhere else, and no key is needed.
+IN_MEMORY, STANDS_IN_MEMORY = bytes(10), bytes(9)  # behind TC[128,3], in TM[128,132]
 OUTPUT_LIMIT_S = 0.05        # beside two cycles
 
 
@@ -122,7 +124,7 @@ class Flown:
 
     def attach_data(self, link, role, epoch, name, agreement):
         import struct
-        return struct.pack(">BBI", link, role, epoch) + wire.string(name) + agreement.octets()
+        return struct.pack(">BBI", link, role, epoch) + wire.string(name) + agreement.octets() + IN_MEMORY
 
     def feed(self, required):
         """Makes the link of a required set; the producer is ours."""
@@ -136,7 +138,7 @@ class Flown:
                                  descriptors=[producer.memory])
         outcome.expect_done(f"TC[128,3] as consumer of {required.get('name')}")
         attached = [r.data for r in outcome.others if r.kind == (128, 132)]
-        expect(attached == [bytes([link, 2])], f"TM[128,132] of {required.get('name')}: came {outcome.words()}")
+        expect(attached == [bytes([link, 2]) + STANDS_IN_MEMORY], f"TM[128,132] of {required.get('name')}: came {outcome.words()}")
         self.links[required.get("name")] = producer
         return producer
 

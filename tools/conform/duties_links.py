@@ -7,7 +7,7 @@ import struct
 
 import wire
 from craft import POST, SAFE, SEAL_FUTURE_WRITE, SEAL_SEAL, Passed, checked, expect, sealed_memory
-from duties import LATE_S, Flown, duty
+from duties import LATE_S, STANDS_IN_MEMORY, Flown, duty
 from partners import FAULT, STOPPING, VALID, PlayedConsumer, PlayedProducer
 
 REFUSED = (4, 0x0107, b"\0")
@@ -123,7 +123,7 @@ def produce(flown, each, link):
     name = each.get("name")
     outcome = flown.craft.ask(128, 3, flown.attach_data(link, 1, consumer.epoch, name, agreement), descriptors=[consumer.memory])
     outcome.expect_done(f"TC[128,3] as producer of {name}")
-    expect([r.data for r in outcome.others if r.kind == (128, 132)] == [bytes([link, 1])], f"TM[128,132] of {name}: came {outcome.words()}")
+    expect([r.data for r in outcome.others if r.kind == (128, 132)] == [bytes([link, 1]) + STANDS_IN_MEMORY], f"TM[128,132] of {name}: came {outcome.words()}")
     return consumer
 
 
