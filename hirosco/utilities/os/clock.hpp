@@ -13,9 +13,10 @@ inline constexpr const char* flight_epoch_variable = "HIROSCO_EPOCH_NS";
 /// The epoch that this process was given, in nanoseconds; empty without one or when it is no number.
 [[nodiscard]] std::optional<Duration> given_epoch() noexcept;
 
-/// The operating system's clocks: now() is CLOCK_MONOTONIC; processor() is CLOCK_THREAD_CPUTIME_ID, a system call; onboard() is now() and an epoch that is fixed once, so that a
+/// The operating system's clocks: now() is CLOCK_MONOTONIC; onboard() is now() and an epoch that is fixed once, so that a
 /// step of the calendar never makes on-board time go back or jump. The epoch is the one the flight was given, else the
-/// calendar's (CLOCK_REALTIME brought to TAI of 1958) when this object is made.
+/// calendar's (CLOCK_REALTIME brought to TAI of 1958) when this object is made. processor() is CLOCK_THREAD_CPUTIME_ID, a
+/// system call.
 /// Realtime: wait-free. Thread: any.
 class SystemClock final : public Clock {
  public:

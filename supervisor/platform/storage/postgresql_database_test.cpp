@@ -26,7 +26,7 @@ using testing::HasSubstr;
 class PostgresqlLog : public testing::Test {
  protected:
   void SetUp() override {
-    if (!PostgresqlServer::installed()) GTEST_SKIP() << "no PostgreSQL server is installed here";
+    ASSERT_TRUE(PostgresqlServer::installed()) << "`testing/with_server` does not come here without one";
     std::string why_not;
     server_ = PostgresqlServer::shared(why_not);
     ASSERT_NE(server_, nullptr) << why_not;
