@@ -17,7 +17,6 @@ namespace {
 using Structures = pus::HousekeepingService;
 using EventReports = pus::EventService;
 using ParameterValues = pus::ParameterService;
-using descriptor::Subsystem;
 
 /// Of the application data of one telecommand that brings settings back.
 constexpr std::size_t most_setting_octets = 800;
@@ -51,7 +50,7 @@ constexpr std::size_t most_setting_octets = 800;
   return data;
 }
 
-[[nodiscard]] bool sets_a_protection(const descriptor::Function& function, const Subsystem& subsystem) {
+[[nodiscard]] bool sets_a_protection(const descriptor::Function& function, const descriptor::Subsystem& subsystem) {
   return std::ranges::any_of(function.arguments, [&](const descriptor::Function::Argument& argument) {
     const std::string_view name = std::string_view{argument.of}.substr(0, argument.of.find('.'));
     const auto* parameter = subsystem.find_parameter(name);
@@ -81,7 +80,7 @@ void CommandedState::lower(State most) noexcept {
   if (rank(most) < rank(state_)) state_ = on_the_way_up(most);
 }
 
-bool CommandedState::concerns(const pus::TelecommandView& telecommand, const Subsystem& subsystem) {
+bool CommandedState::concerns(const pus::TelecommandView& telecommand, const descriptor::Subsystem& subsystem) {
   if (is_parameter_write(telecommand) || is_event_switch(telecommand) || is_definition(telecommand)) return true;
   const auto call = called_function(telecommand);
   if (!call) return false;
@@ -90,7 +89,7 @@ bool CommandedState::concerns(const pus::TelecommandView& telecommand, const Sub
   return function != nullptr && sets_a_protection(*function, subsystem);
 }
 
-Kept CommandedState::completed(const pus::TelecommandView& telecommand, const Subsystem& subsystem) {
+Kept CommandedState::completed(const pus::TelecommandView& telecommand, const descriptor::Subsystem& subsystem) {
   const Octets data = telecommand.application_data();
   if (is_parameter_write(telecommand)) set_parameters(data, subsystem);
   else if (is_event_switch(telecommand)) switch_events(data, telecommand.subtype() == EventReports::enable_reports);
@@ -120,7 +119,7 @@ void CommandedState::enter(State state) noexcept {
   protection_was_set_ = false;
 }
 
-void CommandedState::configure(std::uint8_t id, const Subsystem& subsystem) {
+void CommandedState::configure(std::uint8_t id, const descriptor::Subsystem& subsystem) {
   if (configuration_ == id) return;  // it was in force: nothing has happened
   configuration_ = id;
   structures_.clear();
@@ -135,7 +134,7 @@ void CommandedState::configure(std::uint8_t id, const Subsystem& subsystem) {
   });
 }
 
-void CommandedState::set_parameters(Octets data, const Subsystem& subsystem) {
+void CommandedState::set_parameters(Octets data, const descriptor::Subsystem& subsystem) {
   OctetReader reader{data};
   const auto count = reader.get<std::uint8_t>();
   for (unsigned i = 0; i < count && reader.good(); ++i) {
@@ -161,7 +160,7 @@ void CommandedState::switch_events(Octets data, bool enabled) {
     else silent_events_.insert(id);
 }
 
-Kept CommandedState::define(std::uint8_t subtype, Octets data, const Subsystem& subsystem) {
+Kept CommandedState::define(std::uint8_t subtype, Octets data, const descriptor::Subsystem& subsystem) {
   if (subtype == Structures::create_structure || subtype == Structures::append_parameters) {
     const auto id = OctetReader{data}.get<std::uint16_t>();
     const bool creates = subtype == Structures::create_structure;
@@ -191,7 +190,7 @@ Kept CommandedState::define(std::uint8_t subtype, Octets data, const Subsystem& 
   return all ? Kept::Yes : Kept::NoRoom;
 }
 
-bool CommandedState::is_defined(std::uint16_t id, const Subsystem& subsystem) const {
+bool CommandedState::is_defined(std::uint16_t id, const descriptor::Subsystem& subsystem) const {
   const auto has = [id](const std::vector<descriptor::HousekeepingStructure>& all) {
     return std::ranges::find(all, id, &descriptor::HousekeepingStructure::id) != all.end();
   };
@@ -217,7 +216,7 @@ std::size_t CommandedState::definition_octets() const noexcept {
   return sum;
 }
 
-std::vector<SettingCommand> CommandedState::settings_for(State state, const Subsystem& subsystem) const {
+std::vector<SettingCommand> CommandedState::settings_for(State state, const descriptor::Subsystem& subsystem) const {
   std::vector<SettingCommand> all;
   for (const ParameterValue& set : parameters_) {
     const auto place = descriptor::find_parameter(subsystem, set.id);
@@ -258,7 +257,7 @@ std::vector<SettingCommand> CommandedState::settings_for(State state, const Subs
   return all;
 }
 
-std::vector<std::string> CommandedState::out_of_reach(const Subsystem& subsystem) const {
+std::vector<std::string> CommandedState::out_of_reach(const descriptor::Subsystem& subsystem) const {
   std::vector<std::string> names;
   for (const ParameterValue& set : parameters_)
     if (const auto place = descriptor::find_parameter(subsystem, set.id)) {
