@@ -30,6 +30,13 @@ const char* text_of(SimulatedDevice::Stop stop) {
   return "drop";
 }
 
+const char* text_of(std::endian order) { return order == std::endian::big ? "big" : "little"; }
+
+/// As the program of a device reads it: TRANSFER=ADDRESS.
+std::string text_of(const FlowAddress& address) {
+  return fmt::format("{}={}", to_text(address.transfer), address.address);
+}
+
 template <class Unit>
 std::string count_of(Duration span) {
   return std::to_string(std::chrono::duration_cast<Unit>(span).count());
@@ -42,47 +49,122 @@ FlowAddress DeviceArguments::address() const { return address_of(endnode); }
 std::vector<std::string> DeviceArguments::arguments() const {
   std::vector<std::string> words{"--transfer",       std::string{to_text(endnode.transfer)},
                                  "--address",        endnode.address,
-                                 "--byte-order",     settings.byte_order == std::endian::big ? "big" : "little",
+                                 "--byte-order",     text_of(settings.byte_order),
                                  "--cycle-us",       count_of<std::chrono::microseconds>(settings.cycle),
                                  "--stop",           text_of(settings.stop),
                                  "--stop-within-ms", count_of<std::chrono::milliseconds>(settings.stop_within)};
   if (enable)
     words.insert(words.end(),
                  {"--enable-transfer", std::string{to_text(enable->transfer)}, "--enable-address", enable->address});
+  for (const FlowAddress& other : settings.fall_backs) words.insert(words.end(), {"--fall-back", text_of(other)});
+  if (!settings.endnode.empty()) words.insert(words.end(), {"--endnode", settings.endnode});
+  for (const FurtherEndnode& further : settings.further) {
+    std::string text = fmt::format("{},{}", further.name, text_of(further.byte_order));
+    for (const FlowAddress& address : further.addresses) text += "," + text_of(address);
+    words.insert(words.end(), {"--further", text});
+  }
+  if (settings.power) words.insert(words.end(), {"--power", text_of(*settings.power)});
   return words;
 }
+
+namespace {
+
+using Addresses = std::vector<FlowAddress>;
+
+/// One of the endnodes that a device plays, as every configuration that uses it says.
+struct Played {
+  const descriptor::Device* device{nullptr};
+  Addresses addresses;  ///< preferred, then fall-backs
+  descriptor::ByteOrder byte_order{};
+  const descriptor::Configuration* first{nullptr};
+  Duration cycle{};
+};
+
+[[nodiscard]] Addresses addresses_of(const descriptor::DeviceUse& use) {
+  Addresses found{address_of(use.endnode)};
+  for (const auto& other : use.fall_backs) found.push_back(address_of(other));
+  return found;
+}
+
+[[nodiscard]] bool same(const Addresses& left, const Addresses& right) {
+  return std::ranges::equal(left, right, [](const FlowAddress& one, const FlowAddress& other) {
+    return one.transfer == other.transfer && one.address == other.address;
+  });
+}
+
+/// Empty `first`: no configuration uses it.
+[[nodiscard]] std::expected<Played, std::string> how_played(const descriptor::Subsystem& subsystem,
+                                                            const descriptor::Device& device) {
+  Played played;
+  played.device = &device;
+  for (const auto& configuration : subsystem.configurations)
+    for (const auto& use : configuration.devices) {
+      if (&subsystem.devices[use.device] != &device) continue;
+      if (played.first == nullptr) {
+        played = {&device, addresses_of(use), use.endnode.byte_order, &configuration, configuration.sampling};
+        continue;
+      }
+      if (!same(played.addresses, addresses_of(use)) || use.endnode.byte_order != played.byte_order)
+        return std::unexpected{
+            fmt::format("configurations {} and {} of {} have different endnodes for {}, and it has one",
+                        played.first->name, configuration.name, subsystem.name, device.name)};
+      played.cycle = std::min(played.cycle, configuration.sampling);
+    }
+  return played;
+}
+
+[[nodiscard]] std::endian endian_of(descriptor::ByteOrder order) {
+  return order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
+}
+
+}  // namespace
 
 std::expected<DeviceArguments, std::string> device_arguments(const descriptor::Mission& mission,
                                                              const descriptor::SimulatedDevice& device) {
   const auto* member = mission.find_subsystem(device.subsystem);
   if (member == nullptr) return std::unexpected{fmt::format("there is no subsystem {}", device.subsystem)};
   const descriptor::Subsystem& subsystem = member->subsystem;
-  const auto found = std::ranges::find(subsystem.devices, device.device, &descriptor::Device::name);
-  if (found == subsystem.devices.end())
-    return std::unexpected{fmt::format("{} has no device {}", device.subsystem, device.device)};
-  DeviceArguments made{.enable = found->enable};
-  const descriptor::Configuration* first = nullptr;
-  for (const auto& configuration : subsystem.configurations)
-    for (const auto& use : configuration.devices) {
-      if (&subsystem.devices[use.device] != &*found) continue;
-      if (first == nullptr) made.endnode = use.endnode;
-      const bool same = use.endnode.transfer == made.endnode.transfer && use.endnode.address == made.endnode.address &&
-                        use.endnode.byte_order == made.endnode.byte_order;
-      if (!same)
-        return std::unexpected{
-            fmt::format("configurations {} and {} of {} have different endnodes for {}, and it has one", first->name,
-                        configuration.name, device.subsystem, device.device)};
-      made.settings.cycle =
-          first == nullptr ? configuration.sampling : std::min(made.settings.cycle, configuration.sampling);
-      if (first == nullptr) first = &configuration;
-    }
-  if (first == nullptr)
+  std::vector<Played> endnodes;
+  bool known = false;
+  for (const descriptor::Device& each : subsystem.devices) {
+    if (each.name != device.device && each.part_of != device.device) continue;
+    known = true;
+    auto played = how_played(subsystem, each);
+    if (!played) return std::unexpected{played.error()};
+    if (played->first != nullptr) endnodes.push_back(std::move(*played));
+  }
+  if (!known) return std::unexpected{fmt::format("{} has no device {}", device.subsystem, device.device)};
+  if (endnodes.empty())
     return std::unexpected{fmt::format("no configuration of {} uses {}", device.subsystem, device.device)};
-  made.settings.byte_order =
-      made.endnode.byte_order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
-  made.settings.stop = stop_of(found->stop);
-  made.settings.stop_within = found->stop_within;
-  if (made.enable) made.settings.enable = address_of(*made.enable);
+  const auto acts = [](const Played& played) { return played.device->actuator; };
+  if (std::ranges::count_if(endnodes, acts) > 1)
+    return std::unexpected{fmt::format("{} of {} has several endnodes with actuators, a simulated device one",
+                                       device.device, device.subsystem)};
+  // Its world is driven by the endnode with the actuator, else by its first one.
+  if (const auto main = std::ranges::find_if(endnodes, acts); main != endnodes.end())
+    std::rotate(endnodes.begin(), main, main + 1);
+  const Played& main = endnodes.front();
+  DeviceArguments made;
+  made.enable = main.device->enable;
+  made.endnode.transfer = main.addresses.front().transfer;
+  made.endnode.address = main.addresses.front().address;
+  made.endnode.byte_order = main.byte_order;
+  SimulatedDevice::Settings& settings = made.settings;
+  settings.cycle = main.cycle;
+  settings.byte_order = endian_of(main.byte_order);
+  settings.stop = stop_of(main.device->stop);
+  settings.stop_within = main.device->stop_within;
+  if (made.enable) settings.enable = address_of(*made.enable);
+  settings.fall_backs.assign(main.addresses.begin() + 1, main.addresses.end());
+  const auto name_of = [&](const Played& played) {
+    const descriptor::Device& whole = *played.device;
+    return whole.part_of.empty() ? std::string{} : whole.name.substr(whole.part_of.size() + 1);
+  };
+  settings.endnode = name_of(main);
+  for (std::size_t i = 1; i < endnodes.size(); ++i)
+    settings.further.push_back({name_of(endnodes[i]), endnodes[i].addresses, endian_of(endnodes[i].byte_order)});
+  const auto power = std::ranges::find(subsystem.power_switches, device.device, &descriptor::PowerSwitch::device);
+  if (power != subsystem.power_switches.end()) settings.power = address_of(power->endnode);
   return made;
 }
 

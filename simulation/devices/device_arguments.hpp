@@ -15,7 +15,8 @@ namespace hirosco::simulation {
 struct DeviceArguments {
   descriptor::Endnode endnode{};
   std::optional<descriptor::Endnode> enable{};
-  /// Byte order, cycle (of the fastest configuration that uses it) and stop; the seed is the caller's.
+  /// Byte order, cycle (of the fastest configuration that uses it), stop, fall-backs, further endnodes and power switch; the
+  /// seed is the caller's.
   SimulatedDevice::Settings settings{};
 
   [[nodiscard]] FlowAddress address() const;

@@ -55,6 +55,64 @@ TEST(DeviceArguments, TakesByteOrderPeriodStopAndSecondInhibitFromTheDescriptor)
   EXPECT_EQ(made->arguments(), expected);
 }
 
+/// The joints with a camera beside them, each by several ways.
+descriptor::Mission several_endnodes() {
+  auto mission = a_mission();
+  descriptor::Subsystem& arm = mission.subsystems[0].subsystem;
+  arm.devices[0].name = "JOINTS.DRIVE";
+  arm.devices[0].part_of = "JOINTS";
+  descriptor::Device camera;
+  camera.name = "JOINTS.IMAGE";
+  camera.part_of = "JOINTS";
+  arm.devices.insert(arm.devices.begin(), camera);
+  const auto endnode = [](Transfer transfer, const char* address) {
+    descriptor::Endnode made;
+    made.transfer = transfer;
+    made.address = address;
+    return made;
+  };
+  for (auto& configuration : arm.configurations) {
+    configuration.devices[0].device = 1;
+    configuration.devices[0].fall_backs = {endnode(Transfer::Unix, "joints2")};
+    descriptor::DeviceUse use;
+    use.device = 0;
+    use.endnode = endnode(Transfer::SharedMemory, "image");
+    use.fall_backs = {endnode(Transfer::Unix, "image2"), endnode(Transfer::Unix, "image3")};
+    configuration.devices.push_back(use);
+  }
+  arm.power_switches = {{"JOINTS", endnode(Transfer::Unix, "power"), {}}};
+  return mission;
+}
+
+TEST(DeviceArguments, OneProgramPlaysAllEndnodesOfADeviceWithTheirFallBacksAndItsSwitch) {
+  const auto mission = several_endnodes();
+  const auto made = device_arguments(mission, mission.devices[0]);
+  ASSERT_TRUE(made) << made.error();
+  EXPECT_EQ(made->address().address, "joints") << "the one with the actuator drives its world";
+  EXPECT_EQ(made->settings.endnode, "DRIVE");
+  ASSERT_EQ(made->settings.fall_backs.size(), 1U);
+  EXPECT_EQ(made->settings.fall_backs[0].address, "joints2");
+  ASSERT_EQ(made->settings.further.size(), 1U);
+  EXPECT_EQ(made->settings.further[0].name, "IMAGE");
+  EXPECT_EQ(made->settings.further[0].addresses.size(), 3U);
+  ASSERT_TRUE(made->settings.power);
+  const std::vector<std::string> expected{"--fall-back", "unix=joints2",
+                                          "--endnode",   "DRIVE",
+                                          "--further",   "IMAGE,little,shared_memory=image,unix=image2,unix=image3",
+                                          "--power",     "unix=power"};
+  const auto words = made->arguments();
+  ASSERT_GE(words.size(), expected.size());
+  EXPECT_TRUE(std::equal(expected.rbegin(), expected.rend(), words.rbegin()));
+}
+
+TEST(DeviceArguments, TwoActuatorsInOneDeviceAreTooMany) {
+  auto mission = several_endnodes();
+  mission.subsystems[0].subsystem.devices[0].actuator = true;
+  const auto made = device_arguments(mission, mission.devices[0]);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().find("several endnodes with actuators"), std::string::npos);
+}
+
 TEST(DeviceArguments, IsRefusedInWordsWhereConfigurationsDisagreeOrNoneUsesIt) {
   auto mission = a_mission();
   mission.subsystems[0].subsystem.configurations[1].devices[0].endnode.byte_order = descriptor::ByteOrder::Little;

@@ -54,8 +54,58 @@ struct Options {
   std::int64_t stop_within_ms{0};
   Transfer enable_transfer{Transfer::SharedMemory};
   std::string enable_address;
+  std::vector<std::string> fall_backs;
+  std::string endnode;
+  std::vector<std::string> further;
+  std::string power;
   std::vector<std::string> settings;
 };
+
+/// TRANSFER=ADDRESS. No address holds a comma or an equals sign (`read_configuration.cpp`).
+std::optional<FlowAddress> address_in(std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == text.npos) return std::nullopt;
+  const auto transfer = from_text<Transfer>(text.substr(0, equals));
+  if (!transfer) return std::nullopt;
+  return FlowAddress{*transfer, std::string{text.substr(equals + 1)}};
+}
+
+/// NAME,BYTE_ORDER,TRANSFER=ADDRESS,...
+std::optional<FurtherEndnode> endnode_in(std::string_view text) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const auto comma = text.find(',');
+    parts.push_back(text.substr(0, comma));
+    if (comma == text.npos) break;
+    text.remove_prefix(comma + 1);
+  }
+  const auto order = parts.size() < 3 ? byte_orders.end() : byte_orders.find(std::string{parts[1]});
+  if (order == byte_orders.end()) return std::nullopt;
+  FurtherEndnode found{std::string{parts[0]}, {}, order->second};
+  for (std::size_t i = 2; i < parts.size(); ++i) {
+    auto address = address_in(parts[i]);
+    if (!address) return std::nullopt;
+    found.addresses.push_back(std::move(*address));
+  }
+  return found;
+}
+
+/// False: one of them is none.
+bool add_endnodes(const Options& options, SimulatedDevice::Settings& settings) {
+  for (const std::string& text : options.fall_backs) {
+    auto address = address_in(text);
+    if (!address) return false;
+    settings.fall_backs.push_back(std::move(*address));
+  }
+  settings.endnode = options.endnode;
+  for (const std::string& text : options.further) {
+    auto endnode = endnode_in(text);
+    if (!endnode) return false;
+    settings.further.push_back(std::move(*endnode));
+  }
+  if (!options.power.empty()) settings.power = address_in(options.power);
+  return options.power.empty() || settings.power.has_value();
+}
 
 /// An exit code when the program is to end here.
 std::optional<int> read_options(int argc, char** argv, const char* name, Options& options) {
@@ -72,6 +122,10 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
   app.add_option("--enable-transfer", options.enable_transfer, "Means of transfer of the second inhibit")
       ->transform(CLI::CheckedTransformer{transfers()});
   app.add_option("--enable-address", options.enable_address, "Its address; without one there is none");
+  app.add_option("--fall-back", options.fall_backs, "TRANSFER=ADDRESS of another way to the same frames");
+  app.add_option("--endnode", options.endnode, "Name of its endnode, where it has several");
+  app.add_option("--further", options.further, "Another endnode: NAME,BYTE_ORDER,TRANSFER=ADDRESS and its fall-backs");
+  app.add_option("--power", options.power, "TRANSFER=ADDRESS of its power switch; without one it has power");
   app.add_option("--set", options.settings, "NAME=VALUE, carried out at the start");
   try {
     app.parse(argc, argv);
@@ -167,6 +221,10 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
                                      .stop_within = std::chrono::milliseconds{options.stop_within_ms}};
   if (!options.enable_address.empty()) settings.enable = {options.enable_transfer, options.enable_address};
   if (!realtime_permitted()) settings.enable_limit = enable_limit_reduced;
+  if (!add_endnodes(options, settings)) {
+    std::cerr << name << ": an endnode is TRANSFER=ADDRESS\n";
+    return 1;
+  }
   const auto device = make(flows, {options.transfer, options.address}, settings);
   ControlSocket control;
   if (const auto ready = prepare(*device, control, options); !ready) {

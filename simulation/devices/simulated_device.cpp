@@ -63,7 +63,25 @@ Result<> SimulatedDevice::plug() {
   if (settings_.enable && enable_flow_ == nullptr) {
     HIROSCO_TRY_LET(enable_flow_, flows_.open(*settings_.enable, FlowSide::Device));
   }
-  HIROSCO_TRY_LET(flow_, flows_.open(address_, FlowSide::Device));
+  if (settings_.power && !switch_) {
+    HIROSCO_TRY_LET(auto flow, flows_.open(*settings_.power, FlowSide::Device));
+    switch_.emplace(std::move(flow));
+    had_power_ = false;
+  }
+  return open_all();
+}
+
+Result<> SimulatedDevice::open_all() {
+  std::vector<FlowAddress> addresses{address_};
+  addresses.insert(addresses.end(), settings_.fall_backs.begin(), settings_.fall_backs.end());
+  HIROSCO_TRY_LET(auto flow, EndnodeWays::open(flows_, std::move(addresses)));
+  std::vector<FurtherExchange> further;
+  for (const FurtherEndnode& described : settings_.further) {
+    HIROSCO_TRY_LET(auto ways, EndnodeWays::open(flows_, described.addresses));
+    further.emplace_back(described, std::move(ways));
+  }
+  flow_ = std::move(flow);
+  further_ = std::move(further);
   return ok();
 }
 
@@ -71,6 +89,7 @@ void SimulatedDevice::step(TimePoint now) {
   const bool first = !std::exchange(started_, true);
   if (!first) forgive_pause(now);
   now_ = now;
+  follow_power(now);
   receive_enable(now);
   const bool exchanged = receive(now);
   // The first exchange moves the world by a cycle, as all that follow do.
@@ -90,7 +109,49 @@ void SimulatedDevice::step(TimePoint now) {
   if (due > 0 || exchanged) answer(now);
   send_due(now);
   answer_enable();
+  exchange_further();
 }
+
+/// Without power it hears nothing and moves nothing; it comes back knowing nothing of what was before.
+void SimulatedDevice::follow_power(TimePoint now) noexcept {
+  if (!switch_) return;
+  switch_->step(now);
+  const bool has = switch_->on();
+  if (std::exchange(had_power_, has) == has) return;
+  mode_ = DeviceMode::Off;
+  epoch_ = sequence_ = 0;
+  flags_ = 0;
+  enable_.reset();
+  enable_asked_.reset();
+  for (FurtherExchange& each : further_) each.forget();
+  output_ = settings_.stop == Stop::Drop ? DeviceOutput::Off : DeviceOutput::Holding;
+  last_.size = 0;
+  delayed_count_ = 0;
+}
+
+void SimulatedDevice::exchange_further() noexcept {
+  for (FurtherExchange& each : further_) {
+    std::array<std::byte, max_device_frame_octets> buffer;
+    const auto command = each.hear(buffer);
+    if (!command || !powered()) continue;
+    // One that was not taken is not answered, so that its subsystem hears of it.
+    if (command->mode == DeviceMode::Active &&
+        !take_at(each.name(), OctetReader{command->payload, each.byte_order()})) {
+      ++damaged_commands_;
+      continue;
+    }
+    std::array<std::byte, max_device_payload_octets> payload;
+    OctetWriter writer{payload, each.byte_order()};
+    write_sensors_at(each.name(), writer);
+    if (now_ >= silent_until_) each.answer(writer.written(), flags_);
+  }
+}
+
+Result<> SimulatedDevice::take_at(std::string_view, OctetReader payload) noexcept {
+  return payload.remaining() == 0 ? ok() : fail(ErrorCode::Malformed, "this endnode takes nothing");
+}
+
+void SimulatedDevice::write_sensors_at(std::string_view, OctetWriter&) noexcept {}
 
 TimePoint SimulatedDevice::next_wake() const noexcept {
   if (!started_) return now_;
@@ -98,6 +159,7 @@ TimePoint SimulatedDevice::next_wake() const noexcept {
   if (mode_ != DeviceMode::Off && !watchdog_tripped()) wake = std::min(wake, watchdog_at_);
   if (output_ == DeviceOutput::Active && settings_.enable) wake = std::min(wake, enable_until_);
   if (delayed_count_ > 0) wake = std::min(wake, delayed_[delayed_first_].due);
+  if (switch_) wake = std::min(wake, switch_->off_at());
   return wake;
 }
 
@@ -107,7 +169,7 @@ bool SimulatedDevice::receive(TimePoint now) noexcept {
   std::array<std::byte, max_device_frame_octets> buffer;
   const auto received = flow_->receive(buffer);
   peer_gone_ = !received && received.error().code == ErrorCode::Unavailable;
-  if (!received || received->flow != Flow::New) return false;
+  if (!received || received->flow != Flow::New || !powered()) return false;
   const auto command = read_command(Octets{buffer}.first(std::min(received->octets, buffer.size())));
   if (!command) {
     ++damaged_commands_;
@@ -152,7 +214,7 @@ void SimulatedDevice::receive_enable(TimePoint now) noexcept {
   std::array<std::byte, max_device_frame_octets> buffer;
   const auto received = enable_flow_->receive(buffer);
   // Unplugged it hears nothing. The flow stays open: its other end is never opened a second time.
-  if (!received || received->flow != Flow::New || flow_ == nullptr) return;
+  if (!received || received->flow != Flow::New || flow_ == nullptr || !powered()) return;
   const auto command = read_enable_command(Octets{buffer}.first(std::min(received->octets, buffer.size())));
   if (!command) {
     ++damaged_commands_;
@@ -247,7 +309,7 @@ std::int64_t SimulatedDevice::due_cycles(TimePoint now, bool exchanged) noexcept
 
 void SimulatedDevice::answer(TimePoint now) noexcept {
   if (now >= frozen_until_ || last_.size == 0) compose(last_);
-  if (flow_ == nullptr || now < silent_until_) return;
+  if (flow_ == nullptr || now < silent_until_ || !powered()) return;
   if (delayed_count_ == delayed_.size()) return;
   Frame& frame = delayed_[(delayed_first_ + delayed_count_) % delayed_.size()];
   frame = last_;
@@ -287,14 +349,17 @@ Result<> SimulatedDevice::fault(std::string_view line) {
 
 std::string SimulatedDevice::truth() const {
   const double cycle_s = seconds(settings_.cycle);
-  return fmt::format("{} world_s={:.4f} obeyed_s={:.4f}", do_truth(), static_cast<double>(cycles_) * cycle_s,
-                     static_cast<double>(obeyed_cycles_) * cycle_s);
+  return fmt::format("{} world_s={:.4f} obeyed_s={:.4f}{}", do_truth(), static_cast<double>(cycles_) * cycle_s,
+                     static_cast<double>(obeyed_cycles_) * cycle_s,
+                     switch_ ? fmt::format(" powered={}", switch_->on() ? 1 : 0) : "");
 }
 
 void SimulatedDevice::heal() noexcept {
   silent_until_ = frozen_until_ = {};
   delay_ = {};
   corrupt_frames_ = 0;
+  if (flow_ != nullptr) flow_->heal();
+  for (FurtherExchange& each : further_) each.ways().heal();
   do_heal();
 }
 
@@ -307,6 +372,7 @@ Result<> SimulatedDevice::apply_fault(const Words& words) {
     if (what == "plug") return plug();
     if (what != "unplug") return ok();
     flow_.reset();
+    further_.clear();
     enable_.reset();
     delayed_count_ = 0;
     return ok();
@@ -326,7 +392,27 @@ Result<> SimulatedDevice::apply_fault(const Words& words) {
     corrupt_frames_ = static_cast<std::uint32_t>(frames);
     return ok();
   }
+  if (what == "way") return fault_of_way(flow_.get(), words, 1);
+  if (what == "endnode") return fault_of_way(ways_of(words[1]), words, 2);
   return do_fault(words);
+}
+
+EndnodeWays* SimulatedDevice::ways_of(std::string_view endnode) noexcept {
+  if (endnode == settings_.endnode) return flow_.get();
+  const auto found = std::ranges::find(further_, endnode, &FurtherExchange::name);
+  return found != further_.end() ? &found->ways() : nullptr;
+}
+
+Result<> SimulatedDevice::fault_of_way(EndnodeWays* ways, const Words& words, std::size_t at) {
+  if (ways == nullptr) return fail(ErrorCode::NotFound, "no such endnode, or it is unplugged");
+  const bool counted = words[at + 1] == "corrupt";
+  HIROSCO_TRY(words.expect(at + (counted ? 3 : 2)));
+  HIROSCO_TRY_LET(const double way, words.number(at, 0, static_cast<double>(ways->count()) - 1));
+  double frames = 0;
+  if (counted) {
+    HIROSCO_TRY_LET(frames, words.number(at + 2, 0, 1e9));
+  }
+  return ways->fault(static_cast<std::size_t>(way), words[at + 1], static_cast<std::uint32_t>(frames));
 }
 
 }  // namespace hirosco::simulation

@@ -17,6 +17,8 @@
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
+#include "simulation/devices/further_endnode.hpp"
+#include "simulation/devices/simulated_switch.hpp"
 
 namespace hirosco::simulation {
 
@@ -72,6 +74,10 @@ class SimulatedDevice {
     Duration stop_within{0};  ///< of Stop::Controlled
     std::optional<FlowAddress> enable{};  ///< endnode of its second inhibit; none: the subsystem's frames suffice
     Duration enable_limit{hirosco::enable_limit};  ///< an older enable command counts as withdrawn
+    std::vector<FlowAddress> fall_backs{};  ///< other ways to the same frames
+    std::string endnode{};  ///< name of the one that the frames are of, where the device has several; empty: it has one
+    std::vector<FurtherEndnode> further{};  ///< the others
+    std::optional<FlowAddress> power{};  ///< endnode of its power switch; none: it has power always
   };
   struct Injection {
     TimePoint at{};
@@ -88,6 +94,7 @@ class SimulatedDevice {
       FaultLine{"corrupt 5", "the next 5 frames are damaged"},
       FaultLine{"delay 20", "every frame 20 ms late"},
       FaultLine{"heal", "all well again"},
+      FaultLine{"way 0 silent", "one way to it: unplug, plug, silent, deaf, corrupt N, heal; 1 is the first fall-back"},
   };
   static constexpr std::array<FaultLine, 0> fault_lines{};
 
@@ -108,6 +115,7 @@ class SimulatedDevice {
 
   /// Injects a fault from one line of text and records it with the time of the last step:
   ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | heal
+  ///   way N WHAT | endnode NAME N WHAT   (WHAT: unplug | plug | silent | deaf | corrupt FRAMES | heal; N: 0 preferred, 1 first fall-back)
   /// and what the device adds; heal ends all that was injected, but plugs nothing in. InvalidArgument, OutOfRange: nothing was done.
   [[nodiscard]] Result<> fault(std::string_view line);
   [[nodiscard]] const std::vector<Injection>& injections() const noexcept { return injections_; }
@@ -115,6 +123,8 @@ class SimulatedDevice {
   [[nodiscard]] std::uint16_t flags() const noexcept { return flags_; }
   [[nodiscard]] bool watchdog_tripped() const noexcept { return (flags_ & device_flag::watchdog_tripped) != 0; }
   [[nodiscard]] DeviceOutput output() const noexcept { return output_; }
+  /// False: its power switch is off. It hears and says nothing, and what moves has brakes or nothing.
+  [[nodiscard]] bool powered() const noexcept { return !switch_ || switch_->on(); }
   /// True while payloads of commands reach the motors.
   [[nodiscard]] bool active() const noexcept { return output_ == DeviceOutput::Active; }
   /// Cycles that the world has moved, and how many of them the own clock drove.
@@ -137,6 +147,9 @@ class SimulatedDevice {
   /// Of Stop::Controlled, while output() is Stopping: what is left of its time.
   [[nodiscard]] Duration stop_left() const noexcept { return stop_left_; }
   [[nodiscard]] std::endian byte_order() const noexcept { return settings_.byte_order; }
+  /// As take() and write_sensors(), at its further endnodes by their names: one takes and says nothing unless the device does.
+  [[nodiscard]] virtual Result<> take_at(std::string_view endnode, OctetReader payload) noexcept;
+  virtual void write_sensors_at(std::string_view endnode, OctetWriter& payload) noexcept;
 
  private:
   struct Frame {
@@ -158,6 +171,11 @@ class SimulatedDevice {
   /// Which stops it has.
   [[nodiscard]] virtual bool can(Stop stop) const noexcept { return stop == Stop::Drop; }
 
+  [[nodiscard]] Result<> open_all();
+  void exchange_further() noexcept;
+  void follow_power(TimePoint now) noexcept;
+  [[nodiscard]] Result<> fault_of_way(EndnodeWays* ways, const Words& words, std::size_t at);
+  [[nodiscard]] EndnodeWays* ways_of(std::string_view endnode) noexcept;
   [[nodiscard]] bool receive(TimePoint now) noexcept;
   [[nodiscard]] bool accept(const DeviceCommand& command, TimePoint now) noexcept;
   void receive_enable(TimePoint now) noexcept;
@@ -177,8 +195,11 @@ class SimulatedDevice {
   FlowFactory& flows_;
   FlowAddress address_;
   Settings settings_;
-  std::unique_ptr<DataFlow> flow_;
+  std::unique_ptr<EndnodeWays> flow_;
   std::unique_ptr<DataFlow> enable_flow_;
+  std::vector<FurtherExchange> further_;
+  std::optional<SimulatedSwitch> switch_;
+  bool had_power_{true};
 
   bool peer_gone_{false};
   bool started_{false};

@@ -42,6 +42,10 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
     watched.stop_within = device.stop_within;
     member.devices.push_back(std::move(watched));
   }
+  for (const descriptor::PowerSwitch& power : described.subsystem.power_switches) {
+    HIROSCO_TRY_LET(auto flow, parts_.flows.open({power.endnode.transfer, power.endnode.address}, FlowSide::Subsystem));
+    member.power.add(std::move(flow));
+  }
   const LockGuard lock{mutex_};
   findings_.reserve(most_findings);
   members_.push_back(std::move(member));
@@ -200,10 +204,12 @@ TimePoint Guard::step(TimePoint now) {
     member.end_permission(watched_);
     for (WatchedDevice& device : member.devices) {
       device.hear();
-      const bool at_rest = device.last.output == DeviceOutput::Off || device.last.output == DeviceOutput::Holding;
-      if (!member.released && device.knows() && at_rest && !device.stopped) device.stopped = now - stop_begun_;
+      // What has no power moves nothing, and cannot say so.
+      const bool still = device.rests() || (!member.power.none() && member.power.said() == power_off);
+      if (!member.released && still && !device.stopped) device.stopped = now - stop_begun_;
       device.tell(member.released && !supervisor_still_, member.epoch);
     }
+    member.drive_power(watched_);
     if (member.doomed) judge_doomed(member, watched_);
   }
   if (stops_ended_ != stops_) follow_stop(now);

@@ -15,7 +15,7 @@
 #include "supervisor/guard/guarded_member.hpp"
 
 /// What stops actuators, apart from everything else of the supervisor (docs/adr/0018): it holds every permit page and the
-/// second inhibit of every device that has one, watches that cycles and service loops move, takes the processor from one
+/// second inhibit and the power switch of every device that has one, watches that cycles and service loops move, takes the processor from one
 /// that spins, and ends whoever does not come back. It needs no telemetry, queue, disk, mode or cycle, and it runs in a
 /// thread of its own above all cycles; so it stops the craft although the rest of the supervisor stands still.
 /// What else stops one: in its own cycle the reasons of `hirosco/subsystem/pages/pages.hpp` (Inhibition), carried out by `write_outputs()` of
@@ -58,8 +58,8 @@ class Guard {
   explicit Guard(Parts parts) : parts_{std::move(parts)} {}
 
   // --- the supervisor's loop ----------------------------------------------------------------------------------------
-  /// One of the mission; opens the second inhibits of its devices. A spared one (the ground link) is fenced only with its
-  /// network, never by stop_all(). Error: a device's enable endnode cannot be opened.
+  /// One of the mission; opens the second inhibits and power switches of its devices. A spared one (the ground link) is fenced only with its
+  /// network, never by stop_all(). Error: one of them cannot be opened.
   Result<> add(const descriptor::MissionSubsystem& described, bool spared);
   /// It was added: who was not is not to be started.
   [[nodiscard]] bool holds(std::uint16_t apid) const;

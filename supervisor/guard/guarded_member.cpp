@@ -30,6 +30,10 @@ bool WatchedDevice::knows() const noexcept {
   return heard && static_cast<std::int32_t>(last.sequence - fenced_at_sequence) > 0;
 }
 
+bool WatchedDevice::rests() const noexcept {
+  return knows() && (last.output == DeviceOutput::Off || last.output == DeviceOutput::Holding);
+}
+
 void WatchedDevice::hear() noexcept {
   std::array<std::byte, enable_frame_octets> frame;
   const auto received = flow->receive(frame);
@@ -133,6 +137,29 @@ void GuardedMember::take_realtime(Taken what) noexcept {
   if (what == Taken::All) grip->take_realtime();
   else grip->take_loops_realtime();
   taken = std::max(taken, what);
+}
+
+// --- power -------------------------------------------------------------------------------------------------------------
+
+void GuardedMember::drive_power(TimePoint now) noexcept {
+  if (power.none()) return;
+  power.step(wants_power(now));
+  if (permit != nullptr) permit->powered.store(power.said(), std::memory_order_release);
+}
+
+bool GuardedMember::wants_power(TimePoint now) noexcept {
+  const bool lives = vital != nullptr && !killed;
+  if (lives) {
+    ended.reset();
+    const auto in = state();
+    // A page that says nothing is no reason to take the power from a brake: its member is being ended.
+    return !in || (*in != State::Offline && *in != State::SoftwareInit && *in != State::SoftwareDeinit);
+  }
+  if (!power.told_on()) return false;
+  if (!ended) ended = now;
+  // What moves is brought to rest first: without power no device could carry out the stop that it declares.
+  const bool rests = !devices.empty() && std::ranges::all_of(devices, &WatchedDevice::rests);
+  return !rests && now - *ended < stop_limit();
 }
 
 // --- a stop ------------------------------------------------------------------------------------------------------------

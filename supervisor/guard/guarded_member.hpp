@@ -12,6 +12,7 @@
 #include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
+#include "supervisor/guard/power.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 
 /// What the guard holds of one member, and what it reads from it. Thread: under the guard's mutex.
@@ -48,6 +49,8 @@ struct WatchedDevice {
   std::optional<Duration> stopped;
   /// It has answered a command that came after the newest fence.
   [[nodiscard]] bool knows() const noexcept;
+  /// It knows, and moves nothing.
+  [[nodiscard]] bool rests() const noexcept;
   void hear() noexcept;
   void tell(bool enabled, std::uint32_t epoch) noexcept;
 };
@@ -85,6 +88,9 @@ struct GuardedMember {
   std::uint64_t settled{0};  ///< the stop in which it had stopped and was let go again
   bool stop_killed{false};  ///< by the present stop: nobody is ended twice for one
   std::vector<WatchedDevice> devices;
+  // power
+  PowerSwitches power;
+  std::optional<TimePoint> ended;  ///< its process was gone then, and its devices had power
 
   [[nodiscard]] std::uint16_t apid() const noexcept { return described->subsystem.id; }
   [[nodiscard]] std::optional<State> state() const noexcept;
@@ -100,6 +106,10 @@ struct GuardedMember {
   /// A permission is for one stay in Operational: it ends with it.
   void end_permission(TimePoint now) noexcept;
   void take_realtime(Taken what) noexcept;
+
+  /// Its devices have power from Hardware-Init to Hardware-Deinit, and for their declared stop when its process is gone.
+  void drive_power(TimePoint now) noexcept;
+  [[nodiscard]] bool wants_power(TimePoint now) noexcept;
 
   [[nodiscard]] bool has_stopped() const noexcept;
   /// Its own word: that of its page.

@@ -18,6 +18,7 @@
 #include "hirosco/data_transfer/control/stream_frame.hpp"
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/data_transfer/device/enable_frame.hpp"
+#include "hirosco/data_transfer/device/power_frame.hpp"
 #include "hirosco/data_transfer/device/shared_memory_flow.hpp"
 #include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/link/loaned_link.hpp"
@@ -110,7 +111,8 @@ TEST(InterfacePages, VitalPage) {
                                  {inhibited_by_device, "device"},
                                  {inhibited_by_author, "author"},
                                  {inhibited_by_failure, "failure"},
-                                 {inhibited_by_supervisor, "supervisor"}});
+                                 {inhibited_by_supervisor, "supervisor"},
+                                 {inhibited_by_fall_back, "fall_back"}});
   const CheckedWord three{3};
   std::uint32_t raw;
   std::memcpy(&raw, &three, sizeof raw);
@@ -121,8 +123,9 @@ TEST(InterfacePages, PermitPage) {
   expect_octets("permit page",
                 {HIROSCO_PLACE(PermitPage, magic), HIROSCO_PLACE(PermitPage, version), HIROSCO_PLACE(PermitPage, epoch),
                  HIROSCO_PLACE(PermitPage, stop), HIROSCO_PLACE(PermitPage, go), HIROSCO_PLACE(PermitPage, mode_epoch),
-                 HIROSCO_PLACE(PermitPage, heartbeat), HIROSCO_PLACE(PermitPage, stopped_at_cycle)});
-  EXPECT_EQ(sizeof(PermitPage), 48U);
+                 HIROSCO_PLACE(PermitPage, heartbeat), HIROSCO_PLACE(PermitPage, stopped_at_cycle),
+                 HIROSCO_PLACE(PermitPage, powered)});
+  EXPECT_EQ(sizeof(PermitPage), 56U);
   for (const Row& row : table("numbers: permission words"))
     EXPECT_EQ(number_of(row.at(1)), permission_word(static_cast<std::uint32_t>(number_of(row[0])))) << row[0];
 }
@@ -283,10 +286,13 @@ TEST(InterfacePages, CodesAndWords) {
                                  {of(DeviceLoss::Damaged), "Damaged"},
                                  {of(DeviceLoss::WrongSize), "WrongSize"},
                                  {of(DeviceLoss::Repeated), "Repeated"},
-                                 {of(DeviceLoss::LetGo), "LetGo"}});
+                                 {of(DeviceLoss::LetGo), "LetGo"},
+                                 {of(DeviceLoss::NotOpened), "NotOpened"}});
   descriptor::Subsystem bare;
   bare.devices.emplace_back().name = "NAME";
-  bare.configurations.emplace_back().requires_.emplace_back().name = "NAME";
+  descriptor::Configuration& used = bare.configurations.emplace_back();
+  used.requires_.emplace_back().name = "NAME";
+  used.devices.emplace_back().fall_backs.emplace_back();
   descriptor::add_framework_events(bare);
   std::map<std::uint64_t, std::string> events, severities;
   for (const descriptor::Event& event : bare.events) {
@@ -391,6 +397,17 @@ TEST(InterfacePages, Devices) {
           buffer, {.output = DeviceOutput::Holding, .flags = 0x0B0A, .epoch = 0x04030201, .sequence = 0x08070605})
           .value(),
       {0x45, 0x48, 0x4C, 3, 0x0A, 0x0B, 1, 2, 3, 4, 5, 6, 7, 8});
+  expect_octets("power frame", {{"magic", {0, 2}},
+                                {"kind", {2, 1}},
+                                {"on", {3, 1}},
+                                {"off_after", {4, 2}},
+                                {"sequence", {6, 4}},
+                                {"error_control", {10, 2}}});
+  using std::chrono_literals::operator""ms;
+  expect_frame(write_power_command(buffer, {.on = true, .off_after = 0x0203ms, .sequence = 0x08070605}).value(),
+               {0x50, 0x48, 0x96, 1, 3, 2, 5, 6, 7, 8});
+  expect_frame(write_power_status(buffer, {.on = false, .sequence = 0x08070605}).value(),
+               {0x50, 0x48, 0xE9, 0, 0, 0, 5, 6, 7, 8});
 }
 
 /// Of the memory itself: how it is laid out stands in the flow's source only.

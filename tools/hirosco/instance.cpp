@@ -52,8 +52,12 @@ struct Address {
   for (const auto& member : mission.subsystems) {
     for (const auto& device : member.subsystem.devices)
       if (device.enable) note(*device.enable);
+    for (const auto& power : member.subsystem.power_switches) note(power.endnode);
     for (const auto& configuration : member.subsystem.configurations)
-      for (const auto& use : configuration.devices) note(use.endnode);
+      for (const auto& use : configuration.devices) {
+        note(use.endnode);
+        std::ranges::for_each(use.fall_backs, note);
+      }
   }
   std::ranges::sort(found);
   found.erase(std::ranges::unique(found).begin(), found.end());

@@ -41,6 +41,13 @@ void add_enumeration(Subsystem& subsystem, const char* name) {
           std::move(text)};
 }
 
+[[nodiscard]] bool has_fall_backs(const Subsystem& subsystem, std::size_t device) {
+  return std::ranges::any_of(subsystem.configurations, [&](const Configuration& configuration) {
+    return std::ranges::any_of(configuration.devices,
+                               [&](const DeviceUse& use) { return use.device == device && !use.fall_backs.empty(); });
+  });
+}
+
 /// A device may have characters in its name that an event may not.
 [[nodiscard]] std::string event_name(std::string name, const char* suffix) {
   std::ranges::replace_if(name, [](char c) { return c == '-' || c == '.'; }, '_');
@@ -86,6 +93,11 @@ void add_framework_events(Subsystem& subsystem) {
     add(event_name(subsystem.devices[i].name, "_LOST"), device_lost(i), Severity::High,
         {argument("REASON", Type::Uint8, losses_enumeration), argument("SILENT_CYCLES", Type::Uint32),
          argument("DAMAGED", Type::Uint32), argument("WRONG_SIZE", Type::Uint32)});
+  for (std::size_t i = 0; i < subsystem.devices.size(); ++i)
+    if (has_fall_backs(subsystem, i))
+      add(event_name(subsystem.devices[i].name, "_FALL_BACK"), fell_back(i), Severity::Low,
+          {argument("REASON", Type::Uint8, losses_enumeration), argument("LEFT", Type::Uint8),
+           argument("TAKEN", Type::Uint8), argument("COUNT", Type::Uint32)});
   const auto sets = required_sets(subsystem);
   for (std::size_t i = 0; i < sets.size(); ++i)
     add(event_name(sets[i], "_STALE"), set_stale(i), Severity::Medium, {argument("AGE", Type::Uint32)});

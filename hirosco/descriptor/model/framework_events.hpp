@@ -32,6 +32,10 @@ inline constexpr std::uint16_t resource_warning = 0xF007;
 [[nodiscard]] constexpr std::uint16_t set_stale(std::size_t set) noexcept {
   return static_cast<std::uint16_t>(0xF200 + set);
 }
+/// Of the device with this index, NAME_FALL_BACK; only where a configuration gives it a fall-back.
+[[nodiscard]] constexpr std::uint16_t fell_back(std::size_t device) noexcept {
+  return static_cast<std::uint16_t>(0xF300 + device);
+}
 /// Octets of the TEXT of a failure: what is longer is cut, what is shorter is filled with zeros.
 inline constexpr std::uint16_t text_octets = 64;
 }  // namespace framework_event
@@ -44,6 +48,7 @@ enum class DeviceLoss : std::uint8_t {
   WrongSize = 4,  ///< good frames came, of another size than declared
   Repeated = 5,   ///< the same frame came again and again: it answers no newer command
   LetGo = 6,      ///< its watchdog has tripped although it is commanded
+  NotOpened = 7,  ///< its data flow could not be opened
 };
 
 /// Names of the sets that any configuration requires, each once, in the order of the descriptor.
@@ -63,6 +68,7 @@ struct EnumTexts<descriptor::DeviceLoss> {
                                                                     {Damaged, "damaged frames"},
                                                                     {WrongSize, "wrong size"},
                                                                     {Repeated, "repeated frames"},
-                                                                    {LetGo, "watchdog let go"}});
+                                                                    {LetGo, "watchdog let go"},
+                                                                    {NotOpened, "not opened"}});
 };
 }  // namespace hirosco

@@ -231,9 +231,11 @@ enum class StopKind : std::uint8_t {
   Hold,  ///< keeps its position
 };
 
-/// A hardware device: its identity and frames. Declared once under <Subsystem>.
+/// What a cycle exchanges frames with: a hardware device, or one endnode of it where it has several (adr 0079). Declared once
+/// under <Subsystem>.
 struct Device {
-  std::string name;
+  std::string name;  ///< of an endnode: DEVICE.ENDNODE
+  std::string part_of;  ///< the device whose endnode it is; empty: it is a whole device
   bool actuator{false};  ///< output is gated by the framework (decision 22)
   std::vector<Field> input;  ///< device -> subsystem
   struct Output {
@@ -245,6 +247,18 @@ struct Device {
   Duration stop_within{};  ///< from the loss of the command to the stop; 0 = at once
   /// Second inhibit of an actuator, held by the supervisor's side and never handed to the subsystem; empty = none.
   std::optional<Endnode> enable;
+  Location at;
+};
+
+/// Most endnodes of one device.
+inline constexpr std::size_t max_device_endnodes = 8;
+/// Most fall-backs of one endnode.
+inline constexpr std::size_t max_fall_backs = 7;
+
+/// Switches a whole device on and off: an endnode that the supervisor's side holds and that is never handed to the subsystem.
+struct PowerSwitch {
+  std::string device;
+  Endnode endnode;
   Location at;
 };
 
@@ -261,11 +275,14 @@ struct Setting {
 /// Settings and endnode of a device in one configuration.
 struct DeviceUse {
   std::uint16_t device{};  ///< index into Subsystem::devices
-  CycleLimit silence{3, 40};  ///< cycles without a valid frame until the device counts as lost
+  CycleLimit silence{
+      3, 40};  ///< cycles without a valid frame until the device counts as lost, or its next fall-back is tried
+  std::uint32_t every{1};  ///< cycles from one frame to the next
   std::uint32_t watchdog_us{10'000};  ///< device watchdog with real-time scheduling
   std::uint32_t watchdog_reduced_us{50'000};
   std::vector<Setting> settings;  ///< for its author: DevicePortBase::setting()
   Endnode endnode;
+  std::vector<Endnode> fall_backs;  ///< in the order in which they are tried; byte order is the endnode's
   Location at;
 };
 
@@ -332,6 +349,7 @@ struct Subsystem {
   std::vector<Commands> commands;  ///< no subsystem twice
   std::vector<HousekeepingStructure> housekeeping;  ///< valid in every configuration
   std::vector<Device> devices;
+  std::vector<PowerSwitch> power_switches;  ///< at most one for each device
   std::vector<Configuration> configurations;
   CycleLimit hang{20, 200};  ///< cycles the vital page may stand still
   Resources resources;

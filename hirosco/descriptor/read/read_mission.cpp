@@ -333,8 +333,12 @@ void MissionReader::check_endnodes(const Subsystem& subsystem) {
   Problems problems{subsystem.file};
   for (const Device& device : subsystem.devices)
     if (device.enable) check_endnode(*device.enable, subsystem.name, problems);
+  for (const PowerSwitch& power : subsystem.power_switches) check_endnode(power.endnode, subsystem.name, problems);
   for (const Configuration& configuration : subsystem.configurations)
-    for (const DeviceUse& use : configuration.devices) check_endnode(use.endnode, subsystem.name, problems);
+    for (const DeviceUse& use : configuration.devices) {
+      check_endnode(use.endnode, subsystem.name, problems);
+      for (const Endnode& other : use.fall_backs) check_endnode(other, subsystem.name, problems);
+    }
   if (problems.count() != 0) subsystem_problems_.push_back(problems.take());
 }
 
@@ -364,7 +368,10 @@ void MissionReader::read_simulated_device(const xml::Element& element) {
   const Subsystem* owner = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, false);
   if (owner != nullptr && played != nullptr) {
     std::vector<std::string_view> known;
-    for (const Device& candidate : owner->devices) known.push_back(candidate.name);
+    // A simulated device plays a whole one, with all its endnodes.
+    for (const Device& candidate : owner->devices)
+      if (candidate.part_of.empty()) known.push_back(candidate.name);
+      else if (known.empty() || known.back() != candidate.part_of) known.push_back(candidate.part_of);
     if (std::ranges::find(known, played->value) == known.end())
       problems_.add(*played, "E0312", fmt::format("'{}' has no device {}", owner->name, in_quotes(played->value)),
                     did_you_mean(played->value, known));

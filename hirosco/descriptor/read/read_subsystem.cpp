@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t max_description = 4096;
 /// Each has its own copy of what the subsystem declares for all of them.
 constexpr std::size_t max_configurations = 64;
+constexpr std::size_t max_name_octets = 64;
 constexpr std::size_t max_custom_services = 64;
 
 }  // namespace
@@ -102,34 +103,71 @@ void SubsystemReader::read_hang(const xml::Element& element) {
 
 void SubsystemReader::read_device(const xml::Element& element) {
   Attributes attributes{element, problems_};
-  Device device;
+  const std::string name = attributes.name("name", NameKind::Loose);
+  const auto add_name = [&] {
+    if (!name.empty()) device_names_.add(name, place(element.at), problems_, element.name.size() + 1);
+  };
+  const bool several = std::ranges::find(element.children, "Endnode", &xml::Element::name) != element.children.end();
+  if (!several) {
+    Device device;
+    device.name = name;
+    read_frames(attributes, std::move(device));
+    return add_name();
+  }
+  add_name();
+  const auto read_one = [&](const xml::Element& child) {
+    Attributes own{child, problems_};
+    Device device;
+    device.part_of = name;
+    device.name = name + "." + own.name();
+    if (device.name.size() > max_name_octets)
+      problems_.add(
+          child, "E0114", fmt::format("'{}' is too long", device.name),
+          fmt::format("name of device and endnode have at most {} characters, with the dot", max_name_octets));
+    device_names_.add(device.name, place(child.at), problems_, child.name.size() + 1);
+    read_frames(own, std::move(device));
+  };
+  each_child(
+      element, problems_,
+      {{"Endnode", read_one, max_device_endnodes}, {"Power", [&](const auto& power) { read_power(power, name); }, 1}});
+}
+
+void SubsystemReader::read_power(const xml::Element& element, const std::string& device) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  subsystem_.power_switches.push_back({device, read_address(attributes), place(element.at)});
+}
+
+/// What a device, or an endnode of one that has several, exchanges.
+void SubsystemReader::read_frames(Attributes& attributes, Device device) {
+  const xml::Element& element = attributes.element();
   device.at = place(element.at);
-  device.name = attributes.name("name", NameKind::Loose);
   device.actuator = attributes.yes("actuator", false);
   read_stop(attributes, device);
   Unique inputs{"input field", "E0201"}, outputs{"output field", "E0201"};
-  each_child(element, problems_,
-             {{"Input",
-               [&](const xml::Element& input) {
-                 const Attributes none{input, problems_};
-                 each_child(input, problems_,
-                            {{"Field", [&](const auto& field) { read_plain_field(field, device.input, inputs); }}});
-               },
-               1},
-              {"Output",
-               [&](const xml::Element& output) {
-                 const Attributes none{output, problems_};
-                 each_child(output, problems_,
-                            {{"Field", [&](const auto& field) { read_output(field, device, outputs); }}});
-               },
-               1},
-              {"Enable", [&](const auto& enable) { read_enable(enable, device); }, 1}});
+  std::vector<Child> known{
+      {"Input",
+       [&](const xml::Element& input) {
+         const Attributes none{input, problems_};
+         each_child(input, problems_,
+                    {{"Field", [&](const auto& field) { read_plain_field(field, device.input, inputs); }}});
+       },
+       1},
+      {"Output",
+       [&](const xml::Element& output) {
+         const Attributes none{output, problems_};
+         each_child(output, problems_, {{"Field", [&](const auto& field) { read_output(field, device, outputs); }}});
+       },
+       1},
+      {"Enable", [&](const auto& enable) { read_enable(enable, device); }, 1}};
+  // Power is a whole device's.
+  if (device.part_of.empty()) known.push_back({"Power", [&](const auto& power) { read_power(power, device.name); }, 1});
+  each_child(element, problems_, known);
   if (device.input.empty() && device.output.empty())
-    problems_.add(element, "E0106", "<Device> needs a <Field> of <Input> or <Output>");
+    problems_.add(element, "E0106", fmt::format("<{}> needs a <Field> of <Input> or <Output>", element.name));
   check_octets(element, device);
   if (device.actuator && device.output.empty())
     problems_.add(element, "E0106", "an actuator needs an <Output> with at least one <Field>");
-  if (!device.name.empty()) device_names_.add(device.name, device.at, problems_, element.name.size() + 1);
   if (device.actuator && !device.enable)
     problems_.warn(device.at, "E0403", fmt::format("actuator '{}' has no second inhibit", device.name),
                    "only its subsystem keeps it from moving: add <Enable transfer=\"...\" address=\"...\"/>",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "hirosco/descriptor/model/framework_parameters.hpp"
@@ -384,6 +385,62 @@ TEST(SubsystemDescriptor, ManyProblemsEndTheReading) {
   std::string text = "<Subsystem name=\"S\" id=\"1\">";
   for (int i = 0; i < 40'000; ++i) text += "<ParamRef name=\"X\" id=\"1\" type=\"INTT8\"/>";
   EXPECT_EQ(read_text(text + "</Subsystem>").problems.size(), 200U);
+}
+
+TEST(SubsystemReader, ADeviceMayHaveSeveralEndnodesWithFallBacksAndAPowerSwitch) {
+  const auto reading = read_text(R"(<Subsystem name="S" id="10">
+    <Device name="IMAGER">
+      <Endnode name="DRIVE" actuator="yes" stop="hold"><Output><Field name="ANGLE" type="DOUBLE" safe="0"/></Output>
+        <Enable transfer="unix" address="enable"/></Endnode>
+      <Endnode name="IMAGE"><Input><Field name="PIXELS" type="UINT8" count="8"/></Input></Endnode>
+      <Power transfer="unix" address="power"/>
+    </Device>
+    <Device name="LAMP"><Output><Field name="ON" type="UINT8"/></Output><Power transfer="unix" address="lamp_power"/></Device>
+    <Configuration name="C" id="1" sampling_us="1000">
+      <Device name="IMAGER" silence="5" silence_reduced="30" watchdog_ms="20">
+        <Endnode name="IMAGE" transfer="udp" address="127.0.0.1:5001" byte_order="big" every="10" silence="40" silence_reduced="90">
+          <FallBack transfer="unix" address="image2"/>
+          <FallBack transfer="shared_memory" address="image3"/>
+        </Endnode>
+        <Endnode name="DRIVE" transfer="unix" address="drive"><Setting name="GAIN" value="3"/></Endnode>
+      </Device>
+      <Device name="LAMP"><Endnode transfer="unix" address="lamp"><FallBack transfer="unix" address="lamp2"/></Endnode></Device>
+    </Configuration>
+  </Subsystem>)");
+  ASSERT_TRUE(reading.value);
+  const Subsystem& read = *reading.value;
+  ASSERT_EQ(read.devices.size(), 3U);
+  EXPECT_EQ(read.devices[0].name, "IMAGER.DRIVE");
+  EXPECT_EQ(read.devices[0].part_of, "IMAGER");
+  EXPECT_TRUE(read.devices[0].actuator);
+  EXPECT_EQ(read.devices[0].enable->address, "enable");
+  EXPECT_EQ(read.devices[1].name, "IMAGER.IMAGE");
+  EXPECT_EQ(read.devices[2].part_of, "") << "one endnode is the simple case";
+  ASSERT_EQ(read.power_switches.size(), 2U);
+  EXPECT_EQ(read.power_switches[0].device, "IMAGER");
+  EXPECT_EQ(read.power_switches[0].endnode.address, "power");
+  EXPECT_EQ(read.power_switches[1].device, "LAMP");
+  const auto& uses = read.configurations.at(0).devices;
+  ASSERT_EQ(uses.size(), 3U);
+  EXPECT_EQ(uses[0].device, 1);
+  EXPECT_EQ(uses[0].every, 10U);
+  EXPECT_EQ(uses[0].silence.realtime, 40U);
+  EXPECT_EQ(uses[0].watchdog_us, 20'000U) << "of its device";
+  ASSERT_EQ(uses[0].fall_backs.size(), 2U);
+  EXPECT_EQ(uses[0].fall_backs[0].address, "image2");
+  EXPECT_EQ(uses[0].fall_backs[1].transfer, Transfer::SharedMemory);
+  EXPECT_EQ(uses[0].fall_backs[1].byte_order, ByteOrder::Big);
+  EXPECT_EQ(uses[1].device, 0);
+  EXPECT_EQ(uses[1].silence.realtime, 5U) << "of its device";
+  EXPECT_EQ(uses[1].settings.at(0).name, "GAIN");
+  EXPECT_EQ(uses[2].fall_backs.at(0).address, "lamp2");
+  const auto has = [&](std::uint16_t id, std::string_view name) {
+    return std::ranges::any_of(read.events, [&](const Event& event) { return event.id == id && event.name == name; });
+  };
+  EXPECT_TRUE(has(0xF100, "IMAGER_DRIVE_LOST"));
+  EXPECT_TRUE(has(0xF301, "IMAGER_IMAGE_FALL_BACK"));
+  EXPECT_TRUE(has(0xF302, "LAMP_FALL_BACK"));
+  EXPECT_EQ(read.find_event("IMAGER_DRIVE_FALL_BACK"), nullptr) << "it has none";
 }
 
 }  // namespace

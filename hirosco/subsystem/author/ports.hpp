@@ -167,6 +167,10 @@ class DevicePortBase {
   /// Flags of the newest status frame.
   [[nodiscard]] std::uint16_t flags() const noexcept { return flags_; }
   [[nodiscard]] std::uint32_t damaged_frames() const noexcept { return damaged_frames_; }
+  /// Which endnode is in use: 0 the preferred one, then its fall-backs in their order; and how often the cycle has gone over to
+  /// one in this configuration.
+  [[nodiscard]] std::uint8_t endnode() const noexcept { return endnode_; }
+  [[nodiscard]] std::uint32_t fall_backs() const noexcept { return fall_backs_; }
   /// What the configuration says of this device with <Setting name="..." value="..."/>; empty when it says nothing, and
   /// for a name that was not given to use_device(). From configure() on.
   [[nodiscard]] std::string_view setting(std::string_view name) const noexcept {
@@ -202,10 +206,21 @@ class DevicePortBase {
   bool fresh_{false};
   std::uint16_t flags_{0};
   std::uint32_t damaged_frames_{0};
+  std::uint32_t fall_backs_{0};
+  std::uint8_t endnode_{0};
 };
 
-/// Input and Output: aggregates with one member per <Field> of the device's <Input> and <Output>, in their order. A Sized
-/// member has its length from the first configuration with the device on.
+/// Of a port in whose direction the descriptor declares nothing.
+struct NoFields {};
+template <int which>
+class HasFields<NoFields, which> {
+ protected:
+  [[nodiscard]] ObjectFields fields() noexcept { return {std::span<const NativeField>{}, {}}; }
+};
+
+/// Input and Output: aggregates with one member per <Field> of the device's <Input> and <Output>, in their order, or NoFields. A
+/// Sized member has its length from the first configuration with the device on. Of a device with several endnodes each has a
+/// port of its own, use_device("DEVICE.ENDNODE", port).
 template <class Input, class Output>
 class DevicePort final : private HasFields<Input, 0>, private HasFields<Output, 1>, public DevicePortBase {
  public:

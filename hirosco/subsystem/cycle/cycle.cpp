@@ -51,6 +51,7 @@ void CycleLoop::prepare(CyclePlan plan) {
   state_ = State::PreOperational;
   first_ = true;
   inhibited_ = 0;
+  awaits_fall_back_ = false;
   count_ = 0;
   heartbeat_ = parts_.permit.heartbeat.load(std::memory_order_acquire);
   silent_cycles_ = 0;
@@ -267,7 +268,10 @@ void CycleLoop::write_outputs(TimePoint planned) noexcept {
     device.write(permitted_epoch_, active, stopping);
     device.tell(telling);
   }
-  for (LinkOutputSlot& output : plan_.outputs) output.write(planned, link_status());
+  // Old data is not sent as new: nobody else's actuator moves on it either, once it is older than its consumer takes.
+  const LinkStatus status = link_status();
+  if (awaits_fall_back_ && status != LinkStatus::Fault) return;
+  for (LinkOutputSlot& output : plan_.outputs) output.write(planned, status);
 }
 
 void CycleLoop::count_links() noexcept {

@@ -58,6 +58,7 @@ struct CyclePlan {
   std::vector<DeviceSlot> devices;
   pus::HousekeepingSampler* sampler{nullptr};
   std::vector<std::uint16_t> device_lost_events;  ///< ids, per device
+  std::vector<std::uint16_t> fell_back_events;  ///< ids, per device
   std::vector<std::uint16_t> input_stale_events;  ///< per input
 };
 
@@ -164,6 +165,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   State state_{State::PreOperational};
   bool first_{true};
   std::uint32_t inhibited_{0};
+  bool awaits_fall_back_{false};  ///< what a device said last is of before
   std::uint64_t count_{0};
   std::uint32_t entered_epoch_{0};
   std::uint32_t permitted_epoch_{0};  ///< of the permit page, as checked in this cycle

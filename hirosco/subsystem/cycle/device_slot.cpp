@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/parameter/number.hpp"
@@ -60,12 +61,13 @@ constexpr std::uint32_t longest_introduction = 40;
 }  // namespace
 
 DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::DeviceUse& use, DevicePortBase& port,
-                       std::unique_ptr<DataFlow> flow, bool realtime)
+                       std::vector<Way> ways, Duration sampling, bool realtime)
     : device_{&device},
       port_{&port},
-      flow_{std::move(flow)},
+      ways_{std::move(ways)},
       order_{endian_of(use.endnode.byte_order)},
       silence_limit_{realtime ? use.silence.realtime : use.silence.reduced},
+      every_{use.every},
       watchdog_us_{realtime ? use.watchdog_us : use.watchdog_reduced_us},
       input_layout_{layout_fields(with_lengths(port.input_layout_, device.input, port.input_))},
       output_layout_{layout_fields(with_lengths(port.output_layout_, outputs_of(device), port.output_))},
@@ -76,6 +78,9 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
   port_->fresh_ = false;
   port_->damaged_frames_ = 0;
   port_->settings_ = use.settings;
+  port_->endnode_ = taken();
+  port_->fall_backs_ = 0;
+  if (device.actuator) left_obeys_ = static_cast<std::uint32_t>(std::chrono::microseconds{watchdog_us_} / sampling) + 1;
 }
 
 std::string DeviceSlot::difference(const descriptor::Device& device, const DevicePortBase& port) {
@@ -87,21 +92,45 @@ std::string DeviceSlot::difference(const descriptor::Device& device, const Devic
 void DeviceSlot::read(bool count_silence) noexcept {
   port_->fresh_ = false;
   just_lost_ = false;
-  const auto received = flow_->receive(frame_);
+  if (std::exchange(just_fell_back_, false)) {
+    since_good_ = {};
+    hung_up_ = false;
+  }
+  if (left_obeys_cycles_ > 0) --left_obeys_cycles_;
+  const auto received = ways_[way_].flow->receive(frame_);
   if (received && received->flow == Flow::New) take_frame(Octets{frame_}.first(received->octets));
   if (port_->fresh_) {
     since_good_ = {};
     heard_ = true;
+    awaits_ = false;
     port_->alive_ = true;
     return;
   }
   if (!heard_ && !count_silence) return;
   hung_up_ = !received && heard_;
   count(since_good_.silent_cycles);
-  if (since_good_.silent_cycles == silence_limit_ || (hung_up_ && port_->alive_)) {
-    just_lost_ = port_->alive_ || !heard_;
-    port_->alive_ = false;
-  }
+  if (since_good_.silent_cycles != silence_limit_ && !(hung_up_ && port_->alive_)) return;
+  if (way_ + 1 < ways_.size()) return fall_back();
+  just_lost_ = port_->alive_ || !heard_ || awaits_;
+  awaits_ = false;
+  port_->alive_ = false;
+}
+
+/// From here on nothing counts but what answers a command that goes out by the new way.
+void DeviceSlot::fall_back() noexcept {
+  // What still listens there is told to let go; what does not has its watchdog.
+  send(DeviceMode::Off, safe_payload_);
+  left_ = taken();
+  ++way_;
+  just_fell_back_ = true;
+  awaits_ = true;
+  heard_ = false;
+  asked_ = sequence_ + 1;
+  left_obeys_cycles_ = sent_mode_ == DeviceMode::Active ? left_obeys_ : 0;
+  since_sent_ = every_;
+  port_->alive_ = false;
+  port_->endnode_ = taken();
+  ++port_->fall_backs_;
 }
 
 void DeviceSlot::take_frame(Octets frame) noexcept {
@@ -113,7 +142,8 @@ void DeviceSlot::take_frame(Octets frame) noexcept {
   }
   decode(input_layout_, status->payload, port_->input_, order_);
   // A frame that answers no newer command is a repetition: a frozen device must not look alive.
-  port_->fresh_ = status->sequence != echoed_ || !heard_;
+  const bool answers = heard_ || port_->fall_backs_ == 0 || static_cast<std::int32_t>(status->sequence - asked_) >= 0;
+  port_->fresh_ = answers && (status->sequence != echoed_ || !heard_);
   if (!port_->fresh_) count(since_good_.repeated);
   echoed_ = status->sequence;
   port_->flags_ = status->flags;
@@ -169,7 +199,7 @@ void DeviceSlot::keep_in_range(MutableOctets payload) noexcept {
 void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {
   const bool pass = active || !device_->actuator;
   active_cycles_ = active ? std::min(active_cycles_ + 1, longest_silence) : 0;
-  epoch_ = epoch;
+  const std::uint32_t before = std::exchange(epoch_, epoch);
   if (pass || told_ != nullptr) {
     port_->output_layout_.fit(port_->output_);
     const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());
@@ -179,12 +209,24 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
   passed_ = pass;
   const Octets payload = pass ? Octets{payload_}.first(safe_payload_.size()) : Octets{safe_payload_};
   const DeviceMode mode = pass ? DeviceMode::Active : stopping ? DeviceMode::Stop : DeviceMode::Off;
+  if (due(mode, before)) send(mode, payload);
+}
+
+/// Every so many cycles; what it may do is said at once.
+bool DeviceSlot::due(DeviceMode mode, std::uint32_t epoch_before) noexcept {
+  if (++since_sent_ < every_ && mode == sent_mode_ && epoch_ == epoch_before && sequence_ != 0) return false;
+  since_sent_ = 0;
+  sent_mode_ = mode;
+  return true;
+}
+
+void DeviceSlot::send(DeviceMode mode, Octets payload) noexcept {
   const auto frame = write_command(
       frame_,
       DeviceCommand{
-          .mode = mode, .epoch = epoch, .sequence = ++sequence_, .watchdog_us = watchdog_us_, .payload = payload});
+          .mode = mode, .epoch = epoch_, .sequence = ++sequence_, .watchdog_us = watchdog_us_, .payload = payload});
   // A device that does not listen is found by its silence, one cycle later: nothing to do here.
-  if (frame) static_cast<void>(flow_->send(*frame));
+  if (frame) static_cast<void>(ways_[way_].flow->send(*frame));
 }
 
 void DeviceSlot::tell(Telling what) noexcept {

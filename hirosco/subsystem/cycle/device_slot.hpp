@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/data_transfer/layout.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
@@ -19,11 +20,19 @@
 /// built by the service loop while the cycle rests; step functions run in the cycle and are bounded.
 namespace hirosco {
 
-/// A device and its data flow.
+/// A device, or one endnode of it, and its data flows: the preferred one and its fall-backs, of which one is in use (adr 0079).
+/// Who falls silent is left for the next fall-back, each once; that one is alive with its first answer to a command that was
+/// sent to it, and until then, and until the watchdog of what was left has run out, holds_back() is true.
 class DeviceSlot {
  public:
+  /// One way to the device.
+  struct Way {
+    std::unique_ptr<DataFlow> flow;
+    std::uint8_t endnode{0};  ///< 0: the preferred one, then the fall-backs in their order
+  };
+  /// `ways`: at least one, in their order; `sampling`: of the cycle.
   DeviceSlot(const descriptor::Device& device, const descriptor::DeviceUse& use, DevicePortBase& port,
-             std::unique_ptr<DataFlow> flow, bool realtime);
+             std::vector<Way> ways, Duration sampling, bool realtime);
   /// What of a port's C++ types differs from the device's declaration; empty when nothing does.
   [[nodiscard]] static std::string difference(const descriptor::Device& device, const DevicePortBase& port);
   [[nodiscard]] const descriptor::Device& device() const noexcept { return *device_; }
@@ -40,6 +49,16 @@ class DeviceSlot {
     std::uint32_t let_go{0};
   };
   [[nodiscard]] Loss loss() const noexcept;
+  /// True in the one cycle in which it went over to a fall-back; loss() tells why until the next read().
+  [[nodiscard]] bool just_fell_back() const noexcept { return just_fell_back_; }
+  /// No actuator of the subsystem may move: what it would move on is old, or what was left may still obey.
+  [[nodiscard]] bool holds_back() const noexcept { return awaits_ || left_obeys_cycles_ > 0; }
+  /// The fall-back that is in use has not answered yet: what its fields say is of before.
+  [[nodiscard]] bool awaits() const noexcept { return awaits_; }
+  /// Which endnode was left last, and which is in use.
+  [[nodiscard]] std::uint8_t left() const noexcept { return left_; }
+  [[nodiscard]] std::uint8_t taken() const noexcept { return ways_[way_].endnode; }
+  [[nodiscard]] std::uint32_t times_fallen_back() const noexcept { return port_->fall_backs_; }
   /// Takes the newest status frame into the port. `count_silence`: whether silence counts before a first frame came.
   void read(bool count_silence) noexcept;
   /// Sends the author's output if `active`, else the declared safe values.
@@ -54,15 +73,25 @@ class DeviceSlot {
 
  private:
   void take_frame(Octets frame) noexcept;
+  void fall_back() noexcept;
+  [[nodiscard]] bool due(DeviceMode mode, std::uint32_t epoch_before) noexcept;
+  void send(DeviceMode mode, Octets payload) noexcept;
   /// No output leaves its declared range.
   void keep_in_range(MutableOctets payload) noexcept;
   static void count(std::uint32_t& cycles) noexcept;
 
   const descriptor::Device* device_;
   DevicePortBase* port_;
-  std::unique_ptr<DataFlow> flow_;
+  std::vector<Way> ways_;
+  std::size_t way_{0};  ///< in use
+  std::uint8_t left_{0};
   std::endian order_;
   std::uint32_t silence_limit_;
+  std::uint32_t every_;
+  std::uint32_t since_sent_{0};  ///< cycles
+  DeviceMode sent_mode_{DeviceMode::Off};
+  std::uint32_t left_obeys_{0};  ///< cycles in which the watchdog of a way that was left runs out; 0: no actuator
+  std::uint32_t left_obeys_cycles_{0};  ///< of them still to come
   std::uint32_t watchdog_us_;
   std::vector<LayoutField> input_layout_;
   std::vector<LayoutField> output_layout_;
@@ -79,6 +108,9 @@ class DeviceSlot {
   std::uint32_t active_cycles_{0};  ///< in a row in which outputs were to reach the actuators
   bool heard_{false};
   bool just_lost_{false};
+  bool just_fell_back_{false};
+  bool awaits_{false};  ///< the first answer by a fall-back
+  std::uint32_t asked_{0};  ///< sequence of the first command sent to it
 };
 
 }  // namespace hirosco

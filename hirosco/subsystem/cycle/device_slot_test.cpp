@@ -55,7 +55,12 @@ struct MotorSlot : ::testing::Test {
   std::unique_ptr<DataFlow> open(FlowSide side) {
     return std::move(flows.open({Transfer::SharedMemory, "motor"}, side)).value();
   }
-  DeviceSlot slot(bool realtime = true) { return DeviceSlot{device, use, port, open(FlowSide::Subsystem), realtime}; }
+  std::vector<DeviceSlot::Way> one_way() {
+    std::vector<DeviceSlot::Way> ways;
+    ways.push_back({open(FlowSide::Subsystem), 0});
+    return ways;
+  }
+  DeviceSlot slot(bool realtime = true) { return DeviceSlot{device, use, port, one_way(), 1ms, realtime}; }
   void say(std::uint32_t sequence, std::uint16_t flags = 0, std::array<std::byte, 2> angle = {}) {
     std::array<std::byte, max_device_frame_octets> buffer{};
     static_cast<void>(motor->send(
@@ -114,7 +119,7 @@ TEST_F(MotorSlot, AnOutputWithARangeThatIsNoNumberGoesOutAsItsSafeValue) {
                    {.field = field("BIAS", Type::Float), .safe = {}}};
   for (auto& output : device.output) output.field.maximum = 2;
   DevicePort<Sensed, Pushed> pushing;
-  DeviceSlot made{device, use, pushing, open(FlowSide::Subsystem), true};
+  DeviceSlot made{device, use, pushing, one_way(), 1ms, true};
   pushing.output() = Pushed{.force = {std::nan(""), 7}, .bias = std::numeric_limits<float>::quiet_NaN()};
   made.write(5, true, false);
   const DeviceCommand command = heard();

@@ -25,10 +25,20 @@ void CycleLoop::read_inputs(TimePoint started) noexcept {
     }
     input_was_stale_[i] = stale ? 1 : 0;
   }
+  // Passes by itself: with the first answer of the fall-back, which is no old data.
+  inhibited_ &= ~static_cast<std::uint32_t>(inhibited_by_fall_back);
+  awaits_fall_back_ = false;
   for (std::size_t i = 0; i < plan_.devices.size(); ++i) {
     DeviceSlot& device = plan_.devices[i];
     device.read(controlling());
-    if (!device.alive() && controlling()) inhibit(inhibited_by_device);
+    awaits_fall_back_ = awaits_fall_back_ || device.awaits();
+    if (device.holds_back()) inhibit(inhibited_by_fall_back);
+    else if (!device.alive() && controlling()) inhibit(inhibited_by_device);
+    if (device.just_fell_back()) {
+      const std::array arguments{static_cast<double>(device.loss().reason), static_cast<double>(device.left()),
+                                 static_cast<double>(device.taken()), static_cast<double>(device.times_fallen_back())};
+      raise(plan_.fell_back_events[i], arguments);
+    }
     if (!device.just_lost()) continue;
     end_self_test(self_test_.lose_device(static_cast<std::int64_t>(i)));
     const DeviceSlot::Loss loss = device.loss();

@@ -16,7 +16,7 @@
 namespace hirosco {
 
 inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
-inline constexpr std::uint32_t page_version = 3;
+inline constexpr std::uint32_t page_version = 4;
 
 /// Why the framework inhibits the actuators of a subsystem; bits of VitalPage::inhibited.
 enum Inhibition : std::uint32_t {
@@ -26,6 +26,7 @@ enum Inhibition : std::uint32_t {
   inhibited_by_author = 8,  ///< the subsystem itself (a limit)
   inhibited_by_failure = 16,  ///< a state's node failed
   inhibited_by_supervisor = 32,  ///< the supervisor is gone
+  inhibited_by_fall_back = 64,  ///< an endnode has gone over to a fall-back that has not answered yet; passes by itself
 };
 
 /// A real-time link as its consumer sees it, since the link was made.
@@ -88,6 +89,13 @@ struct VitalPage {
   pus::CounterBlock counters;  ///< outlive the process (decision 8b)
 };
 
+/// Values of PermitPage::powered.
+enum Power : std::uint32_t {
+  power_off = 0,  ///< each switch has said that it is off; also of who has none
+  power_on = 1,  ///< each switch has said that it is on
+  power_changes = 2,  ///< neither
+};
+
 /// The only value of PermitPage::go that lets actuators move under this epoch.
 [[nodiscard]] constexpr std::uint64_t permission_word(std::uint32_t epoch) noexcept {
   std::uint64_t word = epoch + 0x9E37'79B9'7F4A'7C15;
@@ -106,6 +114,7 @@ struct PermitPage {
   std::atomic<std::uint32_t> mode_epoch{0};  ///< rises with every mode change
   std::atomic<std::uint64_t> heartbeat{0};  ///< advances with every step of the supervisor
   std::atomic<std::uint64_t> stopped_at_cycle{0};  ///< VitalPage::cycles that the supervisor read when it set `stop`
+  CheckedWord powered{0};  ///< Power: what the switches of its devices say
 
   /// Actuators may move under this epoch.  Realtime: wait-free.
   [[nodiscard]] bool permits(std::uint32_t under) const noexcept {

@@ -59,14 +59,15 @@ TEST(VitalPage, AsItIsMadeTellsOfNothing) {
 }
 
 TEST(VitalPage, HasABitOfItsOwnForEachReasonToInhibit) {
-  constexpr std::array reasons{inhibited_by_stop,   inhibited_by_link,    inhibited_by_device,
-                               inhibited_by_author, inhibited_by_failure, inhibited_by_supervisor};
+  constexpr std::array reasons{inhibited_by_stop,     inhibited_by_link,    inhibited_by_device,
+                               inhibited_by_author,   inhibited_by_failure, inhibited_by_supervisor,
+                               inhibited_by_fall_back};
   for (std::size_t i = 0; i < reasons.size(); ++i) EXPECT_EQ(reasons[i], 1u << i) << "ground reads them as numbers";
 }
 
 TEST(VitalPage, IsOfTheVersionThatDecodersOfOthersKnow) {
-  EXPECT_EQ(VitalPage{}.version, 3u) << "tests/endtoend/pages.py";
-  EXPECT_EQ(PermitPage{}.version, 3u);
+  EXPECT_EQ(VitalPage{}.version, 4u) << "tests/endtoend/pages.py";
+  EXPECT_EQ(PermitPage{}.version, 4u);
 }
 
 /// The finisher of SplitMix64 (Steele, Lea, Flood 2014): its first numbers of the seeds 0 and 1, as others print them.

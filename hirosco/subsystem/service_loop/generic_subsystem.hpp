@@ -188,6 +188,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Result<Step> enter_transient(State state);
   Result<Step> initialise_software();
   Result<Step> leave_cycle();
+  [[nodiscard]] Result<std::vector<DeviceSlot::Way>> open_ways(const descriptor::DeviceUse& use);
+  /// Whether the switches of its devices say so; for who has none: always.
+  [[nodiscard]] bool powered(Power wanted) const noexcept;
+  [[nodiscard]] bool power_takes_too_long() const noexcept;
   [[nodiscard]] std::optional<Failure> apply_configuration(const descriptor::Configuration& configuration);
   void end_configuration();
   void release_configuration();

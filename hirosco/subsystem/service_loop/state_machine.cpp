@@ -3,6 +3,7 @@
 // Safety module: states (docs/safety/modules.csv).
 #include <algorithm>
 
+#include "hirosco/data_transfer/device/power_frame.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/framework_parameters.hpp"
 #include "hirosco/subsystem/cycle/layout_difference.hpp"
@@ -102,7 +103,10 @@ void GenericSubsystem::arrive_transient(State state) {
 Result<Step> GenericSubsystem::enter_transient(State next) {
   switch (next) {
     case State::SoftwareInit: return initialise_software();
-    case State::HardwareInit: return author_.hardware_init();
+    case State::HardwareInit:
+      if (powered(power_on)) return author_.hardware_init();
+      if (power_takes_too_long()) return fail(ErrorCode::Timeout, "a device is not switched on");
+      return again;
     case State::PostOperational: return leave_cycle();
     case State::HardwareDeinit: return author_.hardware_deinit();
     case State::SoftwareDeinit: {
@@ -110,8 +114,23 @@ Result<Step> GenericSubsystem::enter_transient(State next) {
       if (step == Step::Done && !release_owed_) forget_introduction();
       return step;
     }
+    case State::Offline:
+      if (powered(power_off)) return done;
+      if (!power_takes_too_long()) return again;
+      raise_failure(descriptor::framework_event::state_failed, static_cast<std::uint8_t>(State::Offline),
+                    {ErrorCode::Timeout, "a device is still switched on"});
+      return done;
     default: return done;
   }
+}
+
+/// The supervisor's side switches, as it reads the state on the vital page (adr 0079).
+bool GenericSubsystem::powered(Power wanted) const noexcept {
+  return descriptor_.power_switches.empty() || permit_.powered.load(std::memory_order_acquire) == wanted;
+}
+
+bool GenericSubsystem::power_takes_too_long() const noexcept {
+  return platform_.clock.now() > phase_deadline_ - transient_limit + power_limit;
 }
 
 Result<Step> GenericSubsystem::initialise_software() {
@@ -283,6 +302,25 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_configuration(
   return {};
 }
 
+/// The preferred endnode and its fall-backs. One that cannot be opened is passed over and told; if none can, the error is the
+/// first one's.
+Result<std::vector<DeviceSlot::Way>> GenericSubsystem::open_ways(const descriptor::DeviceUse& use) {
+  std::vector<DeviceSlot::Way> ways;
+  std::optional<Error> first;
+  const auto open = [&](const descriptor::Endnode& endnode, std::size_t at) {
+    auto flow = platform_.flows.open({endnode.transfer, endnode.address}, FlowSide::Subsystem);
+    if (flow) return ways.push_back({std::move(*flow), static_cast<std::uint8_t>(at)});
+    if (!first) first = flow.error();
+    const std::array arguments{static_cast<double>(descriptor::DeviceLoss::NotOpened), static_cast<double>(at),
+                               static_cast<double>(ways.empty() ? at + 1 : ways.front().endnode), 0.0};
+    if (!use.fall_backs.empty()) raise_in_service(descriptor::framework_event::fell_back(use.device), arguments);
+  };
+  open(use.endnode, 0);
+  for (std::size_t i = 0; i < use.fall_backs.size(); ++i) open(use.fall_backs[i], i + 1);
+  if (ways.empty()) return std::unexpected{*first};
+  return ways;
+}
+
 std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::Configuration& configuration) {
   const auto mismatch = [](std::string text) { return Failure{ErrorCode::Mismatch, std::move(text)}; };
   const auto of = [](const std::string& whose, const Error& error) {
@@ -319,10 +357,11 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     if (port == device_ports_.end()) return mismatch("no port for the device " + device.name);
     if (const auto difference = DeviceSlot::difference(device, *port->second); !difference.empty())
       return mismatch("device " + device.name + ": " + difference);
-    auto flow = platform_.flows.open({use.endnode.transfer, use.endnode.address}, FlowSide::Subsystem);
-    if (!flow) return of("device " + device.name + ": ", flow.error());
-    plan.devices.emplace_back(device, use, *port->second, std::move(*flow), platform_.realtime);
+    auto ways = open_ways(use);
+    if (!ways) return of("device " + device.name + ": ", ways.error());
+    plan.devices.emplace_back(device, use, *port->second, std::move(*ways), configuration.sampling, platform_.realtime);
     plan.device_lost_events.push_back(descriptor::framework_event::device_lost(use.device));
+    plan.fell_back_events.push_back(descriptor::framework_event::fell_back(use.device));
   }
   for (pus::Service* service : services_)
     if (const auto configured = service->configure(configuration); !configured) return of("", configured.error());

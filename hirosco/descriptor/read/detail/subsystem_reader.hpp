@@ -50,6 +50,8 @@ class SubsystemReader {
   void read_hang(const xml::Element& element);
   void read_failure(const xml::Element& element);
   void read_device(const xml::Element& element);
+  void read_frames(Attributes& attributes, Device device);
+  void read_power(const xml::Element& element, const std::string& device);
   void check_octets(const xml::Element& element, const Device& device);
   void read_stop(Attributes& attributes, Device& device);
   void read_enable(const xml::Element& element, Device& device);
@@ -63,8 +65,15 @@ class SubsystemReader {
   void read_configuration(const xml::Element& element);
   void read_budget(Attributes& attributes, Configuration& configuration);
   void read_device_use(const xml::Element& element, Configuration& configuration, Unique& names);
-  void check_watchdogs(const xml::Element& element, const DeviceUse& use, Duration sampling);
-  [[nodiscard]] Endnode read_endnode(const xml::Element& element);
+  /// Its index; empty and reported: it is not declared, or used twice.
+  std::optional<std::uint16_t> find_device(const xml::Element& element, const std::string& name, Unique& names);
+  void read_endnode_use(const xml::Element& element, const DeviceUse& common, const std::string& device,
+                        Configuration& configuration, Unique& names);
+  void read_limits(Attributes& attributes, DeviceUse& use);
+  void check_limits(const xml::Element& element, const DeviceUse& use, Duration sampling);
+  void check_fall_backs(const xml::Element& element, const DeviceUse& use, Duration sampling);
+  void read_fall_back(const xml::Element& element, DeviceUse& use);
+  void read_endnode(Attributes& attributes, DeviceUse& use);
   [[nodiscard]] Endnode read_address(Attributes& attributes);
   /// An address belongs to one device: in all configurations, and its enable endnode to nothing else.
   void check_addresses();

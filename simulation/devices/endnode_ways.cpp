@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/devices/endnode_ways.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace hirosco::simulation {
+namespace {
+
+/// Of several ways one is waited for; what comes by another one meanwhile is looked for so often.
+constexpr Duration longest_wait = std::chrono::microseconds{250};
+
+}  // namespace
+
+Result<std::unique_ptr<EndnodeWays>> EndnodeWays::open(FlowFactory& flows, std::vector<FlowAddress> addresses) {
+  std::vector<Way> ways;
+  for (FlowAddress& address : addresses) {
+    HIROSCO_TRY_LET(auto flow, flows.open(address, FlowSide::Device));
+    ways.push_back({std::move(address), std::move(flow)});
+  }
+  return std::unique_ptr<EndnodeWays>{new EndnodeWays{flows, std::move(ways)}};
+}
+
+Result<> EndnodeWays::fault(std::size_t way, std::string_view what, std::uint32_t frames) {
+  if (way >= ways_.size()) return fail(ErrorCode::OutOfRange, "no such fall-back", static_cast<std::int64_t>(way));
+  Way& chosen = ways_[way];
+  if (what == "unplug") chosen.flow.reset();
+  else if (what == "plug") {
+    if (chosen.flow != nullptr) return ok();
+    HIROSCO_TRY_LET(chosen.flow, flows_.open(chosen.address, FlowSide::Device));
+  } else if (what == "silent") chosen.silent = true;
+  else if (what == "deaf") chosen.deaf = true;
+  else if (what == "corrupt") chosen.corrupt_frames = frames;
+  else if (what == "heal") {
+    chosen.silent = chosen.deaf = false;
+    chosen.corrupt_frames = 0;
+  } else return fail(ErrorCode::InvalidArgument, "not a fault of an endnode");
+  return ok();
+}
+
+void EndnodeWays::heal() noexcept {
+  for (Way& way : ways_) {
+    way.silent = way.deaf = false;
+    way.corrupt_frames = 0;
+  }
+}
+
+Result<> EndnodeWays::do_send(Octets frame) noexcept {
+  Way& way = ways_[asked_by_];
+  if (way.flow == nullptr) return fail(ErrorCode::Unavailable, "unplugged");
+  if (way.silent) return ok();
+  if (way.corrupt_frames == 0 || frame.empty()) return way.flow->send(frame);
+  --way.corrupt_frames;
+  std::array<std::byte, max_frame_octets> garbled;
+  const std::size_t octets = std::min(frame.size(), garbled.size());
+  std::copy_n(frame.begin(), octets, garbled.begin());
+  garbled[octets / 2] ^= std::byte{0x40};
+  return way.flow->send(Octets{garbled}.first(octets));
+}
+
+Result<Received> EndnodeWays::do_receive(MutableOctets buffer) noexcept {
+  // The one in use is looked at first: a late word by one that was left does not win. What is wrong with it is told.
+  Result<Received> answer = fail(ErrorCode::Unavailable, "unplugged");
+  for (std::size_t i = 0; i < ways_.size(); ++i) {
+    const std::size_t at = (asked_by_ + i) % ways_.size();
+    Way& way = ways_[at];
+    if (way.flow == nullptr) continue;
+    Result<Received> received = way.flow->receive(buffer);
+    if (way.deaf) received = Received{};
+    const bool news = received && received->flow == Flow::New;
+    if (news) asked_by_ = at;
+    if (news || i == 0) answer = received;
+    if (news) break;
+  }
+  return answer;
+}
+
+bool EndnodeWays::do_wait(Duration timeout) noexcept {
+  const Way& way = ways_[asked_by_];
+  if (way.flow == nullptr) return false;
+  return way.flow->wait(ways_.size() == 1 ? timeout : std::min(timeout, longest_wait));
+}
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/devices/simulated_switch.hpp"
+
+#include <array>
+
+namespace hirosco::simulation {
+
+void SimulatedSwitch::step(TimePoint now) noexcept {
+  if (on_ && now >= until_) on_ = false;
+  std::array<std::byte, max_frame_octets> buffer;
+  const auto received = flow_->receive(buffer);
+  if (!received || received->flow != Flow::New) return;
+  const auto command = read_power_command(Octets{buffer}.first(received->octets));
+  if (!command) return;
+  // A repetition is no sign of life.
+  if (command->sequence != sequence_) {
+    on_ = command->on;
+    until_ = now + command->off_after;
+  }
+  sequence_ = command->sequence;
+  std::array<std::byte, power_frame_octets> answer;
+  // Nobody listening is no matter of a switch's.
+  if (const auto status = write_power_status(answer, {.on = on_, .sequence = sequence_}))
+    static_cast<void>(flow_->send(*status));
+}
+
+}  // namespace hirosco::simulation
