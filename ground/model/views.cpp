@@ -41,7 +41,8 @@ json report_json(const StoredReport& report) {
 }
 
 json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now) {
-  constexpr std::array<const char*, 6> reasons{"stop", "link", "device", "author", "failure", "supervisor"};
+  constexpr std::array<const char*, 7> reasons{"stop",    "link",       "device",   "author",
+                                               "failure", "supervisor", "fall_back"};
   json subsystems = json::array();
   for (std::size_t i = 0; i < catalogue.subsystems().size(); ++i) {
     const auto& descriptor = *catalogue.subsystems()[i];

@@ -74,6 +74,13 @@ struct Line {
   return *first;
 }
 
+/// An event has '_' where the name of a device, or of an endnode of one, has what an event may not.
+[[nodiscard]] bool names(std::string_view in_event, std::string_view device) {
+  return std::ranges::equal(in_event, device, [](char said, char meant) {
+    return said == meant || (said == '_' && (meant == '.' || meant == '-'));
+  });
+}
+
 class Teller {
  public:
   Teller(const Catalogue& catalogue, Archive& archive) : catalogue_{catalogue}, archive_{archive} {}
@@ -242,9 +249,9 @@ class Teller {
     const auto* subsystem = catalogue_.find(std::string_view{event.subsystem});
     if (subsystem == nullptr || !event.name.ends_with(ending)) return {};
     const std::string name = event.name.substr(0, event.name.size() - ending.size());
-    const bool known =
-        std::ranges::find(subsystem->devices, name, &descriptor::Device::name) != subsystem->devices.end();
-    return known ? name : std::string{};
+    const auto found = std::ranges::find_if(subsystem->devices,
+                                            [&](const descriptor::Device& device) { return names(name, device.name); });
+    return found != subsystem->devices.end() ? found->name : std::string{};
   }
 
   /// ": watchdog let go": the reason that the framework gives for a loss; its counters stand in the event.

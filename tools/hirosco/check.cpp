@@ -45,6 +45,9 @@ void show_subsystem(const descriptor::Subsystem& subsystem) {
                configuration.housekeeping.size() + subsystem.housekeeping.size());
   for (const auto& device : subsystem.devices) {
     fmt::print("  device {}{}\n", device.name, device.actuator ? ", an actuator" : "");
+    for (const auto& power : subsystem.power_switches)
+      if (power.device == (device.part_of.empty() ? device.name : device.part_of))
+        fmt::print("    with a power switch\n");
     for (const auto& field : device.input) show_field("says", field);
     for (const auto& output : device.output) show_field("takes", output.field);
   }
