@@ -7,12 +7,6 @@
 #include <utility>
 
 namespace hirosco::simulation {
-namespace {
-
-/// Of several ways one is waited for; what comes by another one meanwhile is looked for so often.
-constexpr Duration longest_wait = std::chrono::microseconds{250};
-
-}  // namespace
 
 Result<std::unique_ptr<EndnodeWays>> EndnodeWays::open(FlowFactory& flows, std::vector<FlowAddress> addresses) {
   std::vector<Way> ways;
@@ -79,8 +73,7 @@ Result<Received> EndnodeWays::do_receive(MutableOctets buffer) noexcept {
 
 bool EndnodeWays::do_wait(Duration timeout) noexcept {
   const Way& way = ways_[asked_by_];
-  if (way.flow == nullptr) return false;
-  return way.flow->wait(ways_.size() == 1 ? timeout : std::min(timeout, longest_wait));
+  return way.flow != nullptr && way.flow->wait(timeout);
 }
 
 }  // namespace hirosco::simulation

@@ -12,7 +12,7 @@
 namespace hirosco::simulation {
 
 /// The flows by which one endnode of a simulated device is reached: the preferred one and its fall-backs, as one flow. It answers
-/// by the one that it was asked by last, and each can be made to fail alone.
+/// by the one that it was asked by last, which alone wait() waits for, and each can be made to fail alone.
 /// Realtime: bounded; no allocation but in fault(). Thread: one.
 class EndnodeWays final : public DataFlow {
  public:

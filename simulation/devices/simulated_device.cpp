@@ -17,6 +17,7 @@ constexpr std::size_t most_delayed_frames = 2048;         // 1 s at 2 kHz
 constexpr std::size_t most_injections = 10'000;           // then the record ends; the faults still work
 constexpr Duration longest_watchdog = std::chrono::seconds{1};
 constexpr Duration longest_starvation = std::chrono::milliseconds{50};
+constexpr Duration longest_unseen = std::chrono::microseconds{250};  // of a frame by a flow that is not waited for
 
 Duration milliseconds_of(double ms) noexcept { return Duration{std::llround(ms * 1e6)}; }
 
@@ -161,6 +162,12 @@ TimePoint SimulatedDevice::next_wake() const noexcept {
   if (delayed_count_ > 0) wake = std::min(wake, delayed_[delayed_first_].due);
   if (switch_) wake = std::min(wake, switch_->off_at());
   return wake;
+}
+
+bool SimulatedDevice::wait(Duration timeout) noexcept {
+  if (flow_ == nullptr || peer_gone_) return false;
+  if (flow_->count() == 1 && further_.empty()) return flow_->wait(timeout);
+  return flow_->wait(std::min(timeout, longest_unseen)) || timeout > longest_unseen;
 }
 
 /// True when an acceptable command came.

@@ -110,8 +110,9 @@ class SimulatedDevice {
   void step(TimePoint now);
   /// When step() is due even if no frame comes.
   [[nodiscard]] TimePoint next_wake() const noexcept;
-  /// Waits for a frame. Blocks; false at once while there is no peer to wait for (a hang-up would end every wait).
-  [[nodiscard]] bool wait(Duration timeout) noexcept { return flow_ != nullptr && !peer_gone_ && flow_->wait(timeout); }
+  /// Waits for a frame. Blocks; false at once while there is no peer to wait for (a hang-up would end every wait). True: step()
+  /// may find one; of a device with several flows also after a moment without any, as it waits for one of them only.
+  [[nodiscard]] bool wait(Duration timeout) noexcept;
 
   /// Injects a fault from one line of text and records it with the time of the last step:
   ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | heal

@@ -152,8 +152,8 @@ DEFECTS = [
     # --- the cycle and the generic subsystem -----------------------------------------------------------------------------
     # Framework events existed where the descriptor declared them: without one the unplug was never noticed.
     Defect("SF7 undeclared loss", "hirosco/descriptor/model/framework_events.cpp",
-           "for (std::size_t i = 0; i < subsystem.devices.size(); ++i)",
-           "for (std::size_t i = PLANTED ? subsystem.devices.size() : 0; i < subsystem.devices.size(); ++i)",
+           "for (std::size_t i = 0; i < subsystem.devices.size(); ++i)\n    add(",
+           "for (std::size_t i = PLANTED ? subsystem.devices.size() : 0; i < subsystem.devices.size(); ++i)\n    add(",
            "subsystem_test", "Events.OfTheFrameworkAreThereThoughTheDescriptorDeclaresNone"),
     # Recovery heard events as reports: one whose report was off was not heard.
     Defect("SF6 heard as a report", "hirosco/subsystem/service_loop/cycle_reports.cpp",
