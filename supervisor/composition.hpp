@@ -28,6 +28,7 @@
 #include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
+#include "supervisor/supervision/subsystem_handling/versions.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::supervisor {
@@ -54,6 +55,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
     links.provide();
     log_watch.provide();
     power.provide();
+    versions.provide();
     safe_all.provide();
     shutdown.provide();
   }
@@ -96,10 +98,12 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Restoration restoration{means, own, under_way};
   LinkLosses losses{means, own, links};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
-                       restarts, restoration, resources}};
+                       restarts, restoration, resources, versions}};
+  Versions versions{{craft, own, processes, reactions, under_way}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 12> watches{&processes, &ground_link, &restoration,  &losses,           &housekeeping, &power,
-                                 &links,     &log_watch,   &telecommands, &own_telecommands, &replies,      &resources};
+  std::array<Watch*, 13> watches{&processes,        &versions, &ground_link, &restoration, &losses,
+                                 &housekeeping,     &power,    &links,       &log_watch,   &telecommands,
+                                 &own_telecommands, &replies,  &resources};
 };
 
 }  // namespace hirosco::supervisor

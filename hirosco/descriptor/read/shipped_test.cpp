@@ -36,6 +36,7 @@ struct FromOutside {
   std::string without_range;
 
   void add(const Subsystem& subsystem, const std::string& where, const Field& field) {
+    if (field.type == Type::Text) return;  // it has its octets
     ++count;
     if (!field.minimum || !field.maximum || *field.minimum > *field.maximum)
       without_range += subsystem.name + " " + where + " " + field.name + "\n";

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::supervisor {
@@ -31,8 +32,29 @@ HeldPrograms::HeldPrograms(const descriptor::Mission& mission) : HeldPrograms{mi
 HeldPrograms::HeldPrograms(const descriptor::Mission& mission, Read read)
     : manifest_{mission.manifest.value_or(descriptor::Manifest{})}, mission_{mission.file.string()}, read_{read} {}
 
-HeldPrograms::Outcome HeldPrograms::check(Read read, const Wanted& wanted) {
+StartRefusal HeldPrograms::not_listed(const Wanted& wanted) {
+  return {{ErrorCode::NotFound, "its executable is not in the manifest"},
+          fmt::format("{} is not in the manifest {}: hirosco manifest {} --write lists what is here", wanted.name,
+                      wanted.manifest.string(), wanted.mission)};
+}
+
+/// A version that came in flight stands in the manifest as it is now.
+std::optional<StartRefusal> HeldPrograms::look_up(Wanted& wanted) {
+  if (!wanted.digest.empty()) return std::nullopt;
+  const auto manifest = descriptor::read_manifest(wanted.manifest, descriptor::file_system());
+  if (!manifest.value)
+    return StartRefusal{
+        {ErrorCode::Malformed, "the manifest cannot be read"},
+        fmt::format("the manifest {} cannot be read: {}", wanted.manifest.string(), manifest.problems.front().message)};
+  const auto* listed = manifest.value->find(wanted.name);
+  if (listed == nullptr) return not_listed(wanted);
+  wanted.digest = listed->digest;
+  return std::nullopt;
+}
+
+HeldPrograms::Outcome HeldPrograms::check(Read read, Wanted wanted) {
   try {
+    if (auto refused = look_up(wanted)) return std::unexpected{std::move(*refused)};
     auto image = read(wanted.name);
     if (!image) return std::unexpected{of(image.error())};
     if (image->digest() == wanted.digest) return std::move(*image);
@@ -47,11 +69,12 @@ HeldPrograms::Outcome HeldPrograms::check(Read read, const Wanted& wanted) {
 }
 
 std::expected<HeldPrograms::Wanted, StartRefusal> HeldPrograms::wanted(const std::string& name) const {
-  if (const auto* listed = manifest_.find(name)) return Wanted{name, listed->digest, mission_};
-  return std::unexpected{StartRefusal{
-      {ErrorCode::NotFound, "its executable is not in the manifest"},
-      fmt::format("{} is not in the manifest {}: hirosco manifest {} --write before the next flight lists what is here",
-                  name, manifest_.file.string(), mission_)}};
+  Wanted made{name, {}, mission_, manifest_.file};
+  if (name.find(descriptor::version_mark) != std::string::npos) return made;
+  const auto* listed = manifest_.find(name);
+  if (listed == nullptr) return std::unexpected{not_listed(made)};
+  made.digest = listed->digest;
+  return made;
 }
 
 void HeldPrograms::read_all(const descriptor::Mission& mission) {
@@ -62,7 +85,7 @@ void HeldPrograms::read_all(const descriptor::Mission& mission) {
   }
 }
 
-std::expected<const ProgramImage*, StartRefusal> HeldPrograms::find(const std::string& name) {
+std::expected<const ProgramImage*, StartRefusal> HeldPrograms::find(const std::string& name, Duration patience) {
   if (const auto held = held_.find(name); held != held_.end()) return &held->second;
   auto listed = wanted(name);
   if (!listed) return std::unexpected{std::move(listed.error())};
@@ -77,7 +100,7 @@ std::expected<const ProgramImage*, StartRefusal> HeldPrograms::find(const std::s
     reading = {};
     return std::unexpected{of({ErrorCode::ResourceExhausted, "no thread is left to read its executable"})};
   }
-  if (reading.wait_for(longest_wait) != std::future_status::ready)
+  if (reading.wait_for(patience) != std::future_status::ready)
     return std::unexpected{of({ErrorCode::Unavailable, "its executable is still being read: ask again"})};
   Outcome outcome = reading.get();
   if (!outcome) return std::unexpected{std::move(outcome.error())};

@@ -7,6 +7,7 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hirosco/descriptor/model/mission.hpp"
@@ -32,17 +33,23 @@ class HeldPrograms {
   /// Reads those of all subsystems, before the flight: it takes as long as the disk takes. What is refused is so by find().
   void read_all(const descriptor::Mission& mission);
   /// One that is not held is read anew: its file or the disk may be in order by now. The image stays for the flight.
-  [[nodiscard]] std::expected<const ProgramImage*, StartRefusal> find(const std::string& name);
+  /// A version of one, "arm@2", may have come in flight: with it the manifest is read anew.
+  [[nodiscard]] std::expected<const ProgramImage*, StartRefusal> find(const std::string& name,
+                                                                      Duration patience = longest_wait);
+  void drop(const std::string& name) { held_.erase(name); }
   [[nodiscard]] std::size_t count() const noexcept { return held_.size(); }
   [[nodiscard]] std::size_t octets() const noexcept;
 
  private:
   struct Wanted {
     std::string name;
-    std::string digest;
+    std::string digest;  ///< empty: it stands in the manifest as it is then
     std::string mission;
+    std::filesystem::path manifest;
   };
-  [[nodiscard]] static Outcome check(Read read, const Wanted& wanted);
+  [[nodiscard]] static Outcome check(Read read, Wanted wanted);
+  [[nodiscard]] static StartRefusal not_listed(const Wanted& wanted);
+  [[nodiscard]] static std::optional<StartRefusal> look_up(Wanted& wanted);
   [[nodiscard]] std::expected<Wanted, StartRefusal> wanted(const std::string& name) const;
 
   descriptor::Manifest manifest_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
 #include <memory>
 #include <optional>
 #include <string>
@@ -75,6 +76,17 @@ class ProcessLauncher {
   [[nodiscard]] virtual std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& /*subsystem*/) {
     return std::nullopt;
   }
+  /// Reads another version of its executable, which the mission's manifest lists as NAME@VERSION; the empty one is the mission's own.
+  /// True: it is there; false: ask again. Does not wait.
+  [[nodiscard]] virtual std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& /*subsystem*/,
+                                                                  const std::string& /*version*/) {
+    return std::unexpected{StartRefusal{{ErrorCode::Unavailable, "this flight has no manifest, which lists versions"},
+                                        "this flight has no manifest, which lists versions"}};
+  }
+  /// What it launches of this subsystem from now on.
+  virtual void use(const descriptor::MissionSubsystem& /*subsystem*/, const std::string& /*version*/) {}
+  /// It is not used any more: its memory is given back.
+  virtual void drop(const descriptor::MissionSubsystem& /*subsystem*/, const std::string& /*version*/) {}
   /// Empty while it runs.
   [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
   virtual void kill(std::uint32_t process) = 0;

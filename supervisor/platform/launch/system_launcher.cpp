@@ -204,6 +204,10 @@ template <class Page>
   return found.empty() ? file : found.string();
 }
 
+[[nodiscard]] std::string version_of(const std::string& executable, const std::string& version) {
+  return version.empty() ? executable : executable + descriptor::version_mark + version;
+}
+
 [[nodiscard]] std::vector<std::string> arguments_of(const descriptor::MissionSubsystem& subsystem) {
   std::vector<std::string> words{"--descriptor", placed(subsystem.subsystem.file.string()),
                                  "--channel",    std::to_string(channel_number),
@@ -234,15 +238,38 @@ const HeldPrograms& SystemLauncher::hold_to(const descriptor::Mission& mission) 
 
 std::optional<StartRefusal> SystemLauncher::refuse(const descriptor::MissionSubsystem& subsystem) {
   if (!held_) return std::nullopt;
-  auto found = held_->find(subsystem.executable);
+  auto found = held_->find(file_of(subsystem));
   return found ? std::nullopt : std::optional{std::move(found.error())};
+}
+
+std::string SystemLauncher::file_of(const descriptor::MissionSubsystem& subsystem) const {
+  const auto version = versions_.find(subsystem.subsystem.name);
+  return version == versions_.end() ? subsystem.executable : version_of(subsystem.executable, version->second);
+}
+
+std::expected<bool, StartRefusal> SystemLauncher::prepare(const descriptor::MissionSubsystem& subsystem,
+                                                          const std::string& version) {
+  if (!held_) return ProcessLauncher::prepare(subsystem, version);
+  auto found = held_->find(version_of(subsystem.executable, version), Duration{0});
+  if (found) return true;
+  if (found.error().why.code == ErrorCode::Unavailable) return false;
+  return std::unexpected{std::move(found.error())};
+}
+
+void SystemLauncher::use(const descriptor::MissionSubsystem& subsystem, const std::string& version) {
+  if (version.empty()) versions_.erase(subsystem.subsystem.name);
+  else versions_[subsystem.subsystem.name] = version;
+}
+
+void SystemLauncher::drop(const descriptor::MissionSubsystem& subsystem, const std::string& version) {
+  if (held_ && !version.empty()) held_->drop(version_of(subsystem.executable, version));
 }
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
   std::filesystem::path& program = programs_[subsystem.executable];
   const ProgramImage* image = nullptr;
   if (held_) {
-    const auto found = held_->find(subsystem.executable);
+    const auto found = held_->find(file_of(subsystem));
     if (!found) return fail(found.error().why);
     image = *found;
     program = image->file();

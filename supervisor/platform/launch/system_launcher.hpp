@@ -24,6 +24,10 @@ class SystemLauncher final : public ProcessLauncher {
  public:
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
+                                                          const std::string& version) override;
+  void use(const descriptor::MissionSubsystem& subsystem, const std::string& version) override;
+  void drop(const descriptor::MissionSubsystem& subsystem, const std::string& version) override;
   /// From now on it starts what the manifest of this mission lists, and nothing else. Reads all of it first.
   const HeldPrograms& hold_to(const descriptor::Mission& mission);
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
@@ -39,6 +43,8 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] int wait_descriptor(std::uint32_t process);
 
  private:
+  [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
+
   SealedMemory memory_;
   ErrorLines errors_;
   std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
@@ -46,6 +52,7 @@ class SystemLauncher final : public ProcessLauncher {
   std::map<std::uint32_t, Process> processes_;
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
   std::unique_ptr<HeldPrograms> held_;  ///< null: the mission has no manifest
+  std::map<std::string, std::string, std::less<>> versions_;  ///< by subsystem, where it is not the mission's own
   /// Without one: where each executable was found: a disk is not searched again in flight, where it might hang.
   std::map<std::string, std::filesystem::path, std::less<>> programs_;
   std::uint32_t next_{1};

@@ -44,6 +44,8 @@ class Member {
   /// Since when its channel is closed. A process that ends closes it a moment before its handle says so; one that
   /// lives on without it can be neither commanded nor heard.
   std::optional<TimePoint> closed_at;
+  /// Its process ends for another version of it, or has: nobody else starts it.
+  bool exchanged{false};
   /// In how many steps in a row the operating system refused to read its channel.
   std::uint32_t refused{0};
   /// Messages of it that could not be read or are not of a kind that it may send, those that were told, and when again.

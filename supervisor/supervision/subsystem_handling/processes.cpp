@@ -13,6 +13,7 @@
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
+#include "supervisor/supervision/subsystem_handling/versions.hpp"
 
 namespace hirosco::supervisor {
 
@@ -92,9 +93,22 @@ Result<> Processes::start(std::uint16_t apid) {
   Member* subject = craft_.member(apid);
   if (subject == nullptr) return fail(ErrorCode::NotFound, "no such subsystem", apid);
   if (subject->alive()) return ok();
+  if (subject->exchanged) return fail(ErrorCode::Unavailable, "another version of it is about to be started");
   HIROSCO_TRY(launch(*subject));
   if (craft_.is_ground_link(*subject)) parts_.ground_link.restore(*subject);
   return ok();
+}
+
+void Processes::let_go(Member& subject) {
+  const std::uint16_t apid = subject.apid();
+  parts_.reception.read(subject);  // its last words
+  if (!subject.alive()) return;
+  parts_.resources.release(apid);
+  craft_.guard.forget(apid);
+  subject.died();
+  parts_.telecommands.outcome_unknown(apid);
+  parts_.links.forget(apid);
+  parts_.desk.fail_all_to(apid, "process ended");
 }
 
 void Processes::watch(TimePoint now) {
@@ -133,6 +147,7 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   // The network is what it was before the death: the others are told while the graph still has the links.
   // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();
+  parts_.versions.died(apid);
   parts_.telecommands.outcome_unknown(apid);
   parts_.restoration.lost(apid);
   parts_.reactions.react(subject, "PROCESS_DIED", Severity::High);

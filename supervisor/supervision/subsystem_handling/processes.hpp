@@ -18,6 +18,7 @@ class Restoration;
 class ResourceHandling;
 class SafeAll;
 class Telecommands;
+class Versions;
 
 /// Starts the processes of the subsystems, sees them end or hang, and starts them again (paper 4.3 subsystem handling).
 /// Thread: the supervisor's.
@@ -36,12 +37,15 @@ class Processes final : public Watch {
     Restarts& restarts;
     Restoration& restoration;
     ResourceHandling& resources;
+    Versions& versions;
   };
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
   void start_all();
   /// One that is down: by the ground, however often it died. Otherwise why it could not be started.
   Result<> start(std::uint16_t apid);
+  /// One in Offline: its channel is closed, so that it ends by itself, and nobody reacts to that.
+  void let_go(Member& member);
   void take_guard_findings();
   /// Those whose channel is closed: how they ended is known at once.
   void watch_closed() { watch_ends(Whom::Closed); }

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
+
+namespace hirosco::supervisor {
+
+class Processes;
+class Reactions;
+class UnderWay;
+
+/// Puts another version of a subsystem's executable in its place while the others cycle (docs/adr/0089): in Offline, on trial, and
+/// back to the one before by itself unless it is confirmed in time.  Thread: the supervisor's.
+class Versions final : public Watch {
+ public:
+  struct Parts {
+    Craft& craft;
+    OwnSubsystem& own;
+    Processes& processes;
+    Reactions& reactions;
+    const UnderWay& under_way;
+  };
+  /// What a process in Offline may take to end, and what a version that was not confirmed may take to get there: then it is ended.
+  static constexpr Duration longest_end = 1s;
+  static constexpr Duration longest_way_down = 10s;
+  /// What a file may take to be read.
+  static constexpr Duration longest_reading = 60s;
+
+  explicit Versions(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
+
+  /// REPLACE, CONFIRM, TAKE_BACK.
+  void provide();
+  [[nodiscard]] Outcome replace(std::uint16_t apid, std::string_view version, Duration within, const Call& call);
+  [[nodiscard]] Outcome confirm(std::uint16_t apid);
+  [[nodiscard]] Outcome take_back(std::uint16_t apid, const Call& call);
+  /// Its process has ended by itself: before anybody starts it again.
+  void died(std::uint16_t apid);
+  void watch(TimePoint now) override;
+
+ private:
+  enum class Phase : std::uint8_t {
+    Reading,  ///< the file, by another thread
+    Ending,  ///< the process of the version before
+    OnTrial,  ///< it runs and is not confirmed
+    GoingDown,  ///< it was not: on its way to Offline
+  };
+  struct Change {
+    Phase phase{Phase::Reading};
+    std::string wanted;  ///< empty: the mission's own executable
+    std::string before;  ///< what it falls back to
+    bool trial{true};  ///< false: it goes back
+    Duration within{};
+    TimePoint deadline{};
+    std::uint32_t process{0};  ///< that is to end
+    std::optional<Call> call;  ///< that waits for it
+  };
+  /// Nothing: it may be exchanged now.
+  [[nodiscard]] std::optional<Outcome> against(const Member* subject) const;
+  /// True: it is over.
+  [[nodiscard]] bool step(Member& subject, Change& change, TimePoint now);
+  [[nodiscard]] bool read(Member& subject, Change& change, TimePoint now);
+  [[nodiscard]] bool start(Member& subject, Change& change, TimePoint now);
+  [[nodiscard]] bool bring_down(Member& subject, Change& change, TimePoint now);
+  void end_process(Member& subject, Change& change);
+  void go_back(Change& change);
+  void finish(Change& change);
+  void give_up(Change& change, pus::FailureCode code, const char* words);
+  void drop_unless_needed(const Member& subject, const std::string& version);
+
+  Parts parts_;
+  Craft& craft_;
+  std::map<std::uint16_t, Change> changes_;
+  std::map<std::uint16_t, std::string> in_force_;  ///< where it is not the mission's own
+  std::map<std::uint16_t, std::string> earlier_;  ///< confirmed away
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Another version of a subsystem is put in its place in flight (docs/adr/0089) while a peer cycles at 2 kHz: on trial, back by itself
+when it is not confirmed or dies, kept when it is confirmed, taken back by command; one that the manifest does not list is refused."""
+import hashlib
+import os
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import flight
+
+PROGRAM = "hirosco-test-pilot"    # nowhere else in PATH
+PILOT = 8
+
+
+class Craft:
+    """The mission hello with a second hello, PILOT, which is a program of its own and stays Offline."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        for part in ("missions/hello", "subsystems/hello", "subsystems/communication", "supervisor"):
+            for file in (flight.REPOSITORY / part).glob("*.xml"):
+                copy = self.folder / file.relative_to(flight.REPOSITORY)
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                copy.write_text(file.read_text())
+        self.programs = self.folder / "programs"
+        self.programs.mkdir()
+        self.mission = self.folder / "missions/hello/mission.xml"
+        text = self.mission.read_text()
+        text = text.replace("<Modes", '<Manifest path="manifest.sha256"/>\n  '
+                            f'<Subsystem executable="{PROGRAM}" descriptor="../../subsystems/hello/hello.xml" name="PILOT" '
+                            f'id="{PILOT}"/>\n  <Modes', 1)
+        text = text.replace('functions="SET_MODE SHUTDOWN"/>', 'functions="SET_MODE SHUTDOWN REPLACE CONFIRM TAKE_BACK"/>\n'
+                            '      <Permit subsystem="PILOT" functions="*"/>')
+        self.mission.write_text(text)
+        self.manifest = self.mission.parent / "manifest.sha256"
+        self.manifest.write_text("")
+        for name in ("hirosco-communication", "hirosco-hello"):
+            self.list(flight.BINARIES / name, name)
+        shutil.copy(flight.BINARIES / "hirosco-hello", self.programs / PROGRAM)
+        self.list(self.programs / PROGRAM, PROGRAM)
+
+    def list(self, file, name):
+        with self.manifest.open("a") as lines:
+            lines.write(f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {name}\n")
+
+    def add(self, version, octets=None, listed=True):
+        """The same program with another digest, or another one."""
+        file = self.programs / f"{PROGRAM}@{version}"
+        file.write_bytes(octets or (self.programs / PROGRAM).read_bytes() + version.encode())
+        file.chmod(0o755)
+        if listed:
+            self.list(file, file.name)
+
+
+def missed(craft):
+    status = craft.wait_status(lambda _: True, 5.0)
+    return next(member["missed"] for member in status["subsystems"] if member["name"] == "HELLO")
+
+
+class Versions(unittest.TestCase):
+    def runs(self, craft, version):
+        names = [name for name in craft.processes().values() if PROGRAM in name]
+        self.assertEqual(names, [f"memfd:{PROGRAM}{version} (deleted)"])
+
+    def test_versions_come_and_go_while_a_peer_cycles(self):
+        with tempfile.TemporaryDirectory(prefix="hirosco-versions-") as folder:
+            files = Craft(folder)
+            with flight.Flight(mission=files.mission,
+                               environment={"PATH": f"{files.programs}:{os.environ['PATH']}"}) as craft:
+                craft.wait_told("commissioned: mode operation", 20.0)
+                before = missed(craft)
+                self.runs(craft, "")
+                self.comes_back_unless_it_is_confirmed(craft, files)
+                self.stays_when_it_is_confirmed_and_is_taken_back_by_command(craft, files)
+                self.falls_back_when_it_dies(craft, files)
+                self.is_refused(craft, files)
+                rise = missed(craft) - before
+                flight.measure(f"cycles that the peer missed at 2 kHz during all of it: {rise}")
+                self.assertEqual(rise, 0)
+                self.assertEqual(craft.end(), 0, craft.errors)
+
+    def comes_back_unless_it_is_confirmed(self, craft, files):
+        files.add("2")
+        begin = craft.count()
+        self.assertEqual(craft.tc("SUPERVISOR", "REPLACE", PILOT, "2", 3)[0], 0)
+        craft.wait_told("PILOT runs version 2: CONFIRM within 3 s keeps it", start=begin)
+        self.runs(craft, "@2")
+        craft.wait_told("PILOT was not confirmed as version 2 in its time", start=begin)
+        craft.wait_told("PILOT runs the mission's own version again", start=begin)
+        self.runs(craft, "")
+
+    def stays_when_it_is_confirmed_and_is_taken_back_by_command(self, craft, files):
+        files.add("3")
+        begin = craft.count()
+        self.assertEqual(craft.tc("SUPERVISOR", "REPLACE", PILOT, "3", 30)[0], 0)
+        for function, argument in (("SET_STATE", 3), ("CONFIGURE", 1), ("SET_STATE", 4), ("SET_STATE", 5)):
+            self.assertEqual(craft.tc("PILOT", function, argument)[0], 0, (function, argument))
+        self.assertEqual(craft.tc("SUPERVISOR", "CONFIRM", PILOT)[0], 0)
+        craft.wait_told("PILOT stays version 3: confirmed", start=begin)
+        self.assertNotEqual(craft.tc("SUPERVISOR", "TAKE_BACK", PILOT)[0], 0, "it is Operational")
+        self.assertNotEqual(craft.tc("SUPERVISOR", "REPLACE", PILOT, "2", 30)[0], 0, "it is Operational")
+        for state in (4, 7, 0):
+            self.assertEqual(craft.tc("PILOT", "SET_STATE", state)[0], 0, state)
+        self.assertEqual(craft.tc("SUPERVISOR", "TAKE_BACK", PILOT)[0], 0)
+        craft.wait_told("PILOT runs the mission's own version again", start=begin)
+        self.runs(craft, "")
+
+    def falls_back_when_it_dies(self, craft, files):
+        files.add("bad", b"#!/bin/sh\nexit 3\n")
+        begin = craft.count()
+        craft.tc("SUPERVISOR", "REPLACE", PILOT, "bad", 30)
+        craft.wait_told("not all of PILOT is in the manifest: it is a script", start=begin)
+        craft.wait_told("PILOT died as version bad, which was not confirmed", start=begin)
+        craft.wait_told("PILOT runs the mission's own version again", start=begin)
+        self.runs(craft, "")
+
+    def is_refused(self, craft, files):
+        files.add("4", listed=False)
+        begin = craft.count()
+        self.assertNotEqual(craft.tc("SUPERVISOR", "REPLACE", PILOT, "4", 30)[0], 0)
+        craft.wait_told(f"PILOT stays the mission's own version: {PROGRAM}@4 is not in the manifest", start=begin)
+        files.add("5")
+        (files.programs / f"{PROGRAM}@5").write_bytes(b"#!/bin/sh\nexit 3\n")
+        self.assertNotEqual(craft.tc("SUPERVISOR", "REPLACE", PILOT, "5", 30)[0], 0)
+        craft.wait_told(f"{PROGRAM}@5 has the SHA-256 {hashlib.sha256(b'#!/bin/sh' + bytes([10]) + b'exit 3' + bytes([10])).hexdigest()}",
+                        start=begin)
+        self.runs(craft, "")
+
+
+if __name__ == "__main__":
+    flight.main()
