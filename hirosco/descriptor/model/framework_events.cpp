@@ -89,6 +89,8 @@ void add_framework_events(Subsystem& subsystem) {
   add("RESOURCE_WARNING", resource_warning, Severity::Low,
       {argument("RESOURCE", Type::Uint8, resources_enumeration), argument("BLOCK", Type::Uint32),
        argument("USED", Type::Uint32), argument("LIMIT", Type::Uint32), argument("CROSSINGS", Type::Uint32)});
+  add("CYCLE_NOT_REALTIME", cycle_not_realtime, Severity::Low,
+      {argument("HEAP", Type::Uint32), argument("LOCKS", Type::Uint32), argument("OUTPUTS", Type::Uint32)});
   for (std::size_t i = 0; i < subsystem.devices.size(); ++i)
     add(event_name(subsystem.devices[i].name, "_LOST"), device_lost(i), Severity::High,
         {argument("REASON", Type::Uint8, losses_enumeration), argument("SILENT_CYCLES", Type::Uint32),
