@@ -168,6 +168,12 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   }
   Console console{mission, options.style};
   UnprovokedReactions causes{clock, console};
+  if (mission.manifest) {
+    const TimePoint begun = clock.now();
+    const HeldPrograms& held = launcher.hold_to(mission);
+    console.told(clock.onboard(), fmt::format("{} executables of {} kB are as the manifest says, read in {:.1f} ms",
+                                              held.count(), held.octets() / 1024, 1e3 * seconds(clock.now() - begun)));
+  }
   ThreadedPacketLog::Options log_options;
   log_options.on_progress = [&] { log_progress->notify(); };
   ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};

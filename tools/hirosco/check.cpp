@@ -62,10 +62,23 @@ void show_cycle(const descriptor::CycleResponse& cycle) {
              cycle.longest ? fmt::format("{}", *cycle.longest / 1us) : "?", its.sampling / 1us);
 }
 
+/// Which file it may be, and which are versions of it.
+void show_program(const std::string& program, const descriptor::Manifest& manifest) {
+  for (const auto& [file, digest, at] : manifest.listed)
+    if (file == program || file.starts_with(program + descriptor::version_mark))
+      fmt::print("  executable {}: SHA-256 {}\n", file, digest);
+}
+
 void show_mission(const descriptor::Mission& mission) {
   fmt::print("mission {} ({})\n", mission.name, mission.id);
+  if (mission.manifest)
+    fmt::print("manifest {}: {} executables\n", mission.manifest->file.string(), mission.manifest->listed.size());
   show_subsystem(mission.supervisor);
-  for (const auto& member : mission.subsystems) show_subsystem(member.subsystem);
+  for (const auto& member : mission.subsystems) {
+    show_subsystem(member.subsystem);
+    if (mission.manifest) show_program(member.executable, *mission.manifest);
+    if (!member.starts) fmt::print("  is not started with the flight\n");
+  }
   for (const auto& link : mission.links)
     fmt::print("link {}: {}.{} -> {}.{}\n", link.id, link.from, link.provides, link.to, link.requires_);
   for (const auto& mode : mission.modes) {
@@ -164,7 +177,8 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   if (!reading.value) return;
   auto missing = unready(*reading.value, FlownAs::Processes);
   for (auto& problem : missing)
-    if (problem.code == "E0401" && !options.fly) problem.grade = descriptor::Grade::Warning;
+    if ((problem.code == "E0401" || problem.code == "E0364" || problem.code == "E0365") && !options.fly)
+      problem.grade = descriptor::Grade::Warning;
   findings.add(std::move(missing));
   if (options.fly) findings.add(unintroduced(*reading.value));
 }

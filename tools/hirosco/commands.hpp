@@ -43,6 +43,13 @@ struct CheckOptions {
 };
 int check(const CheckOptions& options);
 
+struct ManifestOptions {
+  std::string mission;
+  bool write{false};                 ///< into the file that the mission names, else to standard output
+};
+/// What is here of a mission's executables, as its manifest has it (adr 0089).
+int manifest(const ManifestOptions& options);
+
 struct PermissionsOptions {
   std::string mission;
   std::string mode;                  ///< empty = all

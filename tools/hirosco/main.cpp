@@ -107,6 +107,12 @@ int read_and_do(int argc, char** argv) {
   permissions_command->add_flag("--csv", permissions_options.csv,
                                 "A line for each request; ten places, one for each state");
 
+  ManifestOptions manifest_options;
+  auto* manifest_command =
+      app.add_subcommand("manifest", "SHA-256 of a mission's executables and their versions, as sha256sum writes it");
+  manifest_command->add_option("mission", manifest_options.mission, "Mission: a name or a path")->required();
+  manifest_command->add_flag("--write", manifest_options.write, "Into the file that the mission names");
+
   ModeOptions mode_options;
   std::string mode_limit = "70s";
   auto* mode_command = app.add_subcommand("mode", "Bring the whole craft into a mode; without a name, list the modes");
@@ -209,6 +215,7 @@ int read_and_do(int argc, char** argv) {
   if (*report_command) return mission_program("report", judged_mission, {});
   if (*tc_command) return telecommand(tc_options);
   if (*mode_command) return mode(mode_options);
+  if (*manifest_command) return manifest(manifest_options);
   if (*permissions_command) return permissions(permissions_options);
   if (*status_command) return status(status_options);
   if (*log_command) return log(log_options);

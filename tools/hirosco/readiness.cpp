@@ -11,6 +11,7 @@
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "simulation/spacecraft/modules.hpp"
+#include "supervisor/platform/launch/program_image.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -29,6 +30,26 @@ class Findings {
           "it is neither beside this program nor in PATH");
     if (flown_as_ == FlownAs::Simulation && !missing.empty())
       add(at, "E0404", fmt::format("no module {} for {}", executable, user), missing);
+  }
+
+  /// It would not be started by the mission's manifest.
+  void listed(const descriptor::MissionSubsystem& member) {
+    const auto* listed = mission_.manifest->find(member.executable);
+    const std::string hint =
+        fmt::format("if what is here is meant: hirosco manifest {} --write", mission_.file.string());
+    if (listed == nullptr)
+      return add(member.at, "E0364",
+                 fmt::format("{} of subsystem {} is not in the manifest {}", member.executable, member.subsystem.name,
+                             mission_.manifest->file.string()),
+                 hint);
+    const auto file = find_program(member.executable);
+    if (file.empty()) return;  // which is told already
+    const auto image = supervisor::ProgramImage::read(file);
+    if (!image) return add(member.at, "E0401", fmt::format("{}: {}", file.string(), image.error().text), "");
+    if (image->digest() != listed->digest)
+      add(member.at, "E0365",
+          fmt::format("{} has the SHA-256 {}, the manifest says {}", file.string(), image->digest(), listed->digest),
+          hint);
   }
 
   void settings(const descriptor::SimulatedDevice& device, const simulation::MakeDevice& make) {
@@ -65,8 +86,10 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
     return found != modules.missing.end() ? found->second : std::string{};
   };
   Findings findings{mission, flown_as};
-  for (const auto& member : mission.subsystems)
+  for (const auto& member : mission.subsystems) {
     findings.program(member.executable, "subsystem " + member.subsystem.name, member.at, missing(member.executable));
+    if (flown_as == FlownAs::Processes && mission.manifest) findings.listed(member);
+  }
   for (const auto& device : mission.devices) {
     findings.program(device.executable, "simulated device " + device.name, device.at, missing(device.executable));
     if (const auto make = modules.devices.find(device.executable); make != modules.devices.end())

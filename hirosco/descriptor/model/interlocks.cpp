@@ -21,6 +21,9 @@ std::vector<std::string> against_start(const Mission& mission, const Mode& mode)
   std::vector<std::string> against;
   if (!mode.from.empty() && std::ranges::find(mode.from, mission.initial_mode) == mode.from.end())
     against.push_back(fmt::format("it is not entered from '{}'", mission.initial_mode));
+  for (const CommissionStep& step : mode.commission)
+    if (const auto* member = mission.find_subsystem(step.subsystem); member != nullptr && !member->starts)
+      against.push_back(fmt::format("it commissions {}, which is not started with the flight", step.subsystem));
   for (const Interlock& interlock : mode.interlocks) {
     const bool holds = std::ranges::find(interlock.states, State::Offline) != interlock.states.end() &&
                        interlock.configuration.empty();

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/descriptor/model/manifest.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/utilities/result.hpp"
 
@@ -40,6 +41,7 @@ struct Redirected {
 
 struct MissionSubsystem {
   std::string executable;  ///< name of the program, looked up beside the running one and then in PATH
+  bool starts{true};  ///< with the flight; else when the ground asks for it
   Subsystem subsystem;  ///< with what the mission changes applied: name, id, parameters, addresses
   std::vector<Override> overrides;
   std::vector<Readdressed> addresses;
@@ -175,6 +177,7 @@ struct Mission {
   DatabaseUse database;
   GroundAddresses ground;
   std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
+  std::optional<Manifest> manifest{};  ///< none: whatever has the name of an executable is started (adr 0089)
   bool isolation_required{false};  ///< no subsystem is started where this computer cannot isolate it (adr 0081)
   Amounts budget{};  ///< of all subsystems together; what is empty is not limited
   std::vector<MissionSubsystem> subsystems;

@@ -48,6 +48,12 @@ struct Reading {
 /// Reads and checks a mission with every subsystem it names (paths relative to the mission file).  Realtime: allocates.
 [[nodiscard]] Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source);
 
+/// Reads the manifest of a mission (docs/adr/0089).  Realtime: allocates.
+[[nodiscard]] Reading<Manifest> read_manifest(const std::filesystem::path& file, const FileSource& source);
+inline constexpr std::string_view manifest_extension = ".sha256";
+/// What may stand behind the '@' of a name in it.
+[[nodiscard]] bool is_version(std::string_view text) noexcept;
+
 /// "NAME=12:FILE", as a launched subsystem is told whom it commands; and the reverse, into `subsystem`. NotFound: it commands
 /// none of that name, or who has the file has no such function; InvalidArgument: not of this form.
 [[nodiscard]] std::string to_string(const Commands& commands);

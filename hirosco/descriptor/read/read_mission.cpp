@@ -35,7 +35,8 @@ constexpr int folders_above = 2;
 /// A file that comes with HIROSCO, by its name there.
 bool is_shipped(std::string_view text) { return text.starts_with(shipped_prefix); }
 
-/// What is wrong with a path that must stay inside; empty when nothing is.
+}  // namespace
+
 std::string_view refuse_path(std::string_view text, int above) {
   if (is_shipped(text)) return refuse_path(text.substr(shipped_prefix.size()), 0);
   const std::filesystem::path path{text};
@@ -49,8 +50,6 @@ std::string_view refuse_path(std::string_view text, int above) {
   }
   return "";
 }
-
-}  // namespace
 
 Mission MissionReader::read(const xml::Element& root) {
   {
@@ -71,6 +70,7 @@ Mission MissionReader::read(const xml::Element& root) {
                1},
               {"Power", [this](const auto& element) { read_power(element); }, 1},
               {"Resources", later(budgets), 1},
+              {"Manifest", [this](const auto& element) { read_manifest(element); }, 1},
               {"Isolation", [this](const auto& element) { read_isolation(element); }, 1},
               {"Subsystem", [this](const auto& element) { read_member(element); }, 255},
               {"SimulatedDevice", later(devices), 255},
@@ -185,6 +185,10 @@ void MissionReader::read_ground(const xml::Element& element) {
                       fmt::format("'{}' carries the ground link, which a stop spares, and has the actuator '{}'",
                                   carries->name, acts->name),
                       "give the actuator, or the ground link, to another subsystem");
+    if (const auto* carries = mission_.find_subsystem(subsystem->value); carries != nullptr && !carries->starts)
+      problems_.add(*subsystem, "E0363",
+                    fmt::format("'{}' carries the ground link and is not started with the flight", subsystem->value),
+                    "leave start=\"no\" out: nobody could ask for its start");
   }
   read_address(attributes, "telemetry", mission_.ground.telemetry);
   read_address(attributes, "telecommand", mission_.ground.telecommand);
@@ -220,6 +224,7 @@ void MissionReader::read_member(const xml::Element& element) {
   MissionSubsystem member;
   member.at = place(element.at);
   member.executable = executable(attributes);
+  member.starts = attributes.yes("start", true);
   auto subsystem = read_descriptor(attributes);
   if (!subsystem) return;  // what is set in it cannot be judged
   member.subsystem = std::move(*subsystem);

@@ -40,6 +40,9 @@ struct ProcessStart {
     int number{-1};
   };
   std::string executable{};  ///< path; not searched for
+  /// A descriptor of ours whose file is executed in place of whatever has that path by then; the path is argv[0] only. A script
+  /// needs it among `inherited`, too: its interpreter reads it from there.
+  std::optional<int> image{};
   std::vector<std::string> arguments{};  ///< without the executable's own name, which becomes argv[0]
   std::vector<Inherited> inherited{};  ///< besides 0, 1 and 2, the new process has these descriptors and no others
   std::optional<std::vector<std::string>> environment{};  ///< "NAME=value"; ours when absent

@@ -50,13 +50,20 @@ struct LaunchedSubsystem {
   Mapping permit;                    ///< the same; written
   std::uint32_t process{0};          ///< names it to the launcher
   std::shared_ptr<ProcessGrip> grip; ///< null where a process cannot be gripped
-  std::string_view not_isolated{};   ///< why this one is in no sandbox, where others are; empty: it is, or none is
+  std::string_view not_held{};  ///< what of it the mission's manifest does not hold; empty: all, or there is none
+  std::string_view not_isolated{};  ///< why this one is in no sandbox, where others are; empty: it is, or none is
+};
+
+/// Why an executable is not started.
+struct StartRefusal {
+  Error why;  ///< for who asked
+  std::string words;  ///< with names, what was found, and what to do
 };
 
 /// How a subsystem's process ended.
 struct ProcessEnd {
   bool by_signal{false};
-  int value{0};                      ///< exit code or signal
+  int value{0};  ///< exit code or signal
 };
 
 /// Thread: the supervisor's.
@@ -64,6 +71,10 @@ class ProcessLauncher {
  public:
   virtual ~ProcessLauncher() = default;
   [[nodiscard]] virtual Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) = 0;
+  /// It would not launch() it now, by the mission's manifest (docs/adr/0089); empty: it would, as far as that goes.
+  [[nodiscard]] virtual std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& /*subsystem*/) {
+    return std::nullopt;
+  }
   /// Empty while it runs.
   [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
   virtual void kill(std::uint32_t process) = 0;

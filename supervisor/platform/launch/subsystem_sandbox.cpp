@@ -52,7 +52,7 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
   for (const char* file : {"/etc/ld.so.cache", "/etc/ld.so.preload", "/etc/localtime", "/usr/share/zoneinfo",
                            "/dev/urandom", "/sys/devices/system/cpu"})
     sandbox.readable.emplace_back(file);
-  sandbox.executable.push_back(std::filesystem::absolute(program).string());
+  if (!program.empty()) sandbox.executable.push_back(std::filesystem::absolute(program).string());
   sandbox.readable.push_back(place_of(subsystem.subsystem.file).string());
   for (const auto& commanded : subsystem.subsystem.commands)
     if (!commanded.file.empty()) sandbox.readable.push_back(place_of(commanded.file).string());

@@ -29,6 +29,7 @@ namespace {
 constexpr int channel_number = 3;
 constexpr int vital_number = 4;
 constexpr int permit_number = 5;
+constexpr int script_number = 6;
 
 [[nodiscard]] FileDescriptor open_statm(const std::string& process) {
   return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
@@ -196,6 +197,26 @@ template <class Page>
   return std::pair{std::move(handle), std::move(mapping)};
 }
 
+/// What comes with HIROSCO is found from where a program stands, and one that runs from memory stands nowhere.
+[[nodiscard]] std::string placed(const std::string& file) {
+  if (!file.starts_with(shipped_prefix)) return file;
+  const auto found = find_shipped(std::string_view{file}.substr(shipped_prefix.size()));
+  return found.empty() ? file : found.string();
+}
+
+[[nodiscard]] std::vector<std::string> arguments_of(const descriptor::MissionSubsystem& subsystem) {
+  std::vector<std::string> words{"--descriptor", placed(subsystem.subsystem.file.string()),
+                                 "--channel",    std::to_string(channel_number),
+                                 "--vital",      std::to_string(vital_number),
+                                 "--permit",     std::to_string(permit_number)};
+  for (const auto& [word, text] : descriptor::changes_of(subsystem)) {
+    // "NAME=12:FILE"
+    const auto file_at = word == "--commands" ? text.find(':') + 1 : text.size();
+    words.insert(words.end(), {word, text.substr(0, file_at) + placed(text.substr(file_at))});
+  }
+  return words;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process) {
@@ -205,8 +226,27 @@ Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process) {
   return std::make_shared<LinuxGrip>(std::move(second));
 }
 
+const HeldPrograms& SystemLauncher::hold_to(const descriptor::Mission& mission) {
+  held_ = std::make_unique<HeldPrograms>(mission);
+  held_->read_all(mission);
+  return *held_;
+}
+
+std::optional<StartRefusal> SystemLauncher::refuse(const descriptor::MissionSubsystem& subsystem) {
+  if (!held_) return std::nullopt;
+  auto found = held_->find(subsystem.executable);
+  return found ? std::nullopt : std::optional{std::move(found.error())};
+}
+
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
   std::filesystem::path& program = programs_[subsystem.executable];
+  const ProgramImage* image = nullptr;
+  if (held_) {
+    const auto found = held_->find(subsystem.executable);
+    if (!found) return fail(found.error().why);
+    image = *found;
+    program = image->file();
+  }
   if (program.empty()) program = find_program(subsystem.executable);
   if (program.empty()) return fail(ErrorCode::NotFound, "its executable is neither beside this program nor in PATH");
   HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
@@ -222,18 +262,18 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair());
   ProcessStart start;
   start.executable = program.string();
-  start.arguments = {"--descriptor", subsystem.subsystem.file.string(), "--channel", std::to_string(channel_number),
-                     "--vital",      std::to_string(vital_number),      "--permit",  std::to_string(permit_number)};
-  for (const auto& [word, text] : descriptor::changes_of(subsystem))
-    start.arguments.insert(start.arguments.end(), {word, text});
+  start.arguments = arguments_of(subsystem);
   start.inherited = {{ends.second.get(), channel_number},
                      {SealedMemory::descriptor(vital.first), vital_number},
                      {SealedMemory::descriptor(permit.first), permit_number}};
   start.limits = limits_of(subsystem.subsystem.resources);
   std::optional<PreparedSandbox> sandbox;
-  const bool script = is_script(program);
+  const bool script = image != nullptr ? image->is_script() : is_script(program);
+  if (image != nullptr) start.image = image->descriptor();
+  if (image != nullptr && script) start.inherited.push_back({image->descriptor(), script_number});
   if (!sandbox_is_off() && !script) {
-    HIROSCO_TRY_LET(sandbox, PreparedSandbox::prepare(sandbox_of(subsystem, program)));
+    // Of one that runs from memory no file is executed.
+    HIROSCO_TRY_LET(sandbox, PreparedSandbox::prepare(sandbox_of(subsystem, image != nullptr ? "" : program)));
     start.sandbox = &*sandbox;
   }
   // What it writes to its standard error is shown with its name, within limits.
@@ -257,6 +297,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   launched.port = std::make_unique<LocalMemberPort>(std::make_unique<SocketChannel>(std::move(ends.first)),
                                                     launched.vital, launched.permit);
   launched.process = next_++;
+  if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
   if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
   launched.grip = std::move(*grip);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));

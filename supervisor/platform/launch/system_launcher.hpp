@@ -10,6 +10,7 @@
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
 #include "supervisor/platform/launch/error_lines.hpp"
+#include "supervisor/platform/launch/held_programs.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 
 namespace hirosco::supervisor {
@@ -22,6 +23,9 @@ namespace hirosco::supervisor {
 class SystemLauncher final : public ProcessLauncher {
  public:
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
+  /// From now on it starts what the manifest of this mission lists, and nothing else. Reads all of it first.
+  const HeldPrograms& hold_to(const descriptor::Mission& mission);
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return hirosco::isolation_lacks(); }
@@ -41,7 +45,8 @@ class SystemLauncher final : public ProcessLauncher {
   std::map<std::uint32_t, ProcessMeter> meters_;
   std::map<std::uint32_t, Process> processes_;
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
-  /// Where each executable was found: a disk is not searched again in flight, where it might hang.
+  std::unique_ptr<HeldPrograms> held_;  ///< null: the mission has no manifest
+  /// Without one: where each executable was found: a disk is not searched again in flight, where it might hang.
   std::map<std::string, std::filesystem::path, std::less<>> programs_;
   std::uint32_t next_{1};
 };

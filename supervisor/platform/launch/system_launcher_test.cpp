@@ -12,11 +12,14 @@
 
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "hirosco/utilities/os/thread.hpp"
+#include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -143,6 +146,55 @@ TEST(ProcessGrip, TellsWhatTheServiceLoopHasHadAndWhetherItCouldRun) {
     ::waitpid(child, &status, 0);
     EXPECT_FALSE(grip->loop_time().waits) << "it is gone";
   }
+}
+
+/// A program of a mission in a folder of its own, which is the first of PATH.
+struct ManifestStart : ::testing::Test {
+  TestFolder folder;
+  std::string path_before{std::getenv("PATH")};
+  descriptor::Mission mission;
+  SystemLauncher launcher;
+  void SetUp() override {
+    ::setenv("PATH", (folder.path().string() + ":" + path_before).c_str(), 1);
+    is_now("/bin/true");
+    descriptor::MissionSubsystem lamp;
+    lamp.executable = "hirosco-test-lamp";
+    lamp.subsystem.name = "LAMP";
+    lamp.subsystem.file = "lamp.xml";
+    mission.subsystems = {lamp};
+    mission.manifest = descriptor::Manifest{"manifest.sha256", {}};
+    mission.manifest->listed = {{lamp.executable, ProgramImage::read("/bin/true").value().digest(), {}}};
+  }
+  ~ManifestStart() override { ::setenv("PATH", path_before.c_str(), 1); }
+  void is_now(const char* program) {
+    std::filesystem::copy_file(program, folder.path() / "hirosco-test-lamp",
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+  /// Its exit code; nothing when it is not started.
+  std::optional<int> run() {
+    auto launched = launcher.launch(mission.subsystems[0]);
+    if (!launched) return std::nullopt;
+    for (;;)
+      if (const auto end = launcher.ended(launched->process)) return end->value;
+  }
+};
+
+TEST_F(ManifestStart, IsOfWhatWasReadBeforeTheFlightWhateverBecomesOfTheFile) {
+  EXPECT_EQ(launcher.hold_to(mission).count(), 1U);
+  EXPECT_EQ(run(), 0);
+  is_now("/bin/false");
+  EXPECT_FALSE(launcher.refuse(mission.subsystems[0]));
+  EXPECT_EQ(run(), 0);
+}
+
+TEST_F(ManifestStart, OfAnotherFileIsRefused) {
+  is_now("/bin/false");
+  EXPECT_EQ(run(), 1) << "without a manifest it is the name that counts";
+  EXPECT_EQ(launcher.hold_to(mission).count(), 0U);
+  EXPECT_EQ(run(), std::nullopt);
+  EXPECT_EQ(launcher.refuse(mission.subsystems[0]).value().why.code, ErrorCode::Mismatch);
+  is_now("/bin/true");
+  EXPECT_EQ(run(), 0);
 }
 
 }  // namespace

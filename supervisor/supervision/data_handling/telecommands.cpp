@@ -267,10 +267,12 @@ void Telecommands::start(const WaitingForDisk::Telecommand& waited) {
   verification.accepted(waited.request);
   verification.started(waited.request);
   parts_.commanded.overrule(waited.apid);
-  if (start_ && start_(waited.apid)) return verification.completed(waited.request);
+  const Result<> started =
+      start_ ? start_(waited.apid) : fail(ErrorCode::Unavailable, "its process could not be started");
+  if (started) return verification.completed(waited.request);
+  const Error& why = started.error();
   FailureNotice notice{FailureCode::ExecutionError};
-  verification.completion_failed(waited.request,
-                                 notice.because({ErrorCode::Unavailable, 0, "its process could not be started"}));
+  verification.completion_failed(waited.request, notice.because({why.code, why.value, why.text}));
 }
 
 void Telecommands::forward(const Outgoing& outgoing) {

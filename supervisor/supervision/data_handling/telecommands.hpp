@@ -66,8 +66,8 @@ class Telecommands final : public Watch, public Accounts {
   void answers(std::uint8_t subtype, std::function<void(const pus::Request&, Octets)> answer) {
     questions_.emplace(subtype, std::move(answer));
   }
-  /// Who starts a subsystem that is down; false: it could not.
-  void starts_with(std::function<bool(std::uint16_t apid)> start) { start_ = std::move(start); }
+  /// Who starts a subsystem that is down, or says why it could not.
+  void starts_with(std::function<Result<>(std::uint16_t apid)> start) { start_ = std::move(start); }
 
  private:
   /// A permitted telecommand on its way to the addressee.
@@ -100,7 +100,7 @@ class Telecommands final : public Watch, public Accounts {
   Craft& craft_;
   std::map<std::string, std::function<void(const pus::Request&)>, std::less<>> at_once_;
   std::map<std::uint8_t, std::function<void(const pus::Request&, Octets)>> questions_;
-  std::function<bool(std::uint16_t)> start_;
+  std::function<Result<>(std::uint16_t)> start_;
   WaitingForDisk waiting_;
   TimePoint report_window_{};
   int reports_in_window_{0};

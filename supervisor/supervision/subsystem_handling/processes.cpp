@@ -28,8 +28,11 @@ void Processes::start_all() {
     craft_.tell("subsystems are not isolated as they should be: " + open, supervisor_apid);
   for (Member& member : craft_.members) {
     const std::string& name = member.descriptor().name;
-    launch(member);
-    if (!member.alive()) craft_.fail();
+    if (!member.described().starts) {
+      craft_.tell(name + " is not started with the flight: SET_STATE Offline starts it", member.apid());
+      continue;
+    }
+    if (!launch(member)) craft_.fail();
     for (const auto device : descriptor::actuators_without_enable(member.descriptor()))
       craft_.tell(name + "'s " + std::string{device} + " has no second inhibit: that it has stopped is known from " +
                       name + " only",
@@ -39,49 +42,59 @@ void Processes::start_all() {
   }
 }
 
-void Processes::launch(Member& member) {
+Result<> Processes::launch(Member& member) {
+  const std::string& name = member.descriptor().name;
+  const auto cannot = [&](const std::string& words, const Error& why) {
+    craft_.tell("cannot " + words, member.apid());
+    return fail(why);
+  };
+  const auto cannot_start = [&](const std::string& words) {
+    return cannot("start " + name + ": " + words, {ErrorCode::Unavailable, "its process could not be started"});
+  };
   if (!craft_.guard.holds(member.apid())) {
     const auto held = craft_.guard.add(member.described(), craft_.is_ground_link(member));
     // Nobody would see that it hangs, or take the enable of those devices that can be reached: it does not fly.
     if (!held)
-      return craft_.tell(
-          "cannot hold the second inhibit of " + member.descriptor().name + "'s devices: " + held.error().text,
-          member.apid());
+      return cannot("hold the second inhibit of " + name + "'s devices: " + held.error().text,
+                    {ErrorCode::Unavailable, "the second inhibit of its devices cannot be held"});
   }
   if (craft_.mission.isolation_required)
     if (const auto open = craft_.launcher.isolation_lacks(); !open.empty())
-      return craft_.tell(
-          "cannot start " + member.descriptor().name + ": the mission wants it isolated, and " + open.front(),
-          member.apid());
-  if (const auto short_of = parts_.resources.claim(member))
-    return craft_.tell("cannot start " + member.descriptor().name + ": " + *short_of, member.apid());
+      return cannot_start("the mission wants it isolated, and " + open.front());
+  if (const auto refused = craft_.launcher.refuse(member.described())) {
+    parts_.own.announce("PROGRAM_REFUSED", {static_cast<double>(member.apid())});
+    return cannot("start " + name + ": " + refused->words, refused->why);
+  }
+  if (const auto short_of = parts_.resources.claim(member)) return cannot_start(*short_of);
   auto launched = craft_.launcher.launch(member.described());
   if (!launched) {
     parts_.resources.release(member.apid());
-    craft_.tell("cannot start " + member.descriptor().name + ": " + launched.error().text, member.apid());
-    return;
+    return cannot_start(launched.error().text);
   }
+  if (!launched->not_held.empty())
+    craft_.tell("not all of " + name + " is in the manifest: " + std::string{launched->not_held}, member.apid());
   if (!launched->not_isolated.empty()) {
-    const std::string open = member.descriptor().name + " is not isolated: " + std::string{launched->not_isolated};
-    craft_.tell(open, member.apid());
+    craft_.tell(name + " is not isolated: " + std::string{launched->not_isolated}, member.apid());
     if (craft_.mission.isolation_required) {
       craft_.launcher.kill(launched->process);
       parts_.resources.release(member.apid());
-      return craft_.tell("cannot start " + member.descriptor().name + ": the mission wants it isolated", member.apid());
+      return cannot_start("the mission wants it isolated");
     }
   }
   craft_.guard.adopt(member.apid(), *launched);
   member.started(std::move(*launched));
   member.enter_mode(craft_.mode_epoch);
-  craft_.tell("started " + member.descriptor().name, member.apid());
+  craft_.tell("started " + name, member.apid());
+  return ok();
 }
 
-bool Processes::start(std::uint16_t apid) {
+Result<> Processes::start(std::uint16_t apid) {
   Member* subject = craft_.member(apid);
-  if (subject == nullptr || subject->alive()) return subject != nullptr;
-  launch(*subject);
-  if (subject->alive() && craft_.is_ground_link(*subject)) parts_.ground_link.restore(*subject);
-  return subject->alive();
+  if (subject == nullptr) return fail(ErrorCode::NotFound, "no such subsystem", apid);
+  if (subject->alive()) return ok();
+  HIROSCO_TRY(launch(*subject));
+  if (craft_.is_ground_link(*subject)) parts_.ground_link.restore(*subject);
+  return ok();
 }
 
 void Processes::watch(TimePoint now) {

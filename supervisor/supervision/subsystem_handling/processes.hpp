@@ -40,8 +40,8 @@ class Processes final : public Watch {
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
   void start_all();
-  /// One that is down: by the ground, however often it died. False: it could not be started.
-  bool start(std::uint16_t apid);
+  /// One that is down: by the ground, however often it died. Otherwise why it could not be started.
+  Result<> start(std::uint16_t apid);
   void take_guard_findings();
   /// Those whose channel is closed: how they ended is known at once.
   void watch_closed() { watch_ends(Whom::Closed); }
@@ -49,7 +49,7 @@ class Processes final : public Watch {
 
  private:
   enum class Whom : std::uint8_t { All, Closed };
-  void launch(Member& member);
+  Result<> launch(Member& member);
   void watch_ends(Whom whom);
   void hear_of(Member& member, GuardFinding::Kind what);
   void died(Member& member, const ProcessEnd& end);

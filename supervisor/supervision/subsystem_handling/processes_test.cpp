@@ -17,13 +17,17 @@ using enum descriptor::State;
 
 struct ProcessesTest : PartsTest {
   std::vector<std::string> lacks;
+  const char* not_held{""};  ///< what of those that are started no manifest holds
   const char* open{""};  ///< why those that are started are in no sandbox
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return lacks; }
+  std::optional<StartRefusal> refusal;  ///< by the manifest
+  [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem&) override { return refusal; }
   int starts_that_fail{0};  ///< from now on
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override {
     if (starts_that_fail-- > 0) return fail(ErrorCode::SystemFailure, "new process", 11);
     auto launched = PartsTest::launch(subsystem);
     if (launched) launched->not_isolated = open;
+    if (launched) launched->not_held = not_held;
     return launched;
   }
   void dies(std::uint16_t apid) {
@@ -59,6 +63,52 @@ TEST_F(ProcessesTest, OneThatIsInNoSandboxIsToldAndEndedWhereTheMissionWantsIt) 
   craft.mission.isolation_required = true;
   EXPECT_FALSE(parts.processes.start(hand));
   EXPECT_THAT(killed, ElementsAre(played[hand].process));
+}
+
+TEST_F(ProcessesTest, WhatTheManifestRefusesIsToldAndNotStartedUntilItIsInOrder) {
+  refusal = StartRefusal{{ErrorCode::Mismatch, "its digest is not the one in the manifest"}, "arm has the SHA-256 12"};
+  const auto started = parts.processes.start(arm);
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().code, ErrorCode::Mismatch);
+  EXPECT_TRUE(was_told("cannot start ARM: arm has the SHA-256 12"));
+  EXPECT_TRUE(played.empty()) << "nothing was launched";
+  start_supervisor();
+  EXPECT_TRUE(was_told("SUPERVISOR low PROGRAM_REFUSED APID=10"));
+  refusal.reset();
+  EXPECT_TRUE(parts.processes.start(arm));
+}
+
+TEST_F(ProcessesTest, TheGroundThatAsksForTheStartOfWhatIsRefusedIsToldWhy) {
+  refusal = StartRefusal{{ErrorCode::Mismatch, "its digest is not the one in the manifest"}, ""};
+  parts.processes.start_all();
+  const auto asked = telecommand(arm, 8, 1, call_data("SET_STATE", 0));
+  parts.telecommands.take({.packet = asked, .origin = Origin::ground()});
+  parts.telecommands.forward_durable();
+  EXPECT_THAT(own_failures(), ElementsAre(static_cast<std::uint16_t>(pus::FailureCode::ExecutionError)));
+  refusal.reset();
+  parts.telecommands.take({.packet = asked, .origin = Origin::ground()});
+  parts.telecommands.forward_durable();
+  EXPECT_THAT(own_failures(), ElementsAre());
+  EXPECT_TRUE(craft.member(arm)->alive());
+}
+
+TEST_F(ProcessesTest, WhatOfAnExecutableTheManifestDoesNotHoldIsTold) {
+  not_held = "it is a script, whose interpreter is another file";
+  EXPECT_TRUE(parts.processes.start(arm));
+  EXPECT_TRUE(was_told("not all of ARM is in the manifest: it is a script, whose interpreter is another file"));
+}
+
+TEST_F(ProcessesTest, WhoIsNotInTheStartListIsStartedWhenTheGroundAsks) {
+  mission.subsystems[1].starts = craft.mission.subsystems[1].starts = false;
+  parts.processes.start_all();
+  EXPECT_THAT(story, ElementsAre("started ARM", "HAND is not started with the flight: SET_STATE Offline starts it",
+                                 "started CAMERA"));
+  EXPECT_FALSE(craft.member(hand)->alive());
+  EXPECT_FALSE(craft.failed());
+  const auto asked = telecommand(hand, 8, 1, call_data("SET_STATE", 0));
+  parts.telecommands.take({.packet = asked, .origin = Origin::ground()});
+  parts.telecommands.forward_durable();
+  EXPECT_TRUE(craft.member(hand)->alive());
 }
 
 TEST_F(ProcessesTest, ADeathIsToldWithItsKindAndItsNetworkGoesDown) {

@@ -48,16 +48,6 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-bool is_name(std::string_view text, NameKind kind) noexcept {
-  const std::size_t most = kind == NameKind::Function ? 16 : max_name;
-  if (text.empty() || text.size() > most || is_digit(text.front())) return false;
-  return std::ranges::all_of(text, [kind](char c) {
-    if (is_digit(c) || c == '_') return true;
-    if (kind == NameKind::Function) return is_upper(c);
-    return is_letter(c) || (kind == NameKind::Loose && (c == '-' || c == '.'));
-  });
-}
-
 std::string_view describe(NameKind kind) noexcept {
   switch (kind) {
     case NameKind::Plain: return "a name has 1 to 64 letters, digits and underscores and begins with no digit";
@@ -68,6 +58,16 @@ std::string_view describe(NameKind kind) noexcept {
 }
 
 }  // namespace
+
+bool is_name(std::string_view text, NameKind kind) noexcept {
+  const std::size_t most = kind == NameKind::Function ? 16 : max_name;
+  if (text.empty() || text.size() > most || is_digit(text.front())) return false;
+  return std::ranges::all_of(text, [kind](char c) {
+    if (is_digit(c) || c == '_') return true;
+    if (kind == NameKind::Function) return is_upper(c);
+    return is_letter(c) || (kind == NameKind::Loose && (c == '-' || c == '.'));
+  });
+}
 
 std::string printable(std::string_view text) {
   std::string clean;

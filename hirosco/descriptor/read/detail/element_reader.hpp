@@ -94,6 +94,8 @@ enum class NameKind {
   Function,  ///< upper case, digits, underscore, at most 16
 };
 
+[[nodiscard]] bool is_name(std::string_view text, NameKind kind) noexcept;
+
 /// Asks one element for its attributes. Every attribute asked for is known; finish() reports the others.
 class Attributes {
  public:

@@ -16,6 +16,8 @@
 
 namespace hirosco::descriptor::detail {
 
+/// What is wrong with a path that must stay inside, `above` folders up; empty when nothing is.
+[[nodiscard]] std::string_view refuse_path(std::string_view text, int above);
 /// Why the producer's set cannot feed the consumer's, by this method where there is one; empty when it can.
 [[nodiscard]] std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_,
                                    std::optional<LinkMethod> method);
@@ -46,6 +48,9 @@ class MissionReader {
   // read_resources.cpp
   void read_resources(const xml::Element& element);
   void read_isolation(const xml::Element& element);
+  // read_manifest.cpp
+  void read_manifest(const xml::Element& element);
+  // read_resources.cpp
   void check_resources(const xml::Element& element);
   void read_member(const xml::Element& element);
   /// Name and id of an instance, where they are not the descriptor's.

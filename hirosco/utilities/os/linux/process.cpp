@@ -33,6 +33,7 @@ struct Plan {
   std::vector<int> parked;  ///< room for the child's temporary numbers
   int first_free{3};  ///< above every number wanted
   const char* executable{};
+  int image{-1};
   const char* directory{};
   sigset_t blocked{};
   ProcessLimits limits;
@@ -61,6 +62,7 @@ void add_texts(std::vector<char*>& texts, const std::vector<std::string>& values
   sigemptyset(&plan.blocked);
   for (const int number : start.blocked) sigaddset(&plan.blocked, number);
   plan.executable = start.executable.c_str();
+  plan.image = start.image.value_or(-1);
   plan.limits = start.limits;
   plan.sandbox = start.sandbox;
   if (!start.working_directory.empty()) plan.directory = start.working_directory.c_str();
@@ -77,13 +79,18 @@ void place_descriptors(Plan& plan) noexcept {
   const int report = ::fcntl(plan.report, F_DUPFD_CLOEXEC, plan.first_free);
   if (report < 0) give_up(plan.report, errno);
   plan.report = report;
+  const int image = plan.image;
+  if (image >= 0 && (plan.image = ::fcntl(image, F_DUPFD_CLOEXEC, plan.first_free)) < 0) give_up(report, errno);
   for (std::size_t i = 0; i < plan.inherited.size(); ++i) {
     plan.parked[i] = ::fcntl(plan.inherited[i].ours, F_DUPFD_CLOEXEC, plan.first_free);
     if (plan.parked[i] < 0) give_up(report, errno);
   }
   if (::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC) != 0) give_up(report, errno);
-  for (std::size_t i = 0; i < plan.inherited.size(); ++i)
+  for (std::size_t i = 0; i < plan.inherited.size(); ++i) {
     if (::dup2(plan.parked[i], plan.inherited[i].number) < 0) give_up(report, errno);
+    // One that stays open: by it an interpreter finds its script.
+    if (image >= 0 && plan.inherited[i].ours == image) plan.image = plan.inherited[i].number;
+  }
 }
 
 void reset_signals(const sigset_t& blocked) noexcept {
@@ -114,7 +121,9 @@ void set_limit(const Plan& plan, int resource, const std::optional<std::uint64_t
   // Last: until then all of ours are still open, and a sandbox opens one more.
   set_limit(plan, RLIMIT_DATA, plan.limits.memory_octets);
   set_limit(plan, RLIMIT_NOFILE, plan.limits.descriptors);
-  ::execve(plan.executable, plan.arguments.data(), plan.environment_used);
+  if (plan.image >= 0)
+    ::syscall(SYS_execveat, plan.image, "", plan.arguments.data(), plan.environment_used, AT_EMPTY_PATH);
+  else ::execve(plan.executable, plan.arguments.data(), plan.environment_used);
   give_up(plan.report, errno);
 }
 

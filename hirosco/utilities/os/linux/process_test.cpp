@@ -87,6 +87,24 @@ TEST(Process, AnExecutableThatDoesNotExistIsAnErrorAtOnce) {
   EXPECT_FALSE(Process::spawn({}));
 }
 
+TEST(Process, ExecutesTheImageThatItIsGivenWhateverHasThePathByThen) {
+  const FileDescriptor image{::open("/bin/sh", O_RDONLY | O_CLOEXEC)};
+  Pipe pipe;
+  ProcessStart start = shell("echo $0; exit 7");
+  start.executable = "/nonexistent/executable";
+  start.image = image.get();
+  start.inherited = {{pipe.write_end.get(), STDOUT_FILENO}};
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process) << process.error().text;
+  EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Exited, 7}));
+  EXPECT_EQ(pipe.rest(), "/nonexistent/executable\n");
+  const FileDescriptor text{::open("/etc/passwd", O_RDONLY | O_CLOEXEC)};
+  start.image = text.get();
+  EXPECT_EQ(Process::spawn(start).error().code, ErrorCode::NotPermitted);
+  start.image = 1'000'000;
+  EXPECT_FALSE(Process::spawn(start)) << "no such descriptor";
+}
+
 /// A lease holds up whoever opens the file, as a disk that hangs does.
 TEST(Process, AnExecutableThatItsDiskHoldsUpHoldsUpNobodyAndRunsOnceItIsThere) {
   std::string folder = (std::filesystem::temp_directory_path() / "hirosco-lease-XXXXXX").string();

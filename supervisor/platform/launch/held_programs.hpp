@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <expected>
+#include <filesystem>
+#include <future>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "hirosco/descriptor/model/mission.hpp"
+#include "supervisor/platform/launch/launcher.hpp"
+#include "supervisor/platform/launch/program_image.hpp"
+
+namespace hirosco::supervisor {
+
+/// The executables of a mission that has a manifest, in memory, each with the digest that stands there for its name. They are
+/// read before the flight; who crashed is started anew from memory, and waits for no disk and no hash.
+/// Thread: the supervisor's; a file is read by a thread of its own, for which nobody waits longer than longest_wait.
+class HeldPrograms {
+ public:
+  using Outcome = std::expected<ProgramImage, StartRefusal>;
+  using Read = Result<ProgramImage> (*)(const std::string& name);
+  /// Well below what the supervisor's loop may stand still for.
+  static constexpr Duration longest_wait = std::chrono::milliseconds{100};
+
+  /// Of a mission with a manifest. `read` finds the file of a name and reads it; without it beside this program and in PATH.
+  explicit HeldPrograms(const descriptor::Mission& mission);
+  HeldPrograms(const descriptor::Mission& mission, Read read);
+
+  /// Reads those of all subsystems, before the flight: it takes as long as the disk takes. What is refused is so by find().
+  void read_all(const descriptor::Mission& mission);
+  /// One that is not held is read anew: its file or the disk may be in order by now. The image stays for the flight.
+  [[nodiscard]] std::expected<const ProgramImage*, StartRefusal> find(const std::string& name);
+  [[nodiscard]] std::size_t count() const noexcept { return held_.size(); }
+  [[nodiscard]] std::size_t octets() const noexcept;
+
+ private:
+  struct Wanted {
+    std::string name;
+    std::string digest;
+    std::string mission;
+  };
+  [[nodiscard]] static Outcome check(Read read, const Wanted& wanted);
+  [[nodiscard]] std::expected<Wanted, StartRefusal> wanted(const std::string& name) const;
+
+  descriptor::Manifest manifest_;
+  std::string mission_;
+  Read read_;
+  std::map<std::string, ProgramImage, std::less<>> held_;
+  std::map<std::string, std::future<Outcome>, std::less<>> read_now_;
+};
+
+}  // namespace hirosco::supervisor

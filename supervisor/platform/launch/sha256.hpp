@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/result.hpp"
+
+namespace hirosco::supervisor {
+
+/// SHA-256 (FIPS 180-4) as 64 hexadecimal digits, lower case. SystemFailure: the cryptographic library refuses it.
+/// Realtime: allocates, as long as the octets are many.
+[[nodiscard]] Result<std::string> sha256(Octets octets);
+
+}  // namespace hirosco::supervisor
