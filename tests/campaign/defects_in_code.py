@@ -98,7 +98,7 @@ DEFECTS = [
            "supervisor_test", "TelecommandsTest.WhatWasPermittedBeforeAFenceIsVoidAfterIt"),
     # Death was swallowed while a plan of the same severity ran.
     Defect("SF5 swallowed death", f"{SUPERVISION}/event_handling/reactions.cpp",
-           "outweighs(severity) && !is_loss(event)) return;", "outweighs(severity) && (PLANTED || !is_loss(event))) return;",
+           ".of_loss = &subject == whose &&", ".of_loss = !PLANTED && &subject == whose &&",
            "supervisor_test", "ReactionsTest.NobodyIsCommandedTwiceOnItsWayDownButADeathIsNeverSwallowed"),
     # Nobody remembered what the dead had been asked.
     Defect("no outcome", TELECOMMANDS, "for (const pus::Request& request : parts_.unanswered.take(apid))",

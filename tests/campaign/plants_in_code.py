@@ -41,8 +41,7 @@ PLANTS = {
     # Death was swallowed while a plan of the same severity ran. This mission's plans take the network down all the same;
     # it shows where the plan for high severity is milder.
     "SF5": ("I4", [
-        (REACTIONS, "origin.recovery.outweighs(severity) && !is_loss(event)) return;",
-         'origin.recovery.outweighs(severity) && (planted("SF5") || !is_loss(event))) return;'),
+        (REACTIONS, ".of_loss = &subject == whose &&", '.of_loss = !planted("SF5") && &subject == whose &&'),
         ("missions/rokviss/mission.xml", '<When severity="high"/><Do action="shut_down_network"/>',
          '<When severity="high"/><Do action="set_state" state="SafeOperational"/>')]),
     # Recovery heard events as reports: one whose report was off was not heard.
