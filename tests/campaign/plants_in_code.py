@@ -47,7 +47,9 @@ PLANTS = {
     # Recovery heard events as reports: one whose report was off was not heard.
     "SF6": ("I4", [
         ("hirosco/subsystem/service_loop/cycle_reports.cpp", "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
-         'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event')]),
+         'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event'),
+        # And ground could switch that of a loss off.
+        (f"{SUPERVISION}/data_handling/permission.cpp", "    if (event->safety || (asked", '    if ((event->safety && !planted("SF6")) || (asked')]),
     # Nothing raised the epoch on the way up: a device that had latched on the way down stayed so.
     "SF14": ("I10", [
         ("supervisor/guard/guarded_member.cpp", "  permit->release();",
