@@ -66,7 +66,8 @@ int read_and_do(int argc, char** argv) {
   auto* check_command = app.add_subcommand("check", "Check descriptors and missions, all problems at once");
   check_command->add_option("files", check_options.files, "Descriptor or mission files")->required();
   check_command->add_flag("--show", check_options.show, "Print what was read");
-  check_command->add_flag("--recovery", check_options.recovery, "Print which plan each event would get in which mode");
+  check_command->add_flag("--recovery", check_options.recovery,
+                          "Print which plan each event would get in which mode, and which gives way to which");
   check_command->add_flag("--json", check_options.json, "Problems as JSON, one a line");
   check_command->add_flag("--fly", check_options.fly, "Also all programs that a mission needs must be here");
 

@@ -71,7 +71,8 @@ void add_framework_events(Subsystem& subsystem) {
   add_enumeration<Resource>(subsystem, resources_enumeration);
   const auto add = [&](std::string name, std::uint16_t id, Severity severity, std::vector<Field> arguments) {
     if (std::ranges::find(subsystem.events, id, &Event::id) != subsystem.events.end()) return;
-    subsystem.events.push_back({std::move(name), id, severity, std::move(arguments), {}});
+    // What makes somebody safe or takes a network down is known to whoever looks, whatever an author makes of its severity.
+    subsystem.events.push_back({std::move(name), id, severity, std::move(arguments), {}, severity >= Severity::Medium});
   };
   using namespace framework_event;
   const Field state = argument("STATE", Type::Uint8, states_enumeration);

@@ -166,6 +166,8 @@ constexpr Bad bad_meaning[] = {
     {"E0112", R"(<Resources warning_percent="@101"/>)", "100"},
     {"E0112", R"(<Resources><Pool block="@15" count="1"/></Resources>)", "16"},
     {"E0105", R"(<Resources>@<Pool block="16"/></Resources>)", ""},
+    {"E0241", R"(<EventService><Event name="STATE_FAILED" severity="high" safety="@no"/></EventService>)", "leave safety out"},
+    {"E0113", R"(<EventService><Event name="A" id="1" severity="low" safety="@true"/></EventService>)"},
     {"E0240", R"(<Resources><Pool block="17" count="1"/>@<Pool block="32" count="1"/></Resources>)", "one pool"},
     {"E0240", R"(@<Resources memory_kB="4096"><Pool block="1048576" count="5"/></Resources>)", "4194304"},
     {"E0107", R"(<Resources/>@<Resources/>)"},

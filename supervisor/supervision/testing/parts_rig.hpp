@@ -46,7 +46,8 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   LocalFlows flows;
   descriptor::Mission mission = [] {
     auto made = small_mission();
-    auto own = descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/supervisor/supervisor.xml", descriptor::file_system());
+    static const auto own =
+        descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/supervisor/supervisor.xml", descriptor::file_system());
     made.supervisor = *own.value;
     made.ground.subsystem = "CAMERA";
     made.initial_mode = made.start_mode = "open";
