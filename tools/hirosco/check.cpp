@@ -43,6 +43,8 @@ void show_subsystem(const descriptor::Subsystem& subsystem) {
                configuration.name, configuration.id, configuration.sampling / 1us, configuration.priority,
                configuration.provides.size(), configuration.requires_.size(), configuration.devices.size(),
                configuration.housekeeping.size() + subsystem.housekeeping.size());
+  for (const auto& parameter : subsystem.parameters)
+    if (parameter.persistent) show_field("keeps", parameter.field);
   for (const auto& device : subsystem.devices) {
     fmt::print("  device {}{}\n", device.name, device.actuator ? ", an actuator" : "");
     for (const auto& power : subsystem.power_switches)

@@ -83,6 +83,9 @@ int read_and_do(int argc, char** argv) {
   simulate_command->add_option("--trace", simulate_options.trace, "Write link and world truth at cycle rate as CSV");
   simulate_command->add_option("--at", simulate_options.at,
                                "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
+  simulate_command->add_option(
+      "--values", simulate_options.values,
+      "Folder of persistent parameters' values, read and written; by default there are none before");
   simulate_command->add_flag("--summary", simulate_options.summary, "Print counts instead of the log");
 
   std::string judged_mission;

@@ -11,6 +11,7 @@
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
+#include "supervisor/supervision/stored_values.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
 
@@ -123,6 +124,7 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   parts_.resources.release(apid);
   if (craft_.shutting_down) {
     subject.died();
+    parts_.stored.ended(apid);
     parts_.telecommands.outcome_unknown(apid);
     return parts_.desk.fail_all_to(apid, "process ended");
   }
@@ -133,6 +135,7 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   // The network is what it was before the death: the others are told while the graph still has the links.
   // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();
+  parts_.stored.ended(apid);
   parts_.telecommands.outcome_unknown(apid);
   parts_.restoration.lost(apid);
   parts_.reactions.react(subject, "PROCESS_DIED", Severity::High);

@@ -17,6 +17,7 @@ class Reception;
 class Restoration;
 class ResourceHandling;
 class SafeAll;
+class StoredValues;
 class Telecommands;
 
 /// Starts the processes of the subsystems, sees them end or hang, and starts them again (paper 4.3 subsystem handling).
@@ -36,6 +37,7 @@ class Processes final : public Watch {
     Restarts& restarts;
     Restoration& restoration;
     ResourceHandling& resources;
+    StoredValues& stored;
   };
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

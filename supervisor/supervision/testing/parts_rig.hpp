@@ -63,6 +63,8 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   }();
   Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1000, .on_finding = {}}};
   DirectPacketLog log{clock, open_database(DatabaseStrategy::Memory, {}).value()};
+  MemoryValueDisk value_disk;
+  DirectValueStore values{value_disk, "values"};
   std::map<std::uint16_t, PlayedMember> played;
   std::map<std::uint32_t, ProcessEnd> ends;
   std::vector<std::uint32_t> killed;
@@ -76,7 +78,8 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
                          .guard = guard,
                          .log = log,
                          .open_database = [this](DatabaseStrategy) { return std::move(next_database); },
-                         .observer = *this}};
+                         .observer = *this,
+                         .values = &values}};
   Craft& craft = parts.craft;
 
   /// What steps act with, and a desk that the test plays.
