@@ -17,6 +17,20 @@ function(hirosco_device name)
   hirosco_part(${name} hirosco::device_main hirosco::simulated_device ${ARGN})
 endfunction()
 
+# Whether programs of subsystems see what their cycles must not do, and tell it by CYCLE_NOT_REALTIME (docs/adr/0092): in Debug
+# builds, or as HIROSCO_WATCH_CYCLES says. A sanitizer owns the functions that would have to be seen.
+function(hirosco_watched result)
+  if(DEFINED HIROSCO_WATCH_CYCLES)
+    set(watched ${HIROSCO_WATCH_CYCLES})
+  elseif(CMAKE_BUILD_TYPE STREQUAL "Debug")
+    set(watched ON)
+  endif()
+  if(HIROSCO_SANITIZE OR "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_DEBUG}" MATCHES "-fsanitize")
+    set(watched OFF)
+  endif()
+  set(${result} ${watched} PARENT_SCOPE)
+endfunction()
+
 set(hirosco_author_folder ${CMAKE_CURRENT_LIST_DIR})
 
 # `main`: the library of the program; `framework`: of both.
@@ -34,6 +48,11 @@ function(hirosco_part name main framework)
     add_executable(${name} $<TARGET_OBJECTS:${name}_objects>)
     target_link_libraries(${name} PRIVATE ${main} ${ARG_DEPENDS} ${framework})
     set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
+  endif()
+  hirosco_watched(watched)
+  if(watched AND main STREQUAL hirosco::subsystem_main)
+    target_sources(${name} PRIVATE $<TARGET_OBJECTS:hirosco::realtime_hook>)
+    target_link_libraries(${name} PRIVATE ${CMAKE_DL_LIBS})
   endif()
 
   add_library(${name}_module MODULE $<TARGET_OBJECTS:${name}_objects>)

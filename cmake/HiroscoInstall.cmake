@@ -36,13 +36,13 @@ function(hirosco_install_libraries)
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${short})
     add_dependencies(flown ${target})
   endforeach()
-  install(TARGETS ${ARGN} EXPORT hirosco-targets ARCHIVE DESTINATION lib/hirosco)
+  install(TARGETS ${ARGN} EXPORT hirosco-targets ARCHIVE DESTINATION lib/hirosco OBJECTS DESTINATION lib/hirosco)
 endfunction()
 
 function(hirosco_install)
   hirosco_install_libraries(hirosco_options hirosco_utilities hirosco_resource hirosco_xml hirosco_parameter
     hirosco_data_transfer hirosco_descriptor hirosco_pus hirosco_subsystem hirosco_subsystem_main hirosco_subsystem_testing
-    hirosco_simulated_device hirosco_simulation_device_shell hirosco_device_main)
+    hirosco_simulated_device hirosco_simulation_device_shell hirosco_device_main hirosco_realtime_hook)
   foreach(header IN LISTS HIROSCO_AUTHOR_HEADERS)
     get_filename_component(folder ${header} DIRECTORY)
     install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/hirosco/${folder})

@@ -24,6 +24,7 @@
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
+#include "supervisor/supervision/stored_values.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
@@ -39,6 +40,7 @@ namespace hirosco::supervisor {
 struct SupervisorParts final : OwnSubsystem::Author {
   explicit SupervisorParts(const Supervisor::Parts& outside)
       : craft{outside.mission, outside.platform, outside.launcher, outside.guard, outside.log, outside.observer},
+        stored{craft, own, own_telecommands, outside.values},
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count} {
     // No cycle, no queue and no state of the supervisor's own holds these up.
@@ -67,10 +69,11 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Unanswered unanswered;
   Restarts restarts;
   CommandedStates commanded{craft, own};
+  StoredValues stored;
   Traffic traffic;
   GroundRoute ground_route;
   // data handling
-  Telecommands telecommands{{craft, own, graph, power, unanswered, traffic, ground_route, commanded}};
+  Telecommands telecommands{{craft, own, graph, power, unanswered, traffic, ground_route, commanded, stored}};
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
   Replies replies{craft, unanswered};
@@ -78,7 +81,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
                       own,
                       traffic,
                       ground_route,
-                      {&traffic, &commanded, &replies, &reception, &power, &own_telecommands, &links}};
+                      {&traffic, &commanded, &stored, &replies, &reception, &power, &own_telecommands, &links}};
   Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
@@ -98,12 +101,12 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Restoration restoration{means, own, under_way};
   LinkLosses losses{means, own, links};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
-                       restarts, restoration, resources, versions}};
+                       restarts, restoration, resources, versions, stored}};
   Versions versions{{craft, own, processes, reactions, under_way}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 13> watches{&processes,        &versions, &ground_link, &restoration, &losses,
-                                 &housekeeping,     &power,    &links,       &log_watch,   &telecommands,
-                                 &own_telecommands, &replies,  &resources};
+  std::array<Watch*, 14> watches{&stored,       &processes, &versions, &ground_link, &restoration, &losses,
+                                 &housekeeping, &power,     &links,    &log_watch,   &telecommands, &own_telecommands,
+                                 &replies,      &resources};
 };
 
 }  // namespace hirosco::supervisor

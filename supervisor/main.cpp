@@ -29,6 +29,7 @@
 #include "supervisor/platform/storage/epoch_file.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/platform/storage/postgresql_database.hpp"
+#include "supervisor/platform/storage/value_store.hpp"
 #include "supervisor/supervisor.hpp"
 #include "supervisor/unprovoked_reactions.hpp"
 
@@ -181,8 +182,10 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
     return exit_environment;
   }
+  ThreadedValueStore values{clock, std::make_unique<SystemValueDisk>(),
+                            std::filesystem::path{log_path}.replace_extension(".values")};
   const bool realtime = realtime_permitted();
-  // The log's and the console's threads exist already: they stay ordinary.
+  // The threads of log, console and values exist already: they stay ordinary.
   if (realtime) keep_code_in_memory();
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
   EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
@@ -204,7 +207,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
          return make_store(wanted, log_path, mission.database);
        },
        .observer = causes,
-       .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384)}};
+       .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384),
+       .values = &values}};
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
   const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;

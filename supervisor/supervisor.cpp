@@ -24,6 +24,7 @@ void Supervisor::start() {
   craft.now = craft.platform.clock.now();
   parts_->own.start(craft.mode_epoch);
   craft.guard.beat();
+  parts_->stored.begin();
   parts_->processes.start_all();
   parts_->commissioning.start([this] { request_shutdown(); });
 }

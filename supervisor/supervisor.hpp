@@ -12,6 +12,7 @@
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
+#include "supervisor/platform/storage/value_store.hpp"
 #include "supervisor/supervision/observer.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/subsystem_handling/member.hpp"
@@ -33,6 +34,7 @@ class Supervisor final {
     DatabaseOpener open_database;
     Observer& observer;
     std::uint16_t first_sequence_count{0};  ///< of its own telecommands (decision 27)
+    ValueStore* values{nullptr};  ///< of persistent parameters; null: they do not outlive the flight
   };
   explicit Supervisor(const Parts& parts);
   ~Supervisor();

@@ -17,7 +17,7 @@ MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/resources.hpp", FOLDER 
 COLUMNS = ["schema", "declared", "honoured_by", "in"]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 PLAIN = {"YesNo"}  # its words are those of every language
-NOT_BUILT_IN = {"persistent", "read_only"}  # known to be refused in words
+NOT_BUILT_IN = {"read_only"}  # known to be refused in words
 ASKED = re.compile(r'\b(?:optional|required|name|yes|numbers?|exact|watts|text|integer|(?:integer_or|required_integer|one_of|list_of)'
                    r'(?:<[\w:]+>)?|read_\w+|watchdog|limit)\((?:\w+, )*"(\w+)"|\{"([A-Z]\w*[a-z]\w*)",')
 

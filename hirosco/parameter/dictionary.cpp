@@ -258,6 +258,11 @@ Result<> Dictionary::set(std::size_t index, int member, std::span<const Value> v
   return ok();
 }
 
+void Dictionary::begin_with(std::size_t index, std::vector<Value> values) {
+  if (index >= entries_.size() || values.size() != value_count(entries_[index].spec)) return;
+  entries_[index].spec.init = std::move(values);
+}
+
 Result<> Dictionary::initialise() noexcept {
   for (std::size_t index = 0; index < entries_.size(); ++index) {
     const Entry& entry = entries_[index];

@@ -110,6 +110,8 @@ class Dictionary {
   /// Sets a place from values, one for each element, one for a text; each must be representable in its type (integers exactly).
   /// `value` of an error is the position of the one that is not.  Realtime: bounded. Thread: the writer's.
   [[nodiscard]] Result<> set(std::size_t index, int member, std::span<const Value> values) noexcept;
+  /// initialise() gives it these from now on: as many as it has, each representable, or nothing changes.  Realtime: allocates.
+  void begin_with(std::size_t index, std::vector<Value> values);
   /// Sets all published parameters to their declared initial values.  Thread: the writer's.
   [[nodiscard]] Result<> initialise() noexcept;
 

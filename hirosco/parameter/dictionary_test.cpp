@@ -101,6 +101,17 @@ TEST(Dictionary, RejectsDeclarationsWithoutMeaning) {
   EXPECT_THAT(refusal({spec}), HasSubstr("one field"));
 }
 
+TEST(Dictionary, BeginsWithWhatItIsGivenAndWithNothingOfAnotherNumber) {
+  Dictionary dictionary = made({goal()});
+  Parameter<std::array<double, 2>> value;
+  ASSERT_TRUE(dictionary.publish("DES_POSITION", value));
+  dictionary.begin_with(0, {4.0, 5.0});
+  dictionary.begin_with(0, {6.0});
+  dictionary.begin_with(7, {6.0, 7.0});
+  ASSERT_TRUE(dictionary.initialise());
+  EXPECT_EQ(value.load(), (std::array{4.0, 5.0}));
+}
+
 TEST(Dictionary, PublishesWhatHasTheDeclaredLayout) {
   EXPECT_EQ(publish_error<MovedValues>(current_values()), "accepted");
   EXPECT_EQ((publish_error<std::array<double, 2>>(goal())), "accepted");

@@ -15,6 +15,7 @@ struct ThreadState {
   unsigned depth{0};
   HeapUse use{HeapUse::Count};
   AllocationCount count;
+  RealtimeUses waits;  // `heap` is in `count`
 };
 // The one thread_local of the framework: malloc has no parameter to pass it in. Constant initialisation and this model
 // keep its access free of malloc, which would recur.
@@ -22,8 +23,10 @@ struct ThreadState {
 
 }  // namespace
 
+RealtimeScope::RealtimeScope() noexcept : RealtimeScope{thread_state.use} {}
+
 RealtimeScope::RealtimeScope(HeapUse use) noexcept
-    : start_{thread_state.count}, outer_use_{std::exchange(thread_state.use, use)} {
+    : start_{thread_state.count}, start_waits_{thread_state.waits}, outer_use_{std::exchange(thread_state.use, use)} {
   ++thread_state.depth;
 }
 
@@ -37,6 +40,12 @@ AllocationCount RealtimeScope::count() const noexcept {
   return {now.allocations - start_.allocations, now.frees - start_.frees, now.octets - start_.octets};
 }
 
+RealtimeUses RealtimeScope::uses() const noexcept {
+  const AllocationCount heap = count();
+  const RealtimeUses& now = thread_state.waits;
+  return {heap.allocations + heap.frees, now.locks - start_waits_.locks, now.outputs - start_waits_.outputs};
+}
+
 bool RealtimeScope::hook_present() noexcept {
   return hirosco_malloc_hook_present != nullptr && hirosco_malloc_hook_present();
 }
@@ -47,10 +56,13 @@ HeapPermitted::~HeapPermitted() { thread_state.depth = depth_; }
 
 }  // namespace hirosco
 
+[[gnu::noinline]] void hirosco_forbidden_use() noexcept { asm volatile(""); }
+
 void hirosco_note_allocation(std::size_t octets) noexcept {
   auto& state = hirosco::thread_state;
   if (state.depth == 0) return;
   if (state.use == hirosco::HeapUse::Abort) std::abort();
+  hirosco_forbidden_use();
   ++state.count.allocations;
   state.count.octets += octets;
 }
@@ -59,5 +71,20 @@ void hirosco_note_free() noexcept {
   auto& state = hirosco::thread_state;
   if (state.depth == 0) return;
   if (state.use == hirosco::HeapUse::Abort) std::abort();
+  hirosco_forbidden_use();
   ++state.count.frees;
+}
+
+void hirosco_note_lock() noexcept {
+  auto& state = hirosco::thread_state;
+  if (state.depth == 0) return;
+  hirosco_forbidden_use();
+  ++state.waits.locks;
+}
+
+void hirosco_note_output() noexcept {
+  auto& state = hirosco::thread_state;
+  if (state.depth == 0) return;
+  hirosco_forbidden_use();
+  ++state.waits.outputs;
 }

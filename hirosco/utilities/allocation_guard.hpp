@@ -15,30 +15,42 @@ struct AllocationCount {
   friend bool operator==(const AllocationCount&, const AllocationCount&) = default;
 };
 
+/// What one thread has done that real time forbids, in numbers of calls.
+struct RealtimeUses {
+  std::uint64_t heap{0};     ///< allocations and frees
+  std::uint64_t locks{0};    ///< of mutexes, read-write locks and semaphores, whether they were free or not
+  std::uint64_t outputs{0};  ///< of text or octets: stdio, streams, fmt, write()
+  friend bool operator==(const RealtimeUses&, const RealtimeUses&) = default;
+};
+
 /// What happens on a use of the heap inside a RealtimeScope.
 enum class HeapUse : std::uint8_t {
   Count,
   Abort,  ///< for tests: the stack of the core dump shows who it was
 };
 
-/// Marks the code of a scope as real time: it must not use the heap. Counts the calling thread's uses since the
-/// outermost scope began; a scope inside a scope counts on. Needs the hook `hirosco_malloc_hook` linked into the
-/// executable, otherwise it counts nothing and hook_present() says so.
+/// Marks the code of a scope as real time: it must neither use the heap nor lock nor put out. Counts what the calling thread
+/// does of it since the outermost scope began; a scope inside a scope counts on. Needs `hirosco_malloc_hook` linked into the
+/// executable for the heap, `hirosco_realtime_hook` for all; otherwise it counts nothing and hook_present() says so.
 /// Realtime: wait-free. Thread: the one that made it, which also destroys it.
 class RealtimeScope {
  public:
-  explicit RealtimeScope(HeapUse use = HeapUse::Count) noexcept;
+  /// A use of the heap does what it does in the scope around this one; it is counted where there is none.
+  RealtimeScope() noexcept;
+  explicit RealtimeScope(HeapUse use) noexcept;
   ~RealtimeScope();
   RealtimeScope(const RealtimeScope&) = delete;
   RealtimeScope& operator=(const RealtimeScope&) = delete;
 
   /// Since this scope began.
   [[nodiscard]] AllocationCount count() const noexcept;
+  [[nodiscard]] RealtimeUses uses() const noexcept;
   /// Whether this executable counts at all.
   [[nodiscard]] static bool hook_present() noexcept;
 
  private:
   AllocationCount start_;
+  RealtimeUses start_waits_;  ///< `heap` is not counted here
   HeapUse outer_use_;
 };
 
@@ -58,7 +70,11 @@ class HeapPermitted {
 }  // namespace hirosco
 
 extern "C" {
-/// For the hook only: one use of the heap by the calling thread.
+/// For the hooks only: one use by the calling thread.
 void hirosco_note_allocation(std::size_t octets) noexcept;
 void hirosco_note_free() noexcept;
+void hirosco_note_lock() noexcept;
+void hirosco_note_output() noexcept;
+/// Called by each of these inside a scope. It does nothing: a debugger stops here, and the stack shows who it was.
+void hirosco_forbidden_use() noexcept;
 }

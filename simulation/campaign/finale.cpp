@@ -4,8 +4,9 @@
 
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "simulation/campaign/planned_flight.hpp"
+#include "supervisor/guard/guarded_member.hpp"
 
-/// The same end for every flight: the faults stop, SAFE_ALL stops the craft, and two seconds later all that lives can be
+/// The same end for every flight: the faults stop, SAFE_ALL stops the craft, and two seconds later all that lives, and does not hang, can be
 /// brought up by ground's telecommands and stays up (I10; hazard SF14).
 namespace hirosco::campaign {
 
@@ -36,6 +37,25 @@ void PlannedFlight::end_faults() {
   disk_.fault = DiskFault::None;
   disk_.delay = {};
   trace_->say("calm");
+}
+
+/// Who stands in the middle of a cycle is ended by the guard and started again; until then nobody can bring it up, and its
+/// operator is told that it hangs. That takes as long as its descriptor grants a cycle whose real-time priority was taken.
+void PlannedFlight::see_hangs_ended() {
+  constexpr Duration end_takes = 1500ms;  // killed a second after it was fenced, and started again
+  for (const auto& member : mission_.subsystems) {
+    const std::string& name = member.subsystem.name;
+    const auto stands_at = [&]() -> std::optional<std::uint64_t> {
+      const VitalPage* page = craft_->vital(name);
+      if (page == nullptr || !craft_->alive(name) || page->cycling.load() == 0) return std::nullopt;
+      return page->cycles.load();
+    };
+    const auto before = stands_at();
+    const Duration limit = member.subsystem.hang.reduced * supervisor::guard_observation_period + end_takes;
+    if (!before) continue;
+    run_until([&] { return stands_at() != before; }, limit);
+    if (!stands_at()) run_until(craft_->now() - start_of_flight + end_takes);
+  }
 }
 
 /// Sends a function with all acknowledgements and waits for its end.
@@ -71,6 +91,7 @@ void PlannedFlight::finale() {
     if (craft_->alive(member.subsystem.name))
       send("ground", {.apid = member.subsystem.id, .service = 17, .subtype = 1, .ack = 15}, {});
   run_until(craft_->now() - start_of_flight + 200ms);
+  see_hangs_ended();
   bring_up();
   static_cast<void>(call(mission_.supervisor.name, "SAFE_ALL", {}));
   run_until(craft_->now() - start_of_flight + 500ms);

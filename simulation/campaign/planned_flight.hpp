@@ -64,6 +64,7 @@ class PlannedFlight {
   // The end of each flight: every fault is over, and what can fly has to fly again.
   void finale();
   void end_faults();
+  void see_hangs_ended();
   void bring_up();
   [[nodiscard]] bool call(std::string_view subsystem, std::string_view function, std::optional<double> argument);
   [[nodiscard]] std::uint32_t state(std::string_view name) const;

@@ -73,7 +73,8 @@ Flight::Flight(Plan plan) {
                                                           .log = log_,
                                                           .observer = story_,
                                                           .seed = plan.seed,
-                                                          .wrap_channel = plan.wrap_channel});
+                                                          .wrap_channel = plan.wrap_channel,
+                                                          .values = plan.values});
 }
 
 std::vector<supervisor::LogRecord> Flight::records() {

@@ -56,6 +56,8 @@ struct Plan {
   std::uint64_t seed{1};
   /// What stands between the supervisor and a member's channel; empty: nothing.
   std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
+  /// Of persistent parameters, from flight to flight; null: of this one alone.
+  supervisor::ValueStore* values{nullptr};
 };
 
 /// Edit of a mission with a simulated hand: it rests until the test moves it.

@@ -186,7 +186,8 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       .open_database = parts.open_database ? parts.open_database : [](supervisor::DatabaseStrategy)
           -> std::unique_ptr<supervisor::Database> { return std::make_unique<supervisor::MemoryDatabase>(); },
       .observer = parts.observer,
-      .first_sequence_count = first_count(parts.seed)});
+      .first_sequence_count = first_count(parts.seed),
+      .values = parts.values != nullptr ? parts.values : &own_values_});
   supervisor_wake_ = clock_.now();
   supervisor_->start();
 }

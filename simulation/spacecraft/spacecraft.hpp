@@ -57,6 +57,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     supervisor::DatabaseOpener open_database{};  ///< for SET_DATABASE; empty: one in memory
     /// What stands between the supervisor and a member's channel, for faults of that; empty: nothing.
     std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
+    /// Of persistent parameters, from earlier flights and for later ones; null: of this flight alone.
+    supervisor::ValueStore* values{nullptr};
   };
   explicit Spacecraft(const Parts& parts);
   ~Spacecraft() override;
@@ -126,6 +128,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     std::unique_ptr<SimulatedDevice> device;
   };
   std::vector<Device> devices_;
+  supervisor::MemoryValueDisk forgotten_;
+  supervisor::DirectValueStore own_values_{forgotten_, "values"};
   std::optional<supervisor::Guard> guard_;
   std::unique_ptr<supervisor::Supervisor> supervisor_;
   TimePoint supervisor_wake_{};

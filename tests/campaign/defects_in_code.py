@@ -98,7 +98,7 @@ DEFECTS = [
            "supervisor_test", "TelecommandsTest.WhatWasPermittedBeforeAFenceIsVoidAfterIt"),
     # Death was swallowed while a plan of the same severity ran.
     Defect("SF5 swallowed death", f"{SUPERVISION}/event_handling/reactions.cpp",
-           "outweighs(severity) && !is_loss(event)) return;", "outweighs(severity) && (PLANTED || !is_loss(event))) return;",
+           ".of_loss = &subject == whose &&", ".of_loss = !PLANTED && &subject == whose &&",
            "supervisor_test", "ReactionsTest.NobodyIsCommandedTwiceOnItsWayDownButADeathIsNeverSwallowed"),
     # Nobody remembered what the dead had been asked.
     Defect("no outcome", TELECOMMANDS, "for (const pus::Request& request : parts_.unanswered.take(apid))",
@@ -155,6 +155,9 @@ DEFECTS = [
            "for (std::size_t i = 0; i < subsystem.devices.size(); ++i)\n    add(",
            "for (std::size_t i = PLANTED ? subsystem.devices.size() : 0; i < subsystem.devices.size(); ++i)\n    add(",
            "subsystem_test", "Events.OfTheFrameworkAreThereThoughTheDescriptorDeclaresNone"),
+    # The report of a loss was anybody's to switch off.
+    Defect("R38 silenced loss", PERMISSION, "    if (event->safety || (asked", "    if ((event->safety && !PLANTED) || (asked",
+           "supervisor_test", "SafetyMark.NobodySwitchesOffWhatSafetyRestsOnInWhateverModeAndState"),
     # Recovery heard events as reports: one whose report was off was not heard.
     Defect("SF6 heard as a report", "hirosco/subsystem/service_loop/cycle_reports.cpp",
            "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",

@@ -41,14 +41,15 @@ PLANTS = {
     # Death was swallowed while a plan of the same severity ran. This mission's plans take the network down all the same;
     # it shows where the plan for high severity is milder.
     "SF5": ("I4", [
-        (REACTIONS, "origin.recovery.outweighs(severity) && !is_loss(event)) return;",
-         'origin.recovery.outweighs(severity) && (planted("SF5") || !is_loss(event))) return;'),
+        (REACTIONS, ".of_loss = &subject == whose &&", '.of_loss = !planted("SF5") && &subject == whose &&'),
         ("missions/rokviss/mission.xml", '<When severity="high"/><Do action="shut_down_network"/>',
          '<When severity="high"/><Do action="set_state" state="SafeOperational"/>')]),
     # Recovery heard events as reports: one whose report was off was not heard.
     "SF6": ("I4", [
         ("hirosco/subsystem/service_loop/cycle_reports.cpp", "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
-         'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event')]),
+         'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event'),
+        # And ground could switch that of a loss off.
+        (f"{SUPERVISION}/data_handling/permission.cpp", "    if (event->safety || (asked", '    if ((event->safety && !planted("SF6")) || (asked')]),
     # Nothing raised the epoch on the way up: a device that had latched on the way down stayed so.
     "SF14": ("I10", [
         ("supervisor/guard/guarded_member.cpp", "  permit->release();",

@@ -131,6 +131,12 @@ class Check(unittest.TestCase):
         self.assertIn("JOYSTICK high PROCESS_DIED: plan died: restart limit=3 within_s=60 pause_ms=100 to=commanded, "
                       "shut_down_network", told)
         self.assertIn("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED: plan to-safe: set_state state=SafeOperational", told)
+        self.assertIn("MANIPULATOR: plan to-safe (medium) gives way to died (high), network-down (high)", told)
+
+    def test_a_plan_of_another_priority_is_shown_with_it(self):
+        code, told = hirosco("check", "--recovery", self.mission("rokviss", old='"to-safe"', new='"to-safe" priority="7"'))
+        self.assertEqual(code, 0)
+        self.assertIn("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED: plan to-safe (priority 7): set_state state=SafeOperational", told)
 
     def test_json_has_a_line_for_each(self):
         mission = self.mission("hello", old='"hirosco-hello"', new='"hirosco-hallo"')

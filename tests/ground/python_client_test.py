@@ -132,6 +132,9 @@ class OnAFlight(unittest.TestCase):
         for told, read in zip(report["CUR_VALUES.POSITION"], whole["POSITION"]):
             self.assertAlmostEqual(told, read, delta=0.01)
         self.assertEqual([v.stage for v in arm.ping().verifications], ["accepted", "started", "completed"])
+        self.assertEqual([report.name for report in arm.ping().reports], ["ALIVE"])
+        outcome, = arm.report_self_test().reports
+        self.assertEqual((outcome.name, outcome["OUTCOME"]), ("SELF_TEST_OUTCOME", "never run"))
         arm.disable_housekeeping(4713)
         with self.assertRaises(self.rokviss.NoAnswer):
             arm.hk_4713(timeout=0.3)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The cycle threads of a coupled flight never use the heap; one that does is found out."""
+"""The cycle threads of a coupled flight never use the heap, lock or print; one that does is found out, and told."""
 import re
 import sys
 import time
@@ -52,13 +52,15 @@ class Allocations(unittest.TestCase):
                 flight.measure(f"{program}: {uses} uses of the heap in {cycles} cycles")
                 self.assertEqual(uses, 0)
                 flown.append(cycles)
+            self.assertFalse([line.told for line in rokviss.told(0) if "CYCLE_NOT_REALTIME" in line.told])
             return min(flown)
 
-    def test_a_planted_use_of_the_heap_is_found(self):
+    def test_a_planted_use_of_heap_lock_and_output_is_found_and_told(self):
         with flight.MissionCopy({"hirosco-hello": "hirosco-planted"}, flight.HELLO) as mission, \
              flight.Flight(mission) as hello:
             hello.wait_told("commissioned: mode operation")
-            time.sleep(3.0)
+            hello.wait_told("HELLO low CYCLE_NOT_REALTIME HEAP=1 LOCKS=0 OUTPUTS=0", 10.0)
+            hello.wait_told("HELLO low CYCLE_NOT_REALTIME HEAP=2 LOCKS=1 OUTPUTS=1", 10.0)
             self.assertEqual(hello.end(), 0, hello.errors)
             uses, cycles = heap_uses(hello.errors, "hirosco-planted")
             flight.measure(f"planted: {uses} uses of the heap in {cycles} cycles")

@@ -215,8 +215,8 @@ def switch(judged):
         expect(disabled() == [ids(0xF000)], "the good one of three was not executed")
 
 
-SIZES = {0xF000: 1, 0xF001: 74, 0xF002: 74, 0xF003: 4, 0xF004: 24, 0xF005: 4, 0xF006: 8, 0xF007: 17}
-SEVERITY = {0xF000: 1, 0xF001: 4, 0xF002: 2, 0xF003: 3, 0xF004: 2, 0xF005: 2, 0xF006: 2, 0xF007: 2}
+SIZES = {0xF000: 1, 0xF001: 74, 0xF002: 74, 0xF003: 4, 0xF004: 24, 0xF005: 4, 0xF006: 8, 0xF007: 17, 0xF008: 12}
+SEVERITY = {0xF000: 1, 0xF001: 4, 0xF002: 2, 0xF003: 3, 0xF004: 2, 0xF005: 2, 0xF006: 2, 0xF007: 2, 0xF008: 2}
 
 
 @duty("event.message")
@@ -230,9 +230,9 @@ def message(judged):
         known = dict(judged.described.events)
         for severity, _, event, data, _ in craft.events:
             wanted = (known[event][1], known[event][2]) if event in known else (
-                (SEVERITY[event], SIZES[event]) if event in SIZES else (4, 13) if event >> 8 == 0xF1 else (3, 4) if event >> 8 == 0xF2 else None)
+                (SEVERITY[event], SIZES[event]) if event in SIZES else (4, 13) if event >> 8 == 0xF1 else (3, 4) if event >> 8 == 0xF2 else (2, 7) if event >> 8 == 0xF3 else None)
             expect(wanted is not None, f"event 0x{event:04X} is not declared")
-            expect(event in (0xF003, 0xF004, 0xF006, 0xF007) or severity == wanted[0], f"event 0x{event:04X} has severity {severity}")
+            expect(event in (0xF003, 0xF004, 0xF006, 0xF007, 0xF008) or severity == wanted[0], f"event 0x{event:04X} has severity {severity}")
             expect(len(data) == wanted[1], f"event 0x{event:04X} has {len(data)} octets of arguments, declared are {wanted[1]}")
         messages = [(severity, struct.pack(">H", event) + data) for severity, reported, event, data, _ in craft.events if reported]
         reports = [(r.kind[1], r.data) for r in craft.reports if r.kind[0] == 5 and r.kind[1] <= 4]

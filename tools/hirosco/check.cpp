@@ -43,6 +43,8 @@ void show_subsystem(const descriptor::Subsystem& subsystem) {
                configuration.name, configuration.id, configuration.sampling / 1us, configuration.priority,
                configuration.provides.size(), configuration.requires_.size(), configuration.devices.size(),
                configuration.housekeeping.size() + subsystem.housekeeping.size());
+  for (const auto& parameter : subsystem.parameters)
+    if (parameter.persistent) show_field("keeps", parameter.field);
   for (const auto& device : subsystem.devices) {
     fmt::print("  device {}{}\n", device.name, device.actuator ? ", an actuator" : "");
     for (const auto& power : subsystem.power_switches)
@@ -92,9 +94,13 @@ void show_mission(const descriptor::Mission& mission) {
 void show_recovery(const descriptor::Mission& mission) {
   for (const supervisor::PlannedReaction& each : supervisor::planned_reactions(mission)) {
     const bool everywhere = each.modes.size() == mission.modes.size();
-    fmt::print("{} {} {}: plan {}: {}{}\n", each.subsystem, to_text(each.severity), each.event, each.plan, each.steps,
+    const bool usual = each.priority == descriptor::default_plan_priority;
+    fmt::print("{} {} {}: plan {}{}: {}{}\n", each.subsystem, to_text(each.severity), each.event, each.plan,
+               usual ? std::string{} : fmt::format(" (priority {})", each.priority), each.steps,
                everywhere ? std::string{} : fmt::format(" (in {})", fmt::join(each.modes, ", ")));
   }
+  for (const supervisor::PlannedPreemption& each : supervisor::planned_preemptions(mission))
+    fmt::print("{}: plan {} gives way to {}\n", each.subsystem, each.plan, fmt::join(each.by, ", "));
   for (const descriptor::MissionLink& link : mission.links) {
     if (link.on_loss == descriptor::OnLoss::Down) continue;
     fmt::print("{} without {} of {}: {}", link.to, link.requires_, link.from, to_text(link.on_loss));

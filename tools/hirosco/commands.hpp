@@ -66,6 +66,7 @@ struct SimulateOptions {
   std::string trace;                 ///< CSV at cycle rate; empty = none
   std::vector<std::string> at;       ///< "SECONDS DEVICE LINE": injections
   bool summary{false};               ///< counts only, not the log
+  std::string values;                ///< folder of persistent values; empty: from no flight before, for none after
 };
 int simulate(const SimulateOptions& options);
 

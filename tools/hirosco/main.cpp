@@ -66,7 +66,8 @@ int read_and_do(int argc, char** argv) {
   auto* check_command = app.add_subcommand("check", "Check descriptors and missions, all problems at once");
   check_command->add_option("files", check_options.files, "Descriptor or mission files")->required();
   check_command->add_flag("--show", check_options.show, "Print what was read");
-  check_command->add_flag("--recovery", check_options.recovery, "Print which plan each event would get in which mode");
+  check_command->add_flag("--recovery", check_options.recovery,
+                          "Print which plan each event would get in which mode, and which gives way to which");
   check_command->add_flag("--json", check_options.json, "Problems as JSON, one a line");
   check_command->add_flag("--fly", check_options.fly, "Also all programs that a mission needs must be here");
 
@@ -82,6 +83,9 @@ int read_and_do(int argc, char** argv) {
   simulate_command->add_option("--trace", simulate_options.trace, "Write link and world truth at cycle rate as CSV");
   simulate_command->add_option("--at", simulate_options.at,
                                "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
+  simulate_command->add_option(
+      "--values", simulate_options.values,
+      "Folder of persistent parameters' values, read and written; by default there are none before");
   simulate_command->add_flag("--summary", simulate_options.summary, "Print counts instead of the log");
 
   std::string judged_mission;

@@ -130,12 +130,15 @@ int simulate(const SimulateOptions& options) {
   const auto modules = simulation::load_modules(*mission);
   supervisor::MemoryDatabase log;
   Nobody nobody;
+  supervisor::SystemValueDisk disk;
+  supervisor::DirectValueStore values{disk, options.values};
   simulation::Spacecraft craft{{.mission = *mission,
                                 .subsystems = modules.subsystems,
                                 .devices = modules.devices,
                                 .log = log,
                                 .observer = nobody,
-                                .seed = options.seed}};
+                                .seed = options.seed,
+                                .values = options.values.empty() ? nullptr : &values}};
   if (trace)
     craft.on_cycle([&](std::string_view subsystem, TimePoint now) { trace->write_line(subsystem, now, craft); });
   const TimePoint end = craft.now() + options.run_for;

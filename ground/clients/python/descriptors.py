@@ -9,11 +9,12 @@ import numbers
 import struct
 from typing import Any, Optional, Sequence, Tuple, Union
 
-from .packets import ArgumentError
+from .packets import ArgumentError, cuc_seconds
 
 FORMATS = {"UINT8": "B", "INT8": "b", "UINT16": "H", "INT16": "h", "UINT32": "I", "INT32": "i", "UINT64": "Q",
            "INT64": "q", "FLOAT": "f", "DOUBLE": "d", "BOOL": "?"}
 FUNCTION_NAME_OCTETS = 16
+CUC_OCTETS = 7
 
 
 def _shown(number: float) -> str:
@@ -61,14 +62,17 @@ class Field:
         return values[0] if self.count == 1 else values
 
     def take(self, data: bytes, offset: int) -> Tuple[Any, int]:
-        """A value of a subsystem's own report, and where the next one stands. struct.error: it is cut off."""
-        if self.type != "TEXT":
-            return self.decode(data, offset), offset + self.octets
-        begin = offset + 2
-        end = begin + struct.unpack_from(">H", data, offset)[0]
+        """A value of a report that answers a request, and where the next one stands: text where the value has a name.
+        struct.error: it is cut off. TIME (on board: seconds TAI since 1958) and WORD stand in reports of standard services only."""
+        if self.type not in ("TEXT", "TIME", "WORD"):
+            value = self.decode(data, offset)
+            return self.text_of(value) or value if self.count == 1 else value, offset + self.octets
+        length = {"TEXT": ">H", "WORD": ">B"}.get(self.type)
+        begin = offset + (struct.calcsize(length) if length else 0)
+        end = begin + (struct.unpack_from(length, data, offset)[0] if length else CUC_OCTETS)
         if end > len(data):
             raise struct.error(f"{self.name} is cut off")
-        return data[begin:end].decode("utf-8", "replace"), end
+        return cuc_seconds(data[begin:end]) if self.type == "TIME" else data[begin:end].decode("utf-8", "replace"), end
 
     def text_of(self, value: float) -> Optional[str]:
         return next((text for known, text in self.texts if known == value), None)
@@ -154,7 +158,7 @@ class Layout:
 
 @dataclasses.dataclass(frozen=True)
 class ReportKind:
-    """A report of a subsystem's own service."""
+    """A report of a subsystem's own service, or of a standard one that is asked by name."""
     service: int
     subtype: int
     name: str

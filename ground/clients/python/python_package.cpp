@@ -12,7 +12,9 @@
 
 #include "ground/clients/python/runtime_text.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
+#include "hirosco/pus/service/service_kind.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/standard_services.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -138,6 +140,20 @@ struct Value {
   return "(" + joined(values, " ", [](const Value& value) { return field_call(value) + ","; }) + ")";
 }
 
+/// A part of a standard service's report as runtime.Field knows it: numbers, times and words.
+[[nodiscard]] std::string part_call(const pus::Part& part) {
+  if (part.form != pus::Form::Number)
+    return fmt::format("_r.Field({}, \"{}\")", python_string(part.name),
+                       part.form == pus::Form::Time ? "TIME" : "WORD");
+  Value value{.field = {}, .fallback = std::nullopt, .texts = {}};
+  value.field.name = part.name;
+  value.field.type = part.type;
+  value.field.count = part.count;
+  for (std::size_t i = 0; i < part.names.size(); ++i)
+    value.texts.push_back({static_cast<std::uint32_t>(i), std::string{part.names[i]}});
+  return field_call(value);
+}
+
 [[nodiscard]] std::string annotation(const Value& value) {
   const bool real = value.field.type == Type::Float || value.field.type == Type::Double;
   const Type type = value.field.type;
@@ -177,6 +193,7 @@ class SubsystemClass {
     for (const auto& parameter : subsystem_.parameters) add_parameter(parameter);
     for (const auto& event : subsystem_.events) add_event(event);
     for (const auto& service : subsystem_.services) add_own_reports(service);
+    for (const pus::ServiceKind* service : pus::standard_services()) add_standard_reports(*service);
   }
 
   [[nodiscard]] std::string text(const std::string& name) const {
@@ -339,6 +356,16 @@ class SubsystemClass {
       reports_ += fmt::format("            _r.ReportKind({}, {}, {}, fields={}),\n", service.type, report.subtype,
                               python_string(report.name), fields_tuple(values));
     }
+  }
+
+  /// Of a standard service that is asked by name.
+  void add_standard_reports(const pus::ServiceKind& service) {
+    const auto has_words = [](const pus::RequestKind& request) { return !request.words.empty(); };
+    if (std::ranges::none_of(service.requests, has_words)) return;
+    for (const pus::ReportKind& report : service.reports)
+      reports_ += fmt::format("            _r.ReportKind({}, {}, {}, fields=({})),\n", service.type, report.subtype,
+                              python_string(report.name),
+                              joined(report.data, " ", [](const pus::Part& part) { return part_call(part) + ","; }));
   }
 
   const Catalogue& catalogue_;

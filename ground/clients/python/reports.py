@@ -42,7 +42,7 @@ class Housekeeping(Told):
 
 @dataclasses.dataclass(frozen=True)
 class Report(Told):
-    """One report of a subsystem's own service."""
+    """One report of a subsystem's own service, or of a standard one: SELF_TEST_OUTCOME."""
     subsystem: str
     name: str
     time_s: float

@@ -64,7 +64,7 @@ class Request:
     def __init__(self, craft: Craft, subsystem: str, name: str) -> None:
         self.subsystem, self.name = subsystem, name
         self.verifications: List[Verification] = []
-        self.reports: List[Report] = []       # of the subsystem's own service, while it is open
+        self.reports: List[Report] = []       # that answer it, while it is open
         self.reply: Optional[Telemetry] = None
         self._craft = craft
         self._sent = time.monotonic()

@@ -157,9 +157,14 @@ class Fields(unittest.TestCase):
 
 class Arm(Subsystem):
     _about = SubsystemAbout("ARM", 10, functions=(Function("MOVE", arguments=(Field("Q", "UINT8"),)),
+                                                  Function("REPORT_SELF_TEST", 17, 130),
                                                   Function("LABEL", 200, 1, (Field("OWNER", "TEXT", most=8), Field("LENT", "BOOL")))),
                             reports=(ReportKind(200, 2, "LABELLED", (Field("OWNER", "TEXT", most=8), Field("SERIAL", "UINT64"),
-                                                                     Field("LENT", "BOOL", count=2))),),
+                                                                     Field("LENT", "BOOL", count=2))),
+                                     ReportKind(17, 129, "SELF_TEST_OUTCOME",
+                                                (Field("OUTCOME", "UINT8", texts=((0, "never run"), (1, "passed"), (2, "failed"))),
+                                                 Field("CONFIGURATION", "UINT8"), Field("TIME", "TIME"), Field("CODE", "UINT16"),
+                                                 Field("NUMBER", "INT64"), Field("REASON", "WORD")))),
                             parameters=(Parameter("KP", 0x0A0A03, (Field("KP", "DOUBLE"),)),
                                         Parameter("LAMP", 0x0A2004, (Field("ON", "BOOL"), Field("TITLE", "TEXT", most=6, fixed=True))),
                                         Parameter("TITLE", 0x0A2205, (Field("TITLE", "TEXT", most=6, fixed=True),))),
@@ -336,6 +341,22 @@ class Client(unittest.TestCase):
         self.assertEqual([report.values for report in request.reports],
                          [{"OWNER": "\u20ac", "SERIAL": 2**64 - 1, "LENT": (True, False)}], "what is cut off is none")
         self.assertEqual(request.reports[0]["OWNER"], "\u20ac")
+
+    def test_a_report_of_a_standard_service_has_time_words_and_names_of_values(self):
+        told = b"\2\1" + struct.pack(">I3s", 2_000_000_000, b"\x80\0\0") + struct.pack(">Hq", 0x0203, -7) + b"\5drift"
+
+        def run():
+            request = self.peer.telecommand()
+            for data in (told[:-1], told + b"x", told):
+                self.peer.tell(17, 129, data, self.craft.source)
+            self.peer.verify(request, 7)
+        thread = threading.Thread(target=run)
+        thread.start()
+        self.addCleanup(thread.join)
+        request = self.craft.arm._call("REPORT_SELF_TEST", (), 2.0)
+        self.assertEqual([report.values for report in request.reports],
+                         [{"OUTCOME": "failed", "CONFIGURATION": 1, "TIME": 2_000_000_000.5, "CODE": 0x0203, "NUMBER": -7,
+                           "REASON": "drift"}])
 
     def test_a_parameter_is_asked_for(self):
         def run():

@@ -71,7 +71,8 @@ void add_framework_events(Subsystem& subsystem) {
   add_enumeration<Resource>(subsystem, resources_enumeration);
   const auto add = [&](std::string name, std::uint16_t id, Severity severity, std::vector<Field> arguments) {
     if (std::ranges::find(subsystem.events, id, &Event::id) != subsystem.events.end()) return;
-    subsystem.events.push_back({std::move(name), id, severity, std::move(arguments), {}});
+    // What makes somebody safe or takes a network down is known to whoever looks, whatever an author makes of its severity.
+    subsystem.events.push_back({std::move(name), id, severity, std::move(arguments), {}, severity >= Severity::Medium});
   };
   using namespace framework_event;
   const Field state = argument("STATE", Type::Uint8, states_enumeration);
@@ -89,6 +90,8 @@ void add_framework_events(Subsystem& subsystem) {
   add("RESOURCE_WARNING", resource_warning, Severity::Low,
       {argument("RESOURCE", Type::Uint8, resources_enumeration), argument("BLOCK", Type::Uint32),
        argument("USED", Type::Uint32), argument("LIMIT", Type::Uint32), argument("CROSSINGS", Type::Uint32)});
+  add("CYCLE_NOT_REALTIME", cycle_not_realtime, Severity::Low,
+      {argument("HEAP", Type::Uint32), argument("LOCKS", Type::Uint32), argument("OUTPUTS", Type::Uint32)});
   for (std::size_t i = 0; i < subsystem.devices.size(); ++i)
     add(event_name(subsystem.devices[i].name, "_LOST"), device_lost(i), Severity::High,
         {argument("REASON", Type::Uint8, losses_enumeration), argument("SILENT_CYCLES", Type::Uint32),

@@ -132,7 +132,11 @@ struct Mode {
 struct PlanStep {
   std::string kind;
   std::vector<std::int64_t> values{};
+  std::string subsystem{};  ///< whom it moves; empty = whose event it is
 };
+
+/// Of plans that are as safe as each other the higher pre-empts the lower on a member (docs/adr/0090).
+inline constexpr std::uint8_t default_plan_priority = 100;
 
 /// A recovery plan: the most specific matching one is taken (subsystem, event, severity, mode).
 struct Plan {
@@ -141,6 +145,7 @@ struct Plan {
   std::string subsystem;  ///< empty = any
   std::string event;  ///< empty = any
   std::string mode;  ///< empty = any
+  std::uint8_t priority{default_plan_priority};  ///< 1 to 255
   std::vector<PlanStep> steps{};  ///< in this order; empty = log
   Location at;
 };

@@ -32,6 +32,7 @@ struct StepWord {
   std::string_view name;
   std::span<const StepAttribute> attributes{};
   std::string_view answers{};  ///< the only event that it is for; empty: any
+  bool names_subject{false};  ///< it may name whom it moves; else it is for whose event it is
 };
 
 namespace detail {
@@ -52,8 +53,8 @@ inline constexpr std::size_t restart_to = 3;
 
 inline constexpr std::array plan_steps{
     StepWord{.name = "log"},
-    StepWord{.name = "set_state", .attributes = detail::state_to_command},
-    StepWord{.name = "shut_down_network"},
+    StepWord{.name = "set_state", .attributes = detail::state_to_command, .names_subject = true},
+    StepWord{.name = "shut_down_network", .names_subject = true},
     StepWord{.name = "restart", .attributes = detail::restarts_with_limit, .answers = event_of_death},
 };
 

@@ -83,6 +83,7 @@ struct Parameter {
   std::vector<Value> init;           ///< `field.values()` of them or empty (zeros, no words)
   std::uint16_t writable_states{0};  ///< bit n set: ST[20] may set it in State n; 0 = never
   bool protection{false};            ///< a limit that protects: only its own function raises it
+  bool persistent{false};            ///< what telecommands set outlives the process (docs/adr/0087)
   struct Member {
     Field field;
     std::uint8_t id{};
@@ -101,10 +102,13 @@ struct Parameter {
   }
 };
 
+/// Most octets that the persistent parameters of a subsystem take together, each with 4 for its id: one report of ST[20] has them all.
+inline constexpr std::size_t max_persistent_octets = 800;
+
 /// A parameter or one member of it, resolved: `CUR_VALUES` or `CUR_VALUES.POSITION`.
 struct ParameterRef {
-  std::string text;                  ///< as written
-  std::uint16_t parameter{};         ///< index into Subsystem::parameters
+  std::string text;  ///< as written
+  std::uint16_t parameter{};  ///< index into Subsystem::parameters
   std::optional<std::uint16_t> member;  ///< index into Parameter::members
   Location at;
 };
@@ -113,10 +117,10 @@ struct ParameterRef {
 struct HousekeepingStructure {
   std::uint16_t id{};
   std::uint32_t interval_cycles{};
-  bool enabled{true};                ///< periodic generation from Pre-Operational on
+  bool enabled{true};  ///< periodic generation from Pre-Operational on
   std::vector<ParameterRef> sampled_once;
   struct SampledSet {
-    std::uint16_t repetitions{};     ///< samples in one interval, spaced interval / repetitions
+    std::uint16_t repetitions{};  ///< samples in one interval, spaced interval / repetitions
     std::vector<ParameterRef> parameters;
   };
   std::vector<SampledSet> sampled_repeatedly;
@@ -127,8 +131,9 @@ struct Event {
   std::string name;
   std::uint16_t id{};
   Severity severity{Severity::Info};
-  std::vector<Field> arguments;      ///< auxiliary data, in order
+  std::vector<Field> arguments;  ///< auxiliary data, in order
   Location at;
+  bool safety{false};                ///< nobody switches its report off (docs/adr/0091)
 };
 
 /// Requests that every subsystem has: no function or request of its own has one of these names.
@@ -137,14 +142,14 @@ inline constexpr std::array<std::string_view, 5> built_in_requests{"SET_STATE", 
 
 /// A request by name: a function of ST[08], whose argument ids count from 1 in order, or of a subsystem's own service.
 struct Function {
-  std::string name;                  ///< upper-case ASCII, at most 16 octets
+  std::string name;  ///< upper-case ASCII, at most 16 octets
   std::uint8_t service{8};
   std::uint8_t subtype{1};
-  std::uint16_t states{0};           ///< bit n set: permitted in State n
-  bool essential{false};             ///< forwarded before it is logged (decision 24)
+  std::uint16_t states{0};  ///< bit n set: permitted in State n
+  bool essential{false};  ///< forwarded before it is logged (decision 24)
   struct Argument {
     Field field;
-    std::string of;                  ///< parameter that gave type, unit, enumeration and range; empty = its own
+    std::string of;  ///< parameter that gave type, unit, enumeration and range; empty = its own
     std::optional<Value> fallback;  ///< value, of each element, when the argument is absent from the request
     std::vector<EnumerationText> texts{};  ///< of an enumeration or BOOL: its values and their names; it has no others
     /// Most octets on the wire: words come behind their length (u16).

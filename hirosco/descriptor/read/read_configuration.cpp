@@ -290,6 +290,9 @@ void SubsystemReader::read_set(const xml::Element& element, Configuration& confi
   auto reference = name == nullptr ? std::nullopt : resolve(*name, "<Set>");
   if (!reference || value == nullptr) return;
   names.add(name->value, place(name->value_at), problems_, name->value.size());
+  if (subsystem_.parameters[reference->parameter].persistent)
+    return problems_.add(*name, "E0238", fmt::format("'{}' is persistent and set by a configuration", reference->text),
+                         "one of the two: what telecommands set counts until they set it again");
   const auto fields = fields_of(subsystem_, *reference);
   auto values = read_values(problems_, *value, reference->text, fields, subsystem_.enumerations);
   if (values) configuration.initial.push_back({std::move(*reference), std::move(*values)});

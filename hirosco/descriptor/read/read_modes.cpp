@@ -278,6 +278,12 @@ void MissionReader::check_parameters(const xml::Attribute& at, const Permit& per
 void MissionReader::read_recovery(const xml::Element& element) {
   const Attributes none{element, problems_};
   each_child(element, problems_, {{"Plan", [this](const auto& child) { read_plan(child); }, 255}});
+  // What the supervisor tells of plans has their names wherever it is read.
+  auto& enumerations = mission_.supervisor.enumerations;
+  const auto names = std::ranges::find(enumerations, plans_enumeration, &Enumeration::name);
+  if (names == enumerations.end()) return;
+  for (std::size_t i = 0; i < mission_.plans.size(); ++i)
+    names->texts.push_back({static_cast<std::int64_t>(i + 1), mission_.plans[i].name});
 }
 
 void MissionReader::read_plan(const xml::Element& element) {
@@ -285,6 +291,7 @@ void MissionReader::read_plan(const xml::Element& element) {
   Plan plan;
   plan.at = place(element.at);
   plan.name = attributes.name("name", NameKind::Loose);
+  plan.priority = attributes.integer_or<std::uint8_t>("priority", 1, 255, default_plan_priority);
   bool condition = false, action = false;
   each_child(element, problems_,
              {{"When",
@@ -302,6 +309,8 @@ void MissionReader::read_plan(const xml::Element& element) {
   check_answers(element, plan);
   if (!condition) problems_.add(element, "E0106", "<Plan> needs a <When>");
   if (!action) problems_.add(element, "E0106", "<Plan> needs a <Do>");
+  if (plan.name == "default")
+    problems_.add(*element.find("name"), "E0371", "what no plan answers has the name 'default'", "another name");
   if (!plan.name.empty()) plan_names_.add(plan.name, plan.at, problems_, element.name.size() + 1);
   mission_.plans.push_back(std::move(plan));
 }
@@ -348,8 +357,8 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
     problems_.add(*element.find("severity"), "E0325",
                   fmt::format("the plan never begins: event {} has another severity", in_quotes(plan.event)),
                   "leave severity out, or name the event's");
-  else if (plan.event == event_of_plans)
-    problems_.add(*event, "E0325", fmt::format("the plan never begins: {} tells of a plan's steps", plan.event),
+  else if (is_of_plans(plan.event))
+    problems_.add(*event, "E0325", fmt::format("the plan never begins: {} tells of other plans", plan.event),
                   "name the event that the other plan answers");
 }
 
@@ -390,6 +399,12 @@ void MissionReader::read_do(const xml::Element& element, Plan& plan) {
         problems_.add(*at, "E0317", fmt::format("the action '{}' takes no {}", word->name, foreign.name));
     }
   }
+  if (const auto* whom = attributes.optional("subsystem"); whom != nullptr && word != nullptr) {
+    if (!word->names_subject)
+      problems_.add(*whom, "E0317", fmt::format("the action '{}' takes no subsystem", word->name),
+                    "it is for the subsystem whose event it is");
+    else if (find(*whom, whom->value, false) != nullptr) step.subsystem = whom->value;
+  }
   if (word != nullptr) plan.steps.push_back(std::move(step));
   else if (action != nullptr) attributes.unknown_word(*action, action->value, known);
 }
@@ -398,8 +413,13 @@ std::int64_t MissionReader::read_value(Attributes& attributes, const StepAttribu
   const auto fallback = described.otherwise.value_or(described.least);
   if (!described.otherwise && attributes.required(described.name) == nullptr) return fallback;
   switch (described.kind) {
-    case StepAttribute::Kind::SteadyState:
-      return static_cast<std::int64_t>(read_steady_state(attributes, described.name, State::SafeOperational));
+    case StepAttribute::Kind::SteadyState: {
+      const State state = read_steady_state(attributes, described.name, State::SafeOperational);
+      if (state == State::Operational)
+        problems_.add(*attributes.optional(described.name), "E0370", "a plan lets nobody go who is stopped",
+                      "Operational is commanded by the ground, a change of mode, or restart to=\"commanded\"");
+      return static_cast<std::int64_t>(state);
+    }
     case StepAttribute::Kind::Word: {
       const auto* at = attributes.optional(described.name);
       if (at == nullptr) return fallback;

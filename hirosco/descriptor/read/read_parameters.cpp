@@ -125,6 +125,7 @@ void SubsystemReader::read_structure(const xml::Element& element) {
     problems_.add(*type, "E0104", "the type of a <StructRef> is 'STRUCT', not " + in_quotes(type->value));
   parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
   read_access(attributes, parameter);
+  read_persistent(attributes, parameter);
   claim_parameter_id(attributes, Type::Struct, parameter.id);
   if (!parameter.field.name.empty())
     parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
@@ -161,6 +162,7 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   if (const auto* init = attributes.optional("init"); init != nullptr)
     initial_values_.push_back({subsystem_.parameters.size(), init});
   read_access(attributes, parameter);
+  read_persistent(attributes, parameter);
   claim_parameter_id(attributes, parameter.field.type, parameter.id);
   no_children(element, problems_);
   if (parameter.writable()) expect_range(element, "parameter");
@@ -204,14 +206,36 @@ void SubsystemReader::expect_range(const xml::Element& element, std::string_view
 void SubsystemReader::read_access(Attributes& attributes, Parameter& parameter) {
   if (const auto* at = attributes.optional("read_only"); at != nullptr)
     problems_.not_built_in(*at, "leave it out: a parameter is read-only in every state that 'writable' does not name");
-  if (const auto* at = attributes.optional("persistent"); at != nullptr)
-    problems_.not_built_in(*at, "leave it out: values begin with init");
   parameter.protection = attributes.yes("protection", false);
   parameter.writable_states = read_states(attributes, "writable", {});
   const auto* writable = attributes.optional("writable");
   if (writable != nullptr && parameter.protection)
     problems_.add(*writable, "E0219", fmt::format("'{}' is a protection and writable", parameter.field.name),
                   "a protection is raised by its own function only");
+}
+
+/// After read_access: nothing that protects less, or moves something, comes back by itself.
+void SubsystemReader::read_persistent(Attributes& attributes, Parameter& parameter) {
+  parameter.persistent = attributes.yes("persistent", false);
+  if (!parameter.persistent) return;
+  const auto& at = *attributes.optional("persistent");
+  const std::string& name = parameter.field.name;
+  const bool before_it_moves =
+      parameter.writable_in(State::PreOperational) || parameter.writable_in(State::SafeOperational);
+  if (parameter.field.type == Type::Struct)
+    problems_.add(at, "E0236", fmt::format("'{}' is a structure and persistent", name),
+                  "parameters of their own are persistent, not the members of a structure");
+  else if (parameter.protection)
+    problems_.add(at, "E0236", fmt::format("'{}' is a protection and persistent", name),
+                  "what a function has loosened begins as the descriptor says");
+  else if (!before_it_moves)
+    problems_.add(at, "E0237",
+                  fmt::format("'{}' is persistent and writable neither in PreOperational nor in SafeOperational", name),
+                  "what is set only while something may move does not come back by itself");
+  if (persistent_octets_ <= max_persistent_octets &&
+      (persistent_octets_ += parameter.octets() + sizeof(std::uint32_t)) > max_persistent_octets)
+    problems_.add(at, "E0239", fmt::format("with '{}' persistent parameters take {} octets", name, persistent_octets_),
+                  fmt::format("{} at most, each with 4 for its id", max_persistent_octets));
 }
 
 void SubsystemReader::claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id) {

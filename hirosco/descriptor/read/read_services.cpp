@@ -92,6 +92,7 @@ void SubsystemReader::read_event(const xml::Element& element, const Services& se
   const bool of_framework = element.find("id") == nullptr;
   event.id = attributes.integer_or<std::uint16_t>("id", 1, framework_event::first - 1, 0);
   if (attributes.required("severity") != nullptr) event.severity = attributes.one_of("severity", Severity::Info);
+  event.safety = attributes.yes("safety", false);
   Unique names{"argument name", "E0201"};
   each_child(
       element, problems_,
@@ -131,7 +132,13 @@ void SubsystemReader::imply_framework_events() {
                     "only an event that every subsystem has is known without it");
     else if (!wanted.arguments.empty())
       problems_.add(*element, "E0213", fmt::format("event '{}' is built in with its arguments", wanted.name));
-    else found->severity = wanted.severity;
+    else if (const auto* mark = element->find("safety"); mark != nullptr && !wanted.safety && found->safety)
+      problems_.add(place(mark->value_at), "E0241", fmt::format("event '{}' is one that safety rests on", wanted.name),
+                    "leave safety out: nobody switches its report off", mark->value.size());
+    else {
+      found->severity = wanted.severity;
+      found->safety = found->safety || wanted.safety;
+    }
   }
 }
 

@@ -28,6 +28,36 @@ TEST(MissionRecovery, ARestartSaysAsFarAsItComesBack) {
   }
 }
 
+TEST(MissionRecovery, APlanHasAPriorityAndAStepMayNameWhomItMoves) {
+  const auto reading = read_mission(
+      data / "mission.xml",
+      overlay({{"mission.xml", changed(R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)",
+                                       R"(<Plan name="note" priority="255"><When severity="low info"/>)"
+                                       R"(<Do action="set_state" state="Offline" subsystem="FLYWHEEL"/>)"
+                                       R"(<Do action="shut_down_network"/>)")}}));
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  EXPECT_EQ(reading.value->plans.at(0).priority, default_plan_priority) << "what is not said is as it always was";
+  const Plan& plan = reading.value->plans.at(2);
+  EXPECT_EQ(plan.priority, 255);
+  EXPECT_EQ(plan.steps.at(0).subsystem, "FLYWHEEL");
+  EXPECT_EQ(plan.steps.at(1).subsystem, "") << "whose event it is";
+}
+
+TEST(MissionRecovery, WhatIsToldOfPlansHasTheirNames) {
+  const std::string supervisor = file_system()(data / "supervisor.xml").value();
+  const auto reading = read_mission(
+      data / "mission.xml",
+      overlay({{"supervisor.xml", changed("<EventService>",
+                                          R"(<Enumeration name="PLANS"><Text value="0">default</Text></Enumeration>)"
+                                          "<EventService>",
+                                          supervisor)}}));
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const auto& texts = reading.value->supervisor.enumerations.at(0).texts;
+  ASSERT_EQ(texts.size(), 1 + reading.value->plans.size());
+  EXPECT_EQ(texts.at(2).value, 2);
+  EXPECT_EQ(texts.at(2).text, "to-safe");
+}
+
 TEST(MissionRecovery, ALinkSaysWhatItsLossDoes) {
   const std::string flywheel = file_system()(data / "flywheel.xml").value();
   const auto reading = read_mission(

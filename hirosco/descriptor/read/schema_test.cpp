@@ -46,7 +46,7 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
         "<TestService self_test_within_ms=\"0\"/>",
         "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\" self_test=\"yes\"/>",
         "<ParamRef name=\"X\" id=\"256\" type=\"DOUBLE\"/>", "<Resources memory_kB=\"0\"/>",
-        "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" persistent=\"yes\"/>",
+        "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" persistent=\"maybe\"/>",
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\" read_only=\"yes\"/>",
         "<FunctionService><Function name=\"X\" id=\"1\"/></FunctionService>",
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\"/><RealTimeLinkService><Provides name=\"P\" "

@@ -65,6 +65,7 @@ void CycleLoop::prepare(CyclePlan plan) {
   statistics_.store({});
   times_parameter_.store({});
   budget_.begin(*plan_.configuration, parts_.realtime);
+  realtime_.begin(plan_.configuration->sampling);
   budget_parameter_.store(budget_.told());
   link_statistics_.store({});
   watched_.clear();
@@ -85,6 +86,7 @@ void CycleLoop::release() {
 }
 
 TimePoint CycleLoop::step(TimePoint planned) noexcept {
+  const RealtimeScope forbidden;
   const TimePoint started = parts_.clock.now();
   listen_to_supervisor();
   check_permit();
@@ -96,6 +98,7 @@ TimePoint CycleLoop::step(TimePoint planned) noexcept {
   write_outputs(planned);
   if (plan_.sampler != nullptr) plan_.sampler->tick(*this, *this);
   ++count_;
+  hold_to_realtime(forbidden.uses());
   account(planned, started);
   const Duration period = plan_.configuration->sampling;
   const TimePoint next = planned + period;
@@ -335,6 +338,14 @@ void CycleLoop::hold_to_budget() noexcept {
     raise(descriptor::framework_event::cycle_over_budget, told);
   }
   budget_parameter_.store(budget_.told());
+}
+
+void CycleLoop::hold_to_realtime(const RealtimeUses& of_cycle) noexcept {
+  if (!realtime_.account(of_cycle)) return;
+  const RealtimeUses& sum = realtime_.sum();
+  const std::array<double, 3> told{static_cast<double>(sum.heap), static_cast<double>(sum.locks),
+                                   static_cast<double>(sum.outputs)};
+  raise(descriptor::framework_event::cycle_not_realtime, told);
 }
 
 void CycleLoop::raise(std::uint16_t event, std::span<const double> arguments) noexcept {

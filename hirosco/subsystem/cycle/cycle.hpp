@@ -17,6 +17,7 @@
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 #include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
+#include "hirosco/subsystem/cycle/realtime_watch.hpp"
 #include "hirosco/subsystem/cycle/resource_meter.hpp"
 #include "hirosco/subsystem/cycle/self_test_run.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
@@ -133,6 +134,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void account(TimePoint planned, TimePoint started) noexcept;
   void count_links() noexcept;
   void hold_to_budget() noexcept;
+  void hold_to_realtime(const RealtimeUses& of_cycle) noexcept;
   [[nodiscard]] bool controlling() const noexcept;
   [[nodiscard]] LinkStatus link_status() const noexcept;
 
@@ -179,6 +181,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   double execution_mean_ns_{0.0};
   CycleTimes times_{};
   BudgetWatch budget_;
+  RealtimeWatch realtime_;
   std::vector<char> input_was_stale_;
 };
 

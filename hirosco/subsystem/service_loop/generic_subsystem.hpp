@@ -187,6 +187,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void fail_transition(State state, const Failure& why);
   Result<Step> enter_transient(State state);
   Result<Step> initialise_software();
+  void remember_persistent();
   Result<Step> leave_cycle();
   [[nodiscard]] Result<std::vector<DeviceSlot::Way>> open_ways(const descriptor::DeviceUse& use);
   /// Whether the switches of its devices say so; for who has none: always.
@@ -226,6 +227,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   /// Of the descriptor: no Software-Init succeeds. Before the dictionary, whose making may fill it.
   std::string dictionary_problem_;
   Dictionary dictionary_;
+  bool initialised_{false};  ///< the dictionary holds values, not only places for them
   WriteQueue writes_;
   Handover handover_;
   ResourceMeter resources_;

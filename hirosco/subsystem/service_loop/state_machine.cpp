@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Safety module: states (docs/safety/modules.csv).
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "hirosco/data_transfer/device/power_frame.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/framework_parameters.hpp"
+#include "hirosco/descriptor/model/wire_values.hpp"
 #include "hirosco/subsystem/cycle/layout_difference.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 
@@ -110,6 +113,7 @@ Result<Step> GenericSubsystem::enter_transient(State next) {
     case State::PostOperational: return leave_cycle();
     case State::HardwareDeinit: return author_.hardware_deinit();
     case State::SoftwareDeinit: {
+      remember_persistent();
       HIROSCO_TRY_LET(const Step step, author_.software_deinit());
       if (step == Step::Done && !release_owed_) forget_introduction();
       return step;
@@ -151,7 +155,21 @@ Result<Step> GenericSubsystem::initialise_software() {
     return fail(said.code, problems_text_.c_str(), said.value);
   }
   HIROSCO_TRY(dictionary_.initialise());
+  initialised_ = true;
   return done;
+}
+
+/// A process that goes through Offline loses no more than one that ends (docs/adr/0087). What could not be set is not taken along.
+void GenericSubsystem::remember_persistent() {
+  if (!std::exchange(initialised_, false)) return;
+  std::array<std::byte, descriptor::max_persistent_octets> room;
+  for (std::size_t index = 0; index < descriptor_.parameters.size(); ++index) {
+    const descriptor::Parameter& parameter = descriptor_.parameters[index];
+    if (!parameter.persistent) continue;
+    const std::size_t octets = dictionary_.snapshot_encode(index, -1, room);
+    if (auto values = descriptor::values_within(parameter.field, Octets{room}.first(octets)))
+      dictionary_.begin_with(index, std::move(*values));
+  }
 }
 
 /// Stops the cycle, gives back what Pre-Operational took, then lets the author finish.

@@ -40,7 +40,7 @@ class ProcessMeter {
   int clock_;  ///< of its processor time
 };
 
-/// Of the lines that the system tells of a process: the number behind "NAME:"; 0 when there is none.
+/// Of the lines that the system tells of a process: the number behind "NAME:"; 0 when there is none, the largest when it is larger.
 [[nodiscard]] std::uint32_t number_in_status(std::string_view status, std::string_view name) noexcept;
 
 }  // namespace hirosco

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/pus/standard_services.hpp"
@@ -199,6 +201,24 @@ constexpr unsigned all_states = 0x03FF;
   return pus::standard_service(asked.telecommand.service())->request(asked.telecommand.subtype())->states;
 }
 
+/// What safety rests on is switched off by nobody, in whatever mode, state or language of its subsystem (docs/adr/0091).
+[[nodiscard]] Notice spares_safety(const Asked& asked) {
+  using pus::EventService;
+  if (asked.telecommand.service() != EventService::service_type ||
+      asked.telecommand.subtype() != EventService::disable_reports)
+    return std::nullopt;
+  OctetReader reader{asked.telecommand.application_data()};
+  const auto count = reader.get<std::uint8_t>();
+  for (unsigned i = 0; i < count && reader.good(); ++i) {
+    const std::uint32_t id = reader.get<std::uint16_t>();
+    const auto event = std::ranges::find(asked.subsystem.events, id, &descriptor::Event::id);
+    if (!reader.good() || event == asked.subsystem.events.end()) continue;
+    if (event->safety || (asked.to_supervisor() && descriptor::is_about_subsystem(event->name)))
+      return FailureNotice{FailureCode::NotPermittedNow}.with(static_cast<std::uint8_t>(i)).with(id);
+  }
+  return std::nullopt;
+}
+
 /// What the old mode permitted and the new one may not would cross the change: until it has ended the craft is looked at, and taken
 /// towards safety, nothing else.
 [[nodiscard]] Notice crosses_no_change(const Asked& asked) {
@@ -240,7 +260,8 @@ constexpr unsigned all_states = 0x03FF;
 }
 
 /// In the order in which they are asked: the first that refuses says why.
-constexpr std::array rules{is_known, is_the_senders, is_provided_for, crosses_no_change, is_in_mode, is_in_state};
+constexpr std::array rules{is_known,          is_the_senders, spares_safety, is_provided_for,
+                           crosses_no_change, is_in_mode,     is_in_state};
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include "supervisor/supervision/commanded_states.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
+#include "supervisor/supervision/stored_values.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -297,6 +298,7 @@ void Telecommands::forward(const Outgoing& outgoing) {
   if (const auto telecommand = pus::TelecommandView::parse(packet); !to_itself && telecommand) {
     parts_.unanswered.forwarded(apid, *telecommand, craft_.now);
     parts_.commanded.forwarded(apid, *telecommand, origin);
+    parts_.stored.forwarded(apid, *telecommand);
   }
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandForwarded,
                                        .source = supervisor_apid,

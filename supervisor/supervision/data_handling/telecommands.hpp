@@ -23,6 +23,7 @@ namespace hirosco::supervisor {
 
 class CommandedStates;
 class PowerHandling;
+class StoredValues;
 
 /// A telecommand as it came in.
 struct Incoming {
@@ -44,6 +45,7 @@ class Telecommands final : public Watch, public Accounts {
     Traffic& traffic;
     GroundRoute& ground_route;
     CommandedStates& commanded;
+    StoredValues& stored;
   };
   explicit Telecommands(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

@@ -8,6 +8,8 @@
 
 #include "hirosco/descriptor/model/plan_steps.hpp"
 #include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "supervisor/supervision/event_handling/plan_rank.hpp"
+#include "supervisor/supervision/procedures/step_kinds.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -25,6 +27,7 @@ namespace {
       said = std::ranges::find(attribute.words, value, &descriptor::StepAttribute::Word::value)->text;
     text += fmt::format(" {}={}", attribute.name, said);
   }
+  if (!step.subsystem.empty()) text += " subsystem=" + step.subsystem;
   return text;
 }
 
@@ -51,25 +54,89 @@ void add(const descriptor::Mission& mission, RaisedEvent event, std::vector<Plan
                      event.severity,
                      {mode.name},
                      std::string{reaction.plan},
+                     reaction.priority,
                      text_of(reaction)});
   }
 }
 
-}  // namespace
-
-std::vector<PlannedReaction> planned_reactions(const descriptor::Mission& mission) {
-  std::vector<PlannedReaction> all;
+/// Every event that there may be, as it is told.
+template <class Visit>
+void each_event(const descriptor::Mission& mission, Visit&& visit) {
   for (const descriptor::Event& event : mission.supervisor.events)
-    if (!descriptor::is_about_subsystem(event.name) && event.name != descriptor::event_of_plans)
-      add(mission, {mission.supervisor.name, event.name, event.severity, {}, {}, RaisedEvent::Origin::Supervisor}, all);
+    if (!descriptor::is_about_subsystem(event.name) && !descriptor::is_of_plans(event.name))
+      visit(RaisedEvent{mission.supervisor.name, event.name, event.severity, {}, {}, RaisedEvent::Origin::Supervisor});
   for (const descriptor::MissionSubsystem& member : mission.subsystems) {
     const descriptor::Subsystem& subsystem = member.subsystem;
     for (const descriptor::Event& event : mission.supervisor.events)
       if (descriptor::is_about_subsystem(event.name) && subsystem.find_event(event.name) == nullptr)
-        add(mission, {subsystem.name, event.name, event.severity, {}, mission.supervisor.name}, all);
+        visit(RaisedEvent{subsystem.name, event.name, event.severity, {}, mission.supervisor.name});
     for (const descriptor::Event& event : subsystem.events)
-      add(mission, {subsystem.name, event.name, event.severity, {}}, all);
+      visit(RaisedEvent{subsystem.name, event.name, event.severity, {}});
   }
+}
+
+/// What a plan would be for one subsystem.
+struct Part {
+  std::string label;
+  PlanRank rank{};
+  bool takes_time{false};  ///< and holds it meanwhile
+};
+
+[[nodiscard]] Part part_for(const descriptor::Mission& mission, const std::string& subject, const RaisedEvent& event,
+                            const Reaction& reaction) {
+  const bool of_supervisor = event.origin == RaisedEvent::Origin::Supervisor;
+  const bool for_all = of_supervisor && subject != mission.ground.subsystem;
+  std::vector<ProcedureStep> steps;
+  Part part{fmt::format("{} ({})", reaction.plan, to_text(event.severity))};
+  for (const descriptor::PlanStep& planned : reaction.steps) {
+    const bool is_whose = of_supervisor ? for_all : subject == event.subsystem;
+    if (planned.subsystem.empty() ? !is_whose : planned.subsystem != subject) continue;
+    const StepKind* kind = find_step_kind(planned.kind);
+    const std::string_view only = descriptor::find_plan_step(planned.kind)->answers;
+    if (kind->run == nullptr || (!only.empty() && only != event.event)) continue;
+    steps.push_back({.kind = kind, .values = planned.values});
+    part.takes_time = part.takes_time || kind->holds == StepKind::Holds::Subject;
+  }
+  if (steps.empty()) part.label.clear();
+  part.rank = {safety_of(steps), reaction.priority, event.severity};
+  return part;
+}
+
+/// All that may run for it, each once.
+[[nodiscard]] std::vector<Part> parts_for(const descriptor::Mission& mission, const std::string& subject) {
+  std::vector<Part> parts;
+  each_event(mission, [&](RaisedEvent event) {
+    for (const descriptor::Mode& mode : mission.modes) {
+      event.mode = mode.name;
+      Part part = part_for(mission, subject, event, choose_reaction(mission, event));
+      const auto same = [&](const Part& each) { return each.label == part.label && each.rank == part.rank; };
+      if (!part.label.empty() && std::ranges::none_of(parts, same)) parts.push_back(std::move(part));
+    }
+  });
+  return parts;
+}
+
+}  // namespace
+
+std::vector<PlannedPreemption> planned_preemptions(const descriptor::Mission& mission) {
+  std::vector<PlannedPreemption> all;
+  for (const descriptor::MissionSubsystem& member : mission.subsystems) {
+    const std::vector<Part> parts = parts_for(mission, member.subsystem.name);
+    for (const Part& runs : parts) {
+      if (!runs.takes_time) continue;
+      PlannedPreemption found{member.subsystem.name, runs.label, {}};
+      for (const Part& begins : parts)
+        if (pre_empts(begins.rank, runs.rank) && std::ranges::find(found.by, begins.label) == found.by.end())
+          found.by.push_back(begins.label);
+      if (!found.by.empty()) all.push_back(std::move(found));
+    }
+  }
+  return all;
+}
+
+std::vector<PlannedReaction> planned_reactions(const descriptor::Mission& mission) {
+  std::vector<PlannedReaction> all;
+  each_event(mission, [&](const RaisedEvent& event) { add(mission, event, all); });
   return all;
 }
 

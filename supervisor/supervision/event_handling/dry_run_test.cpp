@@ -55,5 +55,41 @@ TEST_F(DryRunTest, EveryEventHasItsReactionInEachMode) {
                           "to=commanded, shut_down_network"));
 }
 
+TEST_F(DryRunTest, WhichPlanGivesWayToWhichIsSaidForEachSubsystem) {
+  descriptor::Event event;
+  event.severity = descriptor::Severity::Low;
+  for (const char* name : {"FIRST", "SECOND", "THIRD", "FOURTH"}) {
+    event.name = name;
+    mission.subsystems.front().subsystem.events.push_back(event);
+  }
+  const descriptor::PlanStep safe{"set_state", {4}};
+  plan("first", "FIRST", "", {safe});
+  plan("second", "SECOND", "", {safe});
+  plan("third", "THIRD", "", {{"shut_down_network"}});
+  plan("fourth", "FOURTH", "", {{"set_state", {0}, "HAND"}});
+  mission.plans[1].priority = 101;
+  mission.plans[2].priority = 1;
+  std::vector<std::string> ways;
+  for (const PlannedPreemption& each : planned_preemptions(mission)) {
+    std::string line = each.subsystem + ": " + each.plan + " <";
+    for (const std::string& by : each.by) line += " " + by;
+    ways.push_back(line);
+  }
+  EXPECT_THAT(ways,
+              ElementsAre("ARM: default (medium) < default (high) second (low) third (low)",
+                          "ARM: first (low) < default (high) default (medium) second (low) third (low)",
+                          "ARM: second (low) < default (high) third (low)", "HAND: fourth (low) < default (high)"));
+}
+
+TEST_F(DryRunTest, PriorityAndWhomAStepMovesAreShown) {
+  plan("other", "HOT", "", {{"set_state", {4}, "HAND"}});
+  mission.plans[0].priority = 7;
+  for (const PlannedReaction& each : planned_reactions(mission))
+    if (each.event == "HOT") {
+      EXPECT_EQ(each.priority, 7);
+      EXPECT_EQ(each.steps, "set_state state=SafeOperational subsystem=HAND");
+    }
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -33,7 +33,8 @@ Reaction choose_reaction(const descriptor::Mission& mission, const RaisedEvent& 
     best = &plan;
     best_score = *score;
   }
-  if (best != nullptr) return {best->name, best->steps};
+  if (best != nullptr)
+    return {best->name, best->steps, static_cast<std::uint16_t>(best - mission.plans.data() + 1), best->priority};
   if (event.origin == RaisedEvent::Origin::Supervisor) return {"default", {{"log"}}};
   switch (event.severity) {
     case descriptor::Severity::High: return {"default", {{"shut_down_network"}}};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct RaisedEvent {
 struct Reaction {
   std::string_view plan;             ///< name, "default" when no plan of the mission matched
   std::vector<descriptor::PlanStep> steps;
+  std::uint16_t number{0};           ///< of the plan in the mission, from 1; 0 = the default
+  std::uint8_t priority{descriptor::default_plan_priority};
 };
 
 /// Events of the supervisor itself are answered only by plans that name it or the event: no actuator of

@@ -18,6 +18,9 @@ namespace {
 /// What nothing overrides: whoever is gone must be stopped and taken down whatever else runs for it (hazard SF5).
 [[nodiscard]] bool is_loss(std::string_view event) { return event == descriptor::event_of_death || event == "HANG"; }
 
+/// Nobody declares it: a plan may be for its severity.
+constexpr std::string_view event_of_failure = "RECOVERY_FAILED";
+
 }  // namespace
 
 bool Reactions::take_event(std::uint16_t from, Octets message) {
@@ -42,7 +45,7 @@ bool Reactions::take_event(std::uint16_t from, Octets message) {
 
 /// What we tell of a subsystem is answered where it is told: by the plan that names it or us, or the event, as severe as our
 /// descriptor calls it.
-Reactions::Answer Reactions::answer_to(const Member& origin, std::string_view event, Severity severity) const {
+std::vector<PlanStart> Reactions::answer_to(const Member& origin, std::string_view event, Severity severity) const {
   const descriptor::Subsystem& supervisor = craft_.mission.supervisor;
   const bool ours = descriptor::is_about_subsystem(event) && origin.descriptor().find_event(event) == nullptr;
   const auto* declared = ours ? supervisor.find_event(event) : nullptr;
@@ -50,59 +53,68 @@ Reactions::Answer Reactions::answer_to(const Member& origin, std::string_view ev
   const Reaction reaction =
       choose_reaction(craft_.mission, {origin.descriptor().name, event, severity, craft_.mode->name,
                                        ours ? std::string_view{supervisor.name} : std::string_view{}});
-  if (craft_.shutting_down) return {severity, {}};  // everything is on its way down already
-  return {severity, steps_for(origin, reaction, event, {std::string{reaction.plan}, std::string{event}})};
+  std::vector<PlanStart> starts;
+  if (craft_.shutting_down) return starts;  // everything is on its way down already
+  const auto add = [&](const Member& subject) {
+    if (PlanStart start = start_for(subject, &origin, reaction, severity, event); !start.steps.empty())
+      starts.push_back(std::move(start));
+  };
+  add(origin);
+  const auto names_somebody = [](const descriptor::PlanStep& planned) { return !planned.subsystem.empty(); };
+  if (std::ranges::none_of(reaction.steps, names_somebody)) return starts;
+  for (const Member& subject : craft_.members)
+    if (&subject != &origin && subject.alive()) add(subject);
+  return starts;
 }
 
 void Reactions::act_first(const Member& origin, std::string_view event, Severity severity) const {
-  for (const ProcedureStep& step : answer_to(origin, event, severity).steps)
-    if (step.kind->act_first != nullptr) step.kind->act_first(step, means_);
+  for (const PlanStart& start : answer_to(origin, event, severity))
+    for (const ProcedureStep& step : start.steps)
+      if (step.kind->act_first != nullptr) step.kind->act_first(step, means_);
 }
 
 void Reactions::react(Member& origin, std::string_view event, Severity told) {
   if (means_.losses.answers(origin.apid(), event)) return;
-  const auto [severity, steps] = answer_to(origin, event, told);
-  if (steps.empty()) return;
-  // One plan at a time for a subsystem; only something worse overrides it.
-  if (origin.recovery.outweighs(severity) && !is_loss(event)) return;
-  begin(origin, severity, steps);
+  for (const PlanStart& start : answer_to(origin, event, told)) runs_.begin(start);
 }
 
 /// Of a plan, what there is to do for this subsystem about this event.
-Stage Reactions::steps_for(const Member& subject, const Reaction& reaction, std::string_view event,
-                           const Occasion& occasion) const {
-  Stage steps;
+PlanStart Reactions::start_for(const Member& subject, const Member* whose, const Reaction& reaction, Severity severity,
+                               std::string_view event) const {
+  PlanStart start{.subject = subject.apid(),
+                  .occasion = {std::string{reaction.plan}, std::string{event}},
+                  .number = reaction.number,
+                  .priority = reaction.priority,
+                  .severity = severity,
+                  .of_loss = &subject == whose && is_loss(event)};
   for (const descriptor::PlanStep& planned : reaction.steps) {
+    const bool for_it = planned.subsystem.empty() ? whose == nullptr || whose == &subject
+                                                  : planned.subsystem == subject.descriptor().name;
     const std::string_view only = descriptor::find_plan_step(planned.kind)->answers;
-    const ProcedureStep step{find_step_kind(planned.kind), subject.apid(), planned.values, occasion};
+    const ProcedureStep step{find_step_kind(planned.kind),
+                             subject.apid(),
+                             planned.values,
+                             {start.occasion.plan, whose != nullptr ? start.occasion.event : std::string{}}};
     const bool does_something =
         step.kind->run != nullptr && (step.kind->answers == nullptr || step.kind->answers(step, craft_));
-    if (does_something && (only.empty() || only == event)) steps.push_back(step);
+    if (for_it && does_something && (only.empty() || only == event)) start.steps.push_back(step);
   }
-  return steps;
+  return start;
 }
 
-/// The steps of a plan, one after the other; while one that holds its subject runs, nothing lesser begins for that.
-void Reactions::begin(Member& subject, Severity severity, const Stage& steps) {
-  const bool holds = std::ranges::any_of(
-      steps, [](const ProcedureStep& each) { return each.kind->holds == StepKind::Holds::Subject; });
-  if (holds) subject.recovery.plan_begins(severity);
-  Procedure procedure;
-  for (const ProcedureStep& each : steps) procedure.stages.push_back({each});
-  procedure.finished = [this, apid = subject.apid(), severity, holds](const ProcedureEnd& end) {
-    Member& its = *craft_.member(apid);
-    if (holds) its.recovery.plan_ended(severity);
-    if (end.success || !its.alive()) return;
-    // A plan that fails escalates once, to the whole network; shutting down has no further step.
-    craft_.tell("plan failed (" + end.why + "): escalating", apid);
-    react(its, "RECOVERY_FAILED", Severity::High);
-  };
-  ProcedureRunner{means_}.start(std::move(procedure));
+/// A plan that fails escalates once, to the plan for that; where that fails too, the whole network goes down, which has no
+/// further step.
+void Reactions::escalate(const PlanStart& plan, const ProcedureEnd& end) {
+  Member& subject = *craft_.member(plan.subject);
+  craft_.tell("plan failed (" + end.why + "): escalating", plan.subject);
+  if (plan.occasion.event != event_of_failure) return react(subject, event_of_failure, Severity::High);
+  const Reaction last{"default", {{"shut_down_network"}}};
+  if (!craft_.shutting_down) runs_.begin(start_for(subject, &subject, last, Severity::High, event_of_failure));
 }
 
 /// The supervisor has no network and no actuators: what a plan asks for concerns all that have.
 void Reactions::react_to_own(std::string_view event, Severity severity) {
-  if (descriptor::is_about_subsystem(event) || event == descriptor::event_of_plans) return;
+  if (descriptor::is_about_subsystem(event) || descriptor::is_of_plans(event)) return;
   const Reaction reaction = choose_reaction(
       craft_.mission,
       {craft_.mission.supervisor.name, event, severity, craft_.mode->name, {}, RaisedEvent::Origin::Supervisor});
@@ -111,10 +123,10 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
   craft_.tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event},
               supervisor_apid);
   if (means_.under_way.cancel("plan " + std::string{reaction.plan})) craft_.fail();
-  for (Member& subject : craft_.members) {
-    if (!subject.alive() || craft_.is_ground_link(subject) || subject.recovery.running()) continue;
-    const Stage steps = steps_for(subject, reaction, event, {std::string{reaction.plan}});
-    if (!steps.empty()) begin(subject, severity, steps);
+  for (const Member& subject : craft_.members) {
+    if (!subject.alive() || craft_.is_ground_link(subject)) continue;
+    if (PlanStart start = start_for(subject, nullptr, reaction, severity, event); !start.steps.empty())
+      runs_.begin(start);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/event_handling/plan_choice.hpp"
+#include "supervisor/supervision/event_handling/plan_runs.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
 
@@ -16,14 +17,17 @@ namespace hirosco::supervisor {
 
 /// Events are heard here and nowhere else, and answered by the recovery plans of the mission (paper 4.3 and 5): whether
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Which plan: `plan_choice.hpp`; what its steps do:
-/// `procedures/steps/`, run by a `ProcedureRunner`; what a member is in the middle of by that: `subsystem_handling/member_recovery.hpp`. Thread: the supervisor's.
+/// `procedures/steps/`, which of two is followed: `plan_runs.hpp`; what a member is in the middle of by that: `subsystem_handling/member_recovery.hpp`. Thread: the supervisor's.
 class Reactions {
  public:
   Reactions(const Means& means, OwnSubsystem& own)
       : craft_{means.craft},
         desk_{means.desk, own},
         means_{means.craft, desk_, means.links, means.restarts, means.under_way, means.commanded, means.losses},
+        runs_{means_, own, [this](const PlanStart& plan, const ProcedureEnd& end) { escalate(plan, end); }},
         describer_{craft_.mission} {}
+  Reactions(const Reactions&) = delete;
+  Reactions& operator=(const Reactions&) = delete;
 
   /// False: it cannot be read.
   [[nodiscard]] bool take_event(std::uint16_t from, Octets message);
@@ -33,15 +37,14 @@ class Reactions {
   void act_first(const Member& origin, std::string_view event, descriptor::Severity severity) const;
 
  private:
-  struct Answer {
-    descriptor::Severity severity{};
-    Stage steps;
-  };
-  [[nodiscard]] Answer answer_to(const Member& origin, std::string_view event, descriptor::Severity severity) const;
+  /// For each whom the plan moves, with what there is to do for it: the one whose event it is first.
+  [[nodiscard]] std::vector<PlanStart> answer_to(const Member& origin, std::string_view event,
+                                                 descriptor::Severity severity) const;
   void react_to_own(std::string_view event, descriptor::Severity severity);
-  [[nodiscard]] Stage steps_for(const Member& subject, const Reaction& reaction, std::string_view event,
-                                const Occasion& occasion) const;
-  void begin(Member& subject, descriptor::Severity severity, const Stage& steps);
+  /// `whose`: the event's; null: the supervisor's, and the plan is for all that act.
+  [[nodiscard]] PlanStart start_for(const Member& subject, const Member* whose, const Reaction& reaction,
+                                    descriptor::Severity severity, std::string_view event) const;
+  void escalate(const PlanStart& plan, const ProcedureEnd& end);
 
   class Desk final : public CommandDesk {
    public:
@@ -59,6 +62,7 @@ class Reactions {
   Craft& craft_;
   Desk desk_;
   Means means_;
+  PlanRuns runs_;
   pus::PacketDescriber describer_;
 };
 

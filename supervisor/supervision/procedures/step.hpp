@@ -34,6 +34,13 @@ struct Occasion {
   std::string event{};  ///< empty: the story has it already
 };
 
+/// How far towards safety a step takes its subject. What runs gives way to nothing that does less (docs/adr/0090).
+enum class Safety : std::uint8_t {
+  None,  ///< it stops nobody
+  Stop,  ///< its actuators are fenced
+  Network,  ///< and those of all that real-time links join to it, which go down
+};
+
 struct StepKind;
 struct ProcedureStep {
   const StepKind* kind{nullptr};
@@ -55,6 +62,8 @@ struct StepKind {
   void (*act_first)(const ProcedureStep&, const Means&){nullptr};
   /// For plans: whether there is something to do now. Null: always.
   bool (*answers)(const ProcedureStep&, const Craft&){nullptr};
+  /// For plans. Null: Safety::None.
+  Safety (*safety)(const ProcedureStep&){nullptr};
   /// For plans: whether a lesser event of its subject begins nothing else while it runs.
   Holds holds{Holds::Subject};
 };

@@ -11,6 +11,7 @@
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
+#include "supervisor/supervision/stored_values.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
 #include "supervisor/supervision/subsystem_handling/versions.hpp"
@@ -137,6 +138,7 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   parts_.resources.release(apid);
   if (craft_.shutting_down) {
     subject.died();
+    parts_.stored.ended(apid);
     parts_.telecommands.outcome_unknown(apid);
     return parts_.desk.fail_all_to(apid, "process ended");
   }
@@ -148,6 +150,7 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();
   parts_.versions.died(apid);
+  parts_.stored.ended(apid);
   parts_.telecommands.outcome_unknown(apid);
   parts_.restoration.lost(apid);
   parts_.reactions.react(subject, "PROCESS_DIED", Severity::High);

@@ -17,6 +17,7 @@ class Reception;
 class Restoration;
 class ResourceHandling;
 class SafeAll;
+class StoredValues;
 class Telecommands;
 class Versions;
 
@@ -38,6 +39,7 @@ class Processes final : public Watch {
     Restoration& restoration;
     ResourceHandling& resources;
     Versions& versions;
+    StoredValues& stored;
   };
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

@@ -46,7 +46,8 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   LocalFlows flows;
   descriptor::Mission mission = [] {
     auto made = small_mission();
-    auto own = descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/supervisor/supervisor.xml", descriptor::file_system());
+    static const auto own =
+        descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/supervisor/supervisor.xml", descriptor::file_system());
     made.supervisor = *own.value;
     made.ground.subsystem = "CAMERA";
     made.initial_mode = made.start_mode = "open";
@@ -62,6 +63,8 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   }();
   Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1000, .on_finding = {}}};
   DirectPacketLog log{clock, open_database(DatabaseStrategy::Memory, {}).value()};
+  MemoryValueDisk value_disk;
+  DirectValueStore values{value_disk, "values"};
   std::map<std::uint16_t, PlayedMember> played;
   std::map<std::uint32_t, ProcessEnd> ends;
   std::vector<std::uint32_t> killed;
@@ -75,7 +78,8 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
                          .guard = guard,
                          .log = log,
                          .open_database = [this](DatabaseStrategy) { return std::move(next_database); },
-                         .observer = *this}};
+                         .observer = *this,
+                         .values = &values}};
   Craft& craft = parts.craft;
 
   /// What steps act with, and a desk that the test plays.

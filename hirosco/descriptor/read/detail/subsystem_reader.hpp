@@ -96,6 +96,7 @@ class SubsystemReader {
   void expect_range(const xml::Element& element, std::string_view what);
   /// Who may set it: writable, protection.
   void read_access(Attributes& attributes, Parameter& parameter);
+  void read_persistent(Attributes& attributes, Parameter& parameter);
   void claim_parameter_id(Attributes& attributes, Type type, std::uint8_t id);
   void check_enumerations();
   /// An argument knows the names of its values.
@@ -181,6 +182,7 @@ class SubsystemReader {
   std::vector<Parameter> built_in_{framework_parameters()};
   std::vector<EnumerationUse> enumeration_uses_;
   std::vector<std::pair<std::size_t, const xml::Attribute*>> initial_values_;  ///< of which parameter
+  std::size_t persistent_octets_{0};
   std::map<std::uint16_t, std::string> raised_by_;  ///< the function whose argument is first `of` a parameter
   std::vector<std::pair<const xml::Element*, Event>> framework_severities_;  ///< as the descriptor wants them
   std::map<std::string, std::vector<ParameterRef>, std::less<>> references_;  ///< by every spelling

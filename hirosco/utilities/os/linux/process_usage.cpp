@@ -8,13 +8,17 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <limits>
 #include <string>
 
 namespace hirosco {
 namespace {
+
+constexpr std::uint32_t most_counted = std::numeric_limits<std::uint32_t>::max();
 
 /// Its size is their number since Linux 6.2; before that they are not counted.
 [[nodiscard]] std::uint32_t own_descriptors() noexcept {
@@ -36,9 +40,9 @@ std::uint32_t number_in_status(std::string_view status, std::string_view name) n
     if ((at != 0 && status[at - 1] != '\n') || behind >= status.size() || status[behind] != ':') continue;
     const std::size_t digits = status.find_first_not_of(" \t", behind + 1);
     std::uint32_t number = 0;
-    if (digits != std::string_view::npos)
-      std::from_chars(status.data() + digits, status.data() + status.size(), number);
-    return number;
+    if (digits == std::string_view::npos) return 0;
+    const auto read = std::from_chars(status.data() + digits, status.data() + status.size(), number);
+    return read.ec == std::errc::result_out_of_range ? most_counted : number;
   }
   return 0;
 }
@@ -62,7 +66,8 @@ std::optional<ProcessUsage> ProcessMeter::look() noexcept {
   if (octets <= 0) return std::nullopt;
   const std::string_view status{text.data(), static_cast<std::size_t>(octets)};
   ProcessUsage usage;
-  usage.memory_kb = number_in_status(status, "VmData") + number_in_status(status, "VmStk");
+  const std::uint32_t data_kb = number_in_status(status, "VmData");
+  usage.memory_kb = data_kb + std::min(number_in_status(status, "VmStk"), most_counted - data_kb);
   usage.shared_memory_kb = number_in_status(status, "RssShmem");
   usage.threads = number_in_status(status, "Threads");
   if (whose_ == Whose::Own) usage.descriptors = own_descriptors();

@@ -46,6 +46,10 @@ inline constexpr StepKind set_state{
         },
     .act_first = state_step::fence,
     .answers = state_step::answers,
+    .safety =
+        [](const ProcedureStep& step) {
+          return state_step::wanted(step) == State::Operational ? Safety::None : Safety::Stop;
+        },
 };
 
 }  // namespace hirosco::supervisor::steps

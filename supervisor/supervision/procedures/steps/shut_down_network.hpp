@@ -18,6 +18,7 @@ inline constexpr StepKind shut_down_network{
     .run = [](const ProcedureStep& step, const Means& means,
               CommandDone done) { network::shut_down(step, means, done); },
     .act_first = network::fence,
+    .safety = [](const ProcedureStep&) { return Safety::Network; },
     .holds = StepKind::Holds::Nobody,  // it marks each of the network itself
 };
 

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/cycle/realtime_watch.hpp"
+
+#include <algorithm>
+
+namespace hirosco {
+
+void RealtimeWatch::begin(Duration sampling) noexcept {
+  pause_cycles_ = static_cast<std::uint64_t>(std::max<std::int64_t>(Duration{1s} / sampling, 1));
+  rest_cycles_ = 0;
+  sum_ = told_ = {};
+}
+
+bool RealtimeWatch::account(const RealtimeUses& of_cycle) noexcept {
+  if (rest_cycles_ > 0) --rest_cycles_;
+  sum_ = {sum_.heap + of_cycle.heap, sum_.locks + of_cycle.locks, sum_.outputs + of_cycle.outputs};
+  if (sum_ == told_ || rest_cycles_ > 0) return false;
+  told_ = sum_;
+  rest_cycles_ = pause_cycles_;
+  return true;
+}
+
+}  // namespace hirosco

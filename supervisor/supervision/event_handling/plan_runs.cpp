@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/event_handling/plan_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace hirosco::supervisor {
+namespace {
+
+/// While one that holds its subject runs, nobody commands that up.
+[[nodiscard]] bool holds(const PlanStart& plan) {
+  return std::ranges::any_of(plan.steps,
+                             [](const ProcedureStep& each) { return each.kind->holds == StepKind::Holds::Subject; });
+}
+
+[[nodiscard]] PlanRank rank_of(const PlanStart& plan, std::size_t from) {
+  return {safety_of(std::span{plan.steps}.subspan(std::min(from, plan.steps.size()))), plan.priority, plan.severity};
+}
+
+}  // namespace
+
+/// By what it has still to do: a stop that is done protects nothing from giving way.
+PlanRank PlanRuns::Run::rank() const { return rank_of(plan, at); }
+
+void PlanRuns::begin(const PlanStart& plan) {
+  runs_.remove_if([](const Run& run) { return !run.runner.running(); });
+  if (!makes_way(plan)) return;
+  Run& run = runs_.emplace_back(means_, plan);
+  if (holds(plan)) recovery_of(plan.subject).plan_begins(plan.severity);
+  Procedure procedure;
+  for (const ProcedureStep& each : plan.steps) procedure.stages.push_back({each});
+  procedure.begins = [this, &run](std::size_t step) { step_begins(run, step); };
+  procedure.finished = [this, &run](const ProcedureEnd& end) { ended(run, end); };
+  run.runner.start(std::move(procedure));
+}
+
+bool PlanRuns::makes_way(const PlanStart& plan) {
+  // The way down is the safest there is: nothing pre-empts it, and nothing is to be told of who is on it.
+  if (recovery_of(plan.subject).going_down() && !plan.of_loss) return false;
+  const PlanRank begins = rank_of(plan, 0);
+  const auto is_same = [&](const Run& run) {
+    return run.plan.number == plan.number && run.plan.occasion.event == plan.occasion.event;
+  };
+  const auto is_in_its_way = [&](const Run& run) {
+    return run.plan.subject == plan.subject && run.runner.running() && !pre_empts(begins, run.rank());
+  };
+  if (!plan.of_loss) {
+    const auto first = std::ranges::find_if(runs_, is_in_its_way);
+    if (first != runs_.end()) {
+      // The same is told of when it begins, any other once.
+      if (first->plan.number == plan.number || !first->refused.insert(plan.number).second) return false;
+      means_.craft.tell(
+          fmt::format("{}: plan {} because of {} is refused, plan {} runs", means_.craft.name_of(plan.subject),
+                      plan.occasion.plan, plan.occasion.event, first->plan.occasion.plan),
+          plan.subject);
+      own_.announce("PLAN_REFUSED", {static_cast<double>(plan.subject), static_cast<double>(plan.number),
+                                     static_cast<double>(first->plan.number)});
+      return false;
+    }
+  }
+  for (Run& run : runs_) {
+    if (run.plan.subject != plan.subject || !run.runner.running()) continue;
+    if (is_same(run)) cancel(run);  // begun anew
+    else if (pre_empts(begins, run.rank())) give_up(run, plan.number, plan.occasion.plan);
+  }
+  return true;
+}
+
+void PlanRuns::cancel(Run& run) {
+  run.runner.cancel();
+  if (holds(run.plan)) recovery_of(run.plan.subject).plan_ended(run.plan.severity);
+}
+
+void PlanRuns::give_up(Run& run, std::uint16_t by, const std::string& name) {
+  const std::string waiting = run.runner.waiting_for();
+  cancel(run);
+  const std::uint16_t apid = run.plan.subject;
+  means_.craft.tell(fmt::format("{}: plan {} gives way to plan {}{}{}", means_.craft.name_of(apid),
+                                run.plan.occasion.plan, name, waiting.empty() ? "" : " at ", waiting),
+                    apid);
+  own_.announce("PLAN_PREEMPTED",
+                {static_cast<double>(apid), static_cast<double>(run.plan.number), static_cast<double>(by)});
+}
+
+void PlanRuns::give_up_those_down(const Run& by) {
+  for (Run& run : runs_)
+    if (&run != &by && run.plan.subject != by.plan.subject && run.runner.running() &&
+        recovery_of(run.plan.subject).going_down())
+      give_up(run, by.plan.number, by.plan.occasion.plan);
+}
+
+void PlanRuns::step_begins(Run& run, std::size_t step) {
+  run.at = step;
+  give_up_those_down(run);
+  const bool by_itself = safety_of(std::span{run.plan.steps}.first(step)) == Safety::Network;
+  // Somebody else took it down meanwhile, and it goes there without this one's help.
+  if (recovery_of(run.plan.subject).going_down() && !by_itself && !run.plan.of_loss)
+    give_up(run, loss_of_a_link, "for the loss of a link");
+}
+
+void PlanRuns::ended(Run& run, const ProcedureEnd& end) {
+  const PlanStart plan = run.plan;
+  give_up_those_down(run);
+  MemberRecovery& recovery = recovery_of(plan.subject);
+  if (holds(plan)) recovery.plan_ended(plan.severity);
+  for (const Run& other : runs_)
+    if (&other != &run && other.plan.subject == plan.subject && other.runner.running() && holds(other.plan) &&
+        !recovery.running())
+      recovery.plan_begins(other.plan.severity);
+  if (!end.success && means_.craft.member(plan.subject)->alive()) failed_(plan, end);
+}
+
+}  // namespace hirosco::supervisor

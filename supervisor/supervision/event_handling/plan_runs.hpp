@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <set>
+#include <string>
+
+#include "supervisor/supervision/event_handling/plan_rank.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/procedures/procedure_runner.hpp"
+
+namespace hirosco::supervisor {
+
+/// A plan about to begin for one member.
+struct PlanStart {
+  std::uint16_t subject{};
+  Occasion occasion{};
+  std::uint16_t number{};  ///< of the plan in the mission, from 1; 0 = the default
+  std::uint8_t priority{};
+  descriptor::Severity severity{};
+  Stage steps{};  ///< at least one, taken one after the other
+  bool of_loss{false};  ///< whoever is gone is stopped and taken down whatever else runs for it (hazard SF5)
+};
+
+/// The plans that run, and which gives way to which (docs/adr/0090): one at a time for a member, and beside it only what answers its
+/// loss. One that gives way is over: its outstanding steps are not taken, what it has fenced stays fenced, what it was told to
+/// lower stays lowered. One that may not begin is refused: later it would act on what has changed since. Bounded: for each member one, and
+/// one for each plan and event of its loss. Thread: the supervisor's.
+class PlanRuns {
+ public:
+  /// In the place of a plan, where it gave way to the loss of a link.
+  static constexpr std::uint16_t loss_of_a_link = 65'535;
+  using Failed = std::function<void(const PlanStart&, const ProcedureEnd&)>;
+
+  /// `failed`: of a member that lives and a plan that nothing has pre-empted.
+  PlanRuns(const Means& means, OwnSubsystem& own, Failed failed)
+      : means_{means}, own_{own}, failed_{std::move(failed)} {}
+
+  void begin(const PlanStart& plan);
+
+ private:
+  struct Run {
+    Run(const Means& means, PlanStart what) : runner{means}, plan{std::move(what)} {}
+    [[nodiscard]] PlanRank rank() const;
+    ProcedureRunner runner;
+    PlanStart plan;
+    std::size_t at{0};  ///< the step that is taken now
+    std::set<std::uint16_t> refused{};  ///< plans that were told of it
+  };
+  /// False: it may not begin.
+  [[nodiscard]] bool makes_way(const PlanStart& plan);
+  void cancel(Run& run);
+  void give_up(Run& run, std::uint16_t by, const std::string& name);
+  /// Whoever goes down with this one's network follows no plan of its own any more.
+  void give_up_those_down(const Run& by);
+  void step_begins(Run& run, std::size_t step);
+  void ended(Run& run, const ProcedureEnd& end);
+  [[nodiscard]] MemberRecovery& recovery_of(std::uint16_t apid) { return means_.craft.member(apid)->recovery; }
+
+  Means means_;
+  OwnSubsystem& own_;
+  Failed failed_;
+  std::list<Run> runs_;
+};
+
+}  // namespace hirosco::supervisor

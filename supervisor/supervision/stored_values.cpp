@@ -1,0 +1,284 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/stored_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "hirosco/pus/st20_parameter/parameter_service.hpp"
+#include "supervisor/supervision/data_handling/permission.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+using Parameters = pus::ParameterService;
+
+/// The event has seconds in 32 bits.
+[[nodiscard]] double seconds_of(OnboardTime time) {
+  return static_cast<double>(std::chrono::floor<std::chrono::seconds>(time.time_since_epoch()).count());
+}
+
+[[nodiscard]] bool is_write(const pus::TelecommandView& telecommand) {
+  return telecommand.service() == Parameters::service_type && telecommand.subtype() == Parameters::set_values;
+}
+
+/// Id and value of each that a TC[20,3] or a TM[20,2] of this subsystem has.
+template <class Take>
+void each_value(const descriptor::Subsystem& subsystem, Octets data, Take take) {
+  OctetReader reader{data};
+  for (auto count = reader.get<std::uint8_t>(); count > 0; --count) {
+    const auto id = reader.get<std::uint32_t>();
+    const auto place = descriptor::find_parameter(subsystem, id);
+    if (!reader.good() || !place) return;
+    const descriptor::Parameter& parameter = subsystem.parameters[place->parameter];
+    const Octets value =
+        reader.get(place->member ? parameter.members[*place->member].field.octets() : parameter.octets());
+    if (!reader.good()) return;
+    take(id, value);
+  }
+}
+
+/// A write takes effect at the next cycle boundary, and a function may have come between two of them.
+[[nodiscard]] Duration settling(const descriptor::Subsystem& subsystem) {
+  Duration longest{};
+  for (const auto& configuration : subsystem.configurations) longest = std::max(longest, configuration.sampling);
+  return 2 * longest;
+}
+
+}  // namespace
+
+void StoredValues::begin() {
+  begun_ = craft_.now;
+  for (descriptor::MissionSubsystem& member : craft_.mission.subsystems) {
+    ValueSet values{member};
+    const std::uint16_t apid = member.subsystem.id;
+    if (values.wanted()) begin(apid, subjects_.emplace(apid, Subject{&member, std::move(values)}).first->second);
+  }
+}
+
+void StoredValues::begin(std::uint16_t apid, Subject& subject) {
+  if (store_ == nullptr) return;
+  const std::string& name = subject.member->subsystem.name;
+  const TwoCopies copies = store_->read(name);
+  const auto missing = [&](std::size_t i) { return !copies[i] && copies[i].error() == CopyFault::Missing; };
+  if (missing(0) && missing(1)) return;
+  bool heal = false;
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    if (copies[i]) subject.sequence = std::max(subject.sequence, copies[i]->sequence);
+    else refuse(subject, i, copies[i].error());
+    heal = heal || !copies[i];
+  }
+  std::array<std::size_t, 2> order{0, 1};
+  if (copies[0] && copies[1] && copies[1]->sequence > copies[0]->sequence) order = {1, 0};
+  for (const std::size_t i : order) {
+    if (!copies[i]) continue;
+    if (const auto taken = subject.values.take(*copies[i]); !taken) {
+      refuse(subject, i, taken.error());
+      continue;
+    }
+    const bool behind = !copies[1 - i] || copies[1 - i]->sequence != copies[i]->sequence;
+    subject.since = copies[i]->since;
+    subject.values.begin(*subject.member);
+    craft_.tell(fmt::format("{} takes over {} stored value{}, of {}", name, subject.values.size(),
+                            subject.values.size() == 1 ? "" : "s", time_text(subject.since)),
+                apid);
+    news_.push_back({"VALUES_TAKEN", static_cast<double>(apid), static_cast<double>(subject.values.size()),
+                     seconds_of(subject.since)});
+    // The one that was not whole, or not as new, must not stay the only other one.
+    if (heal || behind) keep(subject);
+    return;
+  }
+  craft_.tell(name + " begins as its descriptor says: none of its stored values is used", apid);
+}
+
+void StoredValues::refuse(const Subject& subject, std::size_t copy, CopyFault fault) {
+  const descriptor::Subsystem& subsystem = subject.member->subsystem;
+  craft_.tell(fmt::format("copy {} of {}'s stored values is not used: {}", copy + 1, subsystem.name, to_text(fault)),
+              subsystem.id);
+  news_.push_back(
+      {"VALUES_REFUSED", static_cast<double>(subsystem.id), static_cast<double>(copy + 1), static_cast<double>(fault)});
+}
+
+/// The persistent parameters that it sets, or has an argument of.
+StoredValues::Ids StoredValues::set_by(const pus::TelecommandView& telecommand, const Subject& subject) const {
+  const descriptor::Subsystem& subsystem = subject.member->subsystem;
+  Ids ids;
+  if (is_write(telecommand)) {
+    each_value(subsystem, telecommand.application_data(), [&](std::uint32_t id, Octets) {
+      if (subject.values.has(id)) ids.insert(id);
+    });
+    return ids;
+  }
+  const auto call = called_function(telecommand);
+  const descriptor::Function* request =
+      call ? subsystem.find_function(call->name) : subsystem.find_request(telecommand.service(), telecommand.subtype());
+  if (request == nullptr) return ids;
+  for (const auto& argument : request->arguments) {
+    const auto* parameter = argument.of.empty() ? nullptr : subsystem.find_parameter(argument.of);
+    if (parameter == nullptr || !parameter->persistent) continue;
+    ids.insert(ParameterId{subsystem.id, parameter->field.type, parameter->id}.wire());
+  }
+  return ids;
+}
+
+void StoredValues::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand) {
+  const auto subject = subjects_.find(apid);
+  if (subject == subjects_.end()) return;
+  Ids ids = set_by(telecommand, subject->second);
+  if (ids.empty()) return;
+  if ((telecommand.ack() & pus::ack_completion) == 0 || open_.size() == most_open)
+    return ask_later(subject->second, ids);
+  Open open{apid, pus::request_of(telecommand), std::move(ids)};
+  const Octets data = telecommand.application_data();
+  if (is_write(telecommand)) open.values.assign(data.begin(), data.end());
+  open_.push_back(std::move(open));
+}
+
+void StoredValues::hear(std::uint16_t from, const pus::TelemetryView& report) {
+  const auto subject = subjects_.find(from);
+  if (subject == subjects_.end()) return;
+  if (report.service() == Parameters::service_type && report.subtype() == Parameters::value_report &&
+      report.destination() == supervisor_apid)
+    return take_report(subject->second, report.source_data());
+  const bool failed = report.subtype() % 2 == 0 && report.subtype() != 6;
+  if (report.service() != 1 || (!failed && report.subtype() != 7)) return;
+  const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
+  const auto found = std::ranges::find_if(open_, [&](const Open& each) {
+    return each.apid == from && each.request.id == id && each.request.source == report.destination();
+  });
+  if (found == open_.end()) return;
+  const Open ended = std::move(*found);
+  open_.erase(found);
+  if (!failed && !ended.values.empty()) return take_write(subject->second, ended.values);
+  // A function that failed on its way may have set it before.
+  const bool may_have_begun = report.subtype() == 7 || report.subtype() == 8;
+  if (ended.values.empty() && may_have_begun) ask_later(subject->second, ended.ids);
+}
+
+void StoredValues::take_write(Subject& subject, Octets data) {
+  bool news = false;
+  Ids set;
+  each_value(subject.member->subsystem, data, [&](std::uint32_t id, Octets value) {
+    news = subject.values.set(id, value) || news;
+    set.insert(id);
+  });
+  // What was asked for may have been told before this took effect.
+  if (std::ranges::any_of(set,
+                          [&](std::uint32_t id) { return subject.changed.contains(id) || subject.asked.contains(id); }))
+    ask_later(subject, set);
+  if (news) changed(subject);
+}
+
+void StoredValues::take_report(Subject& subject, Octets data) {
+  bool news = false;
+  each_value(subject.member->subsystem, data, [&](std::uint32_t id, Octets value) {
+    if (subject.asked.erase(id) != 0) news = subject.values.set(id, value) || news;
+  });
+  if (news) changed(subject);
+}
+
+void StoredValues::ask_later(Subject& subject, const Ids& ids) {
+  for (const std::uint32_t id : ids) {
+    if (!subject.values.has(id)) continue;
+    subject.asked.erase(id);
+    subject.changed.insert(id);
+  }
+  subject.ask_at = craft_.now + settling(subject.member->subsystem);
+}
+
+void StoredValues::ask(std::uint16_t apid, Subject& subject) {
+  const Member* member = craft_.member(apid);
+  // In Offline it has no parameters to be asked for; what it was left with it begins with.
+  if (member == nullptr || !member->alive() || member->state() == descriptor::State::Offline) return;
+  std::vector<std::byte> data(1 + sizeof(std::uint32_t) * subject.changed.size());
+  OctetWriter writer{data};
+  writer.put(static_cast<std::uint8_t>(subject.changed.size()));
+  for (const std::uint32_t id : subject.changed) writer.put(id);
+  subject.asked.merge(subject.changed);
+  subject.changed.clear();
+  desk_.send(
+      apid, Parameters::service_type, Parameters::report_values, data, {},
+      [this, apid](bool, const std::string&) {
+        // What it did not tell is asked for again.
+        if (const auto found = subjects_.find(apid); found != subjects_.end() && !found->second.asked.empty())
+          ask_later(found->second, Ids{found->second.asked});
+      },
+      Duration{0});
+}
+
+void StoredValues::ended(std::uint16_t apid) {
+  const auto found = subjects_.find(apid);
+  if (found == subjects_.end()) return;
+  Subject& subject = found->second;
+  for (Open& open : open_)
+    if (open.apid == apid && open.values.empty()) subject.changed.merge(open.ids);
+  std::erase_if(open_, [apid](const Open& each) { return each.apid == apid; });
+  subject.changed.merge(subject.asked);
+  subject.asked.clear();
+  bool forgot = false;
+  for (const std::uint32_t id : std::exchange(subject.changed, {})) {
+    if (!subject.values.forget(id)) continue;
+    forgot = true;
+    craft_.tell(fmt::format("what {} made of {} is not known: it begins as the descriptor says",
+                            subject.member->subsystem.name, subject.values.name_of(id)),
+                apid);
+  }
+  if (!forgot) return;
+  own_.announce("VALUES_NOT_KEPT", {static_cast<double>(apid)});
+  changed(subject);
+}
+
+void StoredValues::changed(Subject& subject) {
+  ++subject.sequence;
+  subject.since = craft_.platform.clock.onboard();
+  subject.values.begin(*subject.member);
+  keep(subject);
+}
+
+void StoredValues::keep(Subject& subject) {
+  if (store_ == nullptr) return;
+  store_->keep(subject.member->subsystem.name,
+               {subject.values.layout(), subject.sequence, subject.since, subject.values.octets()});
+}
+
+void StoredValues::watch(TimePoint now) {
+  tell_news(now);
+  for (auto& [apid, subject] : subjects_) {
+    if (!subject.changed.empty() && now >= subject.ask_at) ask(apid, subject);
+    if (!subject.failing || now < subject.retry_at) continue;
+    subject.retry_at = now + retry_after;
+    keep(subject);
+  }
+  if (store_ != nullptr) take_outcomes(now);
+}
+
+void StoredValues::take_outcomes(TimePoint now) {
+  for (const KeptOutcome& outcome : store_->take_outcomes())
+    for (auto& [apid, subject] : subjects_) {
+      if (subject.member->subsystem.name != outcome.subsystem || outcome.sequence != subject.sequence) continue;
+      const bool failed = outcome.failure.has_value();
+      subject.retry_at = now + retry_after;
+      if (!failed) {
+        own_.announce("VALUES_KEPT", {static_cast<double>(apid), static_cast<double>(subject.values.size())});
+      } else if (!subject.failing) {
+        craft_.tell(fmt::format("{}'s values are not stored: {} ({})", outcome.subsystem, outcome.failure->text,
+                                outcome.failure->value),
+                    apid);
+        own_.announce("VALUES_NOT_KEPT", {static_cast<double>(apid)});
+      }
+      subject.failing = failed;
+    }
+}
+
+/// An event that nobody can hear yet would be in the log only.
+void StoredValues::tell_news(TimePoint now) {
+  if (news_.empty()) return;
+  const Member* link = craft_.ground_link();
+  const bool heard = link == nullptr || (link->alive() && link->state() == descriptor::State::Operational);
+  if (!heard && now - begun_ < patience) return;
+  for (const News& each : std::exchange(news_, {})) own_.announce(each.event, {each.apid, each.first, each.second});
+}
+
+}  // namespace hirosco::supervisor

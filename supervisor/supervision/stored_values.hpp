@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "supervisor/platform/storage/value_store.hpp"
+#include "supervisor/supervision/command_desk.hpp"
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/value_set.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
+
+namespace hirosco::supervisor {
+
+/// Has what telecommands set of persistent parameters outlive the flight (docs/adr/0087). What TC[20,3] sets is known from its TM[1,7]; what
+/// a function makes of a parameter that an argument of it is `of` is asked for by TC[20,1] when it has ended. From a change on the subsystem
+/// begins with it; VALUES_KEPT is told when the disk has it. Bounded: `most_open` telecommands whose end is awaited; those without room,
+/// or without a report of their end, are asked for like functions. Thread: the supervisor's.
+class StoredValues final : public Hearer, public Watch {
+ public:
+  static constexpr std::size_t most_open = 256;
+  /// A disk that did not take them is tried again after so long.
+  static constexpr Duration retry_after = std::chrono::seconds{10};
+  /// What was found at the start is told when the ground link is there, but not later than this.
+  static constexpr Duration patience = std::chrono::seconds{10};
+
+  /// Null: nothing outlives the flight, as nobody keeps anything.
+  StoredValues(Craft& craft, OwnSubsystem& own, CommandDesk& desk, ValueStore* store)
+      : craft_{craft}, own_{own}, desk_{desk}, store_{store} {}
+
+  /// Before any subsystem is started: each begins with what its copies have, if one is whole and fits.  Realtime: blocks.
+  void begin();
+  /// It has left for a member.
+  void forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand);
+  void hear(std::uint16_t from, const pus::TelemetryView& report) override;
+  void watch(TimePoint now) override;
+  /// Its process is gone. What a function had made of a value and nobody could ask for any more is what the descriptor says again.
+  void ended(std::uint16_t apid);
+
+ private:
+  using Ids = std::set<std::uint32_t>;
+  struct Subject {
+    descriptor::MissionSubsystem* member{};
+    ValueSet values;
+    std::uint64_t sequence{0};
+    OnboardTime since{};
+    Ids changed{};  ///< to be asked for at `ask_at`
+    TimePoint ask_at{};
+    Ids asked{};  ///< under way
+    bool failing{false};  ///< the disk did not take the newest
+    TimePoint retry_at{};
+  };
+  struct Open {
+    std::uint16_t apid{};
+    pus::Request request;
+    Ids ids;
+    std::vector<std::byte> values{};  ///< application data of TC[20,3]; empty: a function's
+  };
+  struct News {
+    std::string event;
+    double apid{}, first{}, second{};
+  };
+  void begin(std::uint16_t apid, Subject& subject);
+  void refuse(const Subject& subject, std::size_t copy, CopyFault fault);
+  [[nodiscard]] Ids set_by(const pus::TelecommandView& telecommand, const Subject& subject) const;
+  void take_write(Subject& subject, Octets data);
+  void take_report(Subject& subject, Octets data);
+  void ask_later(Subject& subject, const Ids& ids);
+  void ask(std::uint16_t apid, Subject& subject);
+  void changed(Subject& subject);
+  void keep(Subject& subject);
+  void take_outcomes(TimePoint now);
+  void tell_news(TimePoint now);
+
+  Craft& craft_;
+  OwnSubsystem& own_;
+  CommandDesk& desk_;
+  ValueStore* store_;
+  std::map<std::uint16_t, Subject> subjects_;  ///< that have persistent parameters, by APID
+  std::deque<Open> open_;
+  std::vector<News> news_;  ///< of the start
+  TimePoint begun_{};
+};
+
+}  // namespace hirosco::supervisor

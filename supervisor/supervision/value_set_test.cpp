@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/value_set.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hirosco::supervisor {
+namespace {
+
+using ::testing::ElementsAre;
+
+[[nodiscard]] descriptor::Parameter persistent_parameter(std::string name, std::uint8_t id, Number lowest,
+                                                         Number highest) {
+  descriptor::Parameter made;
+  made.field.name = std::move(name);
+  made.field.type = Type::Uint16;
+  made.field.minimum = lowest;
+  made.field.maximum = highest;
+  made.id = id;
+  made.init = {Number{1}};
+  made.persistent = true;
+  return made;
+}
+
+/// LIMIT from 0 to 10, GAIN from 0 to 100, and NOISE, which is not persistent. The mission says NOISE=4 and LIMIT=3.
+[[nodiscard]] descriptor::MissionSubsystem declared_arm() {
+  descriptor::MissionSubsystem made;
+  made.subsystem.name = "ARM";
+  made.subsystem.id = 10;
+  made.subsystem.parameters = {persistent_parameter("LIMIT", 1, 0, 10), persistent_parameter("GAIN", 2, 0, 100),
+                               persistent_parameter("NOISE", 3, 0, 10)};
+  made.subsystem.parameters[2].persistent = false;
+  made.overrides = {{"NOISE", {Number{4}}}, {"LIMIT", {Number{3}}}};
+  made.subsystem.parameters[0].init = {Number{3}};
+  return made;
+}
+
+[[nodiscard]] std::uint32_t id_in_arm(std::uint8_t id) { return ParameterId{10, Type::Uint16, id}.wire(); }
+const std::uint32_t limit_id = id_in_arm(1), gain_id = id_in_arm(2), noise_id = id_in_arm(3);
+
+[[nodiscard]] std::vector<std::byte> two_octets(std::uint16_t number) {
+  std::vector<std::byte> octets(2);
+  OctetWriter{octets}.put(number);
+  return octets;
+}
+[[nodiscard]] ValueCopy whole_copy(const ValueSet& set) { return {set.layout(), 1, {}, set.octets()}; }
+[[nodiscard]] std::vector<std::string> begins_with(const ValueSet& set) {
+  auto member = declared_arm();
+  set.begin(member);
+  std::vector<std::string> texts;
+  for (const auto& each : member.overrides) texts.push_back(to_string(each));
+  return texts;
+}
+
+TEST(ValueSet, IsWantedByWhoHasAPersistentParameterOnly) {
+  EXPECT_TRUE(ValueSet{declared_arm()}.wanted());
+  EXPECT_FALSE(ValueSet{descriptor::MissionSubsystem{}}.wanted());
+}
+
+TEST(ValueSet, TakesWhatATelecommandCouldSetOfAPersistentParameter) {
+  ValueSet set{declared_arm()};
+  EXPECT_TRUE(set.set(limit_id, two_octets(10)));
+  EXPECT_FALSE(set.set(limit_id, two_octets(10))) << "nothing new";
+  EXPECT_FALSE(set.set(limit_id, two_octets(11)));
+  EXPECT_FALSE(set.set(noise_id, two_octets(1)));
+  EXPECT_FALSE(set.set(gain_id, std::vector<std::byte>(3)));
+  EXPECT_EQ(set.size(), 1U);
+}
+
+TEST(ValueSet, GoesThroughACopy) {
+  ValueSet set{declared_arm()};
+  set.set(limit_id, two_octets(7));
+  set.set(gain_id, two_octets(99));
+  ValueSet later{declared_arm()};
+  ASSERT_TRUE(later.take(whole_copy(set)));
+  EXPECT_EQ(later.octets(), set.octets());
+}
+
+TEST(ValueSet, BeginsWithWhatWasSetInsteadOfWhatTheMissionSays) {
+  ValueSet set{declared_arm()};
+  EXPECT_THAT(begins_with(set), ElementsAre("NOISE=4", "LIMIT=3"));
+  set.set(limit_id, two_octets(7));
+  set.set(gain_id, two_octets(99));
+  EXPECT_THAT(begins_with(set), ElementsAre("NOISE=4", "LIMIT=7", "GAIN=99"));
+  auto member = declared_arm();
+  set.begin(member);
+  EXPECT_EQ(member.subsystem.parameters[0].init, (std::vector<Value>{Number{7}}));
+  set.forget(limit_id);
+  set.forget(gain_id);
+  set.begin(member);
+  EXPECT_EQ(member.subsystem.parameters[0].init, (std::vector<Value>{Number{3}}));
+  EXPECT_EQ(member.subsystem.parameters[1].init, (std::vector<Value>{Number{1}}));
+  EXPECT_THAT(begins_with(set), ElementsAre("NOISE=4", "LIMIT=3"));
+}
+
+TEST(ValueSet, OfAnotherLayoutIsNotTaken) {
+  ValueSet set{declared_arm()};
+  set.set(limit_id, two_octets(7));
+  const auto changed = [](auto edit) {
+    auto member = declared_arm();
+    edit(member.subsystem.parameters[0]);
+    return member;
+  };
+  using descriptor::Parameter;
+  for (const auto& member :
+       {changed([](Parameter& p) { p.field.name = "BOUND"; }), changed([](Parameter& p) { p.id = 9; }),
+        changed([](Parameter& p) { p.field.type = Type::Int16; }), changed([](Parameter& p) { p.field.count = 2; }),
+        changed([](Parameter& p) { p.field.unit = "N"; }), changed([](Parameter& p) { p.persistent = false; })}) {
+    ValueSet later{member};
+    EXPECT_EQ(later.take(whole_copy(set)), std::unexpected{CopyFault::Layout});
+    EXPECT_EQ(later.size(), 0U);
+  }
+  ValueSet with_another_default{changed([](Parameter& p) { p.init = {Number{2}}; })};
+  EXPECT_TRUE(with_another_default.take(whole_copy(set)));
+}
+
+TEST(ValueSet, OneThatHasLeftItsRangeTakesTheOthersAlong) {
+  ValueSet set{declared_arm()};
+  set.set(limit_id, two_octets(7));
+  set.set(gain_id, two_octets(99));
+  auto narrower = declared_arm();
+  narrower.subsystem.parameters[1].field.maximum = Number{98};
+  ValueSet later{narrower};
+  EXPECT_EQ(later.take(whole_copy(set)), std::unexpected{CopyFault::Range});
+  EXPECT_EQ(later.size(), 0U);
+}
+
+TEST(ValueSet, TakesNothingOfWhatItsOctetsDoNotSay) {
+  ValueSet set{declared_arm()};
+  set.set(limit_id, two_octets(7));
+  set.set(gain_id, two_octets(99));
+  const ValueCopy whole = whole_copy(set);
+  for (std::size_t length = 0; length < whole.values.size(); ++length) {
+    ValueCopy cut = whole;
+    cut.values.resize(length);
+    EXPECT_EQ(ValueSet{declared_arm()}.take(cut).has_value(), false) << length;
+  }
+  ValueCopy longer = whole;
+  longer.values.push_back({});
+  EXPECT_EQ(ValueSet{declared_arm()}.take(longer), std::unexpected{CopyFault::Damaged});
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
