@@ -104,9 +104,9 @@ struct SupervisorParts final : OwnSubsystem::Author {
                        restarts, restoration, resources, versions, stored}};
   Versions versions{{craft, own, processes, reactions, under_way}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 14> watches{&stored,       &processes, &versions, &ground_link, &restoration, &losses,
-                                 &housekeeping, &power,     &links,    &log_watch,   &telecommands, &own_telecommands,
-                                 &replies,      &resources};
+  std::array<Watch*, 14> watches{&stored,       &processes,        &versions, &ground_link, &restoration,
+                                 &losses,       &housekeeping,     &power,    &links,       &log_watch,
+                                 &telecommands, &own_telecommands, &replies,  &resources};
 };
 
 }  // namespace hirosco::supervisor

@@ -133,7 +133,7 @@ struct Event {
   Severity severity{Severity::Info};
   std::vector<Field> arguments;  ///< auxiliary data, in order
   Location at;
-  bool safety{false};                ///< nobody switches its report off (docs/adr/0091)
+  bool safety{false};  ///< nobody switches its report off (docs/adr/0091)
 };
 
 /// Requests that every subsystem has: no function or request of its own has one of these names.
