@@ -66,7 +66,8 @@ class Field:
         struct.error: it is cut off. TIME (on board: seconds TAI since 1958) and WORD stand in reports of standard services only."""
         if self.type not in ("TEXT", "TIME", "WORD"):
             value = self.decode(data, offset)
-            return self.text_of(value) or value if self.count == 1 else value, offset + self.octets
+            named = self.count == 1 and self.type != "BOOL"
+            return self.text_of(value) or value if named else value, offset + self.octets
         length = {"TEXT": ">H", "WORD": ">B"}.get(self.type)
         begin = offset + (struct.calcsize(length) if length else 0)
         end = begin + (struct.unpack_from(length, data, offset)[0] if length else CUC_OCTETS)
