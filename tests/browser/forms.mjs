@@ -7,6 +7,7 @@ const whole = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 2 ** 32 - 1], IN
 const never = ['NaN', 'Infinity', '-Infinity', 'left', '', '0x1', '1 2 3 4 5 6 7'];
 
 function cases_of(argument) {
+  if (argument.type === 'TEXT') return {good: ['x'.repeat(argument.octets), 'left', '\u20ac'], bad: ['x'.repeat(argument.octets + 1), `${'\u20ac'.repeat(Math.ceil(argument.octets / 3))}xx`]};
   const [low, high] = whole[argument.type] ?? [-Infinity, Infinity];
   const least = Math.max(low, argument.min ?? -Infinity), most = Math.min(high, argument.max ?? Infinity);
   const finite = [least, most].filter(Number.isFinite);
@@ -54,7 +55,7 @@ export async function judge_gateway(mission, ask) {
   for (const subsystem of mission.subsystems) {
     for (const action of subsystem.functions) {
       const value_of = (argument, text) => {
-        const one = (word) => Number.isFinite(Number(word)) && word !== '' ? Number(word) : word;
+        const one = (word) => argument.type !== 'TEXT' && Number.isFinite(Number(word)) && word !== '' ? Number(word) : word;
         return (argument.count ?? 1) > 1 ? text.split(' ').map(one) : one(text);
       };
       const fine = Object.fromEntries(action.arguments.map((argument) =>
