@@ -98,6 +98,24 @@ def a_telecommand_to_who_was_killed_as_it_left_is_given_up(w):
 
 
 @case(FINAL_RULE)
+def a_telecommand_on_its_way_as_the_craft_shuts_down_is_given_up(w):
+    w.action(1900 * MS, "shutdown asked for")
+    unknown(w)
+
+
+@case(FINAL_RULE)
+def a_telecommand_that_comes_while_the_craft_shuts_down_is_given_up(w):
+    w.action(900 * MS, "shutdown asked for")
+    unknown(w)
+
+
+@case(FINAL_RULE, found="TC[8,1] to MANIPULATOR was given up though nothing was done to it")
+def a_telecommand_whose_end_was_lost_long_before_the_craft_shuts_down(w):
+    w.action(2001 * MS, "shutdown asked for")
+    w.report(2002 * MS, SUPERVISOR, 1, 8, struct.pack(">IH", forwarded(w), 0x0206))
+
+
+@case(FINAL_RULE)
 def a_telecommand_that_fails_for_another_reason(w):
     unknown(w, code=5)
 

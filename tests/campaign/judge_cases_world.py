@@ -4,7 +4,7 @@
 import copy
 
 from judge_cases import case
-from judge_flight import JOYSTICK, MISSION, MS, ROBOT, S
+from judge_flight import JOYSTICK, MISSION, MS, ROBOT, S, SUPERVISOR
 from descriptors import OPERATIONAL, PRE, SAFE
 
 
@@ -192,6 +192,23 @@ def another_telecommand_at_the_end_needs_no_answer(w):
 @case(AGAIN_RULE, found="nothing could be brought up")
 def a_craft_that_is_not_flown_again(w):
     brought_up(w, flown=False)
+
+
+def ended_before_the_end(w):
+    w.sent(1 * S, SUPERVISOR, 8, 1, "SHUTDOWN")
+    w.action(1500 * MS, "shutdown asked for")
+    brought_up(w, flown=False)
+
+
+@case(AGAIN_RULE)
+def a_stopped_supervisor_that_finds_a_shutdown_when_it_goes_on_ends_the_flight(w):
+    w.at(900 * MS, "did stop SUPERVISOR").at(1400 * MS, "did go SUPERVISOR")
+    ended_before_the_end(w)
+
+
+@case(AGAIN_RULE, found="nothing could be brought up")
+def a_craft_that_is_not_flown_again_after_a_shutdown_that_nothing_held_up(w):
+    ended_before_the_end(w)
 
 
 @case(AGAIN_RULE, found="MANIPULATOR cannot be brought up again: Operational, SafeOperational; SET_STATE of MANIPULATOR failed")

@@ -68,8 +68,9 @@ def given_up(flight, victims):
             continue
         asked = forwarded[said.request_key]
         name = name_of(flight, asked.peer)
-        # Whoever shuts the craft down ends what is under way, or comes meanwhile.
-        if flight.finished() > record.time and not meets(victims[name], asked.time - LAST_SECOND_US, record.time):
+        # Whoever shuts the craft down ends what was on its way just then, or comes meanwhile; what was asked long before had its end.
+        on_its_way = flight.finished() <= min(record.time, asked.time + LAST_SECOND_US)
+        if not on_its_way and not meets(victims[name], asked.time - LAST_SECOND_US, record.time):
             yield record.time, f"TC[{asked.telecommand.service},{asked.telecommand.subtype}] to {name} was given up though nothing was done to it"
 
 

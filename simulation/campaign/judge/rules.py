@@ -172,7 +172,9 @@ def muted(flight, apid):
 def i10_commandable_again(flight, victims):
     recovered, flown = flight.mark("recovered"), flight.mark("flown")
     # A supervisor that stood still finds ground's SHUTDOWN when it goes on: then that is how this flight ends.
-    asked_to_end = any(sent.function == "SHUTDOWN" and sent.time < flight.finished() < recovered for sent in flight.sent) if recovered else False
+    asked_to_end = recovered is not None and any(
+        sent.function == "SHUTDOWN" and sent.time < flight.finished() < recovered and
+        meets(victims["SUPERVISOR"], sent.time, flight.finished()) for sent in flight.sent)
     if recovered is None or asked_to_end:
         return
     answered = {d[6] for d in flight.down if d[3] == 1 and d[4] == 7 and d[5] == 0}
