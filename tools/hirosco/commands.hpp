@@ -31,6 +31,7 @@ struct RunOptions {
   bool json{false};
   bool ground{true};                 ///< the ground station too
   bool tour{false};                  ///< its page opens with the guided tour
+  bool threads{false};               ///< supervisor and subsystems as threads of one process (adr 0097)
 };
 int run(const RunOptions& options);
 

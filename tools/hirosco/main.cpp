@@ -56,6 +56,8 @@ int read_and_do(int argc, char** argv) {
   bool no_ground = false;
   run_command->add_flag("--no-ground", no_ground, "Without the ground station and its page");
   run_command->add_flag("--json", run_options.json, "One JSON object a line");
+  run_command->add_flag("--threads", run_options.threads,
+                        "Supervisor and subsystems as threads of one process, which isolates nobody");
 
   std::string tour_mission;
   auto* tour_command = app.add_subcommand("tour", "Fly a mission and be shown around by its page, in eight steps");

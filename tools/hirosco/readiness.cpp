@@ -23,12 +23,20 @@ class Findings {
   Findings(const descriptor::Mission& mission, FlownAs flown_as) : mission_{mission}, flown_as_{flown_as} {}
 
   /// Why the program cannot be had for such a flight; `missing`: what its module says.
-  void program(const std::string& executable, const std::string& user, descriptor::Location at,
-               const std::string& missing) {
-    if (flown_as_ == FlownAs::Processes && find_program(executable).empty())
+  void subsystem(const std::string& executable, const std::string& user, descriptor::Location at,
+                 const std::string& missing) {
+    part(executable, user, at, missing, flown_as_ == FlownAs::Processes);
+  }
+  void device(const std::string& executable, const std::string& user, descriptor::Location at,
+              const std::string& missing) {
+    part(executable, user, at, missing, flown_as_ != FlownAs::Simulation);
+  }
+  void part(const std::string& executable, const std::string& user, descriptor::Location at, const std::string& missing,
+            bool as_program) {
+    if (as_program && find_program(executable).empty())
       add(at, "E0401", fmt::format("no program {} for {}", executable, user),
           "it is neither beside this program nor in PATH");
-    if (flown_as_ == FlownAs::Simulation && !missing.empty())
+    if (!as_program && !missing.empty())
       add(at, "E0404", fmt::format("no module {} for {}", executable, user), missing);
   }
 
@@ -59,7 +67,7 @@ class Findings {
     for (const auto& [name, value, at] : device.settings) {
       const auto taken = played->fault(name + " " + value);
       // What is not available in this world may be in the device's own.
-      if (taken || (flown_as_ == FlownAs::Processes && taken.error().code == ErrorCode::Unavailable)) continue;
+      if (taken || (flown_as_ != FlownAs::Simulation && taken.error().code == ErrorCode::Unavailable)) continue;
       add(at, "E0402", fmt::format("device {} does not take '{} {}'", device.name, name, value),
           fmt::format("{}: {}", to_text(taken.error().code), taken.error().text));
     }
@@ -87,11 +95,11 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
   };
   Findings findings{mission, flown_as};
   for (const auto& member : mission.subsystems) {
-    findings.program(member.executable, "subsystem " + member.subsystem.name, member.at, missing(member.executable));
+    findings.subsystem(member.executable, "subsystem " + member.subsystem.name, member.at, missing(member.executable));
     if (flown_as == FlownAs::Processes && mission.manifest) findings.listed(member);
   }
   for (const auto& device : mission.devices) {
-    findings.program(device.executable, "simulated device " + device.name, device.at, missing(device.executable));
+    findings.device(device.executable, "simulated device " + device.name, device.at, missing(device.executable));
     if (const auto make = modules.devices.find(device.executable); make != modules.devices.end())
       findings.settings(device, make->second);
   }

@@ -12,6 +12,7 @@ namespace hirosco::tools {
 /// Where a mission is to fly.
 enum class FlownAs : std::uint8_t {
   Processes,   ///< programs beside this one or in PATH
+  Threads,     ///< subsystems as modules, devices as programs
   Simulation,  ///< modules beside this program or in PATH, in this process
 };
 

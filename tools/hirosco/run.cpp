@@ -166,7 +166,7 @@ int run(const RunOptions& options) {
       fmt::print(stderr, "hirosco run: {}\n", *why_not);
       return exit_usage;
     }
-  if (!ready(*mission, FlownAs::Processes)) return exit_environment;
+  if (!ready(*mission, options.threads ? FlownAs::Threads : FlownAs::Processes)) return exit_environment;
   FlightEntry flight = plan_flight(*mission, options.instance.empty() ? mission->name : options.instance);
   if (!good_instance(flight.instance)) {
     fmt::print(stderr, "hirosco run: '{}' is no name of a flight: letters, digits, '-' and '_', at most 64\n",
@@ -205,9 +205,10 @@ int run(const RunOptions& options) {
     if (options.tour) start.arguments.emplace_back("--tour");
     plan.devices.push_back(std::move(start));
   }
-  const auto program = find_program("hirosco-supervisor");
+  const std::string_view name = options.threads ? "hirosco-threads" : "hirosco-supervisor";
+  const auto program = find_program(name);
   if (program.empty()) {
-    fmt::print(stderr, "hirosco run: no program hirosco-supervisor beside this one or in PATH\n");
+    fmt::print(stderr, "hirosco run: no program {} beside this one or in PATH\n", name);
     return exit_environment;
   }
   plan.supervisor.executable = program.string();

@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sched.h>
 #include <signal.h>
 #include <time.h>
@@ -19,6 +20,7 @@
 
 #include "hirosco/data_transfer/control/socket_channel.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
+#include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
@@ -228,6 +230,15 @@ Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process) {
   if (!handle) return fail(ErrorCode::SystemFailure, "hold of a process", errno);
   HIROSCO_TRY_LET(Process second, Process::adopt(process.pid(), std::move(handle)));
   return std::make_shared<LinuxGrip>(std::move(second));
+}
+
+std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::Mission& mission) {
+  if (!mission.manifest) return std::string{};
+  const SystemClock clock;
+  const TimePoint begun = clock.now();
+  const HeldPrograms& held = hold_to(mission);
+  return fmt::format("{} executables of {} kB are as the manifest says, read in {:.1f} ms", held.count(),
+                     held.octets() / 1024, 1e3 * seconds(clock.now() - begun));
 }
 
 const HeldPrograms& SystemLauncher::hold_to(const descriptor::Mission& mission) {

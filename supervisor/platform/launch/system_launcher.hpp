@@ -10,8 +10,8 @@
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
 #include "supervisor/platform/launch/error_lines.hpp"
+#include "supervisor/platform/launch/flight_launcher.hpp"
 #include "supervisor/platform/launch/held_programs.hpp"
-#include "supervisor/platform/launch/launcher.hpp"
 
 namespace hirosco::supervisor {
 
@@ -20,8 +20,10 @@ namespace hirosco::supervisor {
 
 /// Starts each subsystem as a process of its own that inherits its end of the control channel and its two pages; who is
 /// who is proven by the inherited socket (decision 2).  Thread: the supervisor's.
-class SystemLauncher final : public ProcessLauncher {
+class SystemLauncher final : public FlightLauncher {
  public:
+  /// Holds to the mission's manifest where it has one.
+  [[nodiscard]] std::expected<std::string, std::string> begin(const descriptor::Mission& mission) override;
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
@@ -35,12 +37,9 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return hirosco::isolation_lacks(); }
   [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
   [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override;
-  /// Ends what still runs: nobody would be left to do it.
-  void kill_all();
-  /// True while a process that was started still runs.
-  [[nodiscard]] bool any_running();
-  /// Readable when the process has ended; -1 when unknown.
-  [[nodiscard]] int wait_descriptor(std::uint32_t process);
+  void kill_all() override;
+  [[nodiscard]] bool any_running() override;
+  [[nodiscard]] int wait_descriptor(std::uint32_t process) override;
 
  private:
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;

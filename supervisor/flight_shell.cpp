@@ -1,0 +1,333 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/flight_shell.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <system_error>
+
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/os/shared_memory.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/utilities/os/wait_set.hpp"
+#include "supervisor/console.hpp"
+#include "supervisor/guard/guard_shell.hpp"
+#include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/storage/begin_log.hpp"
+#include "supervisor/platform/storage/epoch_file.hpp"
+#include "supervisor/platform/storage/log_store.hpp"
+#include "supervisor/platform/storage/postgresql_database.hpp"
+#include "supervisor/platform/storage/value_store.hpp"
+#include "supervisor/supervisor.hpp"
+#include "supervisor/unprovoked_reactions.hpp"
+
+namespace hirosco::supervisor {
+namespace {
+
+constexpr int exit_finding = 1;
+constexpr int exit_usage = 2;
+constexpr int exit_environment = 3;
+constexpr int exit_internal = 4;
+constexpr int exit_unprovoked = 5;
+/// Below every cycle, above ordinary work.
+constexpr int supervisor_priority = 30;
+constexpr Duration status_period = 1s;
+constexpr Duration last_wait = 2s;
+constexpr Duration log_start_limit = 3s;
+
+struct Options {
+  std::filesystem::path mission;
+  std::filesystem::path log;         ///< empty = as the mission says
+  std::filesystem::path runtime;     ///< folder of this flight: sockets, what was injected
+  std::string mode;                  ///< to start in; empty = the mission's
+  Console::Style style{Console::Style::Text};
+};
+
+[[nodiscard]] Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word{argv[i]};
+    if (word == "--mission" && i + 1 < argc) options.mission = argv[++i];
+    else if (word == "--log" && i + 1 < argc) options.log = argv[++i];
+    else if (word == "--runtime" && i + 1 < argc) options.runtime = argv[++i];
+    else if (word == "--mode" && i + 1 < argc) options.mode = argv[++i];
+    else if (word == "--json") options.style = Console::Style::Json;
+    else if (word == "--quiet") options.style = Console::Style::Quiet;
+  }
+  return options;
+}
+
+/// Null: the mission names no server, or PostgreSQL is not here.
+[[nodiscard]] std::unique_ptr<Database> make_store(DatabaseStrategy strategy, const std::filesystem::path& log,
+                                                   const descriptor::DatabaseUse& use) {
+  if (strategy == DatabaseStrategy::Postgresql) {
+    if (use.server.empty()) return nullptr;
+    auto opened = open_postgresql({.connection = use.server, .log = log_name(log)});
+    return opened ? std::move(*opened) : nullptr;
+  }
+  constexpr std::uint64_t mega = 1'000'000;
+  return std::make_unique<LogStore>(strategy, log,
+                                    LogLimits{.rotate_octets = use.rotate_mb * mega,
+                                              .rotate_age = std::chrono::hours{use.rotate_h},
+                                              .keep_octets = use.keep_mb * mega});
+}
+
+/// Those reactions that no injection into a simulated device had caused: each device writes the monotonic time of what it
+/// was told beside its control socket.
+[[nodiscard]] std::vector<TimePoint> unprovoked_reactions(std::vector<TimePoint> reactions,
+                                                          const std::filesystem::path& runtime) {
+  std::error_code failed;
+  for (const auto& file : std::filesystem::directory_iterator{runtime, failed}) {
+    if (reactions.empty()) break;
+    if (file.path().extension() != ".injected") continue;
+    std::ifstream lines{file.path()};
+    for (std::int64_t at_ns = 0; lines >> at_ns;) {
+      const TimePoint injected{Duration{at_ns}};
+      std::erase_if(reactions,
+                    [&](TimePoint at) { return at >= injected && at - injected <= UnprovokedReactions::limit; });
+    }
+  }
+  return reactions;
+}
+
+/// Descriptors that may wake the supervisor; follows the set of living members.
+class Waker {
+ public:
+  explicit Waker(std::initializer_list<int> always) {
+    for (const int descriptor : always)
+      if (descriptor >= 0) static_cast<void>(set_.add(descriptor));
+  }
+  void follow(const Supervisor& supervisor, FlightLauncher& launcher) {
+    std::set<int> now;
+    for (const Member& member : supervisor.members()) {
+      if (!member.alive()) continue;
+      // A closed one ends every wait, and so does what has to wait in the channel.
+      if (!member.closed_at && supervisor.reads(member)) now.insert(member.channel()->wait_descriptor());
+      now.insert(launcher.wait_descriptor(member.process()));
+    }
+    now.erase(-1);
+    for (const int old : members_)
+      if (!now.contains(old)) set_.remove(old);
+    for (const int fresh : now)
+      if (!members_.contains(fresh)) static_cast<void>(set_.add(fresh));
+    members_ = std::move(now);
+  }
+  void forget(int descriptor) { set_.remove(descriptor); }
+  [[nodiscard]] std::span<const Ready> wait(Duration limit) {
+    const auto ready = set_.wait(std::max(limit, Duration{0}));
+    return ready ? *ready : std::span<const Ready>{};
+  }
+
+ private:
+  WaitSet set_;
+  std::set<int> members_;
+};
+
+int serve(const descriptor::Mission& mission, const Options& options, const MakeDeployment& deploy) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  sigset_t blocked = signals;
+  sigaddset(&blocked, SIGUSR1);  // the guard's thread takes it
+  ::pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  const FileDescriptor signal_descriptor{::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK)};
+
+  const SystemClock clock;
+  SystemFlowFactory flows;
+  const bool realtime = realtime_permitted();
+  const Deployment deployment = deploy({.mission = mission, .clock = clock, .flows = flows, .realtime = realtime});
+  if (!deployment.launcher) return exit_environment;
+  FlightLauncher& launcher = *deployment.launcher;
+  const auto strategy = from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);
+  const auto log_path = options.log.empty() ? std::filesystem::path{mission.database.path} : options.log;
+  auto log_progress = WakeEvent::create();
+  auto guard_found = WakeEvent::create();
+  if (!log_progress || !guard_found) {
+    const Error& why = (log_progress ? guard_found : log_progress).error();
+    fmt::print(stderr, "hirosco: nothing to wake the supervisor by: {} ({})\n", why.text,
+               std::strerror(static_cast<int>(why.value)));
+    return exit_environment;
+  }
+  auto store = make_store(strategy, log_path, mission.database);
+  if (!store) {
+    fmt::print(stderr, "hirosco: no flight without a log: libpq.so.5 is not installed (libpq5)\n");
+    return exit_environment;
+  }
+  Console console{mission, options.style};
+  UnprovokedReactions causes{clock, console};
+  const auto begun = launcher.begin(mission);
+  if (!begun) {
+    fmt::print(stderr, "hirosco: {} does not fly: {}\n", mission.name, begun.error());
+    return exit_environment;
+  }
+  if (!begun->empty()) console.told(clock.onboard(), *begun);
+  ThreadedPacketLog::Options log_options;
+  log_options.on_progress = [&] { log_progress->notify(); };
+  ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};
+  if (const auto why_not = begin_log(log, clock, log_start_limit)) {
+    fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
+    return exit_environment;
+  }
+  ThreadedValueStore values{clock, std::make_unique<SystemValueDisk>(),
+                            std::filesystem::path{log_path}.replace_extension(".values")};
+  // The threads of log, console and values exist already: they stay ordinary.
+  if (realtime) keep_code_in_memory();
+  static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
+  EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
+  const auto first_epoch = epochs.first(clock.onboard());
+  if (!first_epoch) {
+    fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
+    return exit_environment;
+  }
+  Guard guard{
+      {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .on_finding = [&] { guard_found->notify(); }}};
+  Supervisor supervisor{
+      {.mission = mission,
+       .platform =
+           {.clock = clock,
+            .memory = *deployment.memory,
+            .flows = flows,
+            .realtime = realtime,
+            .wakes = true,
+            .explain = {},
+            .links = deployment.links},
+       .launcher = launcher,
+       .guard = guard,
+       .log = log,
+       .open_database = [&](DatabaseStrategy wanted) -> std::unique_ptr<Database> {
+         return make_store(wanted, log_path, mission.database);
+       },
+       .observer = causes,
+       .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384),
+       .values = &values}};
+  if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
+
+  const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
+  Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
+              kept ? keeper_descriptor : -1};
+  const KeeperPage* keeper_page = nullptr;
+  std::atomic<std::uint64_t> unwatched{0};
+  std::atomic<std::uint64_t>* own_beats = &unwatched;
+  auto page_memory = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite);
+  if (kept && page_memory) {
+    auto* page = reinterpret_cast<KeeperPage*>(page_memory->octets().data());
+    keeper_page = page;
+    own_beats = &page->supervisor;
+  }
+  Progress keeper_progress;
+  bool keeper_still = false;
+  const TimePoint started = clock.now();
+  TimePoint next_status = started + status_period;
+  bool ends_as_a_whole = false;
+  supervisor.start();
+  const auto guard_thread = GuardShell::start(guard, clock, options.runtime);
+  if (!guard_thread) {
+    fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
+               guard_thread.error().value);
+    launcher.kill_all();
+    return exit_environment;
+  }
+  while (!supervisor.finished()) {
+    const TimePoint wake = supervisor.step(clock.now());
+    own_beats->fetch_add(1, std::memory_order_relaxed);
+    const bool still = keeper_page != nullptr &&
+                       keeper_progress.stands_still(keeper_page->keeper.load(std::memory_order_relaxed), clock.now());
+    if (still && !keeper_still) supervisor.keeper_stands_still();
+    keeper_still = still;
+    waker.follow(supervisor, launcher);
+    for (const Ready& ready : waker.wait(std::min(wake, next_status) - clock.now())) {
+      const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;
+      if (keeper_gone) waker.forget(keeper_descriptor);  // it would end every wait from now on
+      if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
+      if (ready.descriptor == guard_found->descriptor()) guard_found->clear();
+      if (ready.descriptor == signal_descriptor.get()) {
+        signalfd_siginfo info;
+        static_cast<void>(!::read(signal_descriptor.get(), &info, sizeof info));
+      }
+      if (ready.descriptor == signal_descriptor.get() || keeper_gone) supervisor.request_shutdown();
+    }
+    if (const auto why = launcher.must_end(clock.now()); why && !std::exchange(ends_as_a_whole, true)) {
+      console.told(clock.onboard(), *why);
+      supervisor.request_shutdown();
+    }
+    epochs.keep_above(guard.highest_epoch());
+    if (clock.now() < next_status) continue;
+    next_status += status_period;
+    console.show(supervisor, clock.now() - started);
+  }
+  for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;)
+    sleep_until(clock.now() + 10ms);
+  launcher.kill_all();
+  static_cast<void>(log.flush(last_wait));
+  for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;)
+    sleep_until(clock.now() + 10ms);
+  if (launcher.any_running()) {
+    // Whoever cannot be ended works on what stands in this function: it is not left.
+    std::fputs("hirosco: what cannot be ended is ended with this process\n", stderr);
+    std::fflush(nullptr);
+    std::_Exit(exit_internal);
+  }
+  const auto unprovoked = unprovoked_reactions(causes.uncommanded(), options.runtime);
+  if (!unprovoked.empty()) {
+    fmt::print(
+        stderr,
+        "hirosco: {} reaction{} of high severity that no fault, telecommand or scenario of this flight had caused, "
+        "the first {:.3f} s after the start: hirosco log --text plan\n",
+        unprovoked.size(), unprovoked.size() == 1 ? "" : "s", seconds(unprovoked.front() - started));
+    return exit_unprovoked;
+  }
+  return supervisor.succeeded() ? 0 : exit_finding;
+}
+
+int named_failures(const char* program, const descriptor::Mission& mission, const Options& options,
+                   const MakeDeployment& deploy) {
+  try {
+    return serve(mission, options, deploy);
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "{}: no memory left for this flight\n", program);
+  } catch (const std::system_error& problem) {
+    // A thread of the log or of the console that cannot be started.
+    fmt::print(stderr, "{}: the system refuses what a flight needs (thread, descriptor): {}\n", program,
+               problem.what());
+  }
+  return exit_environment;
+}
+
+}  // namespace
+
+int fly(int argc, char** argv, const MakeDeployment& deploy) {
+  const char* const slash = std::strrchr(argv[0], '/');
+  const char* const program = slash != nullptr ? slash + 1 : argv[0];
+  say_last_words(program);
+  const Options options = read_options(argc, argv);
+  if (options.mission.empty()) {
+    fmt::print(stderr, "{}: started by 'hirosco run MISSION'\n  --mission FILE [--json|--quiet]\n", argv[0]);
+    return exit_usage;
+  }
+  const auto source = descriptor::file_system();
+  auto reading = descriptor::read_mission(options.mission, source);
+  for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
+  if (!reading.value) return exit_finding;
+  if (!options.mode.empty())
+    if (const auto why_not = descriptor::start_in(*reading.value, options.mode)) {
+      fmt::print(stderr, "{}: {}\n", argv[0], *why_not);
+      return exit_usage;
+    }
+  return named_failures(program, *reading.value, options, deploy);
+}
+
+}  // namespace hirosco::supervisor
