@@ -269,12 +269,17 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     next_status += status_period;
     console.show(supervisor, clock.now() - started);
   }
-  for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;)
-    sleep_until(clock.now() + 10ms);
+  // The keeper looks on as long as this takes, too.
+  const auto wait_for_ends = [&] {
+    for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;) {
+      own_beats->fetch_add(1, std::memory_order_relaxed);
+      sleep_until(clock.now() + 10ms);
+    }
+  };
+  wait_for_ends();
   launcher.kill_all();
   static_cast<void>(log.flush(last_wait));
-  for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;)
-    sleep_until(clock.now() + 10ms);
+  wait_for_ends();
   if (launcher.any_running()) {
     // Whoever cannot be ended works on what stands in this function: it is not left.
     std::fputs("hirosco: what cannot be ended is ended with this process\n", stderr);

@@ -4,19 +4,18 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <time.h>
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/wait_set.hpp"
 
 namespace hirosco {
 namespace {
@@ -31,12 +30,6 @@ struct Address {
 
 bool is_gone(int number) noexcept {
   return number == ECONNREFUSED || number == ENOENT || number == ECONNRESET || number == ENOTCONN || number == EPIPE;
-}
-
-Duration since_boot() noexcept {
-  timespec now{};
-  (void)::clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::chrono::seconds{now.tv_sec} + std::chrono::nanoseconds{now.tv_nsec};
 }
 
 class DatagramFlow final : public DataFlow {
@@ -92,17 +85,7 @@ class DatagramFlow final : public DataFlow {
     return Received{Flow::New, static_cast<std::size_t>(octets)};
   }
 
-  [[nodiscard]] bool do_wait(Duration timeout) noexcept override {
-    const Duration end = since_boot() + std::max(timeout, Duration{0});
-    for (;;) {
-      const Duration left = std::max(end - since_boot(), Duration{0});
-      const timespec rest{std::chrono::duration_cast<std::chrono::seconds>(left).count(), left.count() % 1'000'000'000};
-      pollfd entry{socket_.get(), POLLIN, 0};
-      const int ready = ::ppoll(&entry, 1, &rest, nullptr);
-      if (ready > 0) return true;
-      if (ready == 0 || errno != EINTR) return false;
-    }
-  }
+  [[nodiscard]] bool do_wait(Duration timeout) noexcept override { return wait_readable(socket_.get(), timeout); }
 
   FileDescriptor socket_;
   Address peer_;

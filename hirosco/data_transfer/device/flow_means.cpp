@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/data_transfer/device/flow_means.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "hirosco/data_transfer/device/datagram_flow.hpp"
@@ -21,10 +20,5 @@ constexpr std::array built_in_means{
 }  // namespace
 
 std::span<const FlowMeans> standard_flow_means() noexcept { return built_in_means; }
-
-const FlowMeans* find_flow_means(Transfer transfer) noexcept {
-  const auto found = std::ranges::find(built_in_means, transfer, &FlowMeans::transfer);
-  return found != built_in_means.end() ? &*found : nullptr;
-}
 
 }  // namespace hirosco

@@ -38,11 +38,4 @@ constexpr auto local_mechanisms = [] {
 LinkMechanisms standard_link_mechanisms() noexcept { return built_in_mechanisms; }
 LinkMechanisms local_link_mechanisms() noexcept { return local_mechanisms; }
 
-const LinkMechanism* find_link_mechanism(LinkMechanisms mechanisms, LinkMethod method, LinkKind kind) noexcept {
-  const auto found = std::ranges::find_if(mechanisms, [&](const LinkMechanism* mechanism) {
-    return mechanism->method() == method && mechanism->kind() == kind;
-  });
-  return found != mechanisms.end() ? *found : nullptr;
-}
-
 }  // namespace hirosco

@@ -41,4 +41,11 @@ inline constexpr std::string_view shipped_prefix = "@hirosco/";
 /// or built against another version. Throws std::bad_alloc when the computer has no memory for it.
 [[nodiscard]] std::expected<const Module*, std::string> load_module(const std::filesystem::path& file, ModuleKind kind);
 
+namespace os_detail {
+/// Of the backend: false where the file is known to be none that may be loaded, so that its end does not come at an access later.
+[[nodiscard]] bool module_is_whole(const std::filesystem::path& file);
+/// False where the system is known to have no memory for it.
+[[nodiscard]] bool has_room_for_module(const std::filesystem::path& file);
+}  // namespace os_detail
+
 }  // namespace hirosco

@@ -56,6 +56,10 @@ class WaitSet {
   std::vector<Ready> ready_;
 };
 
+/// Waits for one descriptor alone, with the resolution of the clock; false when `timeout` passed first. Signals do not end the wait.
+/// Realtime: blocks, no heap. Thread: any.
+[[nodiscard]] bool wait_readable(int descriptor, Duration timeout) noexcept;
+
 /// Wakes a thread in WaitSet::wait(): its descriptor is readable from notify() until clear(); several notifications
 /// before that are one.
 /// Realtime: notify() is bounded (one system call). Thread: notify() any, clear() the waiting one.

@@ -100,5 +100,18 @@ TEST(FileDescriptor, ClosesWhatItOwns) {
   EXPECT_FALSE(FileDescriptor{}.duplicate());
 }
 
+TEST(WaitReadable, WaitsForOneDescriptorWithTheResolutionOfTheClock) {
+  const SystemClock clock;
+  WakeEvent event = *WakeEvent::create();
+  const TimePoint start = clock.now();
+  EXPECT_FALSE(wait_readable(event.descriptor(), 300us));
+  EXPECT_GE(clock.now() - start, 300us);
+  EXPECT_FALSE(wait_readable(event.descriptor(), Duration{0}));
+  EXPECT_FALSE(wait_readable(event.descriptor(), -1s));
+  event.notify();
+  EXPECT_TRUE(wait_readable(event.descriptor(), 1h));
+  EXPECT_TRUE(wait_readable(event.descriptor(), Duration{0}));
+}
+
 }  // namespace
 }  // namespace hirosco

@@ -3,13 +3,9 @@
 #include "hirosco/utilities/os/installation.hpp"
 
 #include <dlfcn.h>
-#include <link.h>
-#include <sys/mman.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <fstream>
 #include <new>
 
 namespace hirosco {
@@ -36,18 +32,6 @@ namespace {
   return kind == ModuleKind::Subsystem ? "subsystem" : "simulated device";
 }
 
-/// A shared object ends with the table of its sections. The loader maps one that was cut short, and the process would die at
-/// the first access to what is missing.
-[[nodiscard]] bool is_whole(const fs::path& file) {
-  ElfW(Ehdr) header{};
-  std::ifstream stream{file, std::ios::binary};
-  stream.read(reinterpret_cast<char*>(&header), sizeof header);
-  if (!stream || !std::equal(header.e_ident, header.e_ident + SELFMAG, std::begin(ELFMAG))) return false;
-  std::error_code failed;
-  const auto octets = fs::file_size(file, failed);
-  return !failed && header.e_shoff > 0 && octets >= header.e_shoff + std::uint64_t{header.e_shnum} * header.e_shentsize;
-}
-
 /// Why this module is not taken; empty when it is.
 [[nodiscard]] std::string refuse(const Module& module, ModuleKind kind) {
   if (module.magic != module_magic) return "its hirosco_module() tells of no module";
@@ -61,20 +45,10 @@ namespace {
   return {};
 }
 
-/// A module takes somewhat more than its file.
-[[nodiscard]] bool has_room_for(const fs::path& file) {
-  std::error_code failed;
-  const std::size_t octets = 2 * fs::file_size(file, failed);
-  if (failed) return true;
-  void* const room = ::mmap(nullptr, octets, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (room == MAP_FAILED) return errno != ENOMEM;
-  ::munmap(room, octets);
-  return true;
-}
-
 }  // namespace
 
 fs::path this_program() {
+  // Empty where the system does not tell it there.
   std::error_code failed;
   return fs::read_symlink("/proc/self/exe", failed);
 }
@@ -123,12 +97,12 @@ std::expected<const Module*, std::string> load_module_of(std::string_view progra
 }
 
 std::expected<const Module*, std::string> load_module(const fs::path& file, ModuleKind kind) {
-  if (!is_whole(file)) return std::unexpected{std::string{"it is no shared object, or was cut short"}};
+  if (!os_detail::module_is_whole(file)) return std::unexpected{std::string{"it is no shared object, or was cut short"}};
   // Never unloaded: objects that it made may live as long as the process.
   void* const module = ::dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (module == nullptr) {
     // A computer without memory is told as such, whoever asks it for some; the loader does not tell it from other reasons.
-    if (!has_room_for(file)) throw std::bad_alloc{};
+    if (!os_detail::has_room_for_module(file)) throw std::bad_alloc{};
     return std::unexpected{std::string{::dlerror()}};
   }
   const auto entry = reinterpret_cast<decltype(&hirosco_module)>(::dlsym(module, "hirosco_module"));
