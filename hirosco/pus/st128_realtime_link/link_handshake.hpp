@@ -60,6 +60,7 @@ struct Offer {
   Duration period{};  ///< sampling time of the configuration
   descriptor::LinkTerms terms;
   std::uint32_t depth{0};  ///< of a consumer that wants every sample; else 0
+  bool wakes{false};  ///< of a consumer whose cycle a sample of this set starts
   std::vector<OfferedField> fields;
 };
 
@@ -69,6 +70,7 @@ struct Agreement {
   descriptor::ByteOrder byte_order{};
   LinkKind kind{};
   std::uint32_t depth{0};  ///< of kind Queued, the consumer's; else 0
+  bool wakes{false};  ///< the producer wakes the consumer after each sample, as that asked
   Duration producer_period{};
   Duration consumer_period{};
   std::vector<OfferedField>
@@ -79,17 +81,17 @@ struct Agreement {
   [[nodiscard]] LinkLayout layout(std::uint32_t epoch) const noexcept;
 };
 
-/// Why there is nothing common. `item`: 0 method, 1 byte order, 2 kind, 3 rate, 4 field, 5 depth.
+/// Why there is nothing common. `item`: 0 method, 1 byte order, 2 kind, 3 rate, 4 field, 5 depth, 6 wake.
 struct Refusal {
   std::uint8_t item{};
   std::string text;  ///< "field POSITION: consumer FLOAT[2], producer DOUBLE[2]"
 };
 
-/// Whether a mechanism of the platform carries links of this method and kind.
-using Carried = std::function<bool(LinkMethod, LinkKind)>;
+/// Whether a mechanism of the platform carries links of this method and kind, and, where `wakes`, its producer wakes a consumer.
+using Carried = std::function<bool(LinkMethod, LinkKind, bool wakes)>;
 
 /// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
-/// consumer has too; an integer ratio of the rates either way; every field the consumer requires present with the same
+/// consumer has too; an integer ratio of the rates either way, but for a consumer whose cycle starts with a sample; every field the consumer requires present with the same
 /// name, type and count (the producer may have more). Method and kind are chosen together, by what can be carried. A lent
 /// sample has the same fields in the same order on both sides, and the byte order of the machine. How many samples are kept for a
 /// consumer that wants every one of them it says itself. Pure.
@@ -131,6 +133,8 @@ struct AttachRequest {
   std::uint8_t link{};
   Role role{};
   std::uint32_t epoch{};
+  /// Of the handshake for which the memory was made, at most `epoch`: lower where an earlier link of the same lent set has it already.
+  std::uint32_t made{};
   std::string set;
   Agreement agreement;
   LinkRoute route{};  ///< its `link` is the one above

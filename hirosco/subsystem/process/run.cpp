@@ -18,6 +18,7 @@
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/subsystem/process/cycle_rest.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "hirosco/utilities/os/clock.hpp"
@@ -111,7 +112,7 @@ class Bell {
   std::unique_ptr<std::atomic<bool>> rung_{std::make_unique<std::atomic<bool>>(false)};
 };
 
-/// The cycle thread: sleeps to absolute times while a cycle is wanted, rests on a semaphore otherwise.
+/// The cycle thread: sleeps to absolute times, or until a sample starts its cycle, while a cycle is wanted, rests on a semaphore otherwise.
 class CycleThread {
  public:
   CycleThread(GenericSubsystem& subsystem, const Clock& clock, Bell& bell, bool realtime)
@@ -151,7 +152,7 @@ class CycleThread {
     const RealtimeScope no_heap;
     TimePoint planned = clock_.now() + subsystem_.cycle_demand().period;
     for (;;) {
-      sleep_until(planned);
+      rest_until(planned, subsystem_.cycle_wait(), clock_);
       const auto demand = subsystem_.cycle_demand();
       if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) break;
       planned = subsystem_.cycle_step(planned);
