@@ -344,8 +344,8 @@ std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& 
   if (auto refusal = check_depth(consumer, way->second, octets_of(producer.fields, way->second)))
     return std::unexpected{*std::move(refusal)};
   const std::uint32_t depth = way->second == LinkKind::Queued ? consumer.depth : 0;
-  return Agreement{way->first,      *order,          way->second,    depth,
-                   consumer.wakes,  producer.period, consumer.period, producer.fields};
+  return Agreement{way->first,      *order,          way->second,     depth,
+                   producer.period, consumer.period, producer.fields, consumer.wakes};
 }
 
 Result<std::size_t> write_offer(MutableOctets to, std::uint8_t link, const Offer& offer) {
@@ -471,10 +471,9 @@ Result<AttachRequest> read_attach_request(Octets data) {
   reader.enumerator(message.role, {Role::Producer, Role::Consumer});
   reader.number(message.epoch);
   reader.number(message.made);
-  reader.require(message.made <= message.epoch);
   reader.name(message.set);
   reader.agreement(message.agreement);
-  reader.require(message.made == message.epoch || message.agreement.kind == LinkKind::Loaned);
+  reader.require(message.made == 0 || (message.made < message.epoch && message.agreement.kind == LinkKind::Loaned));
   message.route.link = message.link;
   reader.text(message.route.producer);
   reader.text(message.route.consumer);

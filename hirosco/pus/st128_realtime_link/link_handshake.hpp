@@ -60,8 +60,8 @@ struct Offer {
   Duration period{};  ///< sampling time of the configuration
   descriptor::LinkTerms terms;
   std::uint32_t depth{0};  ///< of a consumer that wants every sample; else 0
-  bool wakes{false};  ///< of a consumer whose cycle a sample of this set starts
   std::vector<OfferedField> fields;
+  bool wakes{false};  ///< of a consumer whose cycle a sample of this set starts
 };
 
 /// What was agreed: the producer's whole layout in order, and the terms.
@@ -70,11 +70,11 @@ struct Agreement {
   descriptor::ByteOrder byte_order{};
   LinkKind kind{};
   std::uint32_t depth{0};  ///< of kind Queued, the consumer's; else 0
-  bool wakes{false};  ///< the producer wakes the consumer after each sample, as that asked
   Duration producer_period{};
   Duration consumer_period{};
   std::vector<OfferedField>
       fields;  ///< the producer's in their order: packed, or of a lent sample as in a C++ aggregate
+  bool wakes{false};  ///< the producer wakes the consumer after each sample, as that asked
   [[nodiscard]] std::uint32_t payload_octets() const noexcept;  ///< of a lent sample as a C++ aggregate has them
   [[nodiscard]] std::uint64_t layout_hash() const noexcept;  ///< FNV-1a 64 over fields, order, kind
   /// What supervisor and both ends make their parts of the link of.
@@ -133,11 +133,13 @@ struct AttachRequest {
   std::uint8_t link{};
   Role role{};
   std::uint32_t epoch{};
-  /// Of the handshake for which the memory was made, at most `epoch`: lower where an earlier link of the same lent set has it already.
-  std::uint32_t made{};
   std::string set;
   Agreement agreement;
   LinkRoute route{};  ///< its `link` is the one above
+  /// Of a set that is lent to somebody else already: epoch of the link for which the memory was made. 0: of this one.
+  std::uint32_t made{0};
+  /// What the header of the memory says.
+  [[nodiscard]] std::uint32_t header_epoch() const noexcept { return made != 0 ? made : epoch; }
 };
 /// TM[128,132]: of a link in memory the route is empty.
 struct Attached {

@@ -28,6 +28,7 @@ struct Side {
   int period_us{1000};
   std::vector<OfferedField> fields{{"POSITION", Type::Double, 2}};
   std::uint32_t depth{0};
+  bool wakes{false};
 };
 
 Offer offer_of(const Side& side) {
@@ -35,16 +36,17 @@ Offer offer_of(const Side& side) {
           std::chrono::microseconds{side.period_us},
           {side.methods, side.orders, side.kinds},
           side.depth,
-          side.fields};
+          side.fields,
+          side.wakes};
 }
 
 /// "shared_memory little latest 1000/1000", or the refusal as "item: text".
 std::string outcome(const Side& producer, const Side& consumer) {
-  const auto result = negotiate(offer_of(producer), offer_of(consumer), [](LinkMethod, LinkKind) { return true; });
+  const auto result = negotiate(offer_of(producer), offer_of(consumer), [](LinkMethod, LinkKind, bool) { return true; });
   if (!result) return std::to_string(result.error().item) + ": " + result.error().text;
   EXPECT_EQ(result->fields, producer.fields) << "the layout is the producer's";
   return std::string{to_text(result->method)} + " " + std::string{to_text(result->byte_order)} + " " +
-         std::string{to_text(result->kind)} + (result->depth == 0 ? "" : "*" + std::to_string(result->depth)) + " " +
+         std::string{to_text(result->kind)} + (result->depth == 0 ? "" : "*" + std::to_string(result->depth)) + (result->wakes ? "!" : "") + " " +
          std::to_string(result->producer_period / 1us) + "/" + std::to_string(result->consumer_period / 1us);
 }
 
@@ -163,6 +165,8 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
       {{.period_us = 3000, .fields = position},
        {.period_us = 2000, .fields = position_and_torque},
        "3: rate: consumer 2000000 ns, producer 3000000 ns"},
+      {{.period_us = 3000}, {.period_us = 2000, .wakes = true}, "shared_memory little latest! 3000/2000"},
+      {{.kinds = {queued}}, {.kinds = {queued}, .depth = 8, .wakes = true}, "shared_memory little queued*8! 1000/1000"},
   };
   static_assert(std::size(table) >= 25);
   for (const auto& row : table) EXPECT_EQ(outcome(row.producer, row.consumer), row.expected);
@@ -172,7 +176,7 @@ Agreement agreement() {
   return {shm, little, latest, 0, 1ms, 5ms, {{"POSITION", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}}};
 }
 Offer full_offer() {
-  return {"JOINTS", 1ms, {{shm, LinkMethod::Udp}, {big, little}, {queued, latest}}, 300, agreement().fields};
+  return {"JOINTS", 1ms, {{shm, LinkMethod::Udp}, {big, little}, {queued, latest}}, 300, agreement().fields, true};
 }
 
 TEST(LinkHandshake, ChoosesMethodAndKindTogetherByWhatIsCarried) {
@@ -182,13 +186,31 @@ TEST(LinkHandshake, ChoosesMethodAndKindTogetherByWhatIsCarried) {
     return result ? std::string{to_text(result->method)} + " " + std::string{to_text(result->kind)}
                   : result.error().text;
   };
-  EXPECT_EQ(way([](LinkMethod, LinkKind) { return true; }), "udp queued");
-  EXPECT_EQ(way([](LinkMethod method, LinkKind) { return method == shm; }), "shared_memory queued");
-  EXPECT_EQ(way([](LinkMethod, LinkKind kind) { return kind == latest; }), "udp latest");
-  EXPECT_EQ(way([](LinkMethod method, LinkKind kind) { return method == shm && kind == latest; }),
+  EXPECT_EQ(way([](LinkMethod, LinkKind, bool) { return true; }), "udp queued");
+  EXPECT_EQ(way([](LinkMethod method, LinkKind, bool) { return method == shm; }), "shared_memory queued");
+  EXPECT_EQ(way([](LinkMethod, LinkKind kind, bool) { return kind == latest; }), "udp latest");
+  EXPECT_EQ(way([](LinkMethod method, LinkKind kind, bool) { return method == shm && kind == latest; }),
             "shared_memory latest");
-  EXPECT_EQ(way([](LinkMethod, LinkKind) { return false; }),
+  EXPECT_EQ(way([](LinkMethod, LinkKind, bool) { return false; }),
             "method and kind: nothing here carries what both sides know, as udp with queued");
+}
+
+TEST(LinkHandshake, TakesAWayThatWakesForAConsumerThatWaitsForSamples) {
+  const Side producer{.methods = {LinkMethod::Udp, shm}};
+  Side consumer{.methods = {LinkMethod::Udp, shm}};
+  const auto way = [&](const Carried& carried) {
+    const auto result = negotiate(offer_of(producer), offer_of(consumer), carried);
+    return result ? std::string{to_text(result->method)} + (result->wakes ? " wakes" : "")
+                  : std::to_string(result.error().item) + ": " + result.error().text;
+  };
+  const Carried memory_wakes = [](LinkMethod method, LinkKind, bool wakes) { return !wakes || method == shm; };
+  EXPECT_EQ(way(memory_wakes), "udp");
+  consumer.wakes = true;
+  EXPECT_EQ(way(memory_wakes), "shared_memory wakes");
+  consumer.methods = {LinkMethod::Udp};
+  EXPECT_EQ(way(memory_wakes), "6: wake: a sample starts the consumer's cycle, and udp with latest wakes nobody");
+  EXPECT_EQ(way([](LinkMethod, LinkKind, bool) { return false; }),
+            "0: method and kind: nothing here carries what both sides know, as udp with latest");
 }
 
 TEST(LinkAgreement, HasThePayloadOfItsPackedFields) { EXPECT_EQ(agreement().payload_octets(), 17U); }
@@ -313,6 +335,7 @@ void expect_equal(const Offer& a, const Offer& b) {
   EXPECT_EQ(a.terms.byte_orders, b.terms.byte_orders);
   EXPECT_EQ(a.terms.kinds, b.terms.kinds);
   EXPECT_EQ(a.depth, b.depth);
+  EXPECT_EQ(a.wakes, b.wakes);
   EXPECT_EQ(a.fields, b.fields);
 }
 void expect_equal(const Agreement& a, const Agreement& b) {
@@ -320,10 +343,26 @@ void expect_equal(const Agreement& a, const Agreement& b) {
   EXPECT_EQ(a.byte_order, b.byte_order);
   EXPECT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.depth, b.depth);
+  EXPECT_EQ(a.wakes, b.wakes);
   EXPECT_EQ(a.producer_period, b.producer_period);
   EXPECT_EQ(a.consumer_period, b.consumer_period);
   EXPECT_EQ(a.fields, b.fields);
   EXPECT_EQ(a.layout_hash(), b.layout_hash());
+}
+
+TEST(LinkMessages, OnlyALentSetHasTheMemoryOfAnEarlierLink) {
+  const auto read = [](LinkKind kind, std::uint32_t epoch, std::uint32_t made) {
+    Agreement of = agreement();
+    of.kind = kind;
+    const AttachRequest request{.link = 1, .role = Role::Producer, .epoch = epoch, .set = "S", .agreement = of, .made = made};
+    return read_attach_request(written([&](MutableOctets to) { return write_attach_request(to, request); }));
+  };
+  EXPECT_EQ(read(loaned, 9, 0)->header_epoch(), 9U);
+  EXPECT_EQ(read(loaned, 9, 4)->header_epoch(), 4U);
+  EXPECT_EQ(read(loaned, 9, 4)->epoch, 9U);
+  EXPECT_FALSE(read(loaned, 9, 9)) << "earlier";
+  EXPECT_FALSE(read(loaned, 9, 10));
+  EXPECT_FALSE(read(latest, 9, 4)) << "a consumer of what is copied has memory of its own";
 }
 
 TEST(LinkMessages, AreReadAsTheyWereWritten) {
@@ -354,6 +393,7 @@ TEST(LinkMessages, AreReadAsTheyWereWritten) {
   Agreement of_a_queue = agreement();
   of_a_queue.kind = queued;
   of_a_queue.depth = 300;
+  of_a_queue.wakes = true;
   const LinkRoute route{.link = 8, .producer = "192.0.2.1:4000", .consumer = "::1", .key = 0xFEED'BEEF'0123'4567};
   const AttachRequest attach_request{8, Role::Consumer, 0xDEADBEEF, "JOINTS", of_a_queue, route};
   const Bytes attach_data = written([&](MutableOctets to) { return write_attach_request(to, attach_request); });
@@ -362,6 +402,7 @@ TEST(LinkMessages, AreReadAsTheyWereWritten) {
   EXPECT_EQ(read_attach_request(attach_data)->epoch, 0xDEADBEEF);
   expect_equal(read_attach_request(attach_data)->agreement, of_a_queue);
   EXPECT_EQ(read_attach_request(attach_data)->route, route);
+  EXPECT_EQ(read_attach_request(attach_data)->header_epoch(), 0xDEADBEEF);
 
   const Bytes attached_data = written([&](MutableOctets to) {
     return write_attached(to,

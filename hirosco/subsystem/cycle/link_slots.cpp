@@ -4,6 +4,7 @@
 #include "hirosco/subsystem/cycle/link_slots.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -85,6 +86,7 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   port_->status_ = LinkStatus::None;
   latency_mean_ns_ = 0.0;
   latency_max_ns_ = 0;
+  jitter_ns_ = 0.0;
 }
 
 void LinkInputSlot::detach(const AttachedLink* link) noexcept {
@@ -99,6 +101,7 @@ void LinkInputSlot::detach(const AttachedLink* link) noexcept {
 
 void LinkInputSlot::read(TimePoint now, bool counts) noexcept {
   newest_latency_.reset();
+  read_at_ = now;
   if (link_ == nullptr) {
     port_->valid_ = false;
     return;
@@ -148,6 +151,13 @@ void LinkInputSlot::take(const LinkSample& sample, MutableOctets into, TimePoint
   ++port_->received_;
   port_->lost_ += sample.lost;
   newest_latency_ = now - sample.sampled_at;
+  newest_at_ = sample.sampled_at;
+  // RFC 3550, 6.4.1: both ends have one clock, so that the difference of two transits is that of two latencies.
+  const Duration before = std::exchange(latency_before_, *newest_latency_);
+  if (port_->received_ > 0) {
+    const auto apart = std::abs(static_cast<double>((*newest_latency_ - before).count()));
+    jitter_ns_ += (apart - jitter_ns_) / 16;
+  }
   const std::uint32_t latency_ns = clamped_ns(*newest_latency_);
   latency_max_ns_ = std::max(latency_max_ns_, latency_ns);
   // The first samples weigh as much as they are, so that the mean needs no time to arrive.
@@ -161,6 +171,10 @@ void LinkInputSlot::tell(IncomingLink& page) const noexcept {
   page.lost.store(static_cast<std::uint32_t>(port_->lost_), relaxed);
   page.latency_mean_ns.store(static_cast<std::uint32_t>(latency_mean_ns_), relaxed);
   page.latency_max_ns.store(latency_max_ns_, relaxed);
+  page.jitter_ns.store(static_cast<std::uint32_t>(std::min(jitter_ns_, 4e9)), relaxed);
+  const auto age_us = (read_at_ - newest_at_) / std::chrono::microseconds{1};
+  page.age_us.store(port_->count_ == 0 ? 0 : static_cast<std::uint32_t>(std::clamp<std::int64_t>(age_us, 0, 4'000'000'000)),
+                    relaxed);
 }
 
 LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms,

@@ -86,6 +86,10 @@ class LinkInputSlot {
   std::uint32_t age_limit_;
   AttachedLink* link_{nullptr};
   std::optional<Duration> newest_latency_;
+  Duration latency_before_{};
+  double jitter_ns_{0.0};
+  TimePoint newest_at_{};
+  TimePoint read_at_{};
   double latency_mean_ns_{0.0};
   std::uint32_t latency_max_ns_{0};
 };

@@ -54,14 +54,14 @@ Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& requ
   if (!refusal_.empty()) return fail(ErrorCode::NotPermitted, refusal_.c_str());
   const bool producer = request.role == pus::st128::Role::Producer;
   const pus::st128::Agreement& agreement = request.agreement;
-  LinkLayout layout = agreement.layout(request.made);
+  LinkLayout layout = agreement.layout(request.header_epoch());
   layout.route = request.route;
   const LinkMechanism* mechanism = find_link_mechanism(platform_.links, agreement.method, agreement.kind);
   if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
   if (mechanism->in_memory() && !memory) return fail(ErrorCode::Malformed, "no memory beside the attach request");
   auto link = std::make_unique<AttachedLink>();
   link->id = request.link;
-  link->made = request.made;
+  link->made = request.header_epoch();
   link->agreement = agreement;
   link->order = agreement.byte_order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
   LinkEnd end{.link = nullptr, .role = request.role, .epoch = request.epoch, .slot = 0};

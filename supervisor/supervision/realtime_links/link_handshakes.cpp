@@ -181,10 +181,10 @@ void LinkHandshakes::attach(const Handshake& handshake, st128::Role role) {
       st128::write_attach_request(buffer, {.link = handshake.link->id,
                                            .role = role,
                                            .epoch = handshake.epoch,
-                                           .made = handshake.made,
                                            .set = producer ? handshake.link->provides : handshake.link->requires_,
                                            .agreement = handshake.agreement,
-                                           .route = handshake.route});
+                                           .route = handshake.route,
+                                           .made = handshake.made == handshake.epoch ? 0 : handshake.made});
   if (!octets) return;  // the same agreement came in a packet: it fits; else the stage's time limit ends it
   operator_.send_link_command(producer ? handshake.producer : handshake.consumer, st128::attach,
                               Octets{buffer}.first(*octets), handshake.shared);
