@@ -26,7 +26,7 @@ std::string filter_descriptor(std::string_view kind = "latest", std::string_view
     <Configuration name="C" id="1" sampling_us="10000" started_by="TICKS" least_us="1000">
       <HKService id="1" interval="1"><SampledOnce><ParamRef name="N"/></SampledOnce></HKService>
       <RealTimeLinkService><Requires name="TICKS" age="3" kind=")" +
-         std::string{kind} + "\"" + std::string{more} + R"("><Field name="NUMBER" type="UINT64"/></Requires>
+         std::string{kind} + "\"" + std::string{more} + R"(><Field name="NUMBER" type="UINT64"/></Requires>
     </RealTimeLinkService></Configuration></Subsystem>)";
 }
 
@@ -121,7 +121,7 @@ struct Started {
     step();
     ASSERT_TRUE(filter.ticks.valid());
     for (const State state : {State::SafeOperational, State::Operational}) {
-      const Sent sent = rig.set_state(state);
+      const auto sent = rig.set_state(state);
       for (int i = 0; i < 6; ++i) {
         rig.service();
         write();

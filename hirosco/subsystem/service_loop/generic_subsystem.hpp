@@ -202,8 +202,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   [[nodiscard]] bool cycle_rests() const noexcept;
   bool push(const CycleCommand& command);
   bool close_call(const pus::Request& request);
-  [[nodiscard]] Result<std::shared_ptr<LoanWriter>> lend(const LinkMechanism& mechanism, const MemoryHandle& memory,
-                                                         const LinkLayout& layout, std::uint16_t slot);
+  [[nodiscard]] std::shared_ptr<LoanWriter> lender_of(std::uint16_t slot, const LinkLayout& layout);
   bool withdraw(std::uint8_t link);
   [[nodiscard]] bool required_links_attached() const noexcept;
   /// The refusal of what the present state does not permit.

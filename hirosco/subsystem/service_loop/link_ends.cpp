@@ -74,7 +74,11 @@ Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& requ
     if ((agreement.kind == LinkKind::Loaned) != slot->terms().terms.lent())
       return fail(ErrorCode::Mismatch, "the agreement lends and the set is copied, or the reverse");
     if (agreement.kind == LinkKind::Loaned) {
-      HIROSCO_TRY_LET(link->lender, lend(*mechanism, memory, layout, static_cast<std::uint16_t>(slot - plan.outputs.begin())));
+      const auto index = static_cast<std::uint16_t>(slot - plan.outputs.begin());
+      if (request.made != 0) link->lender = lender_of(index, layout);
+      if (link->lender == nullptr) {
+        HIROSCO_TRY_LET(link->lender, mechanism->lend(platform_.memory, memory, layout));
+      }
     } else {
       HIROSCO_TRY_LET(link->writer, mechanism->produce(platform_.memory, memory, layout));
     }
@@ -104,16 +108,14 @@ Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& requ
   return route;
 }
 
-/// Who looks at a set that is lent already looks at the same memory.
-Result<std::shared_ptr<LoanWriter>> GenericSubsystem::lend(const LinkMechanism& mechanism, const MemoryHandle& memory,
-                                                           const LinkLayout& layout, std::uint16_t slot) {
+/// Who looks at a set that is lent already looks at the same memory. Null: no link has that one.
+std::shared_ptr<LoanWriter> GenericSubsystem::lender_of(std::uint16_t slot, const LinkLayout& layout) {
   for (const auto& [id, end] : link_ends_) {
     if (end.role != pus::st128::Role::Producer || end.slot != slot || end.link->made != layout.epoch) continue;
     if (layout.wakes) end.link->lender->start_waking();
     return end.link->lender;
   }
-  HIROSCO_TRY_LET(std::shared_ptr<LoanWriter> made, mechanism.lend(platform_.memory, memory, layout));
-  return made;
+  return nullptr;
 }
 
 /// The cycle may be writing: an end is told beside that where its samples go.

@@ -39,8 +39,8 @@ void LinkService::offer(Octets data, const pus::Request& request) {
                    .period = owner_.period(),
                    .terms = required->terms,
                    .depth = required->depth,
-                   .wakes = required->starts,
-                   .fields = {}};
+                   .fields = {},
+                   .wakes = required->starts};
   for (const auto& field : required->fields) own.fields.push_back({field.name, field.type, field.count});
   std::array<std::byte, max_packet_octets> buffer;
   const auto octets = st128::write_offer(buffer, asked->link, own);
