@@ -29,7 +29,8 @@ namespace {
 constexpr std::uint32_t payload_octets = 256;
 constexpr std::size_t max_samples = 100'000;
 constexpr Duration pace = std::chrono::microseconds{200};
-constexpr int producers_priority = 51, consumers_priority = 50;  // its cycle comes when the producer's is over (adr 0007)
+constexpr int producers_priority = 51,
+              consumers_priority = 50;  // its cycle comes when the producer's is over (adr 0007)
 
 /// What the consumer found, and the bare contestant's word.
 struct Shared {
@@ -139,8 +140,7 @@ int run(int repeats, int samples) {
     queued.repeats.push_back(by_link(*shared, LinkKind::Queued, samples));
   }
   std::printf("Blocking link, %u octets, two processes on one processor, %d samples, median of %d repeats, %s\n",
-              payload_octets, samples, repeats,
-              realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)");
+              payload_octets, samples, repeats, realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)");
   latest.print("us");
   queued.print("us");
   bare.print("us");

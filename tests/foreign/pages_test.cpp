@@ -328,8 +328,8 @@ TEST(InterfacePages, CodesAndWords) {
                                               .wakes = true});
   ASSERT_TRUE(octets);
   // link, method, order, kind, depth, wakes, two periods, number of fields, then name_length, name, type, count
-  const std::vector<unsigned char> as_written{9, 1, 2, 2, 1, 2, 1, 0, 0, 0,   0,   0, 0, 0, 3, 0, 0,
-                                              0, 0, 0, 0, 0, 4, 1, 2, 'A', 'B', 9, 0, 0, 0, 5};
+  const std::vector<unsigned char> as_written{9, 1, 2, 2, 1, 2, 1, 0, 0, 0,   0,   0, 0, 0, 3, 0,
+                                              0, 0, 0, 0, 0, 0, 4, 1, 2, 'A', 'B', 9, 0, 0, 0, 5};
   ASSERT_EQ(*octets, as_written.size());
   EXPECT_EQ(std::memcmp(buffer.data(), as_written.data(), *octets), 0);
   expect_octets("field", {{"name_length", {0, 1}}, {"name", {1, 0}}});

@@ -94,7 +94,8 @@ void MissionReader::check_cycles(const xml::Element& element, const Mode& mode) 
     return problems_.add(
         element, "E0324",
         fmt::format("the cycles of mode {} take {:.0f} % of a processor", in_quotes(mode.name), 100 * share),
-        "all cycles share one: the sum of budget_us / sampling_us is at most 1, or of budget_us / least_us where samples start the cycle");
+        "all cycles share one: the sum of budget_us / sampling_us is at most 1, or of budget_us / least_us where "
+        "samples start the cycle");
   for (const CycleResponse& cycle : cycle_responses(mission_, mode)) {
     if (cycle.longest) continue;
     problems_.add(

@@ -83,10 +83,10 @@ void SubsystemReader::read_budget(Attributes& attributes, Configuration& configu
       std::chrono::microseconds{attributes.integer_or<std::int64_t>("budget_us", 1, max_sampling_us, 0)};
   const Duration period = configuration.shortest();
   if (period == Duration{} || configuration.budget <= period) return;
-  problems_.add(*attributes.optional("budget_us"), "E0227",
-                fmt::format("a cycle of {} us every {} us is an overrun each time", configuration.budget / 1us,
-                            period / 1us),
-                "the budget is at most the sampling period, or the least distance of cycles that samples start");
+  problems_.add(
+      *attributes.optional("budget_us"), "E0227",
+      fmt::format("a cycle of {} us every {} us is an overrun each time", configuration.budget / 1us, period / 1us),
+      "the budget is at most the sampling period, or the least distance of cycles that samples start");
 }
 
 /// Of a cycle that samples start: by which set, and how soon one may follow another.
@@ -99,8 +99,8 @@ void SubsystemReader::read_start(Attributes& attributes, Configuration& configur
                          fmt::format("'{}' without '{}'", set == nullptr ? "least_us" : "started_by",
                                      set == nullptr ? "started_by" : "least_us"),
                          "both of a cycle that samples start: the set, and the shortest distance of two cycles");
-  configuration.least =
-      std::chrono::microseconds{attributes.required_integer<std::int64_t>("least_us", least_sampling_us, max_sampling_us)};
+  configuration.least = std::chrono::microseconds{
+      attributes.required_integer<std::int64_t>("least_us", least_sampling_us, max_sampling_us)};
   configuration.started_by = attributes.name("started_by");
   if (configuration.sampling == Duration{} || configuration.least <= configuration.sampling) return;
   problems_.add(*least, "E0250",

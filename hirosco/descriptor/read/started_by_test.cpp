@@ -23,15 +23,15 @@ Reading<Mission> with(const std::string& flywheel, const std::string& methods = 
   const std::string attribute = "methods=\"" + methods + "\"";
   return read_mission(
       data / "mission.xml",
-      overlay({{"mission.xml", changed("to=\"FLYWHEEL.PLATE_STATE\"", "to=\"FLYWHEEL.PLATE_STATE\" " + link)},
-               {"coronagraph.xml",
-                changed("methods=\"shared_memory\"", attribute,
-                        changed(R"(<Configuration name="COUPLED")", R"(<Configuration name="COUPLED" budget_us="300")",
-                                file("coronagraph.xml")))},
-               {"flywheel.xml",
-                changed("name=\"PLATE_STATE\" from", "name=\"PLATE_STATE\" " + attribute + " from",
-                        changed(R"(<Configuration name="COUPLED")", "<Configuration name=\"COUPLED\" " + flywheel,
-                                file("flywheel.xml")))}}));
+      overlay(
+          {{"mission.xml", changed("to=\"FLYWHEEL.PLATE_STATE\"", "to=\"FLYWHEEL.PLATE_STATE\" " + link)},
+           {"coronagraph.xml",
+            changed("methods=\"shared_memory\"", attribute,
+                    changed(R"(<Configuration name="COUPLED")", R"(<Configuration name="COUPLED" budget_us="300")",
+                            file("coronagraph.xml")))},
+           {"flywheel.xml", changed("name=\"PLATE_STATE\" from", "name=\"PLATE_STATE\" " + attribute + " from",
+                                    changed(R"(<Configuration name="COUPLED")",
+                                            "<Configuration name=\"COUPLED\" " + flywheel, file("flywheel.xml")))}}));
 }
 
 TEST(StartedBy, NamesARequiredSetAndTheShortestDistance) {

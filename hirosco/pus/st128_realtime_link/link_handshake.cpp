@@ -71,8 +71,7 @@ template <class E>
     for (const LinkKind of : producer.kinds)
       if (has(consumer.methods, by) && has(consumer.kinds, of) && carried(by, of, wakes)) return std::pair{by, of};
   if (wakes && carried(*method, *kind, false))
-    return refuse(Item::Wake, "wake: a sample starts the consumer's cycle, and " + std::string{to_text(*method)} + " with " +
-                                  std::string{to_text(*kind)} + " wakes nobody");
+    return refuse(Item::Wake, "wake: nothing here wakes a consumer by " + std::string{to_text(*method)});
   return refuse(Item::Method, "method and kind: nothing here carries what both sides know, as " +
                                   std::string{to_text(*method)} + " with " + std::string{to_text(*kind)});
 }
@@ -170,16 +169,14 @@ class Writer {
     choices(offer.terms.methods);
     choices(offer.terms.byte_orders);
     choices(offer.terms.kinds);
-    depth(offer.depth);
-    number(static_cast<std::uint8_t>(offer.wakes));
+    depth(offer.depth, offer.wakes);
     fields(offer.fields);
   }
   void agreement(const Agreement& agreement) {
     enumerator(agreement.method);
     enumerator(agreement.byte_order);
     enumerator(agreement.kind);
-    depth(agreement.depth);
-    number(static_cast<std::uint8_t>(agreement.wakes));
+    depth(agreement.depth, agreement.wakes);
     duration(agreement.producer_period);
     duration(agreement.consumer_period);
     fields(agreement.fields);
@@ -191,9 +188,9 @@ class Writer {
   }
 
  private:
-  void depth(std::uint32_t samples) {
+  void depth(std::uint32_t samples, bool wakes) {
     encodable_ = encodable_ && samples <= max_link_depth;
-    out_.put(static_cast<std::uint16_t>(samples));
+    out_.put(static_cast<std::uint16_t>(samples)).put(static_cast<std::uint8_t>(wakes));
   }
   void count(std::size_t size, std::size_t limit) {
     encodable_ = encodable_ && size <= limit;
@@ -237,14 +234,11 @@ class Reader {
     span = Duration{in_.get<std::int64_t>()};
     require(span.count() > 0);
   }
-  void depth(std::uint32_t& samples, bool queued) noexcept {
+  void depth(std::uint32_t& samples, bool queued, bool& wakes) noexcept {
     samples = in_.get<std::uint16_t>();
-    require(is_depth(samples, queued));
-  }
-  void flag(bool& value) noexcept {
-    const auto octet = in_.get<std::uint8_t>();
-    require(octet <= 1);
-    value = octet == 1;
+    const auto flag = in_.get<std::uint8_t>();
+    wakes = flag == 1;
+    require(is_depth(samples, queued) && flag <= 1);
   }
   template <class E>
   void choices(std::vector<E>& list) {
@@ -271,16 +265,14 @@ class Reader {
     choices(offer.terms.methods);
     choices(offer.terms.byte_orders);
     choices(offer.terms.kinds);
-    depth(offer.depth, std::ranges::find(offer.terms.kinds, LinkKind::Queued) != offer.terms.kinds.end());
-    flag(offer.wakes);
+    depth(offer.depth, std::ranges::find(offer.terms.kinds, LinkKind::Queued) != offer.terms.kinds.end(), offer.wakes);
     fields(offer.fields);
   }
   void agreement(Agreement& agreement) {
     enumerator(agreement.method);
     enumerator(agreement.byte_order);
     enumerator(agreement.kind);
-    depth(agreement.depth, agreement.kind == LinkKind::Queued);
-    flag(agreement.wakes);
+    depth(agreement.depth, agreement.kind == LinkKind::Queued, agreement.wakes);
     duration(agreement.producer_period);
     duration(agreement.consumer_period);
     fields(agreement.fields);
@@ -338,7 +330,8 @@ std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& 
   if (way->second == LinkKind::Loaned && *order != native)
     return refuse(Item::ByteOrder, "byte order: a lent sample has the machine's, not " + std::string{to_text(*order)});
   // Who waits for samples has the rate at which they come.
-  if (auto refusal = check_rates(producer.period, consumer.period); refusal && !consumer.wakes) return std::unexpected{*std::move(refusal)};
+  if (auto refusal = check_rates(producer.period, consumer.period); refusal && !consumer.wakes)
+    return std::unexpected{*std::move(refusal)};
   if (auto refusal = check_fields(producer.fields, consumer.fields, way->second))
     return std::unexpected{*std::move(refusal)};
   if (auto refusal = check_depth(consumer, way->second, octets_of(producer.fields, way->second)))

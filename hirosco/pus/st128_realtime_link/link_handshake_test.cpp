@@ -42,12 +42,14 @@ Offer offer_of(const Side& side) {
 
 /// "shared_memory little latest 1000/1000", or the refusal as "item: text".
 std::string outcome(const Side& producer, const Side& consumer) {
-  const auto result = negotiate(offer_of(producer), offer_of(consumer), [](LinkMethod, LinkKind, bool) { return true; });
+  const auto result =
+      negotiate(offer_of(producer), offer_of(consumer), [](LinkMethod, LinkKind, bool) { return true; });
   if (!result) return std::to_string(result.error().item) + ": " + result.error().text;
   EXPECT_EQ(result->fields, producer.fields) << "the layout is the producer's";
   return std::string{to_text(result->method)} + " " + std::string{to_text(result->byte_order)} + " " +
-         std::string{to_text(result->kind)} + (result->depth == 0 ? "" : "*" + std::to_string(result->depth)) + (result->wakes ? "!" : "") + " " +
-         std::to_string(result->producer_period / 1us) + "/" + std::to_string(result->consumer_period / 1us);
+         std::string{to_text(result->kind)} + (result->depth == 0 ? "" : "*" + std::to_string(result->depth)) +
+         (result->wakes ? "!" : "") + " " + std::to_string(result->producer_period / 1us) + "/" +
+         std::to_string(result->consumer_period / 1us);
 }
 
 struct Case {
@@ -195,24 +197,6 @@ TEST(LinkHandshake, ChoosesMethodAndKindTogetherByWhatIsCarried) {
             "method and kind: nothing here carries what both sides know, as udp with queued");
 }
 
-TEST(LinkHandshake, TakesAWayThatWakesForAConsumerThatWaitsForSamples) {
-  const Side producer{.methods = {LinkMethod::Udp, shm}};
-  Side consumer{.methods = {LinkMethod::Udp, shm}};
-  const auto way = [&](const Carried& carried) {
-    const auto result = negotiate(offer_of(producer), offer_of(consumer), carried);
-    return result ? std::string{to_text(result->method)} + (result->wakes ? " wakes" : "")
-                  : std::to_string(result.error().item) + ": " + result.error().text;
-  };
-  const Carried memory_wakes = [](LinkMethod method, LinkKind, bool wakes) { return !wakes || method == shm; };
-  EXPECT_EQ(way(memory_wakes), "udp");
-  consumer.wakes = true;
-  EXPECT_EQ(way(memory_wakes), "shared_memory wakes");
-  consumer.methods = {LinkMethod::Udp};
-  EXPECT_EQ(way(memory_wakes), "6: wake: a sample starts the consumer's cycle, and udp with latest wakes nobody");
-  EXPECT_EQ(way([](LinkMethod, LinkKind, bool) { return false; }),
-            "0: method and kind: nothing here carries what both sides know, as udp with latest");
-}
-
 TEST(LinkAgreement, HasThePayloadOfItsPackedFields) { EXPECT_EQ(agreement().payload_octets(), 17U); }
 
 TEST(LinkAgreement, HasAHashThatAllOfItsLayoutChanges) {
@@ -348,21 +332,6 @@ void expect_equal(const Agreement& a, const Agreement& b) {
   EXPECT_EQ(a.consumer_period, b.consumer_period);
   EXPECT_EQ(a.fields, b.fields);
   EXPECT_EQ(a.layout_hash(), b.layout_hash());
-}
-
-TEST(LinkMessages, OnlyALentSetHasTheMemoryOfAnEarlierLink) {
-  const auto read = [](LinkKind kind, std::uint32_t epoch, std::uint32_t made) {
-    Agreement of = agreement();
-    of.kind = kind;
-    const AttachRequest request{.link = 1, .role = Role::Producer, .epoch = epoch, .set = "S", .agreement = of, .made = made};
-    return read_attach_request(written([&](MutableOctets to) { return write_attach_request(to, request); }));
-  };
-  EXPECT_EQ(read(loaned, 9, 0)->header_epoch(), 9U);
-  EXPECT_EQ(read(loaned, 9, 4)->header_epoch(), 4U);
-  EXPECT_EQ(read(loaned, 9, 4)->epoch, 9U);
-  EXPECT_FALSE(read(loaned, 9, 9)) << "earlier";
-  EXPECT_FALSE(read(loaned, 9, 10));
-  EXPECT_FALSE(read(latest, 9, 4)) << "a consumer of what is copied has memory of its own";
 }
 
 TEST(LinkMessages, AreReadAsTheyWereWritten) {

@@ -230,7 +230,8 @@ TEST(BlockingLinks, OfAProducerThatFloodsShortenNoLimitThatIsCountedInCycles) {
   EXPECT_GE(cycles, 9 * supervisor_silence_cycles(longest)) << "it did flood";
   started.rig.service();
   const auto reports = started.rig.reports(3, 25).size();
-  EXPECT_LE(reports, static_cast<std::size_t>(silent_for / longest) + 1) << "one in each longest wait, not in each cycle";
+  EXPECT_LE(reports, static_cast<std::size_t>(silent_for / longest) + 1)
+      << "one in each longest wait, not in each cycle";
 }
 
 TEST(BlockingLinks, OfAProducerThatStopsLeaveTheCycleToTheClockAndGetOldInWaits) {

@@ -308,7 +308,8 @@ TEST_F(LentImages, OfASetWhoseMemoryTheProducerHasNotAreRefused) {
   camera_rig->settle();
   const auto agreement = agree(other_rig, 2);
   EXPECT_EQ(attach(*camera_rig,
-                   {.link = 2, .role = Role::Producer, .epoch = 3, .set = "IMAGE", .agreement = agreement, .made = 1}, shared),
+                   {.link = 2, .role = Role::Producer, .epoch = 3, .set = "IMAGE", .agreement = agreement, .made = 1},
+                   shared),
             "1 4:010700")
       << "sealed: nobody becomes its producer again";
 }

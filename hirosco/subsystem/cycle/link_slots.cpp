@@ -173,8 +173,8 @@ void LinkInputSlot::tell(IncomingLink& page) const noexcept {
   page.latency_max_ns.store(latency_max_ns_, relaxed);
   page.jitter_ns.store(static_cast<std::uint32_t>(std::min(jitter_ns_, 4e9)), relaxed);
   const auto age_us = (read_at_ - newest_at_) / std::chrono::microseconds{1};
-  page.age_us.store(port_->count_ == 0 ? 0 : static_cast<std::uint32_t>(std::clamp<std::int64_t>(age_us, 0, 4'000'000'000)),
-                    relaxed);
+  page.age_us.store(
+      port_->count_ == 0 ? 0 : static_cast<std::uint32_t>(std::clamp<std::int64_t>(age_us, 0, 4'000'000'000)), relaxed);
 }
 
 LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms,

@@ -27,7 +27,8 @@ struct AttachedLink {
   pus::st128::Agreement agreement;
   std::unique_ptr<LinkWriter> writer;    ///< producer
   std::unique_ptr<LinkReader> reader;    ///< consumer
-  std::shared_ptr<LoanWriter> lender;    ///< instead of `writer`, where samples are lent: all links into one memory have it
+  std::shared_ptr<LoanWriter>
+      lender;    ///< instead of `writer`, where samples are lent: all links into one memory have it
   std::uint32_t made{0};                 ///< of the memory, as long as a link holds it
   std::unique_ptr<LoanReader> borrower;  ///< instead of `reader`
   LinkStatus told{LinkStatus::None};     ///< producer that lends: as consumers know it

@@ -75,9 +75,9 @@ void MemberWords::tell(OctetWriter& words) noexcept {
       .put(vital_.lost_reports.load(memory_order_relaxed))
       .put(vital_.inhibited_at_cycle.load(memory_order_relaxed));
   // Those of the configuration in force stand first: what comes behind the last link that is there says nothing.
-  const auto last = std::ranges::find_if(vital_.incoming.rbegin(), vital_.incoming.rend(), [](const IncomingLink& link) {
-    return link.link.load(memory_order_relaxed) != 0;
-  });
+  const auto last =
+      std::ranges::find_if(vital_.incoming.rbegin(), vital_.incoming.rend(),
+                           [](const IncomingLink& link) { return link.link.load(memory_order_relaxed) != 0; });
   const auto used = static_cast<std::size_t>(vital_.incoming.rend() - last);
   words.put(static_cast<std::uint32_t>(used));
   for (const IncomingLink& link : std::span{vital_.incoming}.first(used))

@@ -53,8 +53,9 @@ TEST_F(PageWords, EachWordOfTheVitalPageArrivesInItsPlace) {
   vital.inhibited_at_cycle = 14;
   std::uint32_t number = 15;
   for (IncomingLink& link : vital.incoming)
-    for (auto* word : {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns,
-                             &link.age_us}) *word = number++;
+    for (auto* word :
+         {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns, &link.age_us})
+      *word = number++;
   carry();
   EXPECT_EQ(vital_copy.state.load(), static_cast<std::uint32_t>(State::Operational));
   EXPECT_EQ(vital_copy.configuration.load(), 2u);
@@ -74,8 +75,8 @@ TEST_F(PageWords, EachWordOfTheVitalPageArrivesInItsPlace) {
   EXPECT_EQ(vital_copy.inhibited_at_cycle, 14u);
   number = 15;
   for (IncomingLink& link : vital_copy.incoming)
-    for (const auto* word : {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns,
-                             &link.age_us})
+    for (const auto* word :
+         {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns, &link.age_us})
       EXPECT_EQ(*word, number++);
 }
 

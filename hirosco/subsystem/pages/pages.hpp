@@ -38,7 +38,8 @@ struct IncomingLink {
   std::atomic<std::uint32_t> latency_max_ns{0};
   /// Mean distance of the latencies of two samples in a row, as RFC 3550 (6.4.1) reckons the jitter of arrivals.
   std::atomic<std::uint32_t> jitter_ns{0};
-  std::atomic<std::uint32_t> age_us{0};  ///< from the instant that the newest sample is of to the start of the newest cycle
+  std::atomic<std::uint32_t> age_us{
+      0};  ///< from the instant that the newest sample is of to the start of the newest cycle
 };
 /// As many as a configuration can require, by itself and from its subsystem together: of each link of a consumer is told.
 inline constexpr std::size_t told_incoming_links = 64;

@@ -54,8 +54,8 @@ TEST(VitalPage, AsItIsMadeTellsOfNothing) {
        {&page.period_ns, &page.cycles, &page.service_steps, &page.overruns, &page.missed, &page.inhibited_at_cycle})
     EXPECT_EQ(number->load(), 0u);
   for (const IncomingLink& link : page.incoming)
-    for (const auto* number : {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns,
-                               &link.age_us})
+    for (const auto* number :
+         {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns, &link.age_us})
       EXPECT_EQ(number->load(), 0u);
 }
 

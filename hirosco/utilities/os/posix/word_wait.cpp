@@ -14,8 +14,7 @@ namespace hirosco {
 WordWait wait_on_word(const std::uint32_t& word, std::uint32_t seen, TimePoint deadline) noexcept {
   const SystemClock clock{Duration{0}};
   for (;;) {
-    const auto found =
-        std::atomic_ref<std::uint32_t>{const_cast<std::uint32_t&>(word)}.load(std::memory_order_acquire);
+    const auto found = std::atomic_ref<std::uint32_t>{const_cast<std::uint32_t&>(word)}.load(std::memory_order_acquire);
     if (found != seen) return WordWait::Changed;
     const TimePoint now = clock.now();
     if (now >= deadline) return WordWait::TimedOut;
