@@ -345,6 +345,17 @@ void Spacecraft::step_cycle(Member& member) {
   for (std::size_t i = 0; i < devices_.size(); ++i)
     if (devices_[i].described->subsystem == member.described->subsystem.name) step_device(i);
   if (watch_) watch_(member.described->subsystem.name, clock_.now());
+  wake_who_waits();
+}
+
+/// Whose cycle starts with a sample is woken when its producer's cycle is over, by the word that wakes a process; in the order of
+/// members, so that one seed stays one flight.
+void Spacecraft::wake_who_waits() {
+  for (const auto& member : members_) {
+    if (!member->engine || !member->cycling) continue;
+    const CycleWait wait = member->engine->cycle_wait();
+    if (wait.arrived()) member->cycle_wake = std::min(member->cycle_wake, std::max(wait.earliest, clock_.now()));
+  }
 }
 
 void Spacecraft::step_service(Member& member) {

@@ -112,6 +112,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   [[nodiscard]] bool may_cycle(const Member& member) const noexcept;
   void step_device(std::size_t device);
   void step_cycle(Member& member);
+  void wake_who_waits();
   void step_service(Member& member);
   [[nodiscard]] Member* find(std::string_view name) noexcept;
   [[nodiscard]] const Member* find(std::string_view name) const noexcept;

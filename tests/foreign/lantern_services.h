@@ -190,8 +190,8 @@ static void offer(const request* of, uint8_t link) {
   uint8_t data[128] = {link};
   size_t at = 1 + put_string(data + 1, "PENDULUM");
   put64(data + at, period_ns);
-  memcpy(data + at + 8, (uint8_t[]){1, 1, 1, 1, 1, 1, 0, 0}, 8);
-  at += 16;
+  memcpy(data + at + 8, (uint8_t[]){1, 1, 1, 1, 1, 1, 0, 0, 0}, 9);
+  at += 17;
   at += put_fields(data + at, pendulum_, 2);
   done(of, 3);
   report(128, 129, of->source, data, at);
@@ -202,13 +202,13 @@ static void negotiate(const request* of, uint8_t link, const terms* theirs) {
   if (!theirs->has_memory) return refuse_link(of, link, 0, "method: producer shared_memory");
   if (!theirs->has_latest) return refuse_link(of, link, 2, "kind: producer latest");
   if (!theirs->has_little) return refuse_link(of, link, 1, "byte order: producer little");
-  if (period_ns % theirs->period && theirs->period % period_ns) return refuse_link(of, link, 3, "rate: producer 10 ms");
+  if (!theirs->wakes && period_ns % theirs->period && theirs->period % period_ns) return refuse_link(of, link, 3, "rate: producer 10 ms");
   for (int i = 0; i < theirs->field_count; ++i)
     if (!has_field(light_, 2, &theirs->fields[i])) return refuse_link(of, link, 4, "field: none such");
-  uint8_t data[128] = {link, 1, 1, 1, 0, 0};
-  put64(data + 6, period_ns);
-  put64(data + 14, (uint64_t)theirs->period);
-  size_t at = 22 + put_fields(data + 22, light_, 2);
+  uint8_t data[128] = {link, 1, 1, 1, 0, 0, (uint8_t)theirs->wakes};
+  put64(data + 7, period_ns);
+  put64(data + 15, (uint64_t)theirs->period);
+  size_t at = 23 + put_fields(data + 23, light_, 2);
   done(of, 3);
   report(128, 130, of->source, data, at);
   done(of, 7);
@@ -259,7 +259,7 @@ static void links(const request* of, uint8_t subtype, const uint8_t* data, size_
   agreement agreed;
   uint8_t link = get8(&in), role = 0;
   if (subtype < 1 || subtype > 4) return fail(of, 2, 7, (uint8_t[]){128, subtype}, 2);
-  if (subtype == 3) role = get8(&in), agreed.epoch = get32(&in), agreed.link = link;
+  if (subtype == 3) role = get8(&in), agreed.epoch = get32(&in), agreed.link = link, in.good = in.good && get32(&in) == 0;  // lent sets it has none
   if (subtype != 4) get_string(&in, set);
   if (subtype == 2) in.good = in.good && get8(&in) == link, get_offer(&in, &theirs);
   if (subtype == 3) in.good = in.good && (role == 1 || role == 2), get_agreement(&in, &agreed), pass_place(&in), pass_place(&in), get32(&in), get32(&in);

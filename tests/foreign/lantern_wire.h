@@ -3,12 +3,14 @@
 // Octets and words of lantern.c: packets, the handshake, shared memory. Written from docs/interfaces alone.
 #pragma once
 #include <fcntl.h>
+#include <linux/futex.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -77,7 +79,7 @@ static void stamp(volatile uint8_t* vital, uint16_t destination, uint8_t service
     uint32_t used;
     uint16_t sequence, spare;
     struct type types[64];
-  }* block = (struct block*)(uintptr_t)(vital + 224);
+  }* block = (struct block*)(uintptr_t)(vital + 1632);
   *sequence = block->sequence;
   *count = 0;
   block->sequence = (uint16_t)((block->sequence + 1) & 0x3FFF);
@@ -100,12 +102,13 @@ typedef struct {
 enum { most_fields = 32 };
 typedef struct {
   int64_t period;
-  int has_memory, has_latest, has_little, field_count;
+  int has_memory, has_latest, has_little, wakes, field_count;
   field fields[most_fields];
 } terms;
 typedef struct {
   uint8_t link, method, order, kind;
   uint16_t depth;
+  int wakes;
   uint32_t epoch;
   int64_t producer_ns, consumer_ns;
   int field_count;
@@ -204,6 +207,11 @@ static uint16_t get_depth(reader* in, int queued) {
   in->good = in->good && (queued ? depth >= 2 && depth <= 4096 : depth == 0);
   return depth;
 }
+static int get_flag(reader* in) {
+  uint8_t flag = get8(in);
+  in->good = in->good && flag <= 1;
+  return flag;
+}
 static void get_offer(reader* in, terms* to) {
   char set[256];
   int queued = 0;
@@ -213,6 +221,7 @@ static void get_offer(reader* in, terms* to) {
   to->has_little = get_choices(in, 2, 1, &queued);
   to->has_latest = get_choices(in, 3, 1, &queued);
   get_depth(in, queued);
+  to->wakes = get_flag(in);
   to->field_count = get_fields(in, to->fields);
 }
 static void get_agreement(reader* in, agreement* to) {
@@ -221,6 +230,7 @@ static void get_agreement(reader* in, agreement* to) {
   to->method = get8(in), to->order = get8(in), to->kind = get8(in);
   in->good = in->good && to->method >= 1 && to->method <= 6 && to->order >= 1 && to->order <= 2 && to->kind >= 1 && to->kind <= 3;
   to->depth = get_depth(in, to->kind == 2);
+  to->wakes = get_flag(in);
   to->producer_ns = get_period(in), to->consumer_ns = get_period(in);
   size_t begin = in->at;
   to->field_count = get_fields(in, to->fields);
@@ -302,6 +312,8 @@ static void write_sample(link_end* end, const uint8_t* payload, int64_t at, uint
     store64(end->words + 96 + i, word);
   }
   store64(end->words + 64, end->sequence += 2);
+  // The low half of the sequence, as the page says; this computer has it first.
+  if (end->agreed.wakes) syscall(SYS_futex, end->words + 64, FUTEX_WAKE, 0x7FFFFFFF, NULL, NULL, 0);
 }
 static void tell_status(link_end* end, uint32_t status) {
   atomic_store_explicit((_Atomic uint64_t*)(uintptr_t)(end->words + 64), end->sequence + 1, memory_order_relaxed);

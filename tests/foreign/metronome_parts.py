@@ -239,15 +239,21 @@ class Reader:
             raise ValueError("a depth")
         return depth
 
+    def flag(self):
+        flag = self.take("B")
+        if flag > 1:
+            raise ValueError("a flag")
+        return flag
+
     def offer(self):
         offer = {"set": self.string(), "period": self.period(), "methods": self.numbers(6), "orders": self.numbers(2), "kinds": self.numbers(3)}
-        return offer | {"depth": self.depth(2 in offer["kinds"]), "fields": self.fields()}
+        return offer | {"depth": self.depth(2 in offer["kinds"]), "wakes": self.flag(), "fields": self.fields()}
 
     def agreement(self):
         agreed = dict(zip(("method", "order", "kind"), self.take("BBB")))
         if not (1 <= agreed["method"] <= 6 and 1 <= agreed["order"] <= 2 and 1 <= agreed["kind"] <= 3):
             raise ValueError("terms")
-        agreed |= {"depth": self.depth(agreed["kind"] == 2), "producer_ns": self.period(), "consumer_ns": self.period()}
+        agreed |= {"depth": self.depth(agreed["kind"] == 2), "wakes": self.flag(), "producer_ns": self.period(), "consumer_ns": self.period()}
         begin = self.at
         agreed["fields"] = self.fields()
         agreed["payload"] = sum(struct.calcsize("=" + FORMS[type_]) * count for _, type_, count in agreed["fields"])
@@ -268,9 +274,9 @@ class Reader:
                 raise ValueError("another link")
             asked["offer"] = self.offer()
         elif subtype == 3:
-            asked |= {"role": self.take("B"), "epoch": self.take("I"), "set": self.string(), "agreement": self.agreement(),
+            asked |= {"role": self.take("B"), "epoch": self.take("I"), "made": self.take("I"), "set": self.string(), "agreement": self.agreement(),
                       "producer_at": self.place(), "consumer_at": self.place(), "key": self.take("Q")}
-            if asked["role"] not in (1, 2):
+            if asked["role"] not in (1, 2) or asked["made"] and (asked["agreement"]["kind"] != 3 or asked["made"] >= asked["epoch"]):
                 raise ValueError("a role")
         if self.at != len(self.octets):
             raise ValueError("octets too many")

@@ -62,17 +62,17 @@ class Services:
     def count(self, destination, service, subtype):
         """Counts of the next report, from the block in the page and written on there."""
         block = self.vital.mapping
-        used, sequence = struct.unpack_from("=IH", block, 224)
-        struct.pack_into("=H", block, 228, sequence + 1 & 0x3FFF)
+        used, sequence = struct.unpack_from("=IH", block, 1632)
+        struct.pack_into("=H", block, 1636, sequence + 1 & 0x3FFF)
         for i in range(used):
-            at = 232 + 8 * i
+            at = 1640 + 8 * i
             if struct.unpack_from("=HBB", block, at) == (destination, service, subtype):
                 (number,) = struct.unpack_from("=H", block, at + 4)
                 struct.pack_into("=H", block, at + 4, number + 1 & 0xFFFF)
                 return sequence, number
         if used < 64:
-            struct.pack_into("=HBBHH", block, 232 + 8 * used, destination, service, subtype, 1, 0)
-            struct.pack_into("=I", block, 224, used + 1)
+            struct.pack_into("=HBBHH", block, 1640 + 8 * used, destination, service, subtype, 1, 0)
+            struct.pack_into("=I", block, 1632, used + 1)
         return sequence, 0
 
     def report(self, service, subtype, destination, data):
@@ -451,6 +451,8 @@ class Services:
         order = next((each for each in orders if each in offer["orders"]), None)
         if order is None:
             self.refuse_link(request, link, 1, f"byte order: consumer {offer['orders']}, producer {orders}")
+        if offer["wakes"]:
+            self.refuse_link(request, link, 6, "wake: this producer wakes nobody")
         if self.period_ns % offer["period"] and offer["period"] % self.period_ns:
             self.refuse_link(request, link, 3, f"rate: consumer {offer['period']} ns, producer {self.period_ns} ns")
         own = [(value.name, value.type, value.count) for value in values]
@@ -461,7 +463,7 @@ class Services:
         if depth * sum(value.octets for value in values) > 64 << 20:
             self.refuse_link(request, link, 5, "depth")
         fields = bytes([len(own)]) + b"".join(bytes([len(name)]) + name.encode() + struct.pack(">BI", type_, count) for name, type_, count in own)
-        return struct.pack(">BBBHqq", 1, order, kind, depth, self.period_ns, offer["period"]) + fields
+        return struct.pack(">BBBHBqq", 1, order, kind, depth, 0, self.period_ns, offer["period"]) + fields
 
     def attach(self, request, asked, set_, memory):
         link, agreement = asked["link"], asked["agreement"]
@@ -471,7 +473,7 @@ class Services:
             self.refuse_link(request, link, 0, "no memory beside the attach request")
         if link in self.links and asked["epoch"] <= self.links[link].epoch:
             self.refuse_link(request, link, 0, "the link is attached already")
-        if agreement["fields"] != [(value.name, value.type, value.count) for value in set_[2]] or agreement["method"] != 1 or agreement["kind"] == 3:
+        if agreement["fields"] != [(value.name, value.type, value.count) for value in set_[2]] or agreement["method"] != 1 or agreement["kind"] == 3 or agreement["wakes"]:
             self.refuse_link(request, link, 0, "the agreement is not of this set")
         try:
             made = Producer(link, asked["set"], asked["epoch"], agreement, memory)

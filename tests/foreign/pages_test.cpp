@@ -93,13 +93,14 @@ TEST(InterfacePages, VitalPage) {
                                HIROSCO_PLACE(VitalPage, inhibited_at_cycle),
                                HIROSCO_PLACE(VitalPage, incoming),
                                HIROSCO_PLACE(VitalPage, counters)});
-  EXPECT_EQ(sizeof(VitalPage), 744U) << "a field more: the page of docs/interfaces lacks it";
+  EXPECT_EQ(sizeof(VitalPage), 2152U) << "a field more: the page of docs/interfaces lacks it";
   EXPECT_EQ(table("octets: vital page")[0].at(4).substr(0, 10), "0x48495243");
   EXPECT_EQ(page_magic, 0x48495243U);
   EXPECT_EQ(number_of(table("octets: vital page")[1].at(4)), page_version);
   expect_octets("incoming link",
                 {HIROSCO_PLACE(IncomingLink, link), HIROSCO_PLACE(IncomingLink, lost),
-                 HIROSCO_PLACE(IncomingLink, latency_mean_ns), HIROSCO_PLACE(IncomingLink, latency_max_ns)});
+                 HIROSCO_PLACE(IncomingLink, latency_mean_ns), HIROSCO_PLACE(IncomingLink, latency_max_ns),
+                 HIROSCO_PLACE(IncomingLink, jitter_ns), HIROSCO_PLACE(IncomingLink, age_us)});
   using pus::CounterBlock;
   expect_octets("counter block", {HIROSCO_PLACE(CounterBlock, used), HIROSCO_PLACE(CounterBlock, sequence),
                                   HIROSCO_PLACE(CounterBlock, spare), HIROSCO_PLACE(CounterBlock, types)});
@@ -323,11 +324,12 @@ TEST(InterfacePages, CodesAndWords) {
                                               .depth = 0x102,
                                               .producer_period = Duration{3},
                                               .consumer_period = Duration{4},
-                                              .fields = {{"AB", Type::Float, 5}}});
+                                              .fields = {{"AB", Type::Float, 5}},
+                                              .wakes = true});
   ASSERT_TRUE(octets);
-  // link, method, order, kind, depth, two periods, number of fields, then name_length, name, type, count
-  const std::vector<unsigned char> as_written{9, 1, 2, 2, 1, 2, 0, 0, 0,   0,   0, 0, 0, 3, 0, 0,
-                                              0, 0, 0, 0, 0, 4, 1, 2, 'A', 'B', 9, 0, 0, 0, 5};
+  // link, method, order, kind, depth, wakes, two periods, number of fields, then name_length, name, type, count
+  const std::vector<unsigned char> as_written{9, 1, 2, 2, 1, 2, 1, 0, 0, 0,   0,   0, 0, 0, 3, 0,
+                                              0, 0, 0, 0, 0, 0, 4, 1, 2, 'A', 'B', 9, 0, 0, 0, 5};
   ASSERT_EQ(*octets, as_written.size());
   EXPECT_EQ(std::memcmp(buffer.data(), as_written.data(), *octets), 0);
   expect_octets("field", {{"name_length", {0, 1}}, {"name", {1, 0}}});
@@ -482,9 +484,7 @@ TEST(InterfacePages, Streams) {
   OctetWriter writer{room};
   member.tell(writer);
   for (const Row& row : table("octets: vital words"))
-    if (row.at(2) == "missed") {
-      EXPECT_EQ(room[number_of(row[0]) + 7], std::byte{0xAB});
-    }
+    EXPECT_TRUE(row.at(2) != "missed" || room[number_of(row[0]) + 7] == std::byte{0xAB});
 }
 
 /// Last: no table stands there that nobody compares.

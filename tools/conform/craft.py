@@ -18,7 +18,7 @@ import time
 import wire
 from described import STATES
 
-VITAL_OCTETS, PERMIT_OCTETS, MAGIC, VERSION = 744, 56, 0x48495243, 4
+VITAL_OCTETS, PERMIT_OCTETS, MAGIC, VERSION = 2152, 56, 0x48495243, 5
 SEAL_SEAL, SEAL_SHRINK, SEAL_GROW, SEAL_FUTURE_WRITE = 1, 2, 4, 16
 ADD_SEALS, GET_SEALS = 1033, 1034
 BEAT_S, SOURCE, FENCE = 0.01, 1, 0x3FF0
@@ -120,7 +120,7 @@ class Craft:
             page.set32(4, version)
         for at in (8, 12, 24, 28):
             self.vital.set32(at, 0xFFFF0000)
-        self.vital.mapping[224:224 + len(counters)] = counters
+        self.vital.mapping[1632:1632 + len(counters)] = counters
         self.permit.set32(8, 1000)
         self.permit.set32(24, 1)
         fcntl.fcntl(permit, ADD_SEALS, SEAL_FUTURE_WRITE)

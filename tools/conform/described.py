@@ -158,6 +158,7 @@ class Configuration:
         self.descriptor, self.id, self.element = descriptor, number_, element
         self.period_s = int(element.get("sampling_us")) / 1e6
         self.self_test = element.get("self_test") == "required"
+        self.started_by = element.get("started_by")
         self.provides = [each for each in element.iter("Provides")]
         self.requires = [each for each in element.iter("Requires")]
         self.devices = [each for each in element.findall("Device")]

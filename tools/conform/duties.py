@@ -119,12 +119,13 @@ class Flown:
         methods, orders, kinds = self.configuration.terms(required)
         depth = int(required.get("depth", 64)) if kinds[0] == 2 else 0
         agreed = {"method": 1, "order": orders[0], "kind": kinds[0], "depth": depth, "producer_ns": self.configuration.period_ns,
-                  "consumer_ns": self.configuration.period_ns, "fields": self.configuration.fields(required)} | changes
+                  "consumer_ns": self.configuration.period_ns, "fields": self.configuration.fields(required),
+                  "wakes": int(self.configuration.started_by == required.get("name"))} | changes
         return wire.Agreement(**agreed)
 
     def attach_data(self, link, role, epoch, name, agreement):
         import struct
-        return struct.pack(">BBI", link, role, epoch) + wire.string(name) + agreement.octets() + IN_MEMORY
+        return struct.pack(">BBII", link, role, epoch, 0) + wire.string(name) + agreement.octets() + IN_MEMORY
 
     def feed(self, required):
         """Makes the link of a required set; the producer is ours."""

@@ -8,7 +8,7 @@ import struct
 import wire
 from craft import POST, SAFE, SEAL_FUTURE_WRITE, SEAL_SEAL, Passed, checked, expect, sealed_memory
 from duties import LATE_S, STANDS_IN_MEMORY, Flown, duty
-from partners import FAULT, STOPPING, VALID, PlayedConsumer, PlayedProducer
+from partners import FAULT, STOPPING, VALID, PlayedConsumer, PlayedProducer, Sleeper
 
 REFUSED = (4, 0x0107, b"\0")
 
@@ -56,7 +56,7 @@ def offer(judged):
             methods, orders, kinds = flown.configuration.terms(each)
             depth = int(each.get("depth", 64)) if 2 in kinds else 0
             wanted = b"\7" + wire.Offer(name, flown.configuration.period_ns, methods, orders, kinds, depth,
-                                        flown.configuration.fields(each)).octets()
+                                        flown.configuration.fields(each), int(flown.configuration.started_by == name)).octets()
             expect(told == [wanted], f"the offer of {name} is {[d.hex() for d in told]}, declared is {wanted.hex()}")
 
 
@@ -105,6 +105,11 @@ def agree(judged):
             ask("a byte order that it has not", 1, orders=[3 - orders[0]]) if len(orders) == 1 else None
             ask("a kind that it has not", 2, kinds=[kind for kind in (1, 3) if kind not in kinds][:1], depth=0)
             ask("periods of 3 to 2", 3, period_ns=configuration.period_ns * 3 // 2)
+            told = negotiate(craft, 9, name, consumer_offer(flown, each, wakes=1, period_ns=configuration.period_ns * 3 // 2))
+            if any(r.kind == (128, 130) for r in told.others):
+                expect(agreed(flown, each, 9, wakes=1).wakes == 1, "who asked to be woken has an agreement that does not say so")
+            else:
+                refusal(told, 9, 6, f"{name}: a consumer that is to be woken")
             ask("a field that it has not", 4, fields=[wire.LinkField("NOBODY_HAS_IT", 10)])
             ask("a field of another type", 4, fields=[dataclasses.replace(fields[0], type=2 if fields[0].type != 2 else 1)])
             ask("a field of another count", 4, fields=[dataclasses.replace(fields[0], count=fields[0].count + 1)])
@@ -114,9 +119,9 @@ def agree(judged):
             craft.ask(128, 2, data).expect_refused(2, 8, b"", f"TC[128,2] {words}")
 
 
-def produce(flown, each, link):
+def produce(flown, each, link, **changes):
     """Attached as producer; the consumer is ours."""
-    agreement = agreed(flown, each, link)
+    agreement = agreed(flown, each, link, **changes)
     flown.link_epoch += 1
     consumer = PlayedConsumer(agreement, flown.link_epoch)
     flown.craft.partners.append(consumer)
@@ -156,6 +161,28 @@ def producing(judged):
             expect(all(status == VALID for _, status, _, _, _ in samples), f"status {sorted({s[1] for s in samples})} of a well producer")
 
 
+@duty("link.wakes")
+def wakes(judged):
+    asked = 0
+    for each in provided(judged):
+        with judged.craft() as craft:
+            flown = Flown(judged, craft).configure()
+            told = negotiate(craft, 9, each.get("name"), consumer_offer(flown, each, wakes=1))
+            if not any(r.kind == (128, 130) for r in told.others):
+                continue                # refused as link.agree wants it
+            asked += 1
+            consumer = produce(flown, each, 9, wakes=1)
+            flown.feed_all()
+            craft.go(SAFE)
+            period = flown.configuration.period_s
+            expect(craft.until(lambda: consumer.samples, 20 * period + 1), "no sample comes")
+            sleeper = Sleeper(consumer, 5 + 20 * period)
+            craft.until(lambda: not sleeper.is_alive(), 60 + 300 * period)
+            expect(sleeper.woken == Sleeper.times, f"{each.get('name')}: slept through a sample after {sleeper.woken} that woke")
+    if asked == 0:
+        raise Passed("it wakes nobody, and says so")
+
+
 @duty("link.consume")
 def consume(judged):
     needed = required(judged)
@@ -165,7 +192,7 @@ def consume(judged):
             craft.set_state(SAFE).expect([1, 4], "Safe-Operational without its links", [(4, 14, b"")])
         flown.feed_all()
         craft.wait(0.1)
-        told = [craft.vital.u32(96 + 16 * i) for i in range(min(8, len(needed)))]
+        told = [craft.vital.u32(96 + 24 * i) for i in range(min(64, len(needed)))]
         expect(told == [flown.links[each.get("name")].link for each in needed][:8], f"links in the page: {told}")
         craft.go(SAFE)
         craft.wait(0.3)

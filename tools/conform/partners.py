@@ -3,9 +3,13 @@
 """Who a subsystem meets besides its supervisor: devices (docs/interfaces/devices.md) and the other ends of its real-time links
 (docs/interfaces/memory.md)."""
 import contextlib
+import ctypes
 import os
+import platform
 import socket
 import struct
+import sys
+import threading
 import time
 
 import wire
@@ -263,3 +267,31 @@ class PlayedConsumer:
         if self.memory is not None:
             os.close(self.memory)
             self.memory = None
+
+
+class Sleeper(threading.Thread):
+    """A consumer that sleeps on the word of its link (docs/interfaces/memory.md, Waking), until so many samples have woken it or one has not."""
+    times = 10
+
+    def __init__(self, consumer, patience_s):
+        super().__init__(daemon=True)
+        self.woken, self.patience_s, self.size = 0, patience_s, consumer.size
+        self.system = ctypes.CDLL(None, use_errno=True)
+        self.system.mmap.restype = ctypes.c_void_p
+        self.system.mmap.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int, ctypes.c_int, ctypes.c_int, ctypes.c_long]
+        self.base = self.system.mmap(None, self.size, 1, 1, consumer.memory, 0)             # PROT_READ, MAP_SHARED
+        self.word = self.base + 64 + (0 if sys.byteorder == "little" else 4)
+        self.start()
+
+    def run(self):
+        number = {"x86_64": 202, "aarch64": 98, "riscv64": 98}[platform.machine()]          # SYS_futex
+        patience = (ctypes.c_long * 2)(int(self.patience_s), 0)
+        while self.woken < self.times:
+            seen = ctypes.c_uint32.from_address(self.word).value
+            ended = self.system.syscall(ctypes.c_long(number), ctypes.c_void_p(self.word), ctypes.c_int(0), ctypes.c_uint32(seen), patience,
+                                        None, ctypes.c_int(0))                              # FUTEX_WAIT
+            if ended == 0 and ctypes.c_uint32.from_address(self.word).value != seen:
+                self.woken += 1
+            elif ended != 0 and ctypes.get_errno() == 110:                                  # ETIMEDOUT
+                break
+        self.system.munmap(ctypes.c_void_p(self.base), ctypes.c_size_t(self.size))

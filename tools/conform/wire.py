@@ -146,10 +146,11 @@ class Offer:
     kinds: list
     depth: int
     fields: list
+    wakes: int = 0
 
     def octets(self):
         lists = b"".join(bytes([len(each), *each]) for each in (self.methods, self.orders, self.kinds))
-        return string(self.set) + struct.pack(">q", self.period_ns) + lists + struct.pack(">H", self.depth) + fields_octets(self.fields)
+        return string(self.set) + struct.pack(">q", self.period_ns) + lists + struct.pack(">HB", self.depth, self.wakes) + fields_octets(self.fields)
 
 
 @dataclasses.dataclass
@@ -161,9 +162,10 @@ class Agreement:
     producer_ns: int
     consumer_ns: int
     fields: list
+    wakes: int = 0
 
     def octets(self):
-        return struct.pack(">BBBHqq", self.method, self.order, self.kind, self.depth, self.producer_ns,
+        return struct.pack(">BBBHBqq", self.method, self.order, self.kind, self.depth, self.wakes, self.producer_ns,
                            self.consumer_ns) + fields_octets(self.fields)
 
     def payload(self):
@@ -222,10 +224,13 @@ class Reader:
         return [LinkField(self.string(), *self.take("BI")) for _ in range(self.take("B"))]
 
     def offer(self):
-        return Offer(self.string(), self.take("q"), self.numbers(), self.numbers(), self.numbers(), self.take("H"), self.fields())
+        head = self.string(), self.take("q"), self.numbers(), self.numbers(), self.numbers()
+        depth, wakes = self.take("HB")
+        return Offer(*head, depth, self.fields(), wakes)
 
     def agreement(self):
-        return Agreement(*self.take("BBBHqq"), self.fields())
+        method, order, kind, depth, wakes, producer_ns, consumer_ns = self.take("BBBHBqq")
+        return Agreement(method, order, kind, depth, producer_ns, consumer_ns, self.fields(), wakes)
 
     def end(self):
         if self.at != len(self.octets):

@@ -18,7 +18,7 @@ namespace hirosco {
 /// What the two sides of a stream hold of each other besides messages: few words, of which the newest alone count.
 class StreamWords {
  public:
-  static constexpr std::size_t max_octets = 512;
+  static constexpr std::size_t max_octets = 2048;
   virtual ~StreamWords() = default;
   [[nodiscard]] virtual StreamFrameKind told_kind() const noexcept = 0;
   [[nodiscard]] virtual StreamFrameKind heard_kind() const noexcept = 0;

@@ -10,6 +10,7 @@
 #include <new>
 #include <utility>
 
+#include "hirosco/data_transfer/link/detail/link_words.hpp"
 #include "hirosco/utilities/processor.hpp"
 
 // A sequence lock over words of 8 octets, for one writer and any number of readers. Invariants:
@@ -22,7 +23,9 @@
 //     then loads are those of this sample or newer ones, never older ones. With 3: equal even sequences, whole sample.
 //  5. A reader tries `attempts` times, then answers with its own last copy. It never waits for a writer, which may be
 //     preempted by it, stopped or dead.
-//  6. A reader believes nothing it has read but as data: no length, index or address comes from the memory.
+//  6. A consumer that sleeps waits for another sequence: it may be woken in the middle of a sample, finds the odd one then, and the
+//     even one after it is another one again. No sample is slept through.
+//  7. A reader believes nothing it has read but as data: no length, index or address comes from the memory.
 namespace hirosco {
 namespace {
 
@@ -99,6 +102,7 @@ Result<LatestWriter> LatestWriter::make(MutableOctets memory, const LinkLayout& 
   LatestWriter writer;
   writer.memory_ = start;
   writer.payload_octets_ = layout.payload_octets;
+  writer.wakes_ = layout.wakes;
   return writer;
 }
 
@@ -124,6 +128,7 @@ void LatestWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status
     publish(link_memory::payload_at + whole, value);
   }
   publish(link_memory::sequence_at, ++sequence_);
+  if (wakes_) detail::LinkWords::wake(memory_, link_memory::sequence_at);
 }
 
 void LatestWriter::set_status(LinkStatus status) noexcept {
@@ -194,6 +199,10 @@ bool LatestReader::copy(std::uint64_t sequence, LinkSample& sample, MutableOctet
   return load(memory_, link_memory::sequence_at, std::memory_order_relaxed) == sequence;
 }
 
+const std::uint32_t* LatestReader::arrival_word() const noexcept {
+  return detail::LinkWords::low_half(memory_, link_memory::sequence_at);
+}
+
 LinkSample LatestReader::last(MutableOctets payload) const noexcept {
   LinkSample sample = last_;
   sample.flow = last_.count == 0 ? Flow::None : Flow::Old;
@@ -230,7 +239,7 @@ class LatestView final : public LinkView {
 }  // namespace
 
 Result<MemoryHandle> LatestLink::establish(MemoryProvider& provider, const LinkLayout& layout) const {
-  if (!plausible(layout) || layout.payload_octets > max_payload_)
+  if (!plausible(layout) || layout.payload_octets > max_payload_ || (layout.wakes && !wakes()))
     return fail(ErrorCode::Mismatch, "link payload size", layout.payload_octets);
   return provider.create("hirosco-link", link_memory_octets(layout.payload_octets));
 }

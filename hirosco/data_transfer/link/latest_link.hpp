@@ -35,7 +35,7 @@ inline constexpr std::size_t payload_at = 96;        ///< filled up with zero to
 /// Of a link's memory. Empty: no link's memory.  Realtime: wait-free. Thread: any.
 [[nodiscard]] std::optional<LinkGlance> glance_at_link(Octets memory) noexcept;
 
-/// The producer's end.  Realtime: wait-free, no system call. Thread: one.
+/// The producer's end.  Realtime: wait-free, no system call unless the layout says that it wakes. Thread: one.
 class LatestWriter final : public LinkWriter {
  public:
   LatestWriter() = default;
@@ -50,6 +50,7 @@ class LatestWriter final : public LinkWriter {
  private:
   std::byte* memory_{nullptr};
   std::uint32_t payload_octets_{0};
+  bool wakes_{false};
   std::uint64_t count_{0};
   std::uint64_t sequence_{0};
   Mapping mapping_;
@@ -64,6 +65,7 @@ class LatestReader final : public LinkReader {
   [[nodiscard]] static Result<LatestReader> make(Octets memory, const LinkLayout& layout) noexcept;
   /// Of the newest sample; Old when the writer was caught in the middle too often, too.
   LinkSample read(MutableOctets payload) noexcept override;
+  [[nodiscard]] const std::uint32_t* arrival_word() const noexcept override;
   [[nodiscard]] explicit operator bool() const noexcept { return memory_ != nullptr; }
   /// The mapping of the memory lives as long as this end.
   void keep(Mapping mapping) noexcept { mapping_ = std::move(mapping); }
@@ -91,6 +93,8 @@ class LatestLink final : public LinkMechanism {
       : method_{method}, max_payload_{max_payload} {}
   [[nodiscard]] LinkMethod method() const noexcept override { return method_; }
   [[nodiscard]] LinkKind kind() const noexcept override { return LinkKind::Latest; }
+  /// What stands in for another method does no more than that one.
+  [[nodiscard]] bool wakes() const noexcept override { return method_ == LinkMethod::SharedMemory; }
   [[nodiscard]] std::uint32_t max_payload() const noexcept override { return max_payload_; }
   [[nodiscard]] Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const override;
   [[nodiscard]] Result<std::unique_ptr<LinkWriter>> produce(MemoryProvider& provider, const MemoryHandle& shared,

@@ -67,6 +67,8 @@ struct LinkLayout {
   Duration period{};  ///< of the producer
   std::uint32_t depth{0};  ///< of kind Queued: samples kept, min_link_depth .. max_link_depth; of others 0
   LinkRoute route{};  ///< of a link that is not memory
+  /// The consumer's cycle starts with a sample: its producer wakes it after each (adr 0094).
+  bool wakes{false};
 };
 
 /// What a read found. `flow` None: never a sample yet. Old: the same sample as last time, or none could be had whole and
@@ -116,9 +118,13 @@ class LinkReader {
   virtual LinkSample read(MutableOctets payload) noexcept = 0;
   /// What the producer has to know to reach this end; of a link in memory nothing.  Realtime: allocates. Thread: any.
   [[nodiscard]] virtual LinkRoute route() const { return {}; }
+  /// Where a consumer that sleeps sees that a sample was published (utilities/os/word_wait.hpp), as long as this end lives: another
+  /// word than before, of which nothing else is to be believed. It may change without a sample, too. Null: of a mechanism that wakes
+  /// nobody.  Realtime: wait-free.
+  [[nodiscard]] virtual const std::uint32_t* arrival_word() const noexcept { return nullptr; }
 };
 
-/// The producer's end of a link that lends: a sample is made where its consumers look at it, and nothing is copied.
+/// The producer's end of a link that lends: a sample is made where its consumers look at it, all of them, and nothing is copied.
 /// Realtime: wait-free; never waits for a consumer. Thread: one.
 class LoanWriter {
  public:
@@ -130,6 +136,8 @@ class LoanWriter {
   virtual void publish(TimePoint sampled_at, LinkStatus status) noexcept = 0;
   /// Changes the status without a new sample (stopping, fault).
   virtual void set_status(LinkStatus status) noexcept = 0;
+  /// One of its consumers sleeps until a sample comes: from now on each is told with a wake. Thread: any one, beside the others.
+  virtual void start_waking() noexcept = 0;
 };
 
 /// A consumer's end of a link that lends. It keeps no copy: the producer makes the place that is looked at anew when it
@@ -145,6 +153,8 @@ class LoanReader {
   [[nodiscard]] virtual Octets look() noexcept = 0;
   /// Whether all that was read since look() is of that one sample.
   [[nodiscard]] virtual bool whole() const noexcept = 0;
+  /// As LinkReader has it.
+  [[nodiscard]] virtual const std::uint32_t* arrival_word() const noexcept { return nullptr; }
 };
 
 /// A look at a link from outside: no sample is read, no reader's count moves.  Realtime: wait-free. Thread: one.
@@ -165,6 +175,8 @@ class LinkMechanism {
   /// Both ends and the supervisor share memory. False: they share addresses (LinkRoute), there is nothing to hand over and
   /// nothing to look at, and the producer is told afterwards where its consumer is.
   [[nodiscard]] virtual bool in_memory() const noexcept { return true; }
+  /// Its producer can wake a consumer that sleeps, where the layout says so.
+  [[nodiscard]] virtual bool wakes() const noexcept { return false; }
   /// Octets of one sample, at most.
   [[nodiscard]] virtual std::uint32_t max_payload() const noexcept { return max_payload_octets(kind()); }
   /// Mismatch: the layout is impossible.

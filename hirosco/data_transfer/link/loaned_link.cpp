@@ -97,6 +97,7 @@ Result<LoanedWriter> LoanedWriter::make(MutableOctets memory, const LinkLayout& 
   LoanedWriter writer;
   writer.memory_ = start;
   writer.payload_octets_ = layout.payload_octets;
+  if (layout.wakes) writer.start_waking();
   return writer;
 }
 
@@ -123,6 +124,7 @@ void LoanedWriter::publish(TimePoint sampled_at, LinkStatus status) noexcept {
   set(stamp_at(count_), std::bit_cast<Loans::Word>(std::int64_t{sampled_at.time_since_epoch().count()}));
   set(sequence_at(count_), 2 * count_);
   set(newest_at, count_);
+  if (wakes_.load(std::memory_order_relaxed)) Loans::wake(memory_, newest_at);
 }
 
 void LoanedWriter::set_status(LinkStatus status) noexcept {
@@ -195,6 +197,10 @@ bool LoanedReader::whole() const noexcept {
   return Loans::load(memory_, sequence_at(looked_at_), std::memory_order_relaxed) == 2 * looked_at_;
 }
 
+const std::uint32_t* LoanedReader::arrival_word() const noexcept {
+  return Loans::low_half(memory_, loaned_memory::newest_at);
+}
+
 // --- the mechanism ---------------------------------------------------------------------------------------------------
 
 namespace {
@@ -250,6 +256,7 @@ class CopyingReader final : public LinkReader {
     if (again.flow == Flow::Old) std::memcpy(payload.data(), kept_.data(), payload.size());
     return again;
   }
+  [[nodiscard]] const std::uint32_t* arrival_word() const noexcept override { return borrower_.arrival_word(); }
 
  private:
   LoanedReader borrower_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -39,7 +40,7 @@ inline constexpr std::size_t payload_at = 128 + places * 64;  ///< of the first 
 /// Of the memory of a link that lends. Empty: it is none.  Realtime: wait-free. Thread: any.
 [[nodiscard]] std::optional<LinkGlance> glance_at_loans(Octets memory) noexcept;
 
-/// The producer's end.  Realtime: wait-free, no system call. Thread: one.
+/// The producer's end.  Realtime: wait-free, no system call unless the layout says that it wakes. Thread: one.
 class LoanedWriter final : public LoanWriter {
  public:
   /// Writes the header. Mismatch: memory too small or not 64-octet aligned.
@@ -47,8 +48,16 @@ class LoanedWriter final : public LoanWriter {
   [[nodiscard]] MutableOctets lend() noexcept override;
   void publish(TimePoint sampled_at, LinkStatus status) noexcept override;
   void set_status(LinkStatus status) noexcept override;
+  void start_waking() noexcept override { wakes_.store(true, std::memory_order_relaxed); }
   /// The mapping of the memory lives as long as this end.
   void keep(Mapping mapping) noexcept { mapping_ = std::move(mapping); }
+  LoanedWriter(LoanedWriter&& other) noexcept
+      : memory_{other.memory_},
+        payload_octets_{other.payload_octets_},
+        count_{other.count_},
+        lent_{other.lent_},
+        wakes_{other.wakes_.load(std::memory_order_relaxed)},
+        mapping_{std::move(other.mapping_)} {}
 
  private:
   LoanedWriter() = default;
@@ -57,6 +66,7 @@ class LoanedWriter final : public LoanWriter {
   std::uint32_t payload_octets_{0};
   std::uint64_t count_{0};
   bool lent_{false};
+  std::atomic<bool> wakes_{false};
   Mapping mapping_;
 };
 
@@ -69,6 +79,7 @@ class LoanedReader final : public LoanReader {
   LinkSample newest() noexcept override;
   [[nodiscard]] Octets look() noexcept override;
   [[nodiscard]] bool whole() const noexcept override;
+  [[nodiscard]] const std::uint32_t* arrival_word() const noexcept override;
   /// The mapping of the memory lives as long as this end.
   void keep(Mapping mapping) noexcept { mapping_ = std::move(mapping); }
 
@@ -88,6 +99,7 @@ class LoanedLink final : public LinkMechanism {
  public:
   [[nodiscard]] LinkMethod method() const noexcept override { return LinkMethod::SharedMemory; }
   [[nodiscard]] LinkKind kind() const noexcept override { return LinkKind::Loaned; }
+  [[nodiscard]] bool wakes() const noexcept override { return true; }
   [[nodiscard]] Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const override;
   [[nodiscard]] Result<std::unique_ptr<LinkWriter>> produce(MemoryProvider& provider, const MemoryHandle& shared,
                                                             const LinkLayout& layout) const override;

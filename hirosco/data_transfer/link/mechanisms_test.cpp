@@ -8,6 +8,7 @@
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
 #include "hirosco/data_transfer/link/testing/loan_conformance.hpp"
 #include "hirosco/data_transfer/link/testing/queue_conformance.hpp"
+#include "hirosco/data_transfer/link/testing/wake_conformance.hpp"
 
 namespace hirosco::testing {
 namespace {
@@ -36,6 +37,13 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, LoanConformance, ::testing::ValuesIn(mechanism
 INSTANTIATE_TEST_SUITE_P(BuiltIn, QueueConformance, ::testing::ValuesIn(mechanisms_of(LinkKind::Queued)),
                          mechanism_name);
 
+INSTANTIATE_TEST_SUITE_P(BuiltIn, WakeConformance,
+                         ::testing::ValuesIn(standard_link_mechanisms().begin(), standard_link_mechanisms().end()),
+                         mechanism_name);
+INSTANTIATE_TEST_SUITE_P(Local, WakeConformance,
+                         ::testing::ValuesIn(local_link_mechanisms().begin(), local_link_mechanisms().end()),
+                         mechanism_name);
+
 TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
   for (const LinkMechanism* mechanism : standard_link_mechanisms())
     EXPECT_EQ(find_link_mechanism(standard_link_mechanisms(), mechanism->method(), mechanism->kind()), mechanism);
@@ -45,6 +53,7 @@ TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
     ASSERT_NE(twin, nullptr) << "a simulated craft carries what a real one does";
     EXPECT_TRUE(twin->in_memory());
     EXPECT_EQ(twin->max_payload(), mechanism->max_payload());
+    EXPECT_EQ(twin->wakes(), mechanism->wakes());
   }
   EXPECT_EQ(find_link_mechanism({}, LinkMethod::SharedMemory, LinkKind::Latest), nullptr);
 }

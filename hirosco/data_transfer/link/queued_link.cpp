@@ -86,6 +86,7 @@ Result<QueuedWriter> QueuedWriter::make(MutableOctets memory, const LinkLayout& 
   writer.memory_ = start;
   writer.payload_octets_ = layout.payload_octets;
   writer.depth_ = layout.depth;
+  writer.wakes_ = layout.wakes;
   return writer;
 }
 
@@ -111,6 +112,7 @@ void QueuedWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status
   set(status_at, Queue::coded(status));
   set(stamp_at, Queue::stamp_of(sampled_at));
   set(newest_at, count_);
+  if (wakes_) Queue::wake(memory_, newest_at);
 }
 
 void QueuedWriter::set_status(LinkStatus status) noexcept {
@@ -200,6 +202,10 @@ LinkSample QueuedReader::accept(LinkSample sample, MutableOctets payload) noexce
   sample.lost = sample.count - told_ - 1;
   passed_ = told_ = sample.count;
   return last_ = sample;
+}
+
+const std::uint32_t* QueuedReader::arrival_word() const noexcept {
+  return Queue::low_half(memory_, queued_memory::newest_at);
 }
 
 /// What the producer says of itself now, ahead of the samples that wait.

@@ -44,7 +44,7 @@ inline constexpr std::size_t payload_in_slot = 24;  ///< filled up with zero to 
 /// Of the memory of a link that queues. Empty: it is none.  Realtime: wait-free. Thread: any.
 [[nodiscard]] std::optional<LinkGlance> glance_at_queue(Octets memory) noexcept;
 
-/// The producer's end.  Realtime: wait-free, no system call. Thread: one.
+/// The producer's end.  Realtime: wait-free, no system call unless the layout says that it wakes. Thread: one.
 class QueuedWriter final : public LinkWriter {
  public:
   /// Writes the header. Mismatch: memory too small or not 64-octet aligned, or the layout is impossible.
@@ -60,6 +60,7 @@ class QueuedWriter final : public LinkWriter {
   std::byte* memory_{nullptr};
   std::uint32_t payload_octets_{0};
   std::uint32_t depth_{0};
+  bool wakes_{false};
   std::uint64_t count_{0};
   Mapping mapping_;
 };
@@ -72,6 +73,7 @@ class QueuedReader final : public LinkReader {
   [[nodiscard]] static Result<QueuedReader> make(Octets memory, const LinkLayout& layout);
   /// Old when the producer overtook it too often, and when the count went back, too.
   LinkSample read(MutableOctets payload) noexcept override;
+  [[nodiscard]] const std::uint32_t* arrival_word() const noexcept override;
   /// The mapping of the memory lives as long as this end.
   void keep(Mapping mapping) noexcept { mapping_ = std::move(mapping); }
 
@@ -99,6 +101,7 @@ class QueuedLink final : public LinkMechanism {
  public:
   [[nodiscard]] LinkMethod method() const noexcept override { return LinkMethod::SharedMemory; }
   [[nodiscard]] LinkKind kind() const noexcept override { return LinkKind::Queued; }
+  [[nodiscard]] bool wakes() const noexcept override { return true; }
   [[nodiscard]] Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const override;
   [[nodiscard]] Result<std::unique_ptr<LinkWriter>> produce(MemoryProvider& provider, const MemoryHandle& shared,
                                                             const LinkLayout& layout) const override;

@@ -100,7 +100,8 @@ int octets_of(std::size_t datagrams, const LinkLayout& layout) noexcept {
 }
 
 bool possible(const LinkLayout& layout) noexcept {
-  return layout.payload_octets >= 1 && layout.payload_octets <= max_datagram_payload_octets && layout.depth == 0;
+  return layout.payload_octets >= 1 && layout.payload_octets <= max_datagram_payload_octets && layout.depth == 0 &&
+         !layout.wakes;
 }
 
 // --- the producer's end ----------------------------------------------------------------------------------------------

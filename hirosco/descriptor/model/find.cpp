@@ -78,9 +78,9 @@ double cycle_share(const Mission& mission, const Mode& mode) noexcept {
   for (const CommissionStep& step : mode.commission) {
     const auto* member = mission.find_subsystem(step.subsystem);
     const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
-    if (configuration != nullptr && configuration->sampling.count() > 0)
+    if (configuration != nullptr && configuration->shortest().count() > 0)
       share +=
-          static_cast<double>(configuration->budget.count()) / static_cast<double>(configuration->sampling.count());
+          static_cast<double>(configuration->budget.count()) / static_cast<double>(configuration->shortest().count());
   }
   return share;
 }

@@ -18,14 +18,14 @@ namespace {
     const Configuration& other = *cycle.configuration;
     if (&other == &of || other.priority < of.priority) continue;
     const bool in_turn = other.priority == of.priority && of.priority > 0;  // without a priority nobody keeps a turn
-    sum += in_turn ? other.budget : begun_within(span, other.sampling) * other.budget;
+    sum += in_turn ? other.budget : begun_within(span, other.shortest()) * other.budget;
   }
   return sum;
 }
 
 [[nodiscard]] std::optional<Duration> longest(const std::vector<CycleResponse>& cycles, const Configuration& of) {
   // Each round is longer by a budget at least, so that it ends at the period at the latest.
-  for (Duration span = std::max(of.budget, Duration{1}); span <= of.sampling;) {
+  for (Duration span = std::max(of.budget, Duration{1}); span <= of.shortest();) {
     const Duration needed = demand(cycles, of, span);
     if (needed == span) return span;
     span = needed;
@@ -40,7 +40,7 @@ std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& m
   for (const CommissionStep& step : mode.commission) {
     const auto* member = mission.find_subsystem(step.subsystem);
     const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
-    if (configuration != nullptr && configuration->sampling > Duration{})
+    if (configuration != nullptr && configuration->shortest() > Duration{})
       cycles.push_back({member->subsystem.name, configuration, std::nullopt});
   }
   std::ranges::stable_sort(cycles, std::ranges::greater{},

@@ -214,6 +214,7 @@ struct Requires {
   LinkTerms terms;
   std::uint32_t depth{0};  ///< of a queued set: samples that it may fall behind without a loss; of others 0
   bool required{true};  ///< false: useful, but Safe-Operational does not wait for it
+  bool starts{false};  ///< its samples start the cycle of the configuration (Configuration::started_by)
   CycleLimit age{3, 40};
   MissingPolicy missing{MissingPolicy::Inhibit};
   std::vector<Field> fields;
@@ -306,7 +307,9 @@ struct Configuration {
   std::string name;
   std::uint8_t id{};
   int priority{0};  ///< SCHED_FIFO priority of the cycle; 0 = ordinary scheduling
-  Duration sampling{};  ///< period of the cycle
+  Duration sampling{};  ///< period of the cycle; of one that samples start, the longest that it waits for one
+  std::string started_by;  ///< required set whose samples start the cycle; empty: the clock alone does (adr 0094)
+  Duration least{};  ///< of one that samples start: from the start of a cycle to that of the next
   Duration budget{};  ///< most processor time that a cycle takes; 0 = not declared
   double power_w{0};  ///< most that it draws from Safe- to Post-Operational; 0 = not accounted
   CycleLimit overruns{3, 20};  ///< overruns in a row until the overrun event
@@ -322,6 +325,8 @@ struct Configuration {
   };
   std::vector<Initial> initial;  ///< parameter values that this configuration sets
   Location at;
+  /// The shortest distance of two cycles: what they cost a processor at most is reckoned with it.
+  [[nodiscard]] Duration shortest() const noexcept { return started_by.empty() ? sampling : least; }
 };
 
 /// A failure code of the author's own, 0x8000 to 0xFFFF.

@@ -60,6 +60,8 @@ std::string mismatch(const Subsystem& producer, const Provides& provides, const 
     const LinkMechanism* mechanism = find_link_mechanism(standard_link_mechanisms(), *method, requires_.kind());
     if (mechanism == nullptr)
       return fmt::format("'{}' does not carry '{}'", to_text(*method), to_text(requires_.kind()));
+    if (requires_.starts && !mechanism->wakes())
+      return fmt::format("its samples start a cycle, and '{}' wakes nobody", to_text(*method));
     if (octets > mechanism->max_payload())
       return fmt::format("a sample of {} octets is more than the {} of '{}'", octets, mechanism->max_payload(),
                          to_text(*method));
@@ -92,14 +94,15 @@ void MissionReader::check_cycles(const xml::Element& element, const Mode& mode) 
     return problems_.add(
         element, "E0324",
         fmt::format("the cycles of mode {} take {:.0f} % of a processor", in_quotes(mode.name), 100 * share),
-        "all cycles share one: the sum of budget_us / sampling_us is at most 1");
+        "all cycles share one: the sum of budget_us / sampling_us is at most 1, or of budget_us / least_us where "
+        "samples start the cycle");
   for (const CycleResponse& cycle : cycle_responses(mission_, mode)) {
     if (cycle.longest) continue;
     problems_.add(
         element, "E0331",
         fmt::format("in mode {} a cycle of {} {} may not end within its {} us", in_quotes(mode.name), cycle.subsystem,
-                    in_quotes(cycle.configuration->name), cycle.configuration->sampling / 1us),
-        "others go before it: lower a budget_us, or give the shorter sampling_us the higher priority; "
+                    in_quotes(cycle.configuration->name), cycle.configuration->shortest() / 1us),
+        "others go before it: lower a budget_us, or give the shorter sampling_us (least_us) the higher priority; "
         "`hirosco check --show` tells what each takes");
   }
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 
 namespace hirosco::descriptor::detail {
@@ -43,6 +44,7 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   configuration.priority = attributes.integer_or<int>("priority", 0, greatest_cycle_priority, 0);
   configuration.sampling = std::chrono::microseconds{
       attributes.required_integer<std::int64_t>("sampling_us", least_sampling_us, max_sampling_us)};
+  read_start(attributes, configuration);
   read_budget(attributes, configuration);
   configuration.power_w = attributes.watts("power_W").value_or(0);
   configuration.overruns = read_limit(attributes, "overruns", "overruns_reduced", configuration.overruns);
@@ -66,6 +68,7 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   Unique set{"parameter", "E0201"};
   children.push_back({"Set", [&](const auto& child) { read_set(child, configuration, set); }, 1024});
   each_child(element, problems_, children);
+  check_start(element, configuration);
 
   if (!configuration.name.empty())
     configuration_names_.add(configuration.name, configuration.at, problems_, element.name.size() + 1);
@@ -78,11 +81,53 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
 void SubsystemReader::read_budget(Attributes& attributes, Configuration& configuration) {
   configuration.budget =
       std::chrono::microseconds{attributes.integer_or<std::int64_t>("budget_us", 1, max_sampling_us, 0)};
-  if (configuration.sampling == Duration{} || configuration.budget <= configuration.sampling) return;
-  problems_.add(*attributes.optional("budget_us"), "E0227",
-                fmt::format("a cycle of {} us every {} us is an overrun each time", configuration.budget / 1us,
+  const Duration period = configuration.shortest();
+  if (period == Duration{} || configuration.budget <= period) return;
+  problems_.add(
+      *attributes.optional("budget_us"), "E0227",
+      fmt::format("a cycle of {} us every {} us is an overrun each time", configuration.budget / 1us, period / 1us),
+      "the budget is at most the sampling period, or the least distance of cycles that samples start");
+}
+
+/// Of a cycle that samples start: by which set, and how soon one may follow another.
+void SubsystemReader::read_start(Attributes& attributes, Configuration& configuration) {
+  const auto* set = attributes.optional("started_by");
+  const auto* least = attributes.optional("least_us");
+  if (set == nullptr && least == nullptr) return;
+  if (set == nullptr || least == nullptr)
+    return problems_.add(set == nullptr ? *least : *set, "E0250",
+                         fmt::format("'{}' without '{}'", set == nullptr ? "least_us" : "started_by",
+                                     set == nullptr ? "started_by" : "least_us"),
+                         "both of a cycle that samples start: the set, and the shortest distance of two cycles");
+  configuration.least = std::chrono::microseconds{
+      attributes.required_integer<std::int64_t>("least_us", least_sampling_us, max_sampling_us)};
+  configuration.started_by = attributes.name("started_by");
+  if (configuration.sampling == Duration{} || configuration.least <= configuration.sampling) return;
+  problems_.add(*least, "E0250",
+                fmt::format("a cycle is to wait {} us at least and {} us at most", configuration.least / 1us,
                             configuration.sampling / 1us),
-                "the budget is at most the sampling period");
+                "least_us is at most sampling_us, the longest wait");
+}
+
+void SubsystemReader::check_start(const xml::Element& element, Configuration& configuration) {
+  if (configuration.started_by.empty()) return;
+  const auto set = std::ranges::find(configuration.requires_, configuration.started_by, &Requires::name);
+  if (set == configuration.requires_.end()) {
+    std::vector<std::string_view> known;
+    for (const Requires& each : configuration.requires_) known.push_back(each.name);
+    return problems_.add(*element.find("started_by"), "E0251",
+                         fmt::format("set {} is not required here", in_quotes(configuration.started_by)),
+                         did_you_mean(configuration.started_by, known));
+  }
+  set->starts = true;
+  const auto wakes = [&](LinkMethod method) {
+    const LinkMechanism* mechanism = find_link_mechanism(standard_link_mechanisms(), method, set->kind());
+    return mechanism != nullptr && mechanism->wakes();
+  };
+  if (std::ranges::any_of(set->terms.methods, wakes)) return;
+  problems_.add(*element.find("started_by"), "E0252",
+                fmt::format("set {} comes by no method that wakes", in_quotes(configuration.started_by)),
+                "methods=\"shared_memory\", or sampling_us alone: the clock");
 }
 
 std::optional<std::uint16_t> SubsystemReader::find_device(const xml::Element& element, const std::string& name,

@@ -18,7 +18,7 @@ namespace {
 using descriptor::ByteOrder;
 
 /// An element of the handshake; the value is Refusal::item.
-enum class Item : std::uint8_t { Method = 0, ByteOrder = 1, Kind = 2, Rate = 3, Field = 4, Depth = 5 };
+enum class Item : std::uint8_t { Method = 0, ByteOrder = 1, Kind = 2, Rate = 3, Field = 4, Depth = 5, Wake = 6 };
 
 constexpr std::size_t max_choices = 16;          ///< methods, byte orders or kinds of one offer
 constexpr std::size_t max_fields = 255;
@@ -61,7 +61,7 @@ template <class E>
 
 /// Method and kind go together: each alone may be common while nothing carries both.
 [[nodiscard]] std::expected<std::pair<LinkMethod, LinkKind>, Refusal> first_common_way(
-    const descriptor::LinkTerms& producer, const descriptor::LinkTerms& consumer, const Carried& carried) {
+    const descriptor::LinkTerms& producer, const descriptor::LinkTerms& consumer, bool wakes, const Carried& carried) {
   const auto method = first_common(Item::Method, "method", producer.methods, consumer.methods);
   if (!method) return std::unexpected{method.error()};
   const auto kind = first_common(Item::Kind, "kind", producer.kinds, consumer.kinds);
@@ -69,7 +69,9 @@ template <class E>
   const auto has = [](const auto& list, auto value) { return std::ranges::find(list, value) != list.end(); };
   for (const LinkMethod by : producer.methods)
     for (const LinkKind of : producer.kinds)
-      if (has(consumer.methods, by) && has(consumer.kinds, of) && carried(by, of)) return std::pair{by, of};
+      if (has(consumer.methods, by) && has(consumer.kinds, of) && carried(by, of, wakes)) return std::pair{by, of};
+  if (wakes && carried(*method, *kind, false))
+    return refuse(Item::Wake, "wake: nothing here wakes a consumer by " + std::string{to_text(*method)});
   return refuse(Item::Method, "method and kind: nothing here carries what both sides know, as " +
                                   std::string{to_text(*method)} + " with " + std::string{to_text(*kind)});
 }
@@ -167,14 +169,14 @@ class Writer {
     choices(offer.terms.methods);
     choices(offer.terms.byte_orders);
     choices(offer.terms.kinds);
-    depth(offer.depth);
+    depth(offer.depth, offer.wakes);
     fields(offer.fields);
   }
   void agreement(const Agreement& agreement) {
     enumerator(agreement.method);
     enumerator(agreement.byte_order);
     enumerator(agreement.kind);
-    depth(agreement.depth);
+    depth(agreement.depth, agreement.wakes);
     duration(agreement.producer_period);
     duration(agreement.consumer_period);
     fields(agreement.fields);
@@ -186,9 +188,9 @@ class Writer {
   }
 
  private:
-  void depth(std::uint32_t samples) {
+  void depth(std::uint32_t samples, bool wakes) {
     encodable_ = encodable_ && samples <= max_link_depth;
-    out_.put(static_cast<std::uint16_t>(samples));
+    out_.put(static_cast<std::uint16_t>(samples)).put(static_cast<std::uint8_t>(wakes));
   }
   void count(std::size_t size, std::size_t limit) {
     encodable_ = encodable_ && size <= limit;
@@ -232,9 +234,11 @@ class Reader {
     span = Duration{in_.get<std::int64_t>()};
     require(span.count() > 0);
   }
-  void depth(std::uint32_t& samples, bool queued) noexcept {
+  void depth(std::uint32_t& samples, bool queued, bool& wakes) noexcept {
     samples = in_.get<std::uint16_t>();
-    require(is_depth(samples, queued));
+    const auto flag = in_.get<std::uint8_t>();
+    wakes = flag == 1;
+    require(is_depth(samples, queued) && flag <= 1);
   }
   template <class E>
   void choices(std::vector<E>& list) {
@@ -261,14 +265,14 @@ class Reader {
     choices(offer.terms.methods);
     choices(offer.terms.byte_orders);
     choices(offer.terms.kinds);
-    depth(offer.depth, std::ranges::find(offer.terms.kinds, LinkKind::Queued) != offer.terms.kinds.end());
+    depth(offer.depth, std::ranges::find(offer.terms.kinds, LinkKind::Queued) != offer.terms.kinds.end(), offer.wakes);
     fields(offer.fields);
   }
   void agreement(Agreement& agreement) {
     enumerator(agreement.method);
     enumerator(agreement.byte_order);
     enumerator(agreement.kind);
-    depth(agreement.depth, agreement.kind == LinkKind::Queued);
+    depth(agreement.depth, agreement.kind == LinkKind::Queued, agreement.wakes);
     duration(agreement.producer_period);
     duration(agreement.consumer_period);
     fields(agreement.fields);
@@ -299,7 +303,8 @@ LinkLayout Agreement::layout(std::uint32_t epoch) const noexcept {
           .payload_octets = payload_octets(),
           .layout_hash = layout_hash(),
           .period = producer_period,
-          .depth = depth};
+          .depth = depth,
+          .wakes = wakes};
 }
 
 std::uint64_t Agreement::layout_hash() const noexcept {
@@ -316,7 +321,7 @@ std::uint64_t Agreement::layout_hash() const noexcept {
 }
 
 std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer, const Carried& carried) {
-  const auto way = first_common_way(producer.terms, consumer.terms, carried);
+  const auto way = first_common_way(producer.terms, consumer.terms, consumer.wakes, carried);
   if (!way) return std::unexpected{way.error()};
   const auto order =
       first_common(Item::ByteOrder, "byte order", producer.terms.byte_orders, consumer.terms.byte_orders);
@@ -324,13 +329,16 @@ std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& 
   constexpr auto native = std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big;
   if (way->second == LinkKind::Loaned && *order != native)
     return refuse(Item::ByteOrder, "byte order: a lent sample has the machine's, not " + std::string{to_text(*order)});
-  if (auto refusal = check_rates(producer.period, consumer.period)) return std::unexpected{*std::move(refusal)};
+  // Who waits for samples has the rate at which they come.
+  if (auto refusal = check_rates(producer.period, consumer.period); refusal && !consumer.wakes)
+    return std::unexpected{*std::move(refusal)};
   if (auto refusal = check_fields(producer.fields, consumer.fields, way->second))
     return std::unexpected{*std::move(refusal)};
   if (auto refusal = check_depth(consumer, way->second, octets_of(producer.fields, way->second)))
     return std::unexpected{*std::move(refusal)};
   const std::uint32_t depth = way->second == LinkKind::Queued ? consumer.depth : 0;
-  return Agreement{way->first, *order, way->second, depth, producer.period, consumer.period, producer.fields};
+  return Agreement{way->first,      *order,          way->second,     depth,
+                   producer.period, consumer.period, producer.fields, consumer.wakes};
 }
 
 Result<std::size_t> write_offer(MutableOctets to, std::uint8_t link, const Offer& offer) {
@@ -377,7 +385,7 @@ Result<LinkRefusal> read_refusal(Octets data) {
   LinkRefusal message;
   reader.number(message.link);
   reader.number(message.refusal.item);
-  reader.require(message.refusal.item <= static_cast<std::uint8_t>(Item::Depth));
+  reader.require(message.refusal.item <= static_cast<std::uint8_t>(Item::Wake));
   reader.text(message.refusal.text);
   return reader.finish(std::move(message), "link refusal");
 }
@@ -403,6 +411,7 @@ Result<std::size_t> write_attach_request(MutableOctets to, const AttachRequest& 
   writer.number(request.link);
   writer.enumerator(request.role);
   writer.number(request.epoch);
+  writer.number(request.made);
   writer.text(request.set);
   writer.agreement(request.agreement);
   writer.text(request.route.producer);
@@ -454,8 +463,10 @@ Result<AttachRequest> read_attach_request(Octets data) {
   reader.number(message.link);
   reader.enumerator(message.role, {Role::Producer, Role::Consumer});
   reader.number(message.epoch);
+  reader.number(message.made);
   reader.name(message.set);
   reader.agreement(message.agreement);
+  reader.require(message.made == 0 || (message.made < message.epoch && message.agreement.kind == LinkKind::Loaned));
   message.route.link = message.link;
   reader.text(message.route.producer);
   reader.text(message.route.consumer);

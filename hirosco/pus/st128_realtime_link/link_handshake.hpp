@@ -61,6 +61,7 @@ struct Offer {
   descriptor::LinkTerms terms;
   std::uint32_t depth{0};  ///< of a consumer that wants every sample; else 0
   std::vector<OfferedField> fields;
+  bool wakes{false};  ///< of a consumer whose cycle a sample of this set starts
 };
 
 /// What was agreed: the producer's whole layout in order, and the terms.
@@ -73,23 +74,24 @@ struct Agreement {
   Duration consumer_period{};
   std::vector<OfferedField>
       fields;  ///< the producer's in their order: packed, or of a lent sample as in a C++ aggregate
+  bool wakes{false};  ///< the producer wakes the consumer after each sample, as that asked
   [[nodiscard]] std::uint32_t payload_octets() const noexcept;  ///< of a lent sample as a C++ aggregate has them
   [[nodiscard]] std::uint64_t layout_hash() const noexcept;  ///< FNV-1a 64 over fields, order, kind
   /// What supervisor and both ends make their parts of the link of.
   [[nodiscard]] LinkLayout layout(std::uint32_t epoch) const noexcept;
 };
 
-/// Why there is nothing common. `item`: 0 method, 1 byte order, 2 kind, 3 rate, 4 field, 5 depth.
+/// Why there is nothing common. `item`: 0 method, 1 byte order, 2 kind, 3 rate, 4 field, 5 depth, 6 wake.
 struct Refusal {
   std::uint8_t item{};
   std::string text;  ///< "field POSITION: consumer FLOAT[2], producer DOUBLE[2]"
 };
 
-/// Whether a mechanism of the platform carries links of this method and kind.
-using Carried = std::function<bool(LinkMethod, LinkKind)>;
+/// Whether a mechanism of the platform carries links of this method and kind, and, where `wakes`, its producer wakes a consumer.
+using Carried = std::function<bool(LinkMethod, LinkKind, bool wakes)>;
 
 /// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
-/// consumer has too; an integer ratio of the rates either way; every field the consumer requires present with the same
+/// consumer has too; an integer ratio of the rates either way, but for a consumer whose cycle starts with a sample; every field the consumer requires present with the same
 /// name, type and count (the producer may have more). Method and kind are chosen together, by what can be carried. A lent
 /// sample has the same fields in the same order on both sides, and the byte order of the machine. How many samples are kept for a
 /// consumer that wants every one of them it says itself. Pure.
@@ -134,6 +136,10 @@ struct AttachRequest {
   std::string set;
   Agreement agreement;
   LinkRoute route{};  ///< its `link` is the one above
+  /// Of a set that is lent to somebody else already: epoch of the link for which the memory was made. 0: of this one.
+  std::uint32_t made{0};
+  /// What the header of the memory says.
+  [[nodiscard]] std::uint32_t header_epoch() const noexcept { return made != 0 ? made : epoch; }
 };
 /// TM[128,132]: of a link in memory the route is empty.
 struct Attached {

@@ -28,6 +28,7 @@ struct Side {
   int period_us{1000};
   std::vector<OfferedField> fields{{"POSITION", Type::Double, 2}};
   std::uint32_t depth{0};
+  bool wakes{false};
 };
 
 Offer offer_of(const Side& side) {
@@ -35,17 +36,20 @@ Offer offer_of(const Side& side) {
           std::chrono::microseconds{side.period_us},
           {side.methods, side.orders, side.kinds},
           side.depth,
-          side.fields};
+          side.fields,
+          side.wakes};
 }
 
 /// "shared_memory little latest 1000/1000", or the refusal as "item: text".
 std::string outcome(const Side& producer, const Side& consumer) {
-  const auto result = negotiate(offer_of(producer), offer_of(consumer), [](LinkMethod, LinkKind) { return true; });
+  const auto result =
+      negotiate(offer_of(producer), offer_of(consumer), [](LinkMethod, LinkKind, bool) { return true; });
   if (!result) return std::to_string(result.error().item) + ": " + result.error().text;
   EXPECT_EQ(result->fields, producer.fields) << "the layout is the producer's";
   return std::string{to_text(result->method)} + " " + std::string{to_text(result->byte_order)} + " " +
-         std::string{to_text(result->kind)} + (result->depth == 0 ? "" : "*" + std::to_string(result->depth)) + " " +
-         std::to_string(result->producer_period / 1us) + "/" + std::to_string(result->consumer_period / 1us);
+         std::string{to_text(result->kind)} + (result->depth == 0 ? "" : "*" + std::to_string(result->depth)) +
+         (result->wakes ? "!" : "") + " " + std::to_string(result->producer_period / 1us) + "/" +
+         std::to_string(result->consumer_period / 1us);
 }
 
 struct Case {
@@ -163,6 +167,8 @@ TEST(LinkHandshake, DecidesEveryPairOfOffersAsWrittenHere) {
       {{.period_us = 3000, .fields = position},
        {.period_us = 2000, .fields = position_and_torque},
        "3: rate: consumer 2000000 ns, producer 3000000 ns"},
+      {{.period_us = 3000}, {.period_us = 2000, .wakes = true}, "shared_memory little latest! 3000/2000"},
+      {{.kinds = {queued}}, {.kinds = {queued}, .depth = 8, .wakes = true}, "shared_memory little queued*8! 1000/1000"},
   };
   static_assert(std::size(table) >= 25);
   for (const auto& row : table) EXPECT_EQ(outcome(row.producer, row.consumer), row.expected);
@@ -172,7 +178,7 @@ Agreement agreement() {
   return {shm, little, latest, 0, 1ms, 5ms, {{"POSITION", Type::Double, 2}, {"ENABLE", Type::Uint8, 1}}};
 }
 Offer full_offer() {
-  return {"JOINTS", 1ms, {{shm, LinkMethod::Udp}, {big, little}, {queued, latest}}, 300, agreement().fields};
+  return {"JOINTS", 1ms, {{shm, LinkMethod::Udp}, {big, little}, {queued, latest}}, 300, agreement().fields, true};
 }
 
 TEST(LinkHandshake, ChoosesMethodAndKindTogetherByWhatIsCarried) {
@@ -182,12 +188,12 @@ TEST(LinkHandshake, ChoosesMethodAndKindTogetherByWhatIsCarried) {
     return result ? std::string{to_text(result->method)} + " " + std::string{to_text(result->kind)}
                   : result.error().text;
   };
-  EXPECT_EQ(way([](LinkMethod, LinkKind) { return true; }), "udp queued");
-  EXPECT_EQ(way([](LinkMethod method, LinkKind) { return method == shm; }), "shared_memory queued");
-  EXPECT_EQ(way([](LinkMethod, LinkKind kind) { return kind == latest; }), "udp latest");
-  EXPECT_EQ(way([](LinkMethod method, LinkKind kind) { return method == shm && kind == latest; }),
+  EXPECT_EQ(way([](LinkMethod, LinkKind, bool) { return true; }), "udp queued");
+  EXPECT_EQ(way([](LinkMethod method, LinkKind, bool) { return method == shm; }), "shared_memory queued");
+  EXPECT_EQ(way([](LinkMethod, LinkKind kind, bool) { return kind == latest; }), "udp latest");
+  EXPECT_EQ(way([](LinkMethod method, LinkKind kind, bool) { return method == shm && kind == latest; }),
             "shared_memory latest");
-  EXPECT_EQ(way([](LinkMethod, LinkKind) { return false; }),
+  EXPECT_EQ(way([](LinkMethod, LinkKind, bool) { return false; }),
             "method and kind: nothing here carries what both sides know, as udp with queued");
 }
 
@@ -313,6 +319,7 @@ void expect_equal(const Offer& a, const Offer& b) {
   EXPECT_EQ(a.terms.byte_orders, b.terms.byte_orders);
   EXPECT_EQ(a.terms.kinds, b.terms.kinds);
   EXPECT_EQ(a.depth, b.depth);
+  EXPECT_EQ(a.wakes, b.wakes);
   EXPECT_EQ(a.fields, b.fields);
 }
 void expect_equal(const Agreement& a, const Agreement& b) {
@@ -320,6 +327,7 @@ void expect_equal(const Agreement& a, const Agreement& b) {
   EXPECT_EQ(a.byte_order, b.byte_order);
   EXPECT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.depth, b.depth);
+  EXPECT_EQ(a.wakes, b.wakes);
   EXPECT_EQ(a.producer_period, b.producer_period);
   EXPECT_EQ(a.consumer_period, b.consumer_period);
   EXPECT_EQ(a.fields, b.fields);
@@ -354,6 +362,7 @@ TEST(LinkMessages, AreReadAsTheyWereWritten) {
   Agreement of_a_queue = agreement();
   of_a_queue.kind = queued;
   of_a_queue.depth = 300;
+  of_a_queue.wakes = true;
   const LinkRoute route{.link = 8, .producer = "192.0.2.1:4000", .consumer = "::1", .key = 0xFEED'BEEF'0123'4567};
   const AttachRequest attach_request{8, Role::Consumer, 0xDEADBEEF, "JOINTS", of_a_queue, route};
   const Bytes attach_data = written([&](MutableOctets to) { return write_attach_request(to, attach_request); });
@@ -362,6 +371,7 @@ TEST(LinkMessages, AreReadAsTheyWereWritten) {
   EXPECT_EQ(read_attach_request(attach_data)->epoch, 0xDEADBEEF);
   expect_equal(read_attach_request(attach_data)->agreement, of_a_queue);
   EXPECT_EQ(read_attach_request(attach_data)->route, route);
+  EXPECT_EQ(read_attach_request(attach_data)->header_epoch(), 0xDEADBEEF);
 
   const Bytes attached_data = written([&](MutableOctets to) {
     return write_attached(to,

@@ -137,14 +137,13 @@ class LoanOutputPort {
  private:
   friend class LinkOutputSlot;
   std::span<const NativeField> layout_;
-  LoanWriter* loans_{nullptr};  ///< of the link that was attached first
+  LoanWriter* loans_{nullptr};  ///< of the memory that the links have in common
   bool lent_{false};
   bool ready_{false};
 };
 
 /// T: an aggregate with one member per <Field> of the <Provides kind="loaned"> element, in their order, with arrays of fixed
-/// length only. Each link has memory of its own: the one that was attached first lends, into the others the framework
-/// copies the sample at the end of the cycle.
+/// length only. Its consumers, however many, look at one memory.
 template <class T>
 class LoanOutput final : private HasFields<T>, public LoanOutputPort {
   static_assert(!HasFields<T>::sized, "a lent sample has arrays of fixed length only");

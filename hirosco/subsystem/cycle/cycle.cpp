@@ -48,6 +48,10 @@ void CycleLoop::prepare(CyclePlan plan) {
       if (&slot.device() == &output->device()) slot.show_in(output.get());
   }
   input_was_stale_.assign(plan_.inputs.size(), 0);
+  pace_.begin(*plan_.configuration);
+  const auto starts = std::ranges::find_if(plan_.inputs, [](const auto& input) { return input.terms().starts; });
+  starter_.reset();
+  if (starts != plan_.inputs.end()) starter_ = static_cast<std::size_t>(starts - plan_.inputs.begin());
   state_ = State::PreOperational;
   first_ = true;
   inhibited_ = 0;
@@ -65,7 +69,7 @@ void CycleLoop::prepare(CyclePlan plan) {
   statistics_.store({});
   times_parameter_.store({});
   budget_.begin(*plan_.configuration, parts_.realtime);
-  realtime_.begin(plan_.configuration->sampling);
+  realtime_.begin(plan_.configuration->shortest());
   budget_parameter_.store(budget_.told());
   link_statistics_.store({});
   watched_.clear();
@@ -88,27 +92,28 @@ void CycleLoop::release() {
 TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const RealtimeScope forbidden;
   const TimePoint started = parts_.clock.now();
-  listen_to_supervisor();
+  const CyclePace::Start start = pace_.start(planned, started);
+  listen_to_supervisor(start.counts);
   check_permit();
   take_commands();
-  read_inputs(started);
+  // Looked at before the samples are read: what comes meanwhile starts another cycle, and none is slept through.
+  pace_.look(starter() != nullptr ? starter()->arrival_word() : nullptr);
+  read_inputs(started, start.counts);
+  pace_.rely(starter() != nullptr && starter()->reliable());
   note_stores();
-  run_node(planned);
+  run_node(start.planned);
   note_own_writes();
-  write_outputs(planned);
-  if (plan_.sampler != nullptr) plan_.sampler->tick(*this, *this);
+  write_outputs(start.planned);
+  if (plan_.sampler != nullptr && start.counts) plan_.sampler->tick(*this, *this);
   ++count_;
   hold_to_realtime(forbidden.uses());
-  account(planned, started);
-  const Duration period = plan_.configuration->sampling;
-  const TimePoint next = planned + period;
-  const TimePoint finished = parts_.clock.now();
-  if (finished <= next) return next;
-  // Missed cycles are skipped, not made up for: the next one is due on the grid and in the future.
-  const auto skipped = (finished - next) / period + 1;
-  parts_.vital.missed.fetch_add(static_cast<std::uint64_t>(skipped), std::memory_order_relaxed);
-  return next + skipped * period;
+  account(start, started);
+  const CyclePace::Next next = pace_.next(start.planned, parts_.clock.now());
+  if (next.skipped != 0) parts_.vital.missed.fetch_add(next.skipped, std::memory_order_relaxed);
+  return next.due;
 }
+
+const LinkInputSlot* CycleLoop::starter() const noexcept { return starter_ ? &plan_.inputs[*starter_] : nullptr; }
 
 bool CycleLoop::controlling() const noexcept {
   return state_ == State::SafeOperational || state_ == State::Operational;
@@ -127,13 +132,13 @@ void CycleLoop::check_permit() noexcept {
 
 /// Once a cycle, and in the cycle: a service loop that is stuck or starved must not keep the actuators going when nobody is
 /// left to stop them. The state follows in the service loop: `watch_supervisor()` of `service_loop/generic_subsystem.cpp`.
-void CycleLoop::listen_to_supervisor() noexcept {
+void CycleLoop::listen_to_supervisor(bool counts) noexcept {
   const std::uint64_t heartbeat = parts_.permit.heartbeat.load(std::memory_order_acquire);
   if (std::exchange(heartbeat_, heartbeat) != heartbeat) {
     silent_cycles_ = 0;
     return;
   }
-  if (silent_cycles_ > silence_limit_) return;
+  if (!counts || silent_cycles_ > silence_limit_) return;
   if (++silent_cycles_ <= silence_limit_) return;
   const double cycles = silent_cycles_;
   raise(descriptor::framework_event::supervisor_silent, {&cycles, 1});
@@ -281,23 +286,26 @@ void CycleLoop::count_links() noexcept {
   LinkStatistics sum;
   for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
     const LinkInputSlot& input = plan_.inputs[i];
-    if (i < told_incoming_links) input.tell(parts_.vital.incoming[i]);
+    if (i < parts_.vital.incoming.size()) input.tell(parts_.vital.incoming[i]);
     sum.received += static_cast<std::uint32_t>(input.port()->received());
     sum.lost += static_cast<std::uint32_t>(input.port()->lost());
   }
   link_statistics_.store(sum);
 }
 
-void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
+void CycleLoop::account(const CyclePace::Start& start, TimePoint started) noexcept {
   const TimePoint finished = parts_.clock.now();
   const Duration execution = finished - started;
-  latency_max_ns_ = std::max(latency_max_ns_, clamped_ns(started - planned));
+  // Of a cycle that a sample started: since the instant that this is of.
+  const auto waited = start.arrived && starter() != nullptr ? starter()->newest_latency() : std::nullopt;
+  const Duration latency = waited.value_or(started - start.planned);
+  latency_max_ns_ = std::max(latency_max_ns_, clamped_ns(latency));
   execution_max_ns_ = std::max(execution_max_ns_, clamped_ns(execution));
   constexpr double weight = 1e-3;
   execution_mean_ns_ += weight * (static_cast<double>(execution.count()) - execution_mean_ns_);
 
   ++times_.execution[bin_of(execution)];
-  ++times_.latency[bin_of(started - planned)];
+  ++times_.latency[bin_of(latency)];
   times_parameter_.store(times_);
   count_links();
   hold_to_budget();
@@ -308,8 +316,9 @@ void CycleLoop::account(TimePoint planned, TimePoint started) noexcept {
   const descriptor::CycleLimit& limit = plan_.configuration->overruns;
   // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007). Work that
   // takes long after a start more than a period late tells of the machine: it neither lengthens the row nor breaks it.
-  const bool overrun = execution > plan_.configuration->sampling;
-  const bool starved = started - planned > plan_.configuration->sampling;
+  const Duration period = plan_.configuration->shortest();
+  const bool overrun = execution > period;
+  const bool starved = started - start.planned > period;
   if (overrun) ++overruns_;
   if (!overrun) overruns_in_a_row_ = 0;
   else if (!starved) ++overruns_in_a_row_;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "hirosco/parameter/write_queue.hpp"
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 #include "hirosco/subsystem/cycle/budget_watch.hpp"
+#include "hirosco/subsystem/cycle/cycle_pace.hpp"
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 #include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
@@ -101,9 +103,11 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   }
 
   // --- the cycle --------------------------------------------------------------------------------------------------
-  /// One cycle that was due at `planned`; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
+  /// One cycle that was due at `planned`, or was started by a sample before that; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
   /// at most one system call per device, and one for its own processor time.
   TimePoint step(TimePoint planned) noexcept;
+  /// What may start the next one before it is due.  Realtime: wait-free. Thread: cycle.
+  [[nodiscard]] const CycleWait& wait() const noexcept { return pace_.wait(); }
 
   // --- the author, from inside the cycle --------------------------------------------------------------------------
   void raise(std::uint16_t event, std::span<const double> arguments) noexcept;
@@ -123,15 +127,16 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] const char* why_not(State state) const noexcept;
   void enter(State state) noexcept;
   void check_permit() noexcept;
-  void listen_to_supervisor() noexcept;
-  void read_inputs(TimePoint started) noexcept;
+  void listen_to_supervisor(bool counts) noexcept;
+  void read_inputs(TimePoint started, bool counts) noexcept;
   void run_node(TimePoint planned) noexcept;
   void run_self_test(Cycle cycle) noexcept;
   void end_self_test(const std::optional<SelfTestRun::End>& end) noexcept;
   void write_outputs(TimePoint planned) noexcept;
   void note_stores() noexcept;
   void note_own_writes() noexcept;
-  void account(TimePoint planned, TimePoint started) noexcept;
+  void account(const CyclePace::Start& start, TimePoint started) noexcept;
+  [[nodiscard]] const LinkInputSlot* starter() const noexcept;
   void count_links() noexcept;
   void hold_to_budget() noexcept;
   void hold_to_realtime(const RealtimeUses& of_cycle) noexcept;
@@ -165,6 +170,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   MutableOctets reserved_;  ///< housekeeping report under assembly
 
   State state_{State::PreOperational};
+  CyclePace pace_;
+  std::optional<std::size_t> starter_;  ///< of the inputs: whose samples start the cycle
   bool first_{true};
   std::uint32_t inhibited_{0};
   bool awaits_fall_back_{false};  ///< what a device said last is of before

@@ -89,14 +89,15 @@ std::string DeviceSlot::difference(const descriptor::Device& device, const Devic
   return text.empty() ? text : "output, " + text;
 }
 
-void DeviceSlot::read(bool count_silence) noexcept {
+void DeviceSlot::read(bool count_silence, bool counts) noexcept {
+  counts_ = counts;
   port_->fresh_ = false;
   just_lost_ = false;
   if (std::exchange(just_fell_back_, false)) {
     since_good_ = {};
     hung_up_ = false;
   }
-  if (left_obeys_cycles_ > 0) --left_obeys_cycles_;
+  if (left_obeys_cycles_ > 0 && counts_) --left_obeys_cycles_;
   const auto received = ways_[way_].flow->receive(frame_);
   if (received && received->flow == Flow::New) take_frame(Octets{frame_}.first(received->octets));
   if (port_->fresh_) {
@@ -108,8 +109,10 @@ void DeviceSlot::read(bool count_silence) noexcept {
   }
   if (!heard_ && !count_silence) return;
   hung_up_ = !received && heard_;
+  const bool hangs_up = hung_up_ && port_->alive_;
+  if (!counts_ && !hangs_up) return;
   count(since_good_.silent_cycles);
-  if (since_good_.silent_cycles != silence_limit_ && !(hung_up_ && port_->alive_)) return;
+  if (since_good_.silent_cycles != silence_limit_ && !hangs_up) return;
   if (way_ + 1 < ways_.size()) return fall_back();
   just_lost_ = port_->alive_ || !heard_ || awaits_;
   awaits_ = false;
@@ -198,7 +201,8 @@ void DeviceSlot::keep_in_range(MutableOctets payload) noexcept {
 
 void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {
   const bool pass = active || !device_->actuator;
-  active_cycles_ = active ? std::min(active_cycles_ + 1, longest_silence) : 0;
+  if (!active) active_cycles_ = 0;
+  else if (counts_) count(active_cycles_);
   const std::uint32_t before = std::exchange(epoch_, epoch);
   if (pass || told_ != nullptr) {
     port_->output_layout_.fit(port_->output_);
@@ -214,7 +218,9 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
 
 /// Every so many cycles; what it may do is said at once.
 bool DeviceSlot::due(DeviceMode mode, std::uint32_t epoch_before) noexcept {
-  if (++since_sent_ < every_ && mode == sent_mode_ && epoch_ == epoch_before && sequence_ != 0) return false;
+  // Who takes each frame gets one in each cycle, whatever started it.
+  if (counts_ || every_ == 1) ++since_sent_;
+  if (since_sent_ < every_ && mode == sent_mode_ && epoch_ == epoch_before && sequence_ != 0) return false;
   since_sent_ = 0;
   sent_mode_ = mode;
   return true;

@@ -59,8 +59,9 @@ class DeviceSlot {
   [[nodiscard]] std::uint8_t left() const noexcept { return left_; }
   [[nodiscard]] std::uint8_t taken() const noexcept { return ways_[way_].endnode; }
   [[nodiscard]] std::uint32_t times_fallen_back() const noexcept { return port_->fall_backs_; }
-  /// Takes the newest status frame into the port. `count_silence`: whether silence counts before a first frame came.
-  void read(bool count_silence) noexcept;
+  /// Takes the newest status frame into the port. `count_silence`: whether silence counts before a first frame came. `counts`: the
+  /// cycle is one in which limits go on; of cycles that samples start only some are (CyclePace).
+  void read(bool count_silence, bool counts = true) noexcept;
   /// Sends the author's output if `active`, else the declared safe values.
   void write(std::uint32_t epoch, bool active, bool stopping) noexcept;
   /// Where tell() shows; null: nowhere.  Thread: the service loop, while the cycle rests.
@@ -107,6 +108,7 @@ class DeviceSlot {
   std::uint32_t epoch_{0};  ///< of the newest command
   std::uint32_t active_cycles_{0};  ///< in a row in which outputs were to reach the actuators
   bool heard_{false};
+  bool counts_{true};  ///< of this cycle
   bool just_lost_{false};
   bool just_fell_back_{false};
   bool awaits_{false};  ///< the first answer by a fall-back

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <vector>
 
 #include "hirosco/subsystem/testing/rig.hpp"
 
@@ -147,6 +148,23 @@ struct LentImages : ::testing::Test {
     EXPECT_EQ(attach(*camera_rig, {link, Role::Producer, 1, "IMAGE", agreement}, shared), "1 3 7");
     EXPECT_EQ(attach(consumer, {link, Role::Consumer, 1, "VIEW", agreement}, shared), "1 3 7");
   }
+  /// A link into the memory of those before it; the first one's is made.
+  void couple_into(MemoryHandle& shared, Rig& consumer, std::uint8_t link, std::uint32_t epoch = 1) {
+    const auto agreement = agree(consumer, link);
+    const auto* mechanism = find_link_mechanism(standard_link_mechanisms(), agreement.method, agreement.kind);
+    const bool first_of_all = !shared;
+    if (first_of_all) shared = mechanism->establish(memory, agreement.layout(1)).value();
+    st128::AttachRequest request{.link = link,
+                                 .role = Role::Producer,
+                                 .epoch = first_of_all ? 1 : epoch + 1,
+                                 .set = "IMAGE",
+                                 .agreement = agreement,
+                                 .made = first_of_all ? 0U : 1U};
+    ASSERT_EQ(attach(*camera_rig, request, shared), "1 3 7");
+    request.role = Role::Consumer;
+    request.set = "VIEW";
+    ASSERT_EQ(attach(consumer, request, shared), "1 3 7");
+  }
   void make(std::uint64_t number) {
     camera.next = number;
     camera_rig->cycle();
@@ -218,7 +236,7 @@ TEST_F(LentImages, ReachEachOfSeveralConsumers) {
   viewer_rig.cycle();
   other_rig.cycle();
   EXPECT_EQ(viewer.seen, camera.place) << "the first link lends";
-  EXPECT_NE(other.seen, camera.place) << "the next one has a copy";
+  EXPECT_NE(other.seen, camera.place) << "whom the supervisor gave memory of its own has a copy";
   EXPECT_EQ(viewer.number, 1u);
   EXPECT_EQ(other.number, 1u);
   EXPECT_EQ(other.wrong, 0u);
@@ -229,6 +247,71 @@ TEST_F(LentImages, ReachEachOfSeveralConsumers) {
   other_rig.cycle();
   EXPECT_EQ(other.seen, camera.place);
   EXPECT_EQ(other.number, 2u);
+}
+
+TEST_F(LentImages, AreLookedAtByAnyNumberInOneMemory) {
+  std::vector<std::unique_ptr<Viewer>> viewers;
+  std::vector<std::unique_ptr<Rig>> rigs;
+  MemoryHandle shared;
+  for (std::uint8_t link = 1; link <= 6; ++link) {
+    viewers.push_back(std::make_unique<Viewer>());
+    rigs.push_back(std::make_unique<Rig>(*viewers.back(), viewer_descriptor()));
+    rigs.back()->bring_to(State::PreOperational);
+    couple_into(shared, *rigs.back(), link);
+  }
+  for (std::uint64_t number = 1; number <= 3; ++number) {
+    make(number);
+    for (std::size_t i = 0; i < viewers.size(); ++i) {
+      rigs[i]->cycle();
+      ASSERT_EQ(viewers[i]->seen, camera.place) << "a copy for link " << i + 1;
+      ASSERT_EQ(viewers[i]->number, number);
+      ASSERT_EQ(viewers[i]->wrong, 0u);
+      ASSERT_EQ(viewers[i]->view.lost(), 0u);
+    }
+  }
+}
+
+TEST_F(LentImages, OfOneMemoryStayWhileAnyOfItsLinksDoes) {
+  MemoryHandle shared;
+  couple_into(shared, viewer_rig, 1);
+  couple_into(shared, other_rig, 2);
+  camera.half = true;
+  make(1);
+  Image* const begun = camera.place;
+  // The first link goes while an image is made: the other one's consumer gets it, and the first one hears of no end.
+  viewer_rig.detach(1);
+  viewer_rig.settle();
+  camera_rig->detach(1);
+  camera_rig->settle();
+  EXPECT_EQ(camera.place, begun);
+  camera.half = false;
+  make(2);
+  other_rig.cycle();
+  EXPECT_EQ(other.seen, begun);
+  EXPECT_EQ(other.number, 2u);
+  EXPECT_EQ(other.view.status(), LinkStatus::Valid);
+  // It comes back into the same memory with a later epoch, and has the newest image at once.
+  couple_into(shared, viewer_rig, 1, 2);
+  viewer_rig.cycle();
+  EXPECT_EQ(viewer.seen, begun);
+  EXPECT_EQ(viewer.view.lost(), 0u);
+  camera_rig->detach(1);
+  camera_rig->detach(2);
+  camera_rig->settle();
+  EXPECT_EQ(camera.image.lend(), nullptr) << "the last link took the memory along";
+}
+
+TEST_F(LentImages, OfASetWhoseMemoryTheProducerHasNotAreRefused) {
+  MemoryHandle shared;
+  couple_into(shared, viewer_rig, 1);
+  camera_rig->detach(1);
+  camera_rig->settle();
+  const auto agreement = agree(other_rig, 2);
+  EXPECT_EQ(attach(*camera_rig,
+                   {.link = 2, .role = Role::Producer, .epoch = 3, .set = "IMAGE", .agreement = agreement, .made = 1},
+                   shared),
+            "1 4:010700")
+      << "sealed: nobody becomes its producer again";
 }
 
 TEST_F(LentImages, ThatAreTooOldInhibitTheirConsumerAndNewOnesAreValidAgain) {

@@ -4,6 +4,7 @@
 #include "hirosco/subsystem/cycle/link_slots.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -40,6 +41,8 @@ Result<> LinkInputSlot::plan(AttachedLink& link) const {
   const bool lent = link.agreement.kind == LinkKind::Loaned;
   if (link.agreement.kind != port_->kind())
     return fail(ErrorCode::Mismatch, "the agreement is of another kind than the port");
+  if (link.agreement.wakes != terms_->starts)
+    return fail(ErrorCode::Mismatch, "the agreement wakes whom no sample starts, or the reverse");
   if (lent && link.agreement.fields.size() != terms_->fields.size())
     return fail(ErrorCode::Mismatch, "the agreement has other fields than the lent set");
   for (std::size_t wanted = 0; wanted < terms_->fields.size(); ++wanted) {
@@ -83,6 +86,7 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   port_->status_ = LinkStatus::None;
   latency_mean_ns_ = 0.0;
   latency_max_ns_ = 0;
+  jitter_ns_ = 0.0;
 }
 
 void LinkInputSlot::detach(const AttachedLink* link) noexcept {
@@ -95,18 +99,24 @@ void LinkInputSlot::detach(const AttachedLink* link) noexcept {
   port_->status_ = LinkStatus::None;
 }
 
-void LinkInputSlot::read(TimePoint now) noexcept {
+void LinkInputSlot::read(TimePoint now, bool counts) noexcept {
+  newest_latency_.reset();
+  read_at_ = now;
   if (link_ == nullptr) {
     port_->valid_ = false;
     return;
   }
   const LinkSample sample = port_->kind() == LinkKind::Queued ? read_all(now) : read_newest(now);
   if (sample.flow == Flow::New) port_->age_cycles_ = 0;
-  else if (port_->age_cycles_ < longest_age) ++port_->age_cycles_;
+  else if (counts && port_->age_cycles_ < longest_age) ++port_->age_cycles_;
   port_->status_ = sample.status;
   const bool fresh = port_->age_cycles_ <= age_limit_ * link_->producer_cycles_per_sample;
-  const bool reliable = sample.status == LinkStatus::Valid || sample.status == LinkStatus::Degraded;
-  port_->valid_ = port_->count_ != 0 && fresh && reliable;
+  port_->valid_ = port_->count_ != 0 && fresh && reliable();
+}
+
+const std::uint32_t* LinkInputSlot::arrival_word() const noexcept {
+  if (link_ == nullptr) return nullptr;
+  return port_->lent() ? link_->borrower->arrival_word() : link_->reader->arrival_word();
 }
 
 LinkSample LinkInputSlot::read_newest(TimePoint now) noexcept {
@@ -140,7 +150,15 @@ void LinkInputSlot::take(const LinkSample& sample, MutableOctets into, TimePoint
   port_->count_ = sample.count;
   ++port_->received_;
   port_->lost_ += sample.lost;
-  const std::uint32_t latency_ns = clamped_ns(now - sample.sampled_at);
+  newest_latency_ = now - sample.sampled_at;
+  newest_at_ = sample.sampled_at;
+  // RFC 3550, 6.4.1: both ends have one clock, so that the difference of two transits is that of two latencies.
+  const Duration before = std::exchange(latency_before_, *newest_latency_);
+  if (port_->received_ > 0) {
+    const auto apart = std::abs(static_cast<double>((*newest_latency_ - before).count()));
+    jitter_ns_ += (apart - jitter_ns_) / 16;
+  }
+  const std::uint32_t latency_ns = clamped_ns(*newest_latency_);
   latency_max_ns_ = std::max(latency_max_ns_, latency_ns);
   // The first samples weigh as much as they are, so that the mean needs no time to arrive.
   const double weight = std::max(1.0 / static_cast<double>(port_->received_), 1e-3);
@@ -153,6 +171,10 @@ void LinkInputSlot::tell(IncomingLink& page) const noexcept {
   page.lost.store(static_cast<std::uint32_t>(port_->lost_), relaxed);
   page.latency_mean_ns.store(static_cast<std::uint32_t>(latency_mean_ns_), relaxed);
   page.latency_max_ns.store(latency_max_ns_, relaxed);
+  page.jitter_ns.store(static_cast<std::uint32_t>(std::min(jitter_ns_, 4e9)), relaxed);
+  const auto age_us = (read_at_ - newest_at_) / std::chrono::microseconds{1};
+  page.age_us.store(
+      port_->count_ == 0 ? 0 : static_cast<std::uint32_t>(std::clamp<std::int64_t>(age_us, 0, 4'000'000'000)), relaxed);
 }
 
 LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms,
@@ -207,12 +229,21 @@ void LinkOutputSlot::lend_first() noexcept {
   port_->lent_ = port_->ready_ = false;
 }
 
-/// Each link has memory of its own: what was made in that of the first is copied into the others before it is handed on.
+/// Whether an earlier link has the same memory: all that was told by it.
+bool LinkOutputSlot::has_told(const AttachedLink& link) const noexcept {
+  const AttachedLink* earlier = first_;
+  while (earlier->lender != link.lender) earlier = earlier->next;
+  return earlier != &link;
+}
+
+/// One memory for all consumers, or, where the supervisor gave a link memory of its own, a copy of what was made for the first.
 void LinkOutputSlot::hand_on(TimePoint now, LinkStatus status) noexcept {
   const bool ready = std::exchange(port_->ready_, false);
   if (ready) port_->lent_ = false;
   for (AttachedLink* link = first_; link != nullptr; link = link->next) {
-    if (ready && link != first_) {
+    if (has_told(*link)) {
+      link->told = status;
+    } else if (ready && link != first_) {
       const MutableOctets made = first_->lender->lend();
       std::memcpy(link->lender->lend().data(), made.data(), made.size());
       link->lender->publish(now, status);

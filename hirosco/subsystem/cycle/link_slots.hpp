@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hirosco/data_transfer/layout.hpp"
@@ -26,7 +27,9 @@ struct AttachedLink {
   pus::st128::Agreement agreement;
   std::unique_ptr<LinkWriter> writer;    ///< producer
   std::unique_ptr<LinkReader> reader;    ///< consumer
-  std::unique_ptr<LoanWriter> lender;    ///< instead of `writer`, where samples are lent
+  std::shared_ptr<LoanWriter>
+      lender;    ///< instead of `writer`, where samples are lent: all links into one memory have it
+  std::uint32_t made{0};                 ///< of the memory, as long as a link holds it
   std::unique_ptr<LoanReader> borrower;  ///< instead of `reader`
   LinkStatus told{LinkStatus::None};     ///< producer that lends: as consumers know it
   AttachedLink* next{nullptr};           ///< producer: of the same set; the cycle's
@@ -56,10 +59,19 @@ class LinkInputSlot {
   void detach(const AttachedLink* link) noexcept;
   /// The port outlives all links.
   void release() noexcept { detach(link_); }
-  /// Reads the link into the port, in the cycle that started at `now`.
-  void read(TimePoint now) noexcept;
+  /// Reads the link into the port, in the cycle that started at `now`. `counts`: a sample that stays out makes the newest one older
+  /// by a cycle; of cycles that samples start only some do (CyclePace).
+  void read(TimePoint now, bool counts) noexcept;
+  /// Where it shows that a sample arrived. Null: no link, or one that wakes nobody.
+  [[nodiscard]] const std::uint32_t* arrival_word() const noexcept;
+  /// From the instant that the newest sample is of to the cycle that took it; empty: none was new in this cycle.
+  [[nodiscard]] std::optional<Duration> newest_latency() const noexcept { return newest_latency_; }
   /// Tells how the link does.
   void tell(IncomingLink& page) const noexcept;
+  /// Its producer says that what it sends is to be relied on.
+  [[nodiscard]] bool reliable() const noexcept {
+    return port_->status_ == LinkStatus::Valid || port_->status_ == LinkStatus::Degraded;
+  }
   /// Too old, reported faulty or absent: what a required set must not be while actuators move.
   [[nodiscard]] bool stale() const noexcept { return !port_->valid_; }
   /// Its producer or the supervisor has ended it in order: no reason for an alarm.
@@ -74,12 +86,17 @@ class LinkInputSlot {
   LinkInputPort* port_;
   std::uint32_t age_limit_;
   AttachedLink* link_{nullptr};
+  std::optional<Duration> newest_latency_;
+  Duration latency_before_{};
+  double jitter_ns_{0.0};
+  TimePoint newest_at_{};
+  TimePoint read_at_{};
   double latency_mean_ns_{0.0};
   std::uint32_t latency_max_ns_{0};
 };
 
 /// A provided set of real-time data. A set may have any number of consumers, one link each: what they get is encoded once.
-/// A lent set has a port: its samples are made in the memory of the link that was attached first.
+/// A lent set has a port: its samples are made in the memory that its links have in common.
 class LinkOutputSlot {
  public:
   LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms, Dictionary& dictionary,
@@ -103,6 +120,7 @@ class LinkOutputSlot {
   void encode_for(std::endian order) noexcept;
   void hand_on(TimePoint now, LinkStatus status) noexcept;
   void lend_first() noexcept;
+  [[nodiscard]] bool has_told(const AttachedLink& link) const noexcept;
   [[nodiscard]] MutableOctets payload(std::endian order) noexcept {
     return payloads_[order == std::endian::big ? 1 : 0];
   }

@@ -13,10 +13,10 @@
 /// high, `set_state` to Safe-Operational for medium.
 namespace hirosco {
 
-void CycleLoop::read_inputs(TimePoint started) noexcept {
+void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
   for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
     LinkInputSlot& input = plan_.inputs[i];
-    input.read(started);
+    input.read(started, counts);
     const bool stale = controlling() && input.stale() && (input.attached() || input.terms().required);
     if (stale && input.terms().missing == descriptor::MissingPolicy::Inhibit) inhibit(inhibited_by_link);
     if (stale && !input.ended() && input_was_stale_[i] == 0) {
@@ -30,7 +30,7 @@ void CycleLoop::read_inputs(TimePoint started) noexcept {
   awaits_fall_back_ = false;
   for (std::size_t i = 0; i < plan_.devices.size(); ++i) {
     DeviceSlot& device = plan_.devices[i];
-    device.read(controlling());
+    device.read(controlling(), counts);
     awaits_fall_back_ = awaits_fall_back_ || device.awaits();
     if (device.holds_back()) inhibit(inhibited_by_fall_back);
     else if (!device.alive() && controlling()) inhibit(inhibited_by_device);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/subsystem/pages/page_words.hpp"
 
+#include <algorithm>
+#include <span>
+
 namespace hirosco {
 namespace {
 
@@ -71,18 +74,28 @@ void MemberWords::tell(OctetWriter& words) noexcept {
       .put(vital_.execution_mean_ns.load(memory_order_relaxed))
       .put(vital_.lost_reports.load(memory_order_relaxed))
       .put(vital_.inhibited_at_cycle.load(memory_order_relaxed));
-  for (const IncomingLink& link : vital_.incoming)
+  // Those of the configuration in force stand first: what comes behind the last link that is there says nothing.
+  const auto last =
+      std::ranges::find_if(vital_.incoming.rbegin(), vital_.incoming.rend(),
+                           [](const IncomingLink& link) { return link.link.load(memory_order_relaxed) != 0; });
+  const auto used = static_cast<std::size_t>(vital_.incoming.rend() - last);
+  words.put(static_cast<std::uint32_t>(used));
+  for (const IncomingLink& link : std::span{vital_.incoming}.first(used))
     words.put(link.link.load(memory_order_relaxed))
         .put(link.lost.load(memory_order_relaxed))
         .put(link.latency_mean_ns.load(memory_order_relaxed))
-        .put(link.latency_max_ns.load(memory_order_relaxed));
+        .put(link.latency_max_ns.load(memory_order_relaxed))
+        .put(link.jitter_ns.load(memory_order_relaxed))
+        .put(link.age_us.load(memory_order_relaxed));
 }
 
 std::size_t MemberWords::urgent_octets() const noexcept { return urgent_vital_octets; }
 
 Result<> SupervisorWords::hear(Octets words) {
-  constexpr std::size_t octets = urgent_vital_octets + 5 * 8 + 4 * 4 + 8 + told_incoming_links * 4 * 4;
-  if (words.size() != octets)
+  constexpr std::size_t head = urgent_vital_octets + 5 * 8 + 4 * 4 + 8, each = 6 * 4;
+  std::uint32_t used = 0;
+  if (words.size() >= head + sizeof used) used = OctetReader{words.subspan(head)}.get<std::uint32_t>();
+  if (used > told_incoming_links || words.size() != head + sizeof used + used * each)
     return fail(ErrorCode::Malformed, "octets of vital words", static_cast<std::int64_t>(words.size()));
   OctetReader reader{words};
   const auto u32 = [&] { return reader.get<std::uint32_t>(); };
@@ -103,11 +116,15 @@ Result<> SupervisorWords::hear(Octets words) {
   copy_.execution_mean_ns.store(u32(), memory_order_relaxed);
   copy_.lost_reports.store(u32(), memory_order_relaxed);
   copy_.inhibited_at_cycle.store(u64(), memory_order_relaxed);
-  for (IncomingLink& link : copy_.incoming) {
+  static_cast<void>(u32());
+  for (IncomingLink& link : std::span{copy_.incoming}.subspan(used)) link.link.store(0, memory_order_relaxed);
+  for (IncomingLink& link : std::span{copy_.incoming}.first(used)) {
     link.link.store(u32(), memory_order_relaxed);
     link.lost.store(u32(), memory_order_relaxed);
     link.latency_mean_ns.store(u32(), memory_order_relaxed);
     link.latency_max_ns.store(u32(), memory_order_relaxed);
+    link.jitter_ns.store(u32(), memory_order_relaxed);
+    link.age_us.store(u32(), memory_order_relaxed);
   }
   return ok();
 }

@@ -53,7 +53,9 @@ TEST_F(PageWords, EachWordOfTheVitalPageArrivesInItsPlace) {
   vital.inhibited_at_cycle = 14;
   std::uint32_t number = 15;
   for (IncomingLink& link : vital.incoming)
-    for (auto* word : {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns}) *word = number++;
+    for (auto* word :
+         {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns, &link.age_us})
+      *word = number++;
   carry();
   EXPECT_EQ(vital_copy.state.load(), static_cast<std::uint32_t>(State::Operational));
   EXPECT_EQ(vital_copy.configuration.load(), 2u);
@@ -73,8 +75,24 @@ TEST_F(PageWords, EachWordOfTheVitalPageArrivesInItsPlace) {
   EXPECT_EQ(vital_copy.inhibited_at_cycle, 14u);
   number = 15;
   for (IncomingLink& link : vital_copy.incoming)
-    for (const auto* word : {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns})
+    for (const auto* word :
+         {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns, &link.age_us})
       EXPECT_EQ(*word, number++);
+}
+
+TEST_F(PageWords, OnlyLinksThatAreThereTravelAndThoseThatWentAreGone) {
+  vital.incoming[0].link = 3;
+  vital.incoming[2].link = 4;
+  vital.incoming[2].age_us = 5;
+  carry();
+  EXPECT_EQ(vital_copy.incoming[0].link, 3u);
+  EXPECT_EQ(vital_copy.incoming[1].link, 0u);
+  EXPECT_EQ(vital_copy.incoming[2].link, 4u);
+  EXPECT_EQ(vital_copy.incoming[2].age_us, 5u);
+  vital.incoming[2].link = 0;
+  carry();
+  EXPECT_EQ(vital_copy.incoming[0].link, 3u);
+  EXPECT_EQ(vital_copy.incoming[2].link, 0u);
 }
 
 TEST_F(PageWords, PermissionModeAndHeartbeatArrive) {

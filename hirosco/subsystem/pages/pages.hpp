@@ -16,7 +16,7 @@
 namespace hirosco {
 
 inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
-inline constexpr std::uint32_t page_version = 4;
+inline constexpr std::uint32_t page_version = 5;
 
 /// Why the framework inhibits the actuators of a subsystem; bits of VitalPage::inhibited.
 enum Inhibition : std::uint32_t {
@@ -36,9 +36,13 @@ struct IncomingLink {
   /// From the instant that a sample is of (its producer's planned cycle) to the start of the cycle that uses it first.
   std::atomic<std::uint32_t> latency_mean_ns{0};  ///< over about the last 1,000 samples
   std::atomic<std::uint32_t> latency_max_ns{0};
+  /// Mean distance of the latencies of two samples in a row, as RFC 3550 (6.4.1) reckons the jitter of arrivals.
+  std::atomic<std::uint32_t> jitter_ns{0};
+  std::atomic<std::uint32_t> age_us{
+      0};  ///< from the instant that the newest sample is of to the start of the newest cycle
 };
-/// A configuration may require more sets; those beyond are not told.
-inline constexpr std::size_t told_incoming_links = 8;
+/// As many as a configuration can require, by itself and from its subsystem together: of each link of a consumer is told.
+inline constexpr std::size_t told_incoming_links = 64;
 
 /// A number of 16 bits beside its complement: damage shows.  Realtime: wait-free.
 class CheckedWord {

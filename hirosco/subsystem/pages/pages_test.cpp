@@ -54,7 +54,8 @@ TEST(VitalPage, AsItIsMadeTellsOfNothing) {
        {&page.period_ns, &page.cycles, &page.service_steps, &page.overruns, &page.missed, &page.inhibited_at_cycle})
     EXPECT_EQ(number->load(), 0u);
   for (const IncomingLink& link : page.incoming)
-    for (const auto* number : {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns})
+    for (const auto* number :
+         {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns, &link.age_us})
       EXPECT_EQ(number->load(), 0u);
 }
 
@@ -66,8 +67,8 @@ TEST(VitalPage, HasABitOfItsOwnForEachReasonToInhibit) {
 }
 
 TEST(VitalPage, IsOfTheVersionThatDecodersOfOthersKnow) {
-  EXPECT_EQ(VitalPage{}.version, 4u) << "tests/endtoend/pages.py";
-  EXPECT_EQ(PermitPage{}.version, 4u);
+  EXPECT_EQ(VitalPage{}.version, 5u) << "tests/endtoend/pages.py";
+  EXPECT_EQ(PermitPage{}.version, 5u);
 }
 
 /// The finisher of SplitMix64 (Steele, Lea, Flood 2014): its first numbers of the seeds 0 and 1, as others print them.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hirosco/subsystem/process/cycle_rest.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
 
 namespace hirosco {

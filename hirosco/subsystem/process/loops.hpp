@@ -44,7 +44,7 @@ class Bell {
   std::unique_ptr<std::atomic<bool>> rung_{std::make_unique<std::atomic<bool>>(false)};
 };
 
-/// The cycle thread: sleeps to absolute times while a cycle is wanted, rests on a semaphore otherwise.
+/// The cycle thread: sleeps to absolute times, or until a sample starts its cycle, while a cycle is wanted, rests on a semaphore otherwise.
 class CycleThread {
  public:
   /// All must outlive end(). `hold` (may be null): how others reach the thread.

@@ -96,6 +96,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   [[nodiscard]] Demand cycle_demand() const noexcept;
   /// One cycle; call only while cycle_demand().wanted.  Realtime: bounded, no allocation. Thread: cycle.
   TimePoint cycle_step(TimePoint planned) noexcept { return cycle_.step(planned); }
+  /// What may start the next one before it is due.  Realtime: wait-free. Thread: cycle.
+  [[nodiscard]] CycleWait cycle_wait() const noexcept { return cycle_.wait(); }
   /// The cycle thread has seen that no cycle is wanted and rests.  Thread: cycle.
   void cycle_parked(std::uint32_t ticket) noexcept {
     // Told by who rests, not by who ordered it: one that spins after the order is watched until it is ended. Once for a
@@ -153,7 +155,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   const LinkOutputSlot* find_provided(std::string_view set) override;
   std::string refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) override;
   Duration period() override;
-  bool carries(LinkMethod method, LinkKind kind) override;
+  bool carries(LinkMethod method, LinkKind kind, bool wakes) override;
   Result<LinkRoute> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) override;
   Result<LinkRoute> reach(const pus::st128::ReachRequest& request) override;
   bool detach(std::uint8_t link) override;
@@ -200,6 +202,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   [[nodiscard]] bool cycle_rests() const noexcept;
   bool push(const CycleCommand& command);
   bool close_call(const pus::Request& request);
+  [[nodiscard]] std::shared_ptr<LoanWriter> lender_of(std::uint16_t slot, const LinkLayout& layout);
   bool withdraw(std::uint8_t link);
   [[nodiscard]] bool required_links_attached() const noexcept;
   /// The refusal of what the present state does not permit.

@@ -37,8 +37,9 @@ std::string GenericSubsystem::refuse_link(pus::st128::Role role, std::string_vie
   return has_another ? "the set has a link already" : "";
 }
 
-bool GenericSubsystem::carries(LinkMethod method, LinkKind kind) {
-  return find_link_mechanism(platform_.links, method, kind) != nullptr;
+bool GenericSubsystem::carries(LinkMethod method, LinkKind kind, bool wakes) {
+  const LinkMechanism* mechanism = find_link_mechanism(platform_.links, method, kind);
+  return mechanism != nullptr && (mechanism->wakes() || !wakes);
 }
 
 Duration GenericSubsystem::period() { return configuration_ != nullptr ? configuration_->sampling : Duration{}; }
@@ -53,13 +54,14 @@ Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& requ
   if (!refusal_.empty()) return fail(ErrorCode::NotPermitted, refusal_.c_str());
   const bool producer = request.role == pus::st128::Role::Producer;
   const pus::st128::Agreement& agreement = request.agreement;
-  LinkLayout layout = agreement.layout(request.epoch);
+  LinkLayout layout = agreement.layout(request.header_epoch());
   layout.route = request.route;
   const LinkMechanism* mechanism = find_link_mechanism(platform_.links, agreement.method, agreement.kind);
   if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
   if (mechanism->in_memory() && !memory) return fail(ErrorCode::Malformed, "no memory beside the attach request");
   auto link = std::make_unique<AttachedLink>();
   link->id = request.link;
+  link->made = request.header_epoch();
   link->agreement = agreement;
   link->order = agreement.byte_order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
   LinkEnd end{.link = nullptr, .role = request.role, .epoch = request.epoch, .slot = 0};
@@ -72,7 +74,11 @@ Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& requ
     if ((agreement.kind == LinkKind::Loaned) != slot->terms().terms.lent())
       return fail(ErrorCode::Mismatch, "the agreement lends and the set is copied, or the reverse");
     if (agreement.kind == LinkKind::Loaned) {
-      HIROSCO_TRY_LET(link->lender, mechanism->lend(platform_.memory, memory, layout));
+      const auto index = static_cast<std::uint16_t>(slot - plan.outputs.begin());
+      if (request.made != 0) link->lender = lender_of(index, layout);
+      if (link->lender == nullptr) {
+        HIROSCO_TRY_LET(link->lender, mechanism->lend(platform_.memory, memory, layout));
+      }
     } else {
       HIROSCO_TRY_LET(link->writer, mechanism->produce(platform_.memory, memory, layout));
     }
@@ -100,6 +106,16 @@ Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& requ
   end.link = std::move(link);
   link_ends_.emplace(request.link, std::move(end));
   return route;
+}
+
+/// Who looks at a set that is lent already looks at the same memory. Null: no link has that one.
+std::shared_ptr<LoanWriter> GenericSubsystem::lender_of(std::uint16_t slot, const LinkLayout& layout) {
+  for (const auto& [id, end] : link_ends_) {
+    if (end.role != pus::st128::Role::Producer || end.slot != slot || end.link->made != layout.epoch) continue;
+    if (layout.wakes) end.link->lender->start_waking();
+    return end.link->lender;
+  }
+  return nullptr;
 }
 
 /// The cycle may be writing: an end is told beside that where its samples go.

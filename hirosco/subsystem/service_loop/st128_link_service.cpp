@@ -39,7 +39,8 @@ void LinkService::offer(Octets data, const pus::Request& request) {
                    .period = owner_.period(),
                    .terms = required->terms,
                    .depth = required->depth,
-                   .fields = {}};
+                   .fields = {},
+                   .wakes = required->starts};
   for (const auto& field : required->fields) own.fields.push_back({field.name, field.type, field.count});
   std::array<std::byte, max_packet_octets> buffer;
   const auto octets = st128::write_offer(buffer, asked->link, own);
@@ -60,8 +61,9 @@ void LinkService::negotiate(Octets data, const pus::Request& request) {
     return refuse(asked->link, {4, std::move(why)}, request);
   const st128::Offer own{
       .set = asked->set, .period = owner_.period(), .terms = provided->terms().terms, .fields = provided->fields()};
-  const auto outcome = st128::negotiate(
-      own, asked->consumer, [this](LinkMethod method, LinkKind kind) { return owner_.carries(method, kind); });
+  const auto outcome = st128::negotiate(own, asked->consumer, [this](LinkMethod method, LinkKind kind, bool wakes) {
+    return owner_.carries(method, kind, wakes);
+  });
   if (!outcome) return refuse(asked->link, outcome.error(), request);
   std::array<std::byte, max_packet_octets> buffer;
   const auto octets = st128::write_agreement(buffer, asked->link, *outcome);

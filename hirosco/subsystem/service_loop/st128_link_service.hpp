@@ -25,7 +25,7 @@ class LinkServiceOwner {
   virtual std::string refuse_link(pus::st128::Role role, std::string_view set, std::uint8_t link) = 0;
   virtual Duration period() = 0;
   /// Whether a mechanism of the platform carries such links.
-  virtual bool carries(LinkMethod method, LinkKind kind) = 0;
+  virtual bool carries(LinkMethod method, LinkKind kind, bool wakes) = 0;
   /// Makes this end of the memory, or at its address, and hands it to the cycle; where it stands.
   virtual Result<LinkRoute> attach(const pus::st128::AttachRequest& request, const MemoryHandle& memory) = 0;
   /// Tells a producer's end where its consumer stands; where it stands itself.

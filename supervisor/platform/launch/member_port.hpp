@@ -23,6 +23,8 @@ struct MemberStatistics {
     std::uint32_t lost{0};
     std::uint32_t latency_mean_ns{0};
     std::uint32_t latency_max_ns{0};
+    std::uint32_t jitter_ns{0};
+    std::uint32_t age_us{0};
   };
   std::uint32_t inhibited{0};  ///< bits of Inhibition
   bool realtime{false};

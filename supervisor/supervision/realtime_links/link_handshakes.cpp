@@ -22,7 +22,8 @@ constexpr Duration stage_limit = 2s;
   return std::string{to_text(agreement.method)} + ", " + std::string{to_text(agreement.byte_order)} + " endian, " +
          std::string{to_text(agreement.kind)} + ", " + hertz(agreement.producer_period) + " to " +
          hertz(agreement.consumer_period) + ", " + std::to_string(agreement.payload_octets()) + " octets" +
-         (agreement.depth == 0 ? "" : ", " + std::to_string(agreement.depth) + " samples deep");
+         (agreement.depth == 0 ? "" : ", " + std::to_string(agreement.depth) + " samples deep") +
+         (agreement.wakes ? ", each starts a cycle" : "");
 }
 
 /// Where the mission puts an end, else in this computer at a port that the system chooses.
@@ -138,12 +139,8 @@ void LinkHandshakes::agreed(Handshake& handshake, const st128::Agreement& agreem
     return give_up(handshake.link->id, "payload size out of range");
   const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, agreement.method, agreement.kind);
   if (mechanism == nullptr) return give_up(handshake.link->id, "no mechanism here carries " + terms_text(agreement));
-  const std::uint32_t epoch = epoch_ + 1;
-  auto shared = mechanism->establish(memory_, agreement.layout(epoch));
-  if (!shared) return give_up(handshake.link->id, shared.error().text);
+  if (const auto shared = share(handshake, agreement); !shared) return give_up(handshake.link->id, shared.error().text);
   handshake.agreement = agreement;
-  handshake.shared = std::move(*shared);
-  handshake.epoch = epoch_ = epoch;
   if (!mechanism->in_memory())
     handshake.route = {.link = handshake.link->id,
                        .producer = place_of(handshake.link->from_address),
@@ -152,6 +149,29 @@ void LinkHandshakes::agreed(Handshake& handshake, const st128::Agreement& agreem
   handshake.stage = Stage::AwaitProducer;
   handshake.deadline += stage_limit;
   attach(handshake, st128::Role::Producer);
+}
+
+/// What both ends share: memory made for this link, or, of a set that is lent to somebody else already, that one's.
+Result<> LinkHandshakes::share(Handshake& handshake, const st128::Agreement& agreement) {
+  handshake.epoch = handshake.made = ++epoch_;
+  const descriptor::MissionLink& link = *handshake.link;
+  const bool lends = agreement.kind == LinkKind::Loaned;
+  if (lends)
+    for (const auto& [id, lent] : lent_) {
+      const descriptor::MissionLink& other = *mission_.find_link(id);
+      const bool of_set = id != link.id && other.from == link.from && other.provides == link.provides;
+      const bool lives = handshakes_.contains(id) || (graph_.holds(id, handshake.producer) && !releases(id));
+      if (!of_set || !lives || lent.layout_hash != agreement.layout_hash()) continue;
+      handshake.shared = lent.shared;
+      handshake.made = lent.made;
+      break;
+    }
+  if (handshake.made == handshake.epoch) {
+    const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, agreement.method, agreement.kind);
+    HIROSCO_TRY_LET(handshake.shared, mechanism->establish(memory_, agreement.layout(handshake.epoch)));
+  }
+  if (lends) lent_.insert_or_assign(link.id, Lent{handshake.shared, handshake.made, agreement.layout_hash()});
+  return ok();
 }
 
 void LinkHandshakes::attach(const Handshake& handshake, st128::Role role) {
@@ -163,7 +183,8 @@ void LinkHandshakes::attach(const Handshake& handshake, st128::Role role) {
                                            .epoch = handshake.epoch,
                                            .set = producer ? handshake.link->provides : handshake.link->requires_,
                                            .agreement = handshake.agreement,
-                                           .route = handshake.route});
+                                           .route = handshake.route,
+                                           .made = handshake.made == handshake.epoch ? 0 : handshake.made});
   if (!octets) return;  // the same agreement came in a packet: it fits; else the stage's time limit ends it
   operator_.send_link_command(producer ? handshake.producer : handshake.consumer, st128::attach,
                               Octets{buffer}.first(*octets), handshake.shared);
@@ -221,6 +242,8 @@ void LinkHandshakes::give_up(std::uint8_t link, const std::string& why, std::uin
   if (found == handshakes_.end()) return;
   Handshake failed = std::move(found->second);
   handshakes_.erase(found);
+  // Who could not lend in it may have lost it: the next try is made of its own.
+  if (failed.made != 0) std::erase_if(lent_, [&](const auto& entry) { return entry.second.made == failed.made; });
   // Whoever was told to attach may have done so or may still do it: an end that stays attached would refuse the next try.
   const std::array data{std::byte{link}};
   if (failed.stage >= Stage::AwaitConsumer && failed.consumer != without)

@@ -74,6 +74,7 @@ class LinkHandshakes {
     TimePoint deadline{};
     std::string failure{};  ///< why it ends before its deadline
     std::uint32_t epoch{};
+    std::uint32_t made{};  ///< epoch for which the memory was made
     pus::st128::Agreement agreement;
     MemoryHandle shared;  ///< by both ends
     LinkRoute route;  ///< as far as it is known, of a link that is not memory
@@ -81,6 +82,7 @@ class LinkHandshakes {
   };
   void offered(Handshake& handshake, const pus::st128::Offer& offer);
   void agreed(Handshake& handshake, const pus::st128::Agreement& agreement);
+  [[nodiscard]] Result<> share(Handshake& handshake, const pus::st128::Agreement& agreement);
   void attach(const Handshake& handshake, pus::st128::Role role);
   void attached(Handshake& handshake, const pus::st128::Attached& report);
   /// Of a link that is not memory: the producer learns where its consumer stands.
@@ -107,6 +109,13 @@ class LinkHandshakes {
     bool refused{false};  ///< by an end that holds on
   };
   std::map<std::uint8_t, Release> releases_;
+  /// Memory that a set is lent in, by the links that have it. One whose producer has let go of it lends nothing any more.
+  struct Lent {
+    MemoryHandle shared;
+    std::uint32_t made{};
+    std::uint64_t layout_hash{};
+  };
+  std::map<std::uint8_t, Lent> lent_;
   std::uint32_t epoch_{0};
 };
 

@@ -92,13 +92,6 @@ void Housekeeping::add_consumer(const descriptor::MissionLink& link, LinkRow& st
       status.latency_max_ns = found->latency_max_ns;
       return;
     }
-    const auto* configuration = member.descriptor().find_configuration(member.configuration());
-    if (configuration == nullptr || configuration->requires_.size() <= incoming.size()) return;
-    const auto beyond = configuration->requires_.begin() + static_cast<std::ptrdiff_t>(incoming.size());
-    if (std::none_of(beyond, configuration->requires_.end(),
-                     [&](const auto& wanted) { return wanted.name == link.requires_; }))
-      return;
-    status.lost = status.latency_mean_ns = status.latency_max_ns = LinkRow::not_told;
     return;
   }
 }

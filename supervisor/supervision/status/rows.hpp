@@ -26,8 +26,7 @@ struct MemberRow {
 };
 
 struct LinkRow {
-  /// What the consumer cannot tell, as it has room for some of its links only; of a link that is not memory, samples and age, too,
-  /// as they pass nobody else.
+  /// Of a link that is not memory, samples and age: they pass nobody but its consumer.
   static constexpr std::uint32_t not_told = std::numeric_limits<std::uint32_t>::max();
   std::uint8_t link{0};
   std::uint8_t up{0};

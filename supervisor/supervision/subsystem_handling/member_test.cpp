@@ -104,6 +104,8 @@ TEST_F(MemberTest, ItsStatisticsAreEachWordOfItsVitalPage) {
   vital->incoming[1].lost = 10;
   vital->incoming[1].latency_mean_ns = 11;
   vital->incoming[1].latency_max_ns = 12;
+  vital->incoming[1].jitter_ns = 13;
+  vital->incoming[1].age_us = 14;
   const auto seen = member.statistics().value();
   EXPECT_EQ(seen.inhibited, 1u);
   EXPECT_TRUE(seen.realtime);
@@ -120,6 +122,8 @@ TEST_F(MemberTest, ItsStatisticsAreEachWordOfItsVitalPage) {
   EXPECT_EQ(seen.incoming[1].lost, 10u);
   EXPECT_EQ(seen.incoming[1].latency_mean_ns, 11u);
   EXPECT_EQ(seen.incoming[1].latency_max_ns, 12u);
+  EXPECT_EQ(seen.incoming[1].jitter_ns, 13u);
+  EXPECT_EQ(seen.incoming[1].age_us, 14u);
 }
 
 TEST_F(MemberTest, ADeadOneIsGoneWithItsPages) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/utilities/os/word_wait.hpp"
 #include "hirosco/utilities/processor.hpp"
 
 namespace hirosco::detail {
@@ -37,6 +38,15 @@ struct LinkWords {
   // The standard has no atomic_ref to const yet; a lock-free load does not write, so a read-only mapping is safe.
   static Word load(const std::byte* memory, std::size_t at, std::memory_order order) noexcept {
     return word(const_cast<std::byte*>(memory), at).load(order);
+  }
+
+  /// The half of a word that changes with each step of a count: what a consumer can sleep on.
+  static const std::uint32_t* low_half(const std::byte* memory, std::size_t at) noexcept {
+    constexpr std::size_t low = std::endian::native == std::endian::little ? 0 : sizeof(std::uint32_t);
+    return reinterpret_cast<const std::uint32_t*>(memory + at + low);
+  }
+  static void wake(std::byte* memory, std::size_t at) noexcept {
+    wake_on_word(const_cast<std::uint32_t&>(*low_half(memory, at)));
   }
 
   static Word stamp_of(TimePoint sampled_at) noexcept {

@@ -162,6 +162,60 @@ TEST_P(LoanConformance, AProducerThatDiesWhileItMakesASampleLeavesTheOneBefore) 
   EXPECT_EQ(reader_->newest().flow, Flow::Old);
 }
 
+TEST_P(LoanConformance, AnyNumberOfConsumersLookAtOnePlaceAndNothingIsCopied) {
+  std::vector<std::unique_ptr<LoanReader>> readers;
+  for (int i = 0; i < 20; ++i) readers.push_back(GetParam()->borrow(memory_, shared_, layout).value());
+  for (std::uint64_t number = 1; number <= 9; ++number) {
+    const std::byte* const made = writer_->lend().data();
+    publish(number);
+    for (const auto& reader : readers) {
+      const LinkSample found = reader->newest();
+      ASSERT_EQ(found.flow, Flow::New);
+      ASSERT_EQ(found.count, number);
+      // Another process has it at another address; here both ends are one.
+      ASSERT_EQ(reader->look().data(), made);
+      ASSERT_TRUE(std::ranges::equal(reader->look(), sample(number)));
+      ASSERT_TRUE(reader->whole());
+    }
+  }
+}
+
+/// One consumer stands still, one dies while it looks, one comes late: each loses what it loses, and nobody else anything.
+TEST_P(LoanConformance, ASlowOrDeadConsumerCostsSamplesOfItsOwnOnly) {
+  auto slow = GetParam()->borrow(memory_, shared_, layout).value();
+  auto dead = GetParam()->borrow(memory_, shared_, layout).value();
+  publish(1);
+  ASSERT_EQ(slow->newest().count, 1u);
+  ASSERT_FALSE(slow->look().empty());
+  ASSERT_EQ(dead->newest().count, 1u);
+  ASSERT_FALSE(dead->look().empty());
+  dead.reset();
+  std::uint64_t lost = 0;
+  for (std::uint64_t number = 1; number <= 100; ++number) {
+    if (number > 1) publish(number);
+    const LinkSample found = reader_->newest();
+    lost += found.lost;
+    ASSERT_EQ(found.count, number) << "the producer waits for nobody";
+    ASSERT_TRUE(looks_at(number));
+    ASSERT_TRUE(reader_->whole());
+  }
+  EXPECT_EQ(lost, 0u);
+  EXPECT_FALSE(slow->whole());
+  EXPECT_EQ(slow->newest().lost, 98u);
+  EXPECT_TRUE(std::ranges::equal(slow->look(), sample(100)));
+  const auto late = GetParam()->borrow(memory_, shared_, layout).value();
+  EXPECT_EQ(late->newest().lost, 0u);
+}
+
+/// The plant: a consumer that does what none can, as its memory is mapped for reading. The suite sees it in the others.
+TEST_P(LoanConformance, AConsumerThatCouldWriteWouldBeSeenByTheOthers) {
+  publish(1);
+  ASSERT_EQ(reader_->newest().count, 1u);
+  const Octets place = reader_->look();
+  const_cast<std::byte&>(place[0]) ^= std::byte{1};
+  EXPECT_FALSE(looks_at(1));
+}
+
 TEST_P(LoanConformance, ThereIsNoSecondProducerAndNoOtherAgreement) {
   EXPECT_FALSE(GetParam()->lend(memory_, shared_, layout));
   EXPECT_FALSE(GetParam()->produce(memory_, shared_, layout));

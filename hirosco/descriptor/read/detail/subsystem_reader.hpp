@@ -64,6 +64,9 @@ class SubsystemReader {
   // read_configuration.cpp
   void read_configuration(const xml::Element& element);
   void read_budget(Attributes& attributes, Configuration& configuration);
+  void read_start(Attributes& attributes, Configuration& configuration);
+  /// When its sets are known: the one that starts the cycle.
+  void check_start(const xml::Element& element, Configuration& configuration);
   void read_device_use(const xml::Element& element, Configuration& configuration, Unique& names);
   /// Its index; empty and reported: it is not declared, or used twice.
   std::optional<std::uint16_t> find_device(const xml::Element& element, const std::string& name, Unique& names);
