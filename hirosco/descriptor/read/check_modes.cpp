@@ -97,8 +97,9 @@ void MissionReader::check_cycles(const xml::Element& element, const Mode& mode) 
     if (cycle.longest) continue;
     problems_.add(
         element, "E0331",
-        fmt::format("in mode {} a cycle of {} {} may not end within its {} us", in_quotes(mode.name), cycle.subsystem,
-                    in_quotes(cycle.configuration->name), cycle.configuration->sampling / 1us),
+        fmt::format("in mode {} a {} of {} {} may not end within its {} us", in_quotes(mode.name),
+                    cycle.loop != nullptr ? "step of the loop" : "cycle", cycle.subsystem, in_quotes(cycle.name()),
+                    cycle.period() / 1us),
         "others go before it: lower a budget_us, or give the shorter sampling_us the higher priority; "
         "`hirosco check --show` tells what each takes");
   }

@@ -22,7 +22,7 @@ constexpr std::size_t max_custom_services = 64;
 
 Subsystem SubsystemReader::read(const xml::Element& root) {
   read_head(root);
-  std::vector<const xml::Element*> parameters, configurations, services_elements, custom_services;
+  std::vector<const xml::Element*> parameters, configurations, services_elements, custom_services, uses, bumpless;
   const auto later = [](std::vector<const xml::Element*>& list) {
     return [&list](const xml::Element& e) { list.push_back(&e); };
   };
@@ -45,6 +45,9 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
                               {"Commands", [this](const auto& element) { read_commands(element); }, 255},
                               {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
                               {"CustomService", later(custom_services), max_custom_services},
+                              {"ServiceLoop", [this](const auto& element) { read_service_loop(element); }, max_service_loops},
+                              {"Service", later(uses), 255},
+                              {"Bumpless", later(bumpless), max_configurations},
                               {"Configuration", later(configurations), max_configurations}};
   Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_,
                     self_test_within_};
@@ -59,7 +62,10 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   for (const xml::Element* element : services_elements)
     std::ranges::find(service_rows, element->name, &Child::name)->read(*element);
   for (const xml::Element* element : custom_services) read_custom_service(*element);
+  for (const xml::Element* element : uses) read_service(*element, subsystem_.service_uses, service_uses_, false);
   for (const xml::Element* element : configurations) read_configuration(*element);
+  for (const xml::Element* element : bumpless) read_bumpless(*element);
+  check_service_list(root);
   imply_framework_events();
   check_enumerations();
   check_addresses();

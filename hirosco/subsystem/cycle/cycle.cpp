@@ -52,21 +52,10 @@ void CycleLoop::prepare(CyclePlan plan) {
   first_ = true;
   inhibited_ = 0;
   awaits_fall_back_ = false;
-  count_ = 0;
+  taken_over_ = nullptr;
   heartbeat_ = parts_.permit.heartbeat.load(std::memory_order_acquire);
   silent_cycles_ = 0;
-  silence_limit_ = supervisor_silence_cycles(plan_.configuration->sampling);
-  overruns_in_a_row_ = 0;
-  overruns_ = 0;
-  latency_max_ns_ = 0;
-  execution_max_ns_ = 0;
-  execution_mean_ns_ = 0.0;
-  times_ = {};
-  statistics_.store({});
-  times_parameter_.store({});
-  budget_.begin(*plan_.configuration, parts_.realtime);
-  realtime_.begin(plan_.configuration->sampling);
-  budget_parameter_.store(budget_.told());
+  begin_counting(*plan_.configuration);
   link_statistics_.store({});
   watched_.clear();
   for (std::size_t i = 0; i < own_writes_octets_; ++i) {
@@ -90,11 +79,12 @@ TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const TimePoint started = parts_.clock.now();
   listen_to_supervisor();
   check_permit();
-  take_commands();
+  take_commands(planned);
   read_inputs(started);
   note_stores();
   run_node(planned);
   note_own_writes();
+  end_reconfiguration();
   write_outputs(planned);
   if (plan_.sampler != nullptr) plan_.sampler->tick(*this, *this);
   ++count_;
@@ -139,7 +129,7 @@ void CycleLoop::listen_to_supervisor() noexcept {
   raise(descriptor::framework_event::supervisor_silent, {&cycles, 1});
 }
 
-void CycleLoop::take_commands() noexcept {
+void CycleLoop::take_commands(TimePoint planned) noexcept {
   parts_.writes.apply(parts_.dictionary);
   // Bounded by the ring: at most what was there when the cycle began.
   for (std::size_t left = parts_.handover.commands.size(); left > 0; --left) {
@@ -158,6 +148,7 @@ void CycleLoop::take_commands() noexcept {
         plan_.outputs[command->index].detach(command->link);
         report(ReportKind::OutputDetached, command->index, {}, command->link);
         break;
+      case CommandKind::Reconfigure: reconfigure(*command->reconfiguration, planned); break;
       case CommandKind::SelfTest:
         self_test_.begin(command->request, plan_.configuration->self_test_within);
         if (state_ != State::SafeOperational) end_self_test(self_test_.leave(state_));

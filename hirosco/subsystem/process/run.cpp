@@ -95,7 +95,7 @@ class Bell {
     return Bell{std::move(event)};
   }
   [[nodiscard]] int descriptor() const noexcept { return event_.descriptor(); }
-  /// Realtime: one system call that does not wait. Thread: cycle.
+  /// Realtime: one system call that does not wait. Thread: any.
   void ring() noexcept {
     if (!rung_->exchange(true, std::memory_order_acq_rel)) event_.notify();
   }
@@ -142,12 +142,18 @@ class CycleThread {
         wanted_.wait();
         continue;
       }
-      if (realtime_) static_cast<void>(set_fifo_priority(demand.priority));
-      cycle(demand.generation);
+      take_priority(demand.priority);
+      cycle(demand.generation, demand.priority);
     }
   }
 
-  void cycle(std::uint32_t generation) {
+  /// Of the configuration; 0 is ordinary scheduling, whatever the one before had.
+  void take_priority(int priority) {
+    if (!realtime_) return;
+    static_cast<void>(priority > 0 ? set_fifo_priority(priority) : set_ordinary_scheduling());
+  }
+
+  void cycle(std::uint32_t generation, int priority) {
     const RealtimeScope no_heap;
     TimePoint planned = clock_.now() + subsystem_.cycle_demand().period;
     for (;;) {
@@ -155,6 +161,11 @@ class CycleThread {
       const auto demand = subsystem_.cycle_demand();
       if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) break;
       planned = subsystem_.cycle_step(planned);
+      // Another configuration may have followed without a break (adr 0096): its period is in `planned`.
+      if (const int wanted = subsystem_.cycle_demand().priority; wanted != priority) {
+        priority = wanted;
+        take_priority(priority);
+      }
       if (subsystem_.has_reports()) bell_.ring();
       ++cycles_;
     }
@@ -169,6 +180,45 @@ class CycleThread {
   std::atomic<bool> ending_{false};
   std::uint64_t cycles_{0};  ///< the cycle thread's until it is joined, like the next
   std::uint64_t heap_uses_{0};
+  Thread thread_;
+};
+
+/// A loop of services of its own (adr 0096), in its thread as long as the process lives.
+class OwnLoopThread {
+ public:
+  OwnLoopThread(GenericSubsystem& subsystem, std::size_t loop, const Clock& clock, Bell& bell, bool realtime)
+      : subsystem_{subsystem}, loop_{loop}, clock_{clock}, bell_{bell}, realtime_{realtime} {}
+  [[nodiscard]] Result<> start() {
+    HIROSCO_TRY_LET(thread_, Thread::start(subsystem_.own_loop(loop_).name, [this] { run(); }, cycle_stack_octets));
+    return ok();
+  }
+  void end() {
+    ending_.store(true, std::memory_order_release);
+    thread_.join();
+  }
+
+ private:
+  void run() {
+    const int priority = subsystem_.own_loop(loop_).priority;
+    // One with a priority shares the processor of the cycles, where its response is reckoned (adr 0085); one without goes anywhere.
+    if (realtime_ && priority > 0) {
+      static_cast<void>(pin_to_cycle_cpu());
+      static_cast<void>(set_fifo_priority(priority));
+    }
+    TimePoint planned = clock_.now() + subsystem_.own_loop(loop_).period;
+    while (!ending_.load(std::memory_order_acquire)) {
+      sleep_until(planned);
+      planned = subsystem_.own_loop_step(loop_, planned);
+      if (subsystem_.has_reports()) bell_.ring();
+    }
+  }
+
+  GenericSubsystem& subsystem_;
+  std::size_t loop_;
+  const Clock& clock_;
+  Bell& bell_;
+  bool realtime_;
+  std::atomic<bool> ending_{false};
   Thread thread_;
 };
 
@@ -323,8 +373,17 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
     return exit_environment;
   }
+  std::vector<std::unique_ptr<OwnLoopThread>> loops;
+  for (std::size_t i = 0; i < subsystem.own_loops(); ++i) {
+    loops.push_back(std::make_unique<OwnLoopThread>(subsystem, i, clock, *bell, realtime));
+    if (const auto started = loops.back()->start(); !started) {
+      fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
+      return exit_environment;
+    }
+  }
   serve(argv[0], subsystem, clock, channel, cycle, *bell);
   cycle.end();
+  for (const auto& loop : loops) loop->end();
   cycle.tell_heap_uses(argv[0]);
   return 0;
 }
