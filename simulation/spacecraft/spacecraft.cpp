@@ -318,7 +318,8 @@ bool Spacecraft::advance(TimePoint end) {
     if (member->engine && !member->stopped && !member->stuck && member->service_wake <= next) step_service(*member);
   for (const auto& member : members_)
     for (std::size_t i = 0; i < member->loop_wakes.size() && member->engine && !member->stopped; ++i)
-      if (member->loop_wakes[i] <= next) member->loop_wakes[i] = member->engine->own_loop_step(i, member->loop_wakes[i]);
+      if (member->loop_wakes[i] <= next)
+        member->loop_wakes[i] = member->engine->own_loop_step(i, member->loop_wakes[i]);
   if (guard_wake_ <= next) guard_wake_ = guard_->step(next);
   if (supervisor_wake_ <= next) supervisor_wake_ = supervisor_->step(next);
   return true;

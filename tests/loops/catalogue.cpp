@@ -39,7 +39,8 @@ class Catalogue final : public Subsystem {
   Result<> safe_operational(const Cycle&) noexcept override { return look(); }
   Result<> operational(const Cycle&) noexcept override { return look(); }
   /// Nothing but a count is remembered, and it goes on.
-  Result<> bumpless(const descriptor::Configuration&, const descriptor::Configuration&, const Cycle&) noexcept override {
+  Result<> bumpless(const descriptor::Configuration&, const descriptor::Configuration&,
+                    const Cycle&) noexcept override {
     return ok();
   }
 

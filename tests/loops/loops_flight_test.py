@@ -28,9 +28,9 @@ class Loops(unittest.TestCase):
         with flight.Flight(MISSION) as craft:
             craft.wait_told("commissioned: mode operation", 20.0)
             pid, realtime = craft.pid_of(PROGRAM), self.threads(craft)["cycle"][0] == 1
-            self.assertIn("PAGES", self.threads(craft))
+            self.assertIn("loop.PAGES", self.threads(craft))
             if realtime:
-                self.assertEqual(self.threads(craft)["PAGES"], (1, 12))
+                self.assertEqual(self.threads(craft)["loop.PAGES"], (1, 12))
             measured = []
             for configuration, sampling_s, priority in ((2, 0.002, 50), (1, 0.004, 30), (2, 0.002, 50)):
                 code, reports = craft.tc("CATALOGUE", "CONFIGURE", configuration)

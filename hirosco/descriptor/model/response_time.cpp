@@ -16,7 +16,8 @@ namespace {
   Duration sum = of.budget();
   for (const CycleResponse& other : cycles) {
     if (&other == &of || other.priority() < of.priority()) continue;
-    const bool in_turn = other.priority() == of.priority() && of.priority() > 0;  // without a priority nobody keeps a turn
+    const bool in_turn =
+        other.priority() == of.priority() && of.priority() > 0;  // without a priority nobody keeps a turn
     sum += in_turn ? other.budget() : begun_within(span, other.period()) * other.budget();
   }
   return sum;

@@ -33,10 +33,12 @@ const std::string step_bounds =
 const std::string good_bumpless = R"(<Bumpless between="SOFT STIFF">)" + step_bounds + "</Bumpless>";
 
 std::string arm_with(const std::string& bumpless, const std::string& soft = "", const std::string& used = used_device,
-                 const std::string& linked = state_set) {
+                     const std::string& linked = state_set) {
   std::string text = arm_text;
-  for (const auto& [from, to] : {std::pair<std::string, std::string>{" SOFT>", " " + soft + ">"}, {"DEVICE", used},
-                                 {"SETS", linked}, {"BUMPLESS", bumpless}})
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{" SOFT>", " " + soft + ">"},
+                                 {"DEVICE", used},
+                                 {"SETS", linked},
+                                 {"BUMPLESS", bumpless}})
     text.replace(text.find(from), from.size(), to);
   return text;
 }
@@ -62,17 +64,19 @@ TEST(Bumpless, HoldsBothWaysBetweenTheNamedConfigurationsAndBoundsEachOutput) {
 }
 
 TEST(Bumpless, SaysWhatIsAgainstIt) {
-  const auto against = [](const std::string& words) {
-    return "E0246 'SOFT' and 'STIFF' are not compatible: " + words;
-  };
-  EXPECT_EQ(bumpless_problem_of(arm_with(good_bumpless, "", R"(<Device name="JOINT"><Endnode transfer="shared_memory" address="other"/></Device>)")),
-            against("they do not use the same devices in the same way: endnodes, fall-backs, settings, limits, order"));
-  EXPECT_EQ(bumpless_problem_of(arm_with(good_bumpless, "", R"(<Device name="JOINT" silence="7"><Endnode transfer="shared_memory" address="joint"/></Device>)")),
+  const auto against = [](const std::string& words) { return "E0246 'SOFT' and 'STIFF' are not compatible: " + words; };
+  EXPECT_EQ(
+      bumpless_problem_of(arm_with(
+          good_bumpless, "", R"(<Device name="JOINT"><Endnode transfer="shared_memory" address="other"/></Device>)")),
+      against("they do not use the same devices in the same way: endnodes, fall-backs, settings, limits, order"));
+  EXPECT_EQ(bumpless_problem_of(arm_with(
+                good_bumpless, "",
+                R"(<Device name="JOINT" silence="7"><Endnode transfer="shared_memory" address="joint"/></Device>)")),
             against("they do not use the same devices in the same way: endnodes, fall-backs, settings, limits, order"));
   EXPECT_EQ(bumpless_problem_of(arm_with(good_bumpless, "", used_device, "")),
             against("they do not provide the same sets, in the same order and by the same terms"));
   EXPECT_EQ(bumpless_problem_of(arm_with(good_bumpless, "", used_device,
-                            R"(<RealTimeLinkService><Provides name="STATE"><ParamRef name="KP"/></Provides>
+                                         R"(<RealTimeLinkService><Provides name="STATE"><ParamRef name="KP"/></Provides>
                                <Requires name="HAND"><Field name="X" type="DOUBLE"/></Requires></RealTimeLinkService>)")),
             against("they do not require the same sets, in the same order and by the same terms"));
   EXPECT_EQ(bumpless_problem_of(arm_with(good_bumpless, R"(self_test="required")")),
@@ -95,7 +99,8 @@ TEST(Bumpless, RefusesWhatItCannotMean) {
             "E0246 the subsystem has no configuration 'HARD'");
   EXPECT_EQ(bumpless_problem_of(arm_with(R"(<Bumpless between="SOFT STIFF STIFF">)" + step_bounds + "</Bumpless>")),
             "E0246 'STIFF' stands in a <Bumpless> twice");
-  EXPECT_EQ(bumpless_problem_of(arm_with(R"(<Bumpless between="SOFT STIFF"><Step device="JOINT" output="TORQUE" most="1"/></Bumpless>)")),
+  EXPECT_EQ(bumpless_problem_of(arm_with(
+                R"(<Bumpless between="SOFT STIFF"><Step device="JOINT" output="TORQUE" most="1"/></Bumpless>)")),
             "E0247 nothing bounds 'BRAKE' of actuator 'JOINT' where the configuration changes");
   EXPECT_EQ(bumpless_problem_of(arm_with(changed("TORQUE", "TORQUES", good_bumpless))).substr(0, 5), "E0247");
   EXPECT_EQ(bumpless_problem_of(arm_with(changed("0.5", "-1", good_bumpless))), "E0112 most -1 is out of range");

@@ -117,7 +117,8 @@ void SubsystemReader::read_step(const xml::Element& element, Bumpless& bumpless,
   const auto* const most = attributes.required("most");
   const auto value = most == nullptr ? std::nullopt : attributes.number("most");
   if (value && *value < 0)
-    problems_.add(*most, "E0112", fmt::format("most {} is out of range", *value), "0 or more, in the unit of the output");
+    problems_.add(*most, "E0112", fmt::format("most {} is out of range", *value),
+                  "0 or more, in the unit of the output");
   step.most = value.value_or(0);
   if (device.empty() || output.empty()) return;
   const auto found = std::ranges::find(subsystem_.devices, device, &Device::name);
@@ -143,9 +144,8 @@ void SubsystemReader::check_steps(const xml::Element& element, const Bumpless& b
     const Device& device = subsystem_.devices[use.device];
     if (!device.actuator) continue;
     for (std::size_t i = 0; i < device.output.size(); ++i) {
-      const bool bounded = std::ranges::any_of(bumpless.steps, [&](const Bumpless::Step& step) {
-        return step.device == use.device && step.output == i;
-      });
+      const bool bounded = std::ranges::any_of(
+          bumpless.steps, [&](const Bumpless::Step& step) { return step.device == use.device && step.output == i; });
       if (!bounded)
         problems_.add(element, "E0247",
                       fmt::format("nothing bounds '{}' of actuator '{}' where the configuration changes",

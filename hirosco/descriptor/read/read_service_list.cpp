@@ -59,8 +59,9 @@ void SubsystemReader::read_service(const xml::Element& element, std::vector<Serv
   }
   use.type = own != nullptr ? own->type : standard->type;
   if (!use.offered && own == nullptr && !standard->may_be_left_out)
-    problems_.add(*element.find("offered"), "E0243", fmt::format("{} is offered by every subsystem, always", name),
-                  "states, links and the test of it rest on it; ST03, ST05, ST20 and services of its own may be left out");
+    problems_.add(
+        *element.find("offered"), "E0243", fmt::format("{} is offered by every subsystem, always", name),
+        "states, links and the test of it rest on it; ST03, ST05, ST20 and services of its own may be left out");
   if (loop != nullptr) {
     const auto found = std::ranges::find(subsystem_.service_loops, loop->value, &ServiceLoop::name);
     if (own == nullptr && !standard->may_have_loop)

@@ -26,29 +26,30 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   const auto later = [](std::vector<const xml::Element*>& list) {
     return [&list](const xml::Element& e) { list.push_back(&e); };
   };
-  std::vector<Child> children{{"Description",
-                               [this](const xml::Element& element) {
-                                 const Attributes none{element, problems_};
-                                 no_children(element, problems_, true);
-                                 if (element.text.size() > max_description)
-                                   problems_.add(element, "E0114", "a description has at most 4096 octets");
-                                 subsystem_.description = element.text;
-                               },
-                               1},
-                              {"Resources", [this](const auto& element) { read_resources(element); }, 1},
-                              {"Parameters", later(parameters), 1},
-                              {"StructRef", later(parameters)},
-                              {"ParamRef", later(parameters)},
-                              {"Enumeration", [this](const auto& element) { read_enumeration(element); }},
-                              {"Device", [this](const auto& element) { read_device(element); }, 255},
-                              {"Hang", [this](const auto& element) { read_hang(element); }, 1},
-                              {"Commands", [this](const auto& element) { read_commands(element); }, 255},
-                              {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
-                              {"CustomService", later(custom_services), max_custom_services},
-                              {"ServiceLoop", [this](const auto& element) { read_service_loop(element); }, max_service_loops},
-                              {"Service", later(uses), 255},
-                              {"Bumpless", later(bumpless), max_configurations},
-                              {"Configuration", later(configurations), max_configurations}};
+  std::vector<Child> children{
+      {"Description",
+       [this](const xml::Element& element) {
+         const Attributes none{element, problems_};
+         no_children(element, problems_, true);
+         if (element.text.size() > max_description)
+           problems_.add(element, "E0114", "a description has at most 4096 octets");
+         subsystem_.description = element.text;
+       },
+       1},
+      {"Resources", [this](const auto& element) { read_resources(element); }, 1},
+      {"Parameters", later(parameters), 1},
+      {"StructRef", later(parameters)},
+      {"ParamRef", later(parameters)},
+      {"Enumeration", [this](const auto& element) { read_enumeration(element); }},
+      {"Device", [this](const auto& element) { read_device(element); }, 255},
+      {"Hang", [this](const auto& element) { read_hang(element); }, 1},
+      {"Commands", [this](const auto& element) { read_commands(element); }, 255},
+      {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
+      {"CustomService", later(custom_services), max_custom_services},
+      {"ServiceLoop", [this](const auto& element) { read_service_loop(element); }, max_service_loops},
+      {"Service", later(uses), 255},
+      {"Bumpless", later(bumpless), max_configurations},
+      {"Configuration", later(configurations), max_configurations}};
   Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_,
                     self_test_within_};
   const std::vector<Child> service_rows = service_children(services);

@@ -21,11 +21,12 @@ const std::string library_text = R"(<Subsystem name="LIBRARY" id="10">
 </Subsystem>)";
 
 std::string library_with(const std::string& services, const std::string& closed = "", const std::string& resources = "",
-                 const std::string& open = "") {
+                         const std::string& open = "") {
   std::string text = library_text;
-  for (const auto& [from, to] :
-       {std::pair<std::string, std::string>{"RESOURCES", resources}, {"SERVICES", services}, {">OPEN<", ">" + open + "<"},
-        {">CLOSED<", ">" + closed + "<"}})
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"RESOURCES", resources},
+                                 {"SERVICES", services},
+                                 {">OPEN<", ">" + open + "<"},
+                                 {">CLOSED<", ">" + closed + "<"}})
     text.replace(text.find(from), from.size(), to);
   return text;
 }
@@ -56,8 +57,9 @@ TEST(ServiceList, SaysWhichLoopAServiceHasWithItsPeriodPriorityBudgetAndQueue) {
 
 TEST(ServiceList, OffersWhatTheSubsystemSaysAndEachConfigurationOtherwise) {
   const Subsystem read =
-      read_text(library_with(R"(<Service name="ST20" offered="no"/>)",
-                     R"(<Service name="BOOK" offered="no"/><Service name="ST20"/><Service name="ST05" offered="no"/>)"))
+      read_text(library_with(
+                    R"(<Service name="ST20" offered="no"/>)",
+                    R"(<Service name="BOOK" offered="no"/><Service name="ST20"/><Service name="ST05" offered="no"/>)"))
           .value.value();
   const Configuration *open = read.find_configuration("OPEN"), *closed = read.find_configuration("CLOSED");
   EXPECT_TRUE(read.offers(200, nullptr));
@@ -75,26 +77,31 @@ TEST(ServiceList, OffersWhatTheSubsystemSaysAndEachConfigurationOtherwise) {
 
 TEST(ServiceList, RefusesWhatCannotBeSo) {
   expect_one_in_list(library_with(R"(<Service name="@BOOKS"/>)"), "E0242", "the subsystem has no service 'BOOKS'");
-  expect_one_in_list(library_with(R"(<Service name="ST08" offered="@no"/>)"), "E0243", "ST08 is offered by every subsystem");
-  expect_one_in_list(library_with("", R"(<Service name="ST17" offered="@no"/>)"), "E0243", "ST17 is offered by every subsystem");
+  expect_one_in_list(library_with(R"(<Service name="ST08" offered="@no"/>)"), "E0243",
+                     "ST08 is offered by every subsystem");
+  expect_one_in_list(library_with("", R"(<Service name="ST17" offered="@no"/>)"), "E0243",
+                     "ST17 is offered by every subsystem");
   expect_one_in_list(library_with(R"(<Service name="ST20" loop="@SLOW"/>)"), "E0243", "it speaks with the cycle");
-  expect_one_in_list(library_with(R"(<Service name="ST03" loop="@SLOWER"/>)"), "E0244", "no <ServiceLoop> has the name 'SLOWER'");
-  expect_one_in_list(library_with(R"(@<ServiceLoop name="IDLE" period_us="1000"/>)"), "E0244", "no service runs in the loop 'IDLE'");
+  expect_one_in_list(library_with(R"(<Service name="ST03" loop="@SLOWER"/>)"), "E0244",
+                     "no <ServiceLoop> has the name 'SLOWER'");
+  expect_one_in_list(library_with(R"(@<ServiceLoop name="IDLE" period_us="1000"/>)"), "E0244",
+                     "no service runs in the loop 'IDLE'");
   expect_one_in_list(library_with(R"(@<Service name="BOOK"/>)"), "E0201", "BOOK");
   expect_one_in_list(library_with("", R"(<Service name="BOOK" @loop="SLOW"/>)"), "E0103", "loop");
   expect_one_in_list(library_with("", R"(<Service name="ST03" offered="no"/>
     @<HKService id="9" interval="10"><SampledOnce><ParamRef name="CYCLE_STATS"/></SampledOnce></HKService>)"),
-             "E0245", "does not offer ST03");
+                     "E0245", "does not offer ST03");
   expect_one_in_list(library_with("", "", R"(@<Resources threads="2"/>)"), "E0248", "2 threads are less than its 3");
-  expect_one_in_list(library_with(R"(<ServiceLoop name="LONG" period_us="1000" budget_us="@1001"/><Service name="ST03" loop="LONG"/>)"),
-             "E0227", "does not end before the next");
+  expect_one_in_list(
+      library_with(
+          R"(<ServiceLoop name="LONG" period_us="1000" budget_us="@1001"/><Service name="ST03" loop="LONG"/>)"),
+      "E0227", "does not end before the next");
 }
 
 TEST(ServiceList, IsNoMatterOfTheSupervisorsLoop) {
-  const std::string supervisor =
-      changed("</Subsystem>",
-              R"(<ServiceLoop name="SLOW" period_us="1000"/><Service name="ST03" loop="SLOW"/></Subsystem>)",
-              file_system()(data / "supervisor.xml").value());
+  const std::string supervisor = changed(
+      "</Subsystem>", R"(<ServiceLoop name="SLOW" period_us="1000"/><Service name="ST03" loop="SLOW"/></Subsystem>)",
+      file_system()(data / "supervisor.xml").value());
   const auto reading = read_mission(data / "mission.xml", overlay({{"supervisor.xml", supervisor}}));
   ASSERT_EQ(reading.problems.size(), 1U);
   EXPECT_EQ(reading.problems[0].code, "E0332");

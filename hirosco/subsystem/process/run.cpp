@@ -188,8 +188,10 @@ class OwnLoopThread {
  public:
   OwnLoopThread(GenericSubsystem& subsystem, std::size_t loop, const Clock& clock, Bell& bell, bool realtime)
       : subsystem_{subsystem}, loop_{loop}, clock_{clock}, bell_{bell}, realtime_{realtime} {}
+  /// The guard tells the cycle's thread by its name: no loop has the same.
   [[nodiscard]] Result<> start() {
-    HIROSCO_TRY_LET(thread_, Thread::start(subsystem_.own_loop(loop_).name, [this] { run(); }, cycle_stack_octets));
+    HIROSCO_TRY_LET(thread_,
+                    Thread::start("loop." + subsystem_.own_loop(loop_).name, [this] { run(); }, cycle_stack_octets));
     return ok();
   }
   void end() {

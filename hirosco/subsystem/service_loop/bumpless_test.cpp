@@ -14,9 +14,9 @@
 namespace hirosco {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::Rig;
 using testing::Sent;
-using ::testing::HasSubstr;
 
 constexpr double step_bound = 0.05;
 
@@ -69,7 +69,8 @@ struct Joint final : Subsystem {
     ++configured;
     return ok();
   }
-  Result<> bumpless(const descriptor::Configuration&, const descriptor::Configuration&, const Cycle& cycle) noexcept override {
+  Result<> bumpless(const descriptor::Configuration&, const descriptor::Configuration&,
+                    const Cycle& cycle) noexcept override {
     ++hooks;
     of_hook = cycle;
     kp_in_hook = kp.load();
@@ -92,7 +93,8 @@ struct Joint final : Subsystem {
 struct BumplessChange : ::testing::Test {
   Joint author;
   Rig rig{author, joint_descriptor};
-  std::unique_ptr<DataFlow> motor = std::move(rig.flows.open({Transfer::SharedMemory, "motor"}, FlowSide::Device)).value();
+  std::unique_ptr<DataFlow> motor =
+      std::move(rig.flows.open({Transfer::SharedMemory, "motor"}, FlowSide::Device)).value();
 
   /// One cycle, and what the motor is told in it.
   DeviceCommand cycle() {

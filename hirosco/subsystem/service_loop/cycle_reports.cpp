@@ -97,9 +97,7 @@ void GenericSubsystem::take_cycle_report(const CycleReport& head, Octets payload
       std::erase_if(leaving_links_, [&](const auto& link) { return link.get() == head.link; });
       break;
     case ReportKind::Reconfigured: reconfigured(static_cast<std::uint8_t>(head.index), std::nullopt); break;
-    case ReportKind::NotReconfigured:
-      reconfigured(static_cast<std::uint8_t>(head.index), failure_in(payload));
-      break;
+    case ReportKind::NotReconfigured: reconfigured(static_cast<std::uint8_t>(head.index), failure_in(payload)); break;
     case ReportKind::SelfTestEnded: self_tests_.ended(head.request, head.index, failure_in(payload)); break;
   }
 }

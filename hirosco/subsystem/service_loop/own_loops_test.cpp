@@ -11,10 +11,10 @@
 namespace hirosco {
 namespace {
 
-using testing::Rig;
-using testing::Sent;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using testing::Rig;
+using testing::Sent;
 
 constexpr const char* archive_descriptor = R"(<Subsystem name="ARCHIVE" id="10">
   <ParamRef name="FILES" id="0" type="UINT32" init="7" minimum="0" maximum="1000"
@@ -239,8 +239,8 @@ TEST_F(OwnLoops, ThatWaitForTheProcessorOrForTheComputerAreNotSaidToHang) {
 TEST_F(OwnLoops, RefuseWhatThisConfigurationDoesNotOffer) {
   rig.bring_to(State::PreOperational, 2);
   const std::array data{std::byte{1}, std::byte{0}, std::byte{9}};
-  const Sent kept = keep(1), housekeeping = rig.send(3, 6, data), values = rig.send(20, 1, data), ping = rig.send(17, 1, {}),
-             here = rig.send(201, 1, {});
+  const Sent kept = keep(1), housekeeping = rig.send(3, 6, data), values = rig.send(20, 1, data),
+             ping = rig.send(17, 1, {}), here = rig.send(201, 1, {});
   rig.settle();
   step_loop();
   EXPECT_EQ(rig.outcome(kept), "2:0006c8");

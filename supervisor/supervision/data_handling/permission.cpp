@@ -187,14 +187,16 @@ using Notice = std::optional<FailureNotice>;
 [[nodiscard]] Notice is_carried(const Asked& asked, const descriptor::Configuration& wanted) {
   const Situation& situation = asked.situation;
   if (situation.power != nullptr && asked.subsystem.name != situation.mission.ground.subsystem)
-    if (const auto shortage = situation.power->shortage(asked.subsystem.id, wanted.power_w)) return notice_of(*shortage);
+    if (const auto shortage = situation.power->shortage(asked.subsystem.id, wanted.power_w))
+      return notice_of(*shortage);
   if (!situation.in_force) return std::nullopt;
   auto all = situation.in_force();
   for (descriptor::InForce& each : all)
     if (each.subsystem->id == asked.subsystem.id) each.configuration = &wanted;
   for (const descriptor::CycleResponse& cycle : descriptor::cycle_responses(all)) {
     if (cycle.longest) continue;
-    const std::string why = "may not end in time then: " + std::string{cycle.subsystem} + " " + std::string{cycle.name()};
+    const std::string why =
+        "may not end in time then: " + std::string{cycle.subsystem} + " " + std::string{cycle.name()};
     FailureNotice notice{FailureCode::NotPermittedNow};
     return notice.because({ErrorCode::NotPermitted, cycle.period() / std::chrono::microseconds{1}, why});
   }
@@ -329,8 +331,8 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   const auto* const wanted = following(asked);
   const bool reserves = (up_to_safe(asked) || wanted != nullptr) && situation.power != nullptr;
   // Until it has gone over it draws what it draws.
-  const double reserves_w = wanted == nullptr ? demand_w(*subsystem, situation)
-                                              : std::max(wanted->power_w, demand_w(*subsystem, situation));
+  const double reserves_w =
+      wanted == nullptr ? demand_w(*subsystem, situation) : std::max(wanted->power_w, demand_w(*subsystem, situation));
   return Permitted{.essential = essential(asked),
                    .releases_stop = up_to_operational(asked),
                    .starts = starts(asked),

@@ -48,7 +48,8 @@ struct Permitted {
   bool releases_stop{false};  ///< SET_STATE(Operational): lifts the addressee's stop flag
   bool starts{false};  ///< SET_STATE(Offline) to who is down: the supervisor starts its process
   bool stops_the_craft{false};  ///< SAFE_ALL: carried out whoever says it, under whatever source id
-  double reserves_w{0};  ///< SET_STATE(SafeOperational), or CONFIGURE while it acts: what the addressee may draw from now on
+  double reserves_w{
+      0};  ///< SET_STATE(SafeOperational), or CONFIGURE while it acts: what the addressee may draw from now on
 };
 
 /// Who is down answers nothing; what brings it up again is said with the refusal.
