@@ -145,7 +145,9 @@ std::vector<descriptor::Function> Catalogue::functions_of(const descriptor::Subs
   for (auto& function : functions) {
     if (function.name == "SET_STATE")
       function.description = "Takes the subsystem to a state, through those between; Offline starts one that is down";
-    if (function.name == "CONFIGURE") function.description = "Chooses the configuration, in Pre-Operational";
+    if (function.name == "CONFIGURE")
+      function.description =
+          "Chooses the configuration, in Pre-Operational; one that is declared compatible also while it acts";
   }
   return functions;
 }

@@ -195,5 +195,21 @@ TEST(StandardServices, HaveTypesAndSubtypesOfTheirOwn) {
   EXPECT_EQ(standard_service(99), nullptr);
 }
 
+TEST(StandardServices, AreThoseThatADescriptorNames) {
+  for (const auto& named : descriptor::standard_services_by_name) {
+    const ServiceKind* const kind = standard_service(named.type);
+    ASSERT_NE(kind, nullptr) << named.name;
+    EXPECT_EQ(named.name, (named.type < 10 ? "ST0" : "ST") + std::to_string(named.type));
+    EXPECT_TRUE(named.may_be_left_out || !named.may_have_loop);
+  }
+  for (const ServiceKind* const kind : standard_services()) {
+    // What nobody asks a subsystem for is not left out by it.
+    const bool asked = !kind->requests.empty() && kind->needs != Needs::SupervisorAnswers;
+    EXPECT_EQ(std::ranges::count(descriptor::standard_services_by_name, kind->type, &descriptor::StandardService::type),
+              asked ? 1 : 0)
+        << kind->name;
+  }
+}
+
 }  // namespace
 }  // namespace hirosco::pus

@@ -80,6 +80,7 @@ struct Spacecraft::Member {
   std::optional<GenericSubsystem> engine;
   TimePoint service_wake{};
   TimePoint cycle_wake{never};
+  std::vector<TimePoint> loop_wakes;  ///< of its loops of services of its own
   bool cycling{false};
   bool stopped{false};
   bool spinning{false};
@@ -215,6 +216,8 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   // Counts outlive the process (decision 8b).
   if (before != nullptr) member.vital->counters = before->vital->counters;
   member.service_wake = clock_.now();
+  for (std::size_t i = 0; i < member.engine->own_loops(); ++i)
+    member.loop_wakes.push_back(clock_.now() + member.engine->own_loop(i).period);
   supervisor::LaunchedSubsystem launched;
   std::unique_ptr<Channel> channel = std::make_unique<ChannelEnd>(member.channels);
   if (parts_.wrap_channel) channel = parts_.wrap_channel(described.subsystem.name, std::move(channel));
@@ -289,8 +292,8 @@ bool Spacecraft::run_until(const std::function<bool()>& condition, Duration limi
   return true;
 }
 
-/// Goes to the next thing that is due and does it. At one instant the order is fixed: devices, cycles, service loops,
-/// guard, supervisor, each in mission order. False when nothing is left before `end`.
+/// Goes to the next thing that is due and does it. At one instant the order is fixed: devices, cycles, service loops, loops of
+/// services of their own, guard, supervisor, each in mission order. False when nothing is left before `end`.
 bool Spacecraft::advance(TimePoint end) {
   if (supervisor_->finished()) return false;
   TimePoint next = std::min(supervisor_wake_, guard_wake_);
@@ -299,6 +302,7 @@ bool Spacecraft::advance(TimePoint end) {
     if (!member->engine || member->stopped) continue;
     if (!member->stuck) next = std::min(next, member->service_wake);
     if (may_cycle(*member)) next = std::min(next, member->cycle_wake);
+    for (const TimePoint wake : member->loop_wakes) next = std::min(next, wake);
   }
   if (next > end) {
     clock_.set(end);
@@ -312,6 +316,10 @@ bool Spacecraft::advance(TimePoint end) {
     if (may_cycle(*member) && member->cycle_wake <= next) step_cycle(*member);
   for (const auto& member : members_)
     if (member->engine && !member->stopped && !member->stuck && member->service_wake <= next) step_service(*member);
+  for (const auto& member : members_)
+    for (std::size_t i = 0; i < member->loop_wakes.size() && member->engine && !member->stopped; ++i)
+      if (member->loop_wakes[i] <= next)
+        member->loop_wakes[i] = member->engine->own_loop_step(i, member->loop_wakes[i]);
   if (guard_wake_ <= next) guard_wake_ = guard_->step(next);
   if (supervisor_wake_ <= next) supervisor_wake_ = supervisor_->step(next);
   return true;

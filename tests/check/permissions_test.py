@@ -32,6 +32,12 @@ class Subsystem:
         for p in root.find("Parameters") if root.find("Parameters") is not None else []:
             if p.get("writable"):
                 self.writable[p.get("name")] = {STATES.index(s) for s in words(p, "writable")}
+        own = {s.get("name"): int(s.get("type")) for s in root.iter("CustomService")} | {"ST03": 3, "ST05": 5, "ST20": 20}
+        left_out = lambda uses: {own[u.get("name")]: u.get("offered") == "no" for u in uses}
+        everywhere = left_out(root.findall("Service"))
+        self.left_out = {"-": everywhere}
+        for c in root.findall("Configuration"):
+            self.left_out[c.get("name")] = everywhere | left_out(c.findall("Service"))
         self.commands = {c.get("subsystem"): set(words(c, "functions")) for c in root.findall("Commands")}
 
 
@@ -131,6 +137,8 @@ def compare(hirosco, mission, installed, tampered=lambda modes: None):
         want = expected(sender, addressee, mode, service, subtype, row["request"], supervisor)
         # Whether something goes past what waits says nothing of what is refused.
         assert told == (want[0], want[1] & want[0], want[2]), f"{mission.parent.name}: {row}: expected {want}"
+        not_in = [name for name, out in addressee.left_out.items() if out.get(service)]
+        assert row["not_in"].split() == not_in, (mission.parent.name, row, not_in)
         own_name = service in (8, 20) and (service, subtype) != (20, 1)
         asked.setdefault((row["mode"], row["sender"], row["addressee"]), []).append(
             (service, subtype, row["request"] if own_name else None))

@@ -57,11 +57,11 @@ void show_subsystem(const descriptor::Subsystem& subsystem) {
 
 /// What is not declared takes nothing here, and the machine takes something: this is a bound for what stands in the descriptors.
 void show_cycle(const descriptor::CycleResponse& cycle) {
-  const descriptor::Configuration& its = *cycle.configuration;
-  const std::string budget = its.budget > Duration{} ? fmt::format("{} us", its.budget / 1us) : "no budget declared";
-  fmt::print("  cycle {} {}: {}, priority {}, ends at most {} us after it is due, due again after {} us\n",
-             cycle.subsystem, its.name, budget, its.priority,
-             cycle.longest ? fmt::format("{}", *cycle.longest / 1us) : "?", its.sampling / 1us);
+  const std::string budget =
+      cycle.budget() > Duration{} ? fmt::format("{} us", cycle.budget() / 1us) : "no budget declared";
+  fmt::print("  {} {} {}: {}, priority {}, ends at most {} us after it is due, due again after {} us\n",
+             cycle.loop != nullptr ? "loop" : "cycle", cycle.subsystem, cycle.name(), budget, cycle.priority(),
+             cycle.longest ? fmt::format("{}", *cycle.longest / 1us) : "?", cycle.period() / 1us);
 }
 
 /// Which file it may be, and which are versions of it.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -44,14 +45,18 @@ constexpr std::uint16_t all_states = 0x03FF;
 void print_csv(const std::vector<PermissionRow>& rows, const descriptor::Mission& mission,
                const descriptor::Mode& mode) {
   for (const PermissionRow& row : rows)
-    fmt::print("{},{},{},{},{},\"{}\",{},{},{}\n", mode.name, name_of(row.origin, mission), row.addressee->name,
+    fmt::print("{},{},{},{},{},\"{}\",{},{},{},{}\n", mode.name, name_of(row.origin, mission), row.addressee->name,
                row.service, row.subtype, row.request, bits_of(row.permitted), bits_of(row.essential),
-               bits_of(row.in_change));
+               bits_of(row.in_change), fmt::join(row.not_in, " "));
 }
 
 void print_requests(const std::string& head, const std::vector<const PermissionRow*>& rows) {
   fmt::print("    {}:", head);
-  for (std::size_t i = 0; i < rows.size(); ++i) fmt::print("{} {}", i == 0 ? "" : ",", rows[i]->request);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    fmt::print("{} {}", i == 0 ? "" : ",", rows[i]->request);
+    // "-": while no configuration is in force.
+    if (!rows[i]->not_in.empty()) fmt::print(" (not in {})", fmt::join(rows[i]->not_in, ", "));
+  }
   fmt::print("\n");
 }
 
@@ -105,7 +110,7 @@ int permissions(const PermissionsOptions& options) {
     fmt::print(stderr, "\n");
     return exit_usage;
   }
-  if (options.csv) fmt::print("mode,sender,addressee,service,subtype,request,permitted,essential,in_change\n");
+  if (options.csv) fmt::print("mode,sender,addressee,service,subtype,request,permitted,essential,in_change,not_in\n");
   for (const auto& mode : mission->modes) {
     if (!options.mode.empty() && mode.name != options.mode) continue;
     const auto rows = supervisor::permission_table(*mission, mode);

@@ -43,6 +43,27 @@ const Function* Subsystem::find_named(std::string_view request) const noexcept {
   return nullptr;
 }
 
+bool Subsystem::offers(std::uint8_t type, const Configuration* in_force) const noexcept {
+  if (in_force != nullptr)
+    if (const ServiceUse* use = find_in(in_force->services, type, &ServiceUse::type)) return use->offered;
+  const ServiceUse* const use = find_in(service_uses, type, &ServiceUse::type);
+  return use == nullptr || use->offered;
+}
+int Subsystem::loop_of(std::uint8_t type) const noexcept {
+  const ServiceUse* const use = find_in(service_uses, type, &ServiceUse::type);
+  return use == nullptr ? -1 : use->loop;
+}
+const Bumpless* Subsystem::bumpless_between(std::uint8_t one, std::uint8_t other) const noexcept {
+  if (one == other) return nullptr;
+  const auto found = std::ranges::find_if(bumpless, [&](const Bumpless& each) {
+    const auto has = [&](std::uint8_t sought) {
+      return std::ranges::find(each.configurations, sought) != each.configurations.end();
+    };
+    return has(one) && has(other);
+  });
+  return found == bumpless.end() ? nullptr : &*found;
+}
+
 std::string_view resolve(Commands& commands, const Subsystem& commanded) {
   commands.apid = commanded.id;
   commands.file = commanded.file;
@@ -82,6 +103,10 @@ double cycle_share(const Mission& mission, const Mode& mode) noexcept {
       share +=
           static_cast<double>(configuration->budget.count()) / static_cast<double>(configuration->shortest().count());
   }
+  for (const MissionSubsystem& member : mission.subsystems)
+    for (const ServiceLoop& loop : member.subsystem.service_loops)
+      if (loop.priority > 0 && loop.period.count() > 0)
+        share += static_cast<double>(loop.budget.count()) / static_cast<double>(loop.period.count());
   return share;
 }
 double cycle_share(const Mission& mission) noexcept {

@@ -92,6 +92,9 @@ void add_framework_events(Subsystem& subsystem) {
        argument("USED", Type::Uint32), argument("LIMIT", Type::Uint32), argument("CROSSINGS", Type::Uint32)});
   add("CYCLE_NOT_REALTIME", cycle_not_realtime, Severity::Low,
       {argument("HEAP", Type::Uint32), argument("LOCKS", Type::Uint32), argument("OUTPUTS", Type::Uint32)});
+  if (!subsystem.service_loops.empty())
+    add("SERVICE_LOOP_HANGS", service_loop_hangs, Severity::Low,
+        {argument("LOOP", Type::Uint8), argument("FOR_MS", Type::Uint32)});
   for (std::size_t i = 0; i < subsystem.devices.size(); ++i)
     add(event_name(subsystem.devices[i].name, "_LOST"), device_lost(i), Severity::High,
         {argument("REASON", Type::Uint8, losses_enumeration), argument("SILENT_CYCLES", Type::Uint32),

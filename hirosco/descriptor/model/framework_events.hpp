@@ -25,6 +25,8 @@ inline constexpr std::uint16_t supervisor_silent = 0xF005;
 inline constexpr std::uint16_t cycle_over_budget = 0xF006;
 inline constexpr std::uint16_t resource_warning = 0xF007;
 inline constexpr std::uint16_t cycle_not_realtime = 0xF008;
+/// Only where services run in loops of their own.
+inline constexpr std::uint16_t service_loop_hangs = 0xF009;
 /// Of the device with this index, NAME_LOST.
 [[nodiscard]] constexpr std::uint16_t device_lost(std::size_t device) noexcept {
   return static_cast<std::uint16_t>(0xF100 + device);

@@ -12,20 +12,20 @@ namespace {
 }
 
 /// What all of `cycles` takes from one of them until it has ended, if that began with all due and took `span`.
-[[nodiscard]] Duration demand(const std::vector<CycleResponse>& cycles, const Configuration& of, Duration span) {
-  Duration sum = of.budget;
-  for (const CycleResponse& cycle : cycles) {
-    const Configuration& other = *cycle.configuration;
-    if (&other == &of || other.priority < of.priority) continue;
-    const bool in_turn = other.priority == of.priority && of.priority > 0;  // without a priority nobody keeps a turn
-    sum += in_turn ? other.budget : begun_within(span, other.shortest()) * other.budget;
+[[nodiscard]] Duration demand(const std::vector<CycleResponse>& cycles, const CycleResponse& of, Duration span) {
+  Duration sum = of.budget();
+  for (const CycleResponse& other : cycles) {
+    if (&other == &of || other.priority() < of.priority()) continue;
+    const bool in_turn =
+        other.priority() == of.priority() && of.priority() > 0;  // without a priority nobody keeps a turn
+    sum += in_turn ? other.budget() : begun_within(span, other.period()) * other.budget();
   }
   return sum;
 }
 
-[[nodiscard]] std::optional<Duration> longest(const std::vector<CycleResponse>& cycles, const Configuration& of) {
+[[nodiscard]] std::optional<Duration> longest(const std::vector<CycleResponse>& cycles, const CycleResponse& of) {
   // Each round is longer by a budget at least, so that it ends at the period at the latest.
-  for (Duration span = std::max(of.budget, Duration{1}); span <= of.shortest();) {
+  for (Duration span = std::max(of.budget(), Duration{1}); span <= of.period();) {
     const Duration needed = demand(cycles, of, span);
     if (needed == span) return span;
     span = needed;
@@ -35,18 +35,29 @@ namespace {
 
 }  // namespace
 
-std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& mode) {
+std::vector<CycleResponse> cycle_responses(std::span<const InForce> all) {
   std::vector<CycleResponse> cycles;
-  for (const CommissionStep& step : mode.commission) {
-    const auto* member = mission.find_subsystem(step.subsystem);
-    const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
+  for (const auto& [subsystem, configuration] : all) {
     if (configuration != nullptr && configuration->shortest() > Duration{})
-      cycles.push_back({member->subsystem.name, configuration, std::nullopt});
+      cycles.push_back({subsystem->name, configuration, nullptr, std::nullopt});
+    for (const ServiceLoop& loop : subsystem->service_loops)
+      if (loop.period > Duration{}) cycles.push_back({subsystem->name, nullptr, &loop, std::nullopt});
   }
-  std::ranges::stable_sort(cycles, std::ranges::greater{},
-                           [](const CycleResponse& cycle) { return cycle.configuration->priority; });
-  for (CycleResponse& cycle : cycles) cycle.longest = longest(cycles, *cycle.configuration);
+  std::ranges::stable_sort(cycles, std::ranges::greater{}, &CycleResponse::priority);
+  for (CycleResponse& cycle : cycles) cycle.longest = longest(cycles, cycle);
   return cycles;
+}
+
+std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& mode) {
+  std::vector<InForce> all;
+  for (const CommissionStep& step : mode.commission)
+    if (const auto* member = mission.find_subsystem(step.subsystem))
+      all.push_back({&member->subsystem, member->subsystem.find_configuration(step.configuration)});
+  // Loops of services run whatever is commissioned.
+  for (const MissionSubsystem& member : mission.subsystems)
+    if (std::ranges::find(all, &member.subsystem, &InForce::subsystem) == all.end())
+      all.push_back({&member.subsystem, nullptr});
+  return cycle_responses(all);
 }
 
 }  // namespace hirosco::descriptor

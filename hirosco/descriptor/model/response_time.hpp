@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -11,18 +12,33 @@
 /// Whether the cycles of a mode end in time on the one processor that they share (docs/adr/0007, 0085).
 namespace hirosco::descriptor {
 
-/// A cycle of a mode at its worst instant: all others are due when it is.
+/// A cycle of a mode, or a loop of services of its own, at its worst instant: all others are due when it is.
 struct CycleResponse {
   std::string_view subsystem;  ///< of the mission, which outlives this
-  const Configuration* configuration{nullptr};
+  const Configuration* configuration{nullptr};  ///< of a cycle
+  const ServiceLoop* loop{nullptr};  ///< of services, instead (docs/adr/0096)
   /// From due to done, what goes before it included; empty: it does not end before it is due again, or never.
   std::optional<Duration> longest;
+
+  [[nodiscard]] std::string_view name() const noexcept { return loop != nullptr ? loop->name : configuration->name; }
+  /// The shortest.
+  [[nodiscard]] Duration period() const noexcept { return loop != nullptr ? loop->period : configuration->shortest(); }
+  [[nodiscard]] Duration budget() const noexcept { return loop != nullptr ? loop->budget : configuration->budget; }
+  [[nodiscard]] int priority() const noexcept { return loop != nullptr ? loop->priority : configuration->priority; }
 };
 
-/// The cycles that this mode commissions, the most urgent first. Who declares no budget takes nothing of the others; who runs
-/// without a priority of its own goes after all that have one. Preemptive fixed priorities, of equal ones each goes once
-/// before the other (M. Joseph, P. Pandya: Finding response times in a real-time system, 1986). It knows no other load than the
-/// declared one: the devices that a simulation adds and the system's own work are not in it.
+/// A subsystem and what is in force of it; null: it does not cycle.
+struct InForce {
+  const Subsystem* subsystem{nullptr};
+  const Configuration* configuration{nullptr};
+};
+
+/// The cycles that this mode commissions and the loops of services of all subsystems, the most urgent first. Who declares no budget
+/// takes nothing of the others; who runs without a priority of its own goes after all that have one. Preemptive fixed priorities, of
+/// equal ones each goes once before the other (M. Joseph, P. Pandya: Finding response times in a real-time system, 1986). It knows no
+/// other load than the declared one: the devices that a simulation adds and the system's own work are not in it.
 [[nodiscard]] std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& mode);
+/// The same of what is in force, whatever mode.
+[[nodiscard]] std::vector<CycleResponse> cycle_responses(std::span<const InForce> all);
 
 }  // namespace hirosco::descriptor

@@ -49,6 +49,24 @@ TEST_F(CycleResponses, OfOneAloneIsItsBudget) {
   EXPECT_EQ(longest()["A"], 120us);
 }
 
+TEST_F(CycleResponses, CountLoopsOfServicesOfWhoIsNotCommissionedToo) {
+  commission({"A", 30, 1ms, 400us});
+  MissionSubsystem other;
+  other.subsystem.name = "OTHER";
+  other.subsystem.service_loops.push_back({.name = "ABOVE", .period = 2ms, .priority = 50, .budget = 300us});
+  other.subsystem.service_loops.push_back({.name = "BELOW", .period = 1ms, .priority = 10, .budget = 400us});
+  mission.subsystems.push_back(std::move(other));
+  const auto all = cycle_responses(mission, mode);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].name(), "ABOVE");
+  EXPECT_EQ(all[0].longest, 300us);
+  EXPECT_EQ(all[1].name(), "ONLY");
+  EXPECT_EQ(all[1].longest, 700us);
+  EXPECT_EQ(all[2].name(), "BELOW");
+  EXPECT_EQ(all[2].longest, std::nullopt) << "300 + 400 + 400 us are more than its period";
+  EXPECT_DOUBLE_EQ(cycle_share(mission, mode), 0.4 + 0.15 + 0.4);
+}
+
 TEST_F(CycleResponses, OfTheClassicalExampleAreThoseOfTheBooks) {
   // Burns and Wellings, Real-Time Systems and Programming Languages: periods 7, 12, 20, times 3, 3, 5: 3, 6, 20.
   commission({"C", 1, 20us, 5us});

@@ -14,6 +14,7 @@
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/descriptor/model/resources.hpp"
+#include "hirosco/descriptor/model/service_list.hpp"
 #include "hirosco/parameter/exact_number.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/enum_text.hpp"
@@ -22,13 +23,6 @@
 /// The subsystem descriptor in memory (paper 4.1, figure 3). Plain data: read once, checked whole, then constant.
 /// All references are resolved: indices point into the vectors of the same descriptor.
 namespace hirosco::descriptor {
-
-/// Where an element stands in its file; line and column count from 1.
-struct Location {
-  int line{0};
-  int column{0};
-  friend bool operator==(const Location&, const Location&) = default;
-};
 
 /// The ten states (paper 4.2, figure 4). The transition table is in hirosco/subsystem/author/states.hpp.
 enum class State : std::uint8_t {
@@ -324,6 +318,7 @@ struct Configuration {
     std::vector<Value> values;  ///< as many as its fields have
   };
   std::vector<Initial> initial;  ///< parameter values that this configuration sets
+  std::vector<ServiceUse> services;  ///< what it says of them otherwise than its subsystem
   Location at;
   /// The shortest distance of two cycles: what they cost a processor at most is reckoned with it.
   [[nodiscard]] Duration shortest() const noexcept { return started_by.empty() ? sampling : least; }
@@ -363,6 +358,9 @@ struct Subsystem {
   std::vector<Configuration> configurations;
   CycleLimit hang{20, 200};  ///< cycles the vital page may stand still
   Resources resources;
+  std::vector<ServiceLoop> service_loops;
+  std::vector<ServiceUse> service_uses;  ///< of services that are not offered, or run in a loop of their own
+  std::vector<Bumpless> bumpless;
 
   [[nodiscard]] const Parameter* find_parameter(std::string_view parameter) const noexcept;
   [[nodiscard]] const Event* find_event(std::string_view event) const noexcept;
@@ -375,6 +373,13 @@ struct Subsystem {
   [[nodiscard]] const Function* find_named(std::string_view request) const noexcept;
   [[nodiscard]] const Configuration* find_configuration(std::string_view configuration) const noexcept;
   [[nodiscard]] const Configuration* find_configuration(std::uint8_t configuration) const noexcept;
+  /// Whether the service of this type is offered while the configuration is in force; null: none is. Of a type that it does not have
+  /// at all nothing is said.
+  [[nodiscard]] bool offers(std::uint8_t type, const Configuration* in_force) const noexcept;
+  /// In which of its loops the service runs; -1: the service loop.
+  [[nodiscard]] int loop_of(std::uint8_t type) const noexcept;
+  /// What holds where one follows the other without a break; null: they are not declared compatible.
+  [[nodiscard]] const Bumpless* bumpless_between(std::uint8_t one, std::uint8_t other) const noexcept;
 };
 
 /// Says who is commanded. The first of the functions that it does not have; empty when it has all.

@@ -67,8 +67,12 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
   children.push_back({"Device", [&](const auto& child) { read_device_use(child, configuration, devices); }, 255});
   Unique set{"parameter", "E0201"};
   children.push_back({"Set", [&](const auto& child) { read_set(child, configuration, set); }, 1024});
+  Unique uses{"service", "E0201"};
+  children.push_back(
+      {"Service", [&](const auto& child) { read_service(child, configuration.services, uses, true); }, 255});
   each_child(element, problems_, children);
   check_start(element, configuration);
+  check_housekeeping_offered(element, configuration);
 
   if (!configuration.name.empty())
     configuration_names_.add(configuration.name, configuration.at, problems_, element.name.size() + 1);

@@ -125,6 +125,11 @@ void MissionReader::read_supervisor(const xml::Element& element) {
       problems_.add(at, "E0303", fmt::format("the supervisor has id 1, '{}' has {}", subsystem->name, subsystem->id));
     subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
     check_endnodes(*subsystem);
+    if (!subsystem->service_loops.empty() || !subsystem->bumpless.empty())
+      problems_.add(at, "E0332",
+                    fmt::format("'{}' is the supervisor: its services run in its own loop, its configuration stays",
+                                subsystem->name),
+                    "leave <ServiceLoop> and <Bumpless> out of its descriptor");
     mission_.supervisor = std::move(*subsystem);
   }
   mission_.database.path = "log/" + (mission_.name.empty() ? std::string{"mission"} : mission_.name) + ".db";

@@ -22,30 +22,34 @@ constexpr std::size_t max_custom_services = 64;
 
 Subsystem SubsystemReader::read(const xml::Element& root) {
   read_head(root);
-  std::vector<const xml::Element*> parameters, configurations, services_elements, custom_services;
+  std::vector<const xml::Element*> parameters, configurations, services_elements, custom_services, uses, bumpless;
   const auto later = [](std::vector<const xml::Element*>& list) {
     return [&list](const xml::Element& e) { list.push_back(&e); };
   };
-  std::vector<Child> children{{"Description",
-                               [this](const xml::Element& element) {
-                                 const Attributes none{element, problems_};
-                                 no_children(element, problems_, true);
-                                 if (element.text.size() > max_description)
-                                   problems_.add(element, "E0114", "a description has at most 4096 octets");
-                                 subsystem_.description = element.text;
-                               },
-                               1},
-                              {"Resources", [this](const auto& element) { read_resources(element); }, 1},
-                              {"Parameters", later(parameters), 1},
-                              {"StructRef", later(parameters)},
-                              {"ParamRef", later(parameters)},
-                              {"Enumeration", [this](const auto& element) { read_enumeration(element); }},
-                              {"Device", [this](const auto& element) { read_device(element); }, 255},
-                              {"Hang", [this](const auto& element) { read_hang(element); }, 1},
-                              {"Commands", [this](const auto& element) { read_commands(element); }, 255},
-                              {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
-                              {"CustomService", later(custom_services), max_custom_services},
-                              {"Configuration", later(configurations), max_configurations}};
+  std::vector<Child> children{
+      {"Description",
+       [this](const xml::Element& element) {
+         const Attributes none{element, problems_};
+         no_children(element, problems_, true);
+         if (element.text.size() > max_description)
+           problems_.add(element, "E0114", "a description has at most 4096 octets");
+         subsystem_.description = element.text;
+       },
+       1},
+      {"Resources", [this](const auto& element) { read_resources(element); }, 1},
+      {"Parameters", later(parameters), 1},
+      {"StructRef", later(parameters)},
+      {"ParamRef", later(parameters)},
+      {"Enumeration", [this](const auto& element) { read_enumeration(element); }},
+      {"Device", [this](const auto& element) { read_device(element); }, 255},
+      {"Hang", [this](const auto& element) { read_hang(element); }, 1},
+      {"Commands", [this](const auto& element) { read_commands(element); }, 255},
+      {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
+      {"CustomService", later(custom_services), max_custom_services},
+      {"ServiceLoop", [this](const auto& element) { read_service_loop(element); }, max_service_loops},
+      {"Service", later(uses), 255},
+      {"Bumpless", later(bumpless), max_configurations},
+      {"Configuration", later(configurations), max_configurations}};
   Services services{subsystem_.housekeeping, provides_, requires_, structure_ids_, provided_, required_,
                     self_test_within_};
   const std::vector<Child> service_rows = service_children(services);
@@ -59,7 +63,10 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   for (const xml::Element* element : services_elements)
     std::ranges::find(service_rows, element->name, &Child::name)->read(*element);
   for (const xml::Element* element : custom_services) read_custom_service(*element);
+  for (const xml::Element* element : uses) read_service(*element, subsystem_.service_uses, service_uses_, false);
   for (const xml::Element* element : configurations) read_configuration(*element);
+  for (const xml::Element* element : bumpless) read_bumpless(*element);
+  check_service_list(root);
   imply_framework_events();
   check_enumerations();
   check_addresses();

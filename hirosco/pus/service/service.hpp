@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
@@ -11,8 +13,13 @@
 #include "hirosco/pus/service/service_kind.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
+#include "hirosco/utilities/time.hpp"
 
 /// What every PUS service is given and is: protocol logic without I/O.
+namespace hirosco {
+class ParameterCell;
+}
+
 namespace hirosco::pus {
 
 /// Where a service puts its reports. The owner stamps APID, counts and time.  Thread: the service loop.
@@ -43,11 +50,22 @@ class ServiceHome {
   [[nodiscard]] virtual SelfTest& self_test() noexcept = 0;
   /// The notice of an author's refusal.
   [[nodiscard]] virtual FailureNotice refusal(FailureCode code, const Error& why) const = 0;
+  /// Sets a published parameter, packed and big-endian, at the next cycle boundary, whole. NotFound: it is not published;
+  /// ResourceExhausted: too many are waiting; OutOfRange, InvalidArgument: of the octets.
+  [[nodiscard]] virtual Result<> store(const ParameterCell&, Octets) {
+    return fail(ErrorCode::Unavailable, "no parameters here");
+  }
+  /// Reports an event of the descriptor.
+  [[nodiscard]] virtual Result<> raise(std::string_view, Octets) {
+    return fail(ErrorCode::Unavailable, "no events here");
+  }
+  /// Whether a report of so many octets finds room; what verifies a request always does.
+  [[nodiscard]] virtual bool has_room(std::size_t) const noexcept { return true; }
 };
 
 /// A PUS service of one application process. handle() is called with telecommands of its type only; it does the
 /// acceptance checks from the subtype on (9 to 11) and reports every stage through the Verification it was made with.
-/// Thread: the service loop.
+/// Thread: the service loop, or the loop of its own that the descriptor gives it (docs/adr/0096).
 class Service {
  public:
   virtual ~Service() = default;
@@ -61,6 +79,8 @@ class Service {
   [[nodiscard]] virtual Result<> configure(const descriptor::Configuration&) { return ok(); }
   /// None is in force any more, and no cycle uses what the service has given to it.
   virtual void release() noexcept {}
+  /// Each step of its loop.
+  virtual void step(TimePoint) {}
   /// Memory that came beside the telecommand which is handled next.
   virtual void accompany(const MemoryHandle&) {}
 };

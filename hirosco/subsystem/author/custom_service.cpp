@@ -111,6 +111,16 @@ void CustomService::release() noexcept {
     home_->verification().completion_failed(request, FailureNotice{FailureCode::Aborted});
 }
 
+Result<> CustomService::send_value(const ParameterCell& parameter, Octets big_endian) {
+  if (home_ == nullptr) return fail(ErrorCode::Unavailable, "the service is not provided");
+  return home_->store(parameter, big_endian);
+}
+
+Result<> CustomService::send_event(std::string_view event, Octets auxiliary) {
+  if (home_ == nullptr) return fail(ErrorCode::Unavailable, "the service is not provided");
+  return home_->raise(event, auxiliary);
+}
+
 Result<> CustomService::send(std::string_view report, const Call& to, std::span<const NativeField> types,
                              pus::GivenValues values) {
   if (home_ == nullptr || declared_ == nullptr) return fail(ErrorCode::Unavailable, "the service is not provided");
@@ -119,6 +129,7 @@ Result<> CustomService::send(std::string_view report, const Call& to, std::span<
   if (!same_types(types, declared->fields))
     return fail(ErrorCode::Mismatch, "the descriptor's report has other fields");
   HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_report(declared->fields, values));
+  if (!home_->has_room(data.size())) return fail(ErrorCode::ResourceExhausted, "the service loop is behind");
   home_->telemetry().report(declared_->type, declared->subtype, to.request.source, data);
   return ok();
 }

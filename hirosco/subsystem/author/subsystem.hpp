@@ -71,6 +71,16 @@ class Subsystem {
   virtual Result<Step> hardware_init() { return done; }
   /// Pre-Operational, once per CONFIGURE: parameters, links and devices of the configuration are already in place.
   virtual Result<> configure(const descriptor::Configuration&) { return ok(); }
+  /// Another configuration follows the one in force while the subsystem is in Safe-Operational or Operational (<Bumpless> of the
+  /// descriptor, adr 0096). Called in the cycle, once, before the node that works by `to` for the first time: parameters have the
+  /// values of `to`, devices and links stay as they are, configure() is not called. Takes over what the law remembers, so
+  /// that no output jumps further than its <Step>: one that does inhibits the actuators. An error leaves `from` in force, with its values.
+  /// As the nodes: no allocation, no lock, no I/O.
+  virtual Result<> bumpless(const descriptor::Configuration& from, const descriptor::Configuration& to,
+                            const Cycle&) noexcept {
+    static_cast<void>(from), static_cast<void>(to);
+    return fail(ErrorCode::NotPermitted, "it has no bumpless()");
+  }
   virtual Result<> pre_operational(const Cycle&) noexcept { return ok(); }
   virtual Result<> safe_operational(const Cycle&) noexcept { return ok(); }
   virtual Result<> operational(const Cycle&) noexcept { return ok(); }

@@ -48,7 +48,6 @@ void CycleLoop::prepare(CyclePlan plan) {
       if (&slot.device() == &output->device()) slot.show_in(output.get());
   }
   input_was_stale_.assign(plan_.inputs.size(), 0);
-  pace_.begin(*plan_.configuration);
   const auto starts = std::ranges::find_if(plan_.inputs, [](const auto& input) { return input.terms().starts; });
   starter_.reset();
   if (starts != plan_.inputs.end()) starter_ = static_cast<std::size_t>(starts - plan_.inputs.begin());
@@ -56,21 +55,10 @@ void CycleLoop::prepare(CyclePlan plan) {
   first_ = true;
   inhibited_ = 0;
   awaits_fall_back_ = false;
-  count_ = 0;
+  taken_over_ = nullptr;
   heartbeat_ = parts_.permit.heartbeat.load(std::memory_order_acquire);
   silent_cycles_ = 0;
-  silence_limit_ = supervisor_silence_cycles(plan_.configuration->sampling);
-  overruns_in_a_row_ = 0;
-  overruns_ = 0;
-  latency_max_ns_ = 0;
-  execution_max_ns_ = 0;
-  execution_mean_ns_ = 0.0;
-  times_ = {};
-  statistics_.store({});
-  times_parameter_.store({});
-  budget_.begin(*plan_.configuration, parts_.realtime);
-  realtime_.begin(plan_.configuration->shortest());
-  budget_parameter_.store(budget_.told());
+  begin_counting(*plan_.configuration);
   link_statistics_.store({});
   watched_.clear();
   for (std::size_t i = 0; i < own_writes_octets_; ++i) {
@@ -95,7 +83,7 @@ TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const CyclePace::Start start = pace_.start(planned, started);
   listen_to_supervisor(start.counts);
   check_permit();
-  take_commands();
+  take_commands(start.planned);
   // Looked at before the samples are read: what comes meanwhile starts another cycle, and none is slept through.
   pace_.look(starter() != nullptr ? starter()->arrival_word() : nullptr);
   read_inputs(started, start.counts);
@@ -103,6 +91,7 @@ TimePoint CycleLoop::step(TimePoint planned) noexcept {
   note_stores();
   run_node(start.planned);
   note_own_writes();
+  end_reconfiguration();
   write_outputs(start.planned);
   if (plan_.sampler != nullptr && start.counts) plan_.sampler->tick(*this, *this);
   ++count_;
@@ -144,7 +133,7 @@ void CycleLoop::listen_to_supervisor(bool counts) noexcept {
   raise(descriptor::framework_event::supervisor_silent, {&cycles, 1});
 }
 
-void CycleLoop::take_commands() noexcept {
+void CycleLoop::take_commands(TimePoint planned) noexcept {
   parts_.writes.apply(parts_.dictionary);
   // Bounded by the ring: at most what was there when the cycle began.
   for (std::size_t left = parts_.handover.commands.size(); left > 0; --left) {
@@ -163,6 +152,7 @@ void CycleLoop::take_commands() noexcept {
         plan_.outputs[command->index].detach(command->link);
         report(ReportKind::OutputDetached, command->index, {}, command->link);
         break;
+      case CommandKind::Reconfigure: reconfigure(*command->reconfiguration, planned); break;
       case CommandKind::SelfTest:
         self_test_.begin(command->request, plan_.configuration->self_test_within);
         if (state_ != State::SafeOperational) end_self_test(self_test_.leave(state_));

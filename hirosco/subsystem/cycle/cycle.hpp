@@ -20,6 +20,7 @@
 #include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
 #include "hirosco/subsystem/cycle/realtime_watch.hpp"
+#include "hirosco/subsystem/cycle/reconfiguration.hpp"
 #include "hirosco/subsystem/cycle/resource_meter.hpp"
 #include "hirosco/subsystem/cycle/self_test_run.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
@@ -85,6 +86,10 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void prepare(CyclePlan plan);
   void release();
   [[nodiscard]] CyclePlan& plan() noexcept { return plan_; }
+  /// The configuration that the next cycle works by, after prepare().  Realtime: wait-free. Thread: any.
+  [[nodiscard]] const descriptor::Configuration& in_force() const noexcept {
+    return *in_force_.load(std::memory_order_acquire);
+  }
   [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
   /// Whether the author's self test has passed in this configuration, and nothing has voided it.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
@@ -121,7 +126,12 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
  private:
   void raise_found(const descriptor::Event& event, Octets auxiliary) noexcept;
   void answer(CycleReport head, Octets payload = {}) noexcept;
-  void take_commands() noexcept;
+  void take_commands(TimePoint planned) noexcept;
+  // reconfiguration.cpp
+  void begin_counting(const descriptor::Configuration& configuration) noexcept;
+  [[nodiscard]] const char* why_not(const Reconfiguration& wanted) const noexcept;
+  void reconfigure(Reconfiguration& wanted, TimePoint planned) noexcept;
+  void end_reconfiguration() noexcept;
   void run_function(const CycleCommand& command) noexcept;
   /// Why a state is not to be entered; null: it may be.
   [[nodiscard]] const char* why_not(State state) const noexcept;
@@ -149,6 +159,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
 
   Parts parts_;
   CyclePlan plan_;
+  std::atomic<const descriptor::Configuration*> in_force_{nullptr};
+  const Reconfiguration* taken_over_{nullptr};  ///< in this cycle
   SelfTestRun self_test_;
   std::vector<BoundFunction> functions_;
   Parameter<CycleStatistics> statistics_;

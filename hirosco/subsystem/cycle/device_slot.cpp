@@ -73,6 +73,7 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
       output_layout_{layout_fields(with_lengths(port.output_layout_, outputs_of(device), port.output_))},
       safe_payload_{safe_payload(device, order_)},
       payload_(std::max(wire_octets(input_layout_), safe_payload_.size())),
+      next_payload_(safe_payload_.size()),
       frame_(max_device_frame_octets) {
   port_->alive_ = false;
   port_->fresh_ = false;
@@ -80,7 +81,12 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
   port_->settings_ = use.settings;
   port_->endnode_ = taken();
   port_->fall_backs_ = 0;
-  if (device.actuator) left_obeys_ = static_cast<std::uint32_t>(std::chrono::microseconds{watchdog_us_} / sampling) + 1;
+  follow(sampling);
+}
+
+void DeviceSlot::follow(Duration sampling) noexcept {
+  if (!device_->actuator) return;
+  left_obeys_ = static_cast<std::uint32_t>(std::chrono::microseconds{watchdog_us_} / sampling) + 1;
 }
 
 std::string DeviceSlot::difference(const descriptor::Device& device, const DevicePortBase& port) {
@@ -214,6 +220,27 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
   const Octets payload = pass ? Octets{payload_}.first(safe_payload_.size()) : Octets{safe_payload_};
   const DeviceMode mode = pass ? DeviceMode::Active : stopping ? DeviceMode::Stop : DeviceMode::Off;
   if (due(mode, before)) send(mode, payload);
+}
+
+bool DeviceSlot::would_jump(const descriptor::Subsystem& subsystem, const descriptor::Bumpless& terms) noexcept {
+  if (!device_->actuator || !passed_) return false;
+  port_->output_layout_.fit(port_->output_);
+  encode(output_layout_, port_->output_, next_payload_, order_);
+  keep_in_range(next_payload_);
+  OctetReader before{Octets{payload_}, order_}, next{Octets{next_payload_}, order_};
+  const auto index = static_cast<std::uint16_t>(device_ - subsystem.devices.data());
+  for (std::size_t output = 0; output < device_->output.size(); ++output) {
+    const descriptor::Field& field = device_->output[output].field;
+    const auto step = std::ranges::find_if(terms.steps, [&](const descriptor::Bumpless::Step& each) {
+      return each.device == index && each.output == output;
+    });
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      const double was = get_number(before, field.type), is = get_number(next, field.type);
+      // What is no number is within no bound.
+      if (step != terms.steps.end() && !(std::abs(is - was) <= step->most)) return true;
+    }
+  }
+  return false;
 }
 
 /// Every so many cycles; what it may do is said at once.

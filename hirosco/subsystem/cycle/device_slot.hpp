@@ -71,6 +71,11 @@ class DeviceSlot {
     Wish,  ///< what it would have sent in Operational
   };
   void tell(Telling what) noexcept;
+  /// The cycle has another period from now on.
+  void follow(Duration sampling) noexcept;
+  /// Whether the author's output is further from what was put out in the cycle before than its step is wide. False where nothing of
+  /// the author's was put out.
+  [[nodiscard]] bool would_jump(const descriptor::Subsystem& subsystem, const descriptor::Bumpless& terms) noexcept;
 
  private:
   void take_frame(Octets frame) noexcept;
@@ -98,6 +103,7 @@ class DeviceSlot {
   std::vector<LayoutField> output_layout_;
   std::vector<std::byte> safe_payload_;
   std::vector<std::byte> payload_;  ///< of the author's output, within its ranges
+  std::vector<std::byte> next_payload_;  ///< room for the same, to be compared with it
   OutputParameter* told_{nullptr};
   bool passed_{false};  ///< what was sent is the author's
   std::vector<std::byte> frame_;

@@ -18,6 +18,7 @@
 namespace hirosco {
 
 struct AttachedLink;
+struct Reconfiguration;
 
 enum class CommandKind : std::uint8_t {
   Function,       ///< run handler `index` with `arguments`
@@ -27,6 +28,7 @@ enum class CommandKind : std::uint8_t {
   AttachOutput,   ///< `link` to output slot `index`
   DetachOutput,
   SelfTest,       ///< run it, for `request`
+  Reconfigure,    ///< go over to another configuration without a break (adr 0096)
 };
 
 /// Service loop -> cycle.
@@ -35,6 +37,7 @@ struct CycleCommand {
   std::uint16_t index{0};
   pus::Request request{};
   AttachedLink* link{nullptr};
+  Reconfiguration* reconfiguration{nullptr};
   pus::ArgumentData arguments{};
 };
 
@@ -51,6 +54,8 @@ enum class ReportKind : std::uint8_t {
   NodeFailed,     ///< `index` the State; payload: AuthorsError
   InputDetached,
   OutputDetached,  ///< `link` may be freed
+  Reconfigured,   ///< `index` the configuration that is in force from the cycle before this on
+  NotReconfigured,  ///< `index` the configuration that was wanted; payload: AuthorsError
   SelfTestEnded,  ///< `index` 0: passed, else the code; payload: AuthorsError
 };
 

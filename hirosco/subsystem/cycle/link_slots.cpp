@@ -89,6 +89,15 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   jitter_ns_ = 0.0;
 }
 
+void AttachedLink::count_in(Duration consumer_period) noexcept {
+  const auto ratio = agreement.producer_period / std::max(consumer_period, Duration{1});
+  producer_cycles_per_sample = static_cast<std::uint32_t>(std::max<std::int64_t>(ratio, 1));
+}
+
+void LinkInputSlot::follow(Duration sampling) noexcept {
+  if (link_ != nullptr) link_->count_in(sampling);
+}
+
 void LinkInputSlot::detach(const AttachedLink* link) noexcept {
   if (link_ != link) return;
   link_ = nullptr;

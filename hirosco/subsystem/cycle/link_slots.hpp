@@ -38,6 +38,7 @@ struct AttachedLink {
   std::vector<std::byte> payload;        ///< consumer
   std::vector<std::byte> places;  ///< consumer that wants all samples: objects of the port, as many as the link is deep
   std::endian order{std::endian::little};
+  void count_in(Duration consumer_period) noexcept;
   std::uint32_t producer_cycles_per_sample{1};  ///< own cycles that one sample of a slower producer may take
 };
 
@@ -59,6 +60,8 @@ class LinkInputSlot {
   void detach(const AttachedLink* link) noexcept;
   /// The port outlives all links.
   void release() noexcept { detach(link_); }
+  /// The cycle has another period from now on: ages count in its cycles.
+  void follow(Duration sampling) noexcept;
   /// Reads the link into the port, in the cycle that started at `now`. `counts`: a sample that stays out makes the newest one older
   /// by a cycle; of cycles that samples start only some do (CyclePace).
   void read(TimePoint now, bool counts) noexcept;

@@ -114,13 +114,19 @@ void CycleThread::run() {
       wanted_.wait();
       continue;
     }
-    if (realtime_) static_cast<void>(set_fifo_priority(demand.priority));
-    cycle(demand.generation);
+    take_priority(demand.priority);
+    cycle(demand.generation, demand.priority);
   }
   if (hold_ != nullptr) hold_->leave();
 }
 
-void CycleThread::cycle(std::uint32_t generation) {
+/// Of the configuration; 0 is ordinary scheduling, whatever the one before had.
+void CycleThread::take_priority(int priority) {
+  if (!realtime_) return;
+  static_cast<void>(priority > 0 ? set_fifo_priority(priority) : set_ordinary_scheduling());
+}
+
+void CycleThread::cycle(std::uint32_t generation, int priority) {
   const RealtimeScope no_heap;
   TimePoint planned = clock_.now() + subsystem_.cycle_demand().period;
   for (;;) {
@@ -128,10 +134,43 @@ void CycleThread::cycle(std::uint32_t generation) {
     const auto demand = subsystem_.cycle_demand();
     if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) break;
     planned = subsystem_.cycle_step(planned);
+    // Another configuration may have followed without a break (adr 0096): its period is in `planned`.
+    if (const int wanted = subsystem_.cycle_demand().priority; wanted != priority) {
+      priority = wanted;
+      take_priority(priority);
+    }
     if (subsystem_.has_reports()) bell_.ring();
     ++cycles_;
   }
   heap_uses_ += no_heap.count().allocations + no_heap.count().frees;
+}
+
+Result<> OwnLoopThread::start() {
+  HIROSCO_TRY_LET(thread_,
+                  Thread::start("loop." + subsystem_.own_loop(loop_).name, [this] { run(); }, cycle_stack_octets));
+  return ok();
+}
+
+void OwnLoopThread::end() {
+  ending_.store(true, std::memory_order_release);
+  thread_.join();
+}
+
+void OwnLoopThread::run() {
+  if (hold_ != nullptr) hold_->enter();
+  const int priority = subsystem_.own_loop(loop_).priority;
+  // One with a priority shares the processor of the cycles, where its response is reckoned (adr 0085); one without goes anywhere.
+  if (realtime_ && priority > 0) {
+    static_cast<void>(pin_to_cycle_cpu());
+    static_cast<void>(set_fifo_priority(priority));
+  }
+  TimePoint planned = clock_.now() + subsystem_.own_loop(loop_).period;
+  while (!ending_.load(std::memory_order_acquire)) {
+    sleep_until(planned);
+    planned = subsystem_.own_loop_step(loop_, planned);
+    if (subsystem_.has_reports()) bell_.ring();
+  }
+  if (hold_ != nullptr) hold_->leave();
 }
 
 void serve(const ServiceLoop& loop) {

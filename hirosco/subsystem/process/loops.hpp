@@ -60,7 +60,8 @@ class CycleThread {
 
  private:
   void run();
-  void cycle(std::uint32_t generation);
+  void take_priority(int priority);
+  void cycle(std::uint32_t generation, int priority);
 
   GenericSubsystem& subsystem_;
   const Clock& clock_;
@@ -71,6 +72,29 @@ class CycleThread {
   std::atomic<bool> ending_{false};
   std::uint64_t cycles_{0};  ///< the cycle thread's until it is joined, like the next
   std::uint64_t heap_uses_{0};
+  Thread thread_;
+};
+
+/// A loop of services of its own (adr 0096), in its thread as long as the subsystem lives.
+class OwnLoopThread {
+ public:
+  OwnLoopThread(GenericSubsystem& subsystem, std::size_t loop, const Clock& clock, Bell& bell, bool realtime,
+                ThreadHold* hold = nullptr)
+      : subsystem_{subsystem}, loop_{loop}, clock_{clock}, bell_{bell}, realtime_{realtime}, hold_{hold} {}
+  /// The guard tells the cycle's thread by its name: no loop has the same.
+  [[nodiscard]] Result<> start();
+  void end();
+
+ private:
+  void run();
+
+  GenericSubsystem& subsystem_;
+  std::size_t loop_;
+  const Clock& clock_;
+  Bell& bell_;
+  bool realtime_;
+  ThreadHold* hold_;
+  std::atomic<bool> ending_{false};
   Thread thread_;
 };
 

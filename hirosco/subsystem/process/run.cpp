@@ -10,6 +10,7 @@
 #include <cstring>
 #include <string>
 #include <utility>
+#include <memory>
 #include <vector>
 
 #include "hirosco/data_transfer/control/socket_channel.hpp"
@@ -154,6 +155,14 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
                  "one hirosco\n",
                  argv[0], *theirs, envelope::version);
   };
+  std::vector<std::unique_ptr<OwnLoopThread>> loops;
+  for (std::size_t i = 0; i < subsystem.own_loops(); ++i) {
+    loops.push_back(std::make_unique<OwnLoopThread>(subsystem, i, clock, *bell, realtime));
+    if (const auto started = loops.back()->start(); !started) {
+      fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
+      return exit_environment;
+    }
+  }
   serve({.subsystem = subsystem,
          .clock = clock,
          .channel = channel,
@@ -161,6 +170,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
          .bell = *bell,
          .after_step = tell_version});
   cycle.end();
+  for (const auto& loop : loops) loop->end();
   cycle.tell_heap_uses(argv[0]);
   return 0;
 }

@@ -19,6 +19,12 @@ constexpr Duration losses_told_every = 1s;
   return static_cast<std::int32_t>(a - b) < 0;
 }
 
+[[nodiscard]] std::uint64_t lost_by_loops(const std::vector<std::unique_ptr<OwnLoop>>& loops) {
+  std::uint64_t sum = 0;
+  for (const auto& loop : loops) sum += loop->lost();
+  return sum;
+}
+
 [[nodiscard]] Failure failure_in(Octets payload) {
   AuthorsError failure;
   std::memcpy(&failure, payload.data(), std::min(payload.size(), sizeof failure));
@@ -90,6 +96,8 @@ void GenericSubsystem::take_cycle_report(const CycleReport& head, Octets payload
     case ReportKind::OutputDetached:
       std::erase_if(leaving_links_, [&](const auto& link) { return link.get() == head.link; });
       break;
+    case ReportKind::Reconfigured: reconfigured(static_cast<std::uint8_t>(head.index), std::nullopt); break;
+    case ReportKind::NotReconfigured: reconfigured(static_cast<std::uint8_t>(head.index), failure_in(payload)); break;
     case ReportKind::SelfTestEnded: self_tests_.ended(head.request, head.index, failure_in(payload)); break;
   }
 }
@@ -118,7 +126,7 @@ void GenericSubsystem::tell_losses(TimePoint now) {
   const std::array losses{handover_.lost_answers(),
                           handover_.lost_events(),
                           handover_.housekeeping.dropped(),
-                          backlog_.lost(Backlog::Worth::Answer),
+                          backlog_.lost(Backlog::Worth::Answer) + lost_by_loops(loops_),
                           backlog_.lost(Backlog::Worth::Event),
                           backlog_.lost(Backlog::Worth::Housekeeping)};
   // To a supervisor that does not listen it would only be one more that is lost.

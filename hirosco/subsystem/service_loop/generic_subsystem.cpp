@@ -60,6 +60,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       dictionary_{make_dictionary(descriptor_, dictionary_problem_)},
       writes_{32, 2048},
       resources_{descriptor_.resources},
+      loops_{make_loops()},
       cycle_{{author, descriptor_, platform.clock, dictionary_, writes_, handover_, vital, permit, platform.realtime,
               resources_}},
       counters_{vital.counters},
@@ -67,7 +68,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       event_service_{descriptor_.events, verification_, *this},
       function_service_{descriptor_.functions, pus::common_functions(), *this, verification_},
       parameter_service_{*this, verification_, *this},
-      housekeeping_service_{descriptor_, verification_, *this},
+      housekeeping_service_{descriptor_, home_of(3).verification(), home_of(3).telemetry()},
       link_service_{verification_, *this, *this},
       self_tests_{verification_, *this, platform.clock},
       services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_},
@@ -77,6 +78,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
     made_services_.push_back(kind->make(*this));
     services_.push_back(made_services_.back().get());
   }
+  if (OwnLoop* const loop = loop_of(housekeeping_service_.type())) loop->host(housekeeping_service_);
+  loops_looked_at_ = platform_.clock.now();
   author_.framework_ = this;
   cycle_.functions().resize(descriptor_.functions.size());
   vital_.realtime.store(platform_.realtime ? 1 : 0, std::memory_order_relaxed);
@@ -90,8 +93,10 @@ GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
   Demand demand{.wanted = wanted_.load(std::memory_order_acquire)};
   demand.ticket = rest_ticket_.load(std::memory_order_acquire);
   if (!demand.wanted) return demand;
-  demand.period = configuration_->sampling;
-  demand.priority = configuration_->priority;
+  // The cycle's own: it changes at a boundary between two cycles (adr 0096).
+  const descriptor::Configuration& in_force = cycle_.in_force();
+  demand.period = in_force.sampling;
+  demand.priority = in_force.priority;
   demand.generation = generation_;
   return demand;
 }
@@ -100,16 +105,20 @@ GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
 
 TimePoint GenericSubsystem::service_step(TimePoint now) {
   take_cycle_reports();
+  take_loop_reports();
   receive_messages();
   watch_supervisor(now);
   release_late();
   advance(now);
   requester_.step(now);
   author_.service(now);
+  for (pus::Service* service : services_)
+    if (loop_of(service->type()) == nullptr) service->step(now);
+  if (cycle_rests() && writes_.waiting() != 0) writes_.apply(dictionary_);
   backlog_.flush(channel_);
   tell_losses(now);
   look_at_resources(now);
-  vital_.service_steps.fetch_add(1, std::memory_order_relaxed);
+  if (loops_move(now)) vital_.service_steps.fetch_add(1, std::memory_order_relaxed);
   const bool looks = wanted_.load(std::memory_order_relaxed) && !platform_.wakes;
   const bool busy = way_.has_value() || looks || !backlog_.empty();
   return now + (busy ? busy_pace : std::clamp(author_.service_wake().pace, busy_pace, idle_pace));
@@ -150,11 +159,15 @@ void GenericSubsystem::dispatch(const Message& message) {
   if (message.mode_epoch != 0 && message.mode_epoch != permit_.mode_epoch.load(std::memory_order_acquire))
     return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
   const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
-  if (found == services_.end())
+  if (found == services_.end() || !descriptor_.offers(telecommand->service(), configuration_))
     return verification_.rejected(request,
                                   pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
   pus::Service& service = **found;
   if (!service.in_force()) return verification_.rejected(request, wrong_state());
+  if (OwnLoop* const loop = loop_of(service.type())) {
+    if (loop->offer(message.packet, message.mode_epoch)) return;
+    return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::QueueFull});
+  }
   service.accompany(message.memory);
   service.handle(*telecommand, request);
 }
@@ -284,8 +297,7 @@ std::expected<void, pus::FailureCode> GenericSubsystem::submit_write(
     return std::unexpected{queued.error().code == ErrorCode::OutOfRange ? pus::FailureCode::CapacityExceeded
                                                                         : pus::FailureCode::Busy};
   // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
-  const bool parked = parked_ticket_.load(std::memory_order_acquire) == rest_ticket_.load(std::memory_order_relaxed);
-  if (!wanted_.load(std::memory_order_relaxed) && parked) writes_.apply(dictionary_);
+  if (cycle_rests()) writes_.apply(dictionary_);
   return {};
 }
 

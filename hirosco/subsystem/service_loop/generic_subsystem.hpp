@@ -26,9 +26,11 @@
 #include "hirosco/subsystem/author/custom_service.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/cycle/cycle.hpp"
+#include "hirosco/subsystem/cycle/reconfiguration.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/service_loop/backlog.hpp"
 #include "hirosco/subsystem/service_loop/failure.hpp"
+#include "hirosco/subsystem/service_loop/own_loop.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
 #include "hirosco/subsystem/service_loop/self_tests.hpp"
 #include "hirosco/subsystem/service_loop/st128_link_service.hpp"
@@ -80,8 +82,17 @@ class GenericSubsystem final : private pus::TelemetrySink,
   [[nodiscard]] bool reads() const noexcept { return backlog_.answers_have_room(); }
   /// What the author's work in the service loop waits for.  Thread: service.
   [[nodiscard]] ServiceWake service_wake() const { return author_.service_wake(); }
-  /// The cycle has reported what the service loop has not taken yet.  Realtime: wait-free. Thread: any.
-  [[nodiscard]] bool has_reports() const noexcept { return handover_.reports_wait(); }
+  /// The cycle, or a loop of services of its own, has reported what the service loop has not taken yet.
+  /// Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool has_reports() const noexcept;
+
+  /// Loops of services of its own (adr 0096), from 0 on; each is stepped by a thread of its own, from now to the end.
+  [[nodiscard]] std::size_t own_loops() const noexcept { return loops_.size(); }
+  [[nodiscard]] const descriptor::ServiceLoop& own_loop(std::size_t loop) const noexcept {
+    return loops_[loop]->declared();
+  }
+  /// One step that was due at `planned`; returns when the next is due.  Realtime: allocates. Thread: that loop's.
+  TimePoint own_loop_step(std::size_t loop, TimePoint planned) { return loops_[loop]->step(planned); }
 
   /// What the cycle thread is to do.
   struct Demand {
@@ -174,12 +185,28 @@ class GenericSubsystem final : private pus::TelemetrySink,
 
   void receive_messages();
   void dispatch(const Message& message);
+  Result<> store(const ParameterCell& parameter, Octets big_endian) override;
+  Result<> raise(std::string_view event, Octets auxiliary) override;
+
+  [[nodiscard]] std::vector<std::unique_ptr<OwnLoop>> make_loops();
+  /// Where the service of this type is at home: in one of the loops, or here.
+  [[nodiscard]] pus::ServiceHome& home_of(std::uint8_t type) noexcept;
+  [[nodiscard]] OwnLoop* loop_of(std::uint8_t type) noexcept;
+  /// What the services in loops of their own have said.
+  void take_loop_reports();
+  /// False while one of them stands still within a step: then the supervisor's guard sees the service loop stand still.
+  [[nodiscard]] bool loops_move(TimePoint now);
   void take_cycle_reports();
   void take_cycle_report(const CycleReport& report, Octets payload);
   void watch_supervisor(TimePoint now);
 
   std::expected<void, pus::FailureNotice> command_state(State target, const pus::Request& request);
   std::expected<void, pus::FailureNotice> command_configuration(std::uint8_t id, const pus::Request& request);
+  std::expected<void, pus::FailureNotice> command_bumpless(const descriptor::Configuration& wanted,
+                                                           const pus::Request& request);
+  /// How the cycle has taken it.
+  void reconfigured(std::uint8_t id, const std::optional<Failure>& why);
+  void give_up_reconfiguration(pus::FailureCode code);
   void advance(TimePoint now);
   void go(State target, std::optional<pus::Request> request);
   bool run_phase(State next, TimePoint now);
@@ -235,6 +262,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Handover handover_;
   ResourceMeter resources_;
   TimePoint look_at_resources_at_{};
+  std::vector<std::unique_ptr<OwnLoop>> loops_;
+  TimePoint loops_looked_at_{};
   CycleLoop cycle_;
   pus::PacketCounters counters_;
   pus::Verification verification_;
@@ -269,6 +298,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
 
   State state_{State::Offline};
   const descriptor::Configuration* configuration_{nullptr};
+  /// On its way to the cycle, or taken by one that has not said so; nobody waits for it any more without a request.
+  std::unique_ptr<Reconfiguration> reconfiguration_;
+  std::optional<pus::Request> reconfiguration_request_;
+  TimePoint reconfiguration_deadline_{};
   std::optional<Route> way_;
   std::uint8_t way_at_{0};
   std::optional<pus::Request> way_request_;

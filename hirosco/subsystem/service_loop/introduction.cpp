@@ -40,7 +40,10 @@ std::vector<Mistake> GenericSubsystem::try_introduction() {
 
 void GenericSubsystem::provide(CustomService& service) {
   if (std::ranges::find(own_services_, &service) != own_services_.end()) return;
-  service.join(*this);
+  const auto* declared = descriptor_.find_service(service.name());
+  OwnLoop* const loop = declared != nullptr ? loop_of(declared->type) : nullptr;
+  service.join(loop != nullptr ? static_cast<pus::ServiceHome&>(*loop) : *this);
+  if (loop != nullptr) loop->host(service);
   own_services_.push_back(&service);
   services_.push_back(&service);
 }
@@ -156,6 +159,7 @@ void GenericSubsystem::check_introduction() {
 
 void GenericSubsystem::forget_introduction() {
   requester_.forget();  // first: who waits may still end what it was asked itself
+  const LoopsAtRest at_rest{loops_};
   dictionary_.unpublish_all();
   for (CustomService* service : own_services_) service->release();
   used_events_.clear();

@@ -93,8 +93,7 @@ Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& requ
       HIROSCO_TRY_LET(link->reader, mechanism->consume(platform_.memory, memory, layout));
       link->payload.resize(layout.payload_octets);
     }
-    const auto ratio = agreement.producer_period / std::max(agreement.consumer_period, Duration{1});
-    link->producer_cycles_per_sample = static_cast<std::uint32_t>(std::max<std::int64_t>(ratio, 1));
+    link->count_in(agreement.consumer_period);
     end.slot = static_cast<std::uint16_t>(slot - plan.inputs.begin());
   }
   if (renewed && !withdraw(request.link))

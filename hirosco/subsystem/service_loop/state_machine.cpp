@@ -63,6 +63,7 @@ void GenericSubsystem::go(State target, std::optional<pus::Request> request) {
 
 void GenericSubsystem::advance(TimePoint now) {
   // A cycle that hangs confirms nothing: the request ends all the same, and the next command is heard.
+  if (reconfiguration_request_ && now > reconfiguration_deadline_) give_up_reconfiguration(pus::FailureCode::Timeout);
   if (way_ && awaiting_cycle_ && now > phase_deadline_)
     fail_transition(way_->states[way_at_], {ErrorCode::Timeout, "time limit of the cycle"});
   // Several transient states may be done in one step; each round either arrives somewhere or waits.
@@ -138,6 +139,7 @@ bool GenericSubsystem::power_takes_too_long() const noexcept {
 }
 
 Result<Step> GenericSubsystem::initialise_software() {
+  const LoopsAtRest at_rest{loops_};
   const auto step = author_.software_init();
   if (step && *step == Step::Again) return again;
   if (!step) mistake(step.error().text);
@@ -197,6 +199,7 @@ void GenericSubsystem::end_configuration() {
     verification_.completion_failed(open, pus::FailureNotice{pus::FailureCode::Aborted});
   open_calls_.clear();
   self_tests_.abandon();
+  give_up_reconfiguration(pus::FailureCode::Aborted);
 }
 
 /// Gives back all of a configuration. The cycle rests: nothing of it is in use.
@@ -210,8 +213,12 @@ void GenericSubsystem::release_configuration() {
       verification_.start_failed(forgotten.request, pus::FailureNotice{pus::FailureCode::Aborted});
   }
   writes_.apply(dictionary_);
+  reconfiguration_.reset();
   cycle_.release();
-  for (pus::Service* service : services_) service->release();
+  {
+    const LoopsAtRest at_rest{loops_};
+    for (pus::Service* service : services_) service->release();
+  }
   configuration_ = nullptr;
   vital_.configuration.store(0, std::memory_order_relaxed);
   vital_.inhibited.store(0, std::memory_order_relaxed);
@@ -294,11 +301,15 @@ void GenericSubsystem::go_down_from(State failed) {
 std::expected<void, pus::FailureNotice> GenericSubsystem::command_configuration(std::uint8_t id,
                                                                                 const pus::Request& request) {
   if (way_) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
+  const descriptor::Configuration* wanted = descriptor_.find_configuration(id);
+  const bool acts = state_ == State::SafeOperational || state_ == State::Operational;
+  if (acts && wanted != nullptr && configuration_ != nullptr &&
+      descriptor_.bumpless_between(configuration_->id, id) != nullptr)
+    return command_bumpless(*wanted, request);
   if (state_ != State::PreOperational) return std::unexpected{wrong_state()};
   const auto refuse = [&](pus::FailureCode code) {
     return std::unexpected{pus::FailureNotice{code}.with(std::uint8_t{0}).with(std::uint32_t{id})};
   };
-  const descriptor::Configuration* wanted = descriptor_.find_configuration(id);
   if (wanted == nullptr) return refuse(pus::FailureCode::UnknownIdentifier);
   // Another configuration goes by way of Post-Operational: devices and links are given back there.
   if (configuration_ != nullptr && configuration_ != wanted) return refuse(pus::FailureCode::WrongStatus);
@@ -381,8 +392,12 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     plan.device_lost_events.push_back(descriptor::framework_event::device_lost(use.device));
     plan.fell_back_events.push_back(descriptor::framework_event::fell_back(use.device));
   }
-  for (pus::Service* service : services_)
-    if (const auto configured = service->configure(configuration); !configured) return of("", configured.error());
+  {
+    const LoopsAtRest at_rest{loops_};
+    for (pus::Service* service : services_)
+      if (descriptor_.offers(service->type(), &configuration))
+        if (const auto configured = service->configure(configuration); !configured) return of("", configured.error());
+  }
   plan.sampler = housekeeping_service_.sampler();
   if (const auto configured = author_.configure(configuration); !configured) return of("", configured.error());
   self_tests_.applied(configuration.id);

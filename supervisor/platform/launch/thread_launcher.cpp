@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/thread_launcher.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <new>
@@ -33,19 +34,26 @@ template <class Page>
 
 /// One subsystem: what its threads work on, and what others may ask of them.
 struct ThreadLauncher::Member {
-  Member(const descriptor::MissionSubsystem& what, Bell rung) : described{what}, bell{std::move(rung)} {}
+  Member(const descriptor::MissionSubsystem& what, Bell rung) : described{what}, bell{std::move(rung)} {
+    for (std::size_t i = 0; i < what.subsystem.service_loops.size(); ++i) loops.push_back(std::make_unique<ThreadHold>());
+  }
 
   void run() noexcept;
   void fly();
   /// Fences are the guard's; this is all else that can be done to a thread.
   void tell_to_let_go(TimePoint now) noexcept {
-    static_cast<void>(service.take_realtime());
+    take_loops_realtime();
     static_cast<void>(cycle.take_realtime());
     // Zero says that nobody was told yet, and no clock of a flight reads it.
     std::int64_t none = 0;
     static_cast<void>(told_at_ns.compare_exchange_strong(none, now.time_since_epoch().count()));
     let_go.store(true, std::memory_order_release);
     bell.ring();
+  }
+
+  void take_loops_realtime() noexcept {
+    static_cast<void>(service.take_realtime());
+    for (const auto& loop : loops) static_cast<void>(loop->take_realtime());
   }
 
   const descriptor::MissionSubsystem& described;
@@ -57,6 +65,7 @@ struct ThreadLauncher::Member {
   Bell bell;
   std::optional<WakeEvent> gone;  ///< readable when it has ended
   ThreadHold service, cycle;
+  std::vector<std::unique_ptr<ThreadHold>> loops;  ///< of services of its own (adr 0096)
   std::atomic<bool> let_go{false};
   std::atomic<bool> resting{false};
   std::atomic<std::int64_t> told_at_ns{0};
@@ -109,14 +118,26 @@ void ThreadLauncher::Member::fly() {
                              *reinterpret_cast<VitalPage*>(vital.octets.data()),
                              *reinterpret_cast<const PermitPage*>(permit.octets.data())};
   CycleThread cycles{subsystem, parts->clock, bell, parts->realtime, &cycle};
-  // Whatever leaves this function, the cycle's thread is joined first: it works on what stands here.
+  std::vector<std::unique_ptr<OwnLoopThread>> own_loops;
+  // Whatever leaves this function, the threads are joined first: they work on what stands here.
   struct Joined {
-    CycleThread& thread;
-    ~Joined() { thread.end(); }
-  } const joined{cycles};
-  if (const auto started = cycles.start(described.subsystem.name + " cycle"); !started) {
+    CycleThread& cycle;
+    std::vector<std::unique_ptr<OwnLoopThread>>& loops;
+    ~Joined() {
+      cycle.end();
+      for (const auto& loop : loops) loop->end();
+    }
+  } const joined{cycles, own_loops};
+  const auto or_end = [&](const Result<>& started) {
+    if (started) return;
     if (parts->explain) parts->explain(described.subsystem.name + ": " + started.error().text);
     throw std::bad_alloc{};
+  };
+  or_end(cycles.start(described.subsystem.name + " cycle"));
+  for (std::size_t i = 0; i < std::min(subsystem.own_loops(), loops.size()); ++i) {
+    own_loops.push_back(
+        std::make_unique<OwnLoopThread>(subsystem, i, parts->clock, bell, parts->realtime, loops[i].get()));
+    or_end(own_loops.back()->start());
   }
   serve({.subsystem = subsystem,
          .clock = parts->clock,
@@ -134,12 +155,13 @@ class ThreadLauncher::Grip final : public ProcessGrip {
   Grip(std::shared_ptr<Member> member, const Clock& clock) : member_{std::move(member)}, clock_{clock} {}
   void take_realtime() noexcept override {
     static_cast<void>(member_->cycle.take_realtime());
-    static_cast<void>(member_->service.take_realtime());
+    member_->take_loops_realtime();
   }
-  void take_loops_realtime() noexcept override { static_cast<void>(member_->service.take_realtime()); }
+  void take_loops_realtime() noexcept override { member_->take_loops_realtime(); }
   void give_realtime() noexcept override {
     if (member_->let_go.load(std::memory_order_acquire)) return;
     member_->service.give_realtime();
+    for (const auto& loop : member_->loops) loop->give_realtime();
     member_->cycle.give_realtime();
   }
   LoopTime loop_time() noexcept override {
@@ -151,7 +173,9 @@ class ThreadLauncher::Grip final : public ProcessGrip {
             .waits = !member_->resting.load(std::memory_order_relaxed)};
   }
   Duration processor_time() noexcept override {
-    return member_->service.processor_time() + member_->cycle.processor_time();
+    Duration all = member_->service.processor_time() + member_->cycle.processor_time();
+    for (const auto& loop : member_->loops) all += loop->processor_time();
+    return all;
   }
   void kill() noexcept override { member_->tell_to_let_go(clock_.now()); }
 

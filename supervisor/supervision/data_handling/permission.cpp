@@ -140,6 +140,9 @@ using Notice = std::optional<FailureNotice>;
   if (!here) return FailureNotice{FailureCode::UnknownService}.with(type);
   const bool known = kind != nullptr ? kind->request(subtype) != nullptr : asked.request != nullptr;
   if (!known) return FailureNotice{FailureCode::UnknownSubtype}.with(type).with(subtype);
+  // It may be left out, by its descriptor or by the configuration in force (docs/adr/0096).
+  if (!asked.subsystem.offers(type, asked.subsystem.find_configuration(asked.situation.configuration)))
+    return FailureNotice{FailureCode::UnknownService}.with(type);
   return std::nullopt;
 }
 
@@ -170,9 +173,40 @@ using Notice = std::optional<FailureNotice>;
   return std::nullopt;
 }
 
-/// Has the addressee what it needs on its way up: its links, and power?
+/// The configuration that would follow the one in force without a break (docs/adr/0096); null: it is asked for nothing of the kind.
+[[nodiscard]] const descriptor::Configuration* following(const Asked& asked) {
+  const auto state = asked.situation.state;
+  const bool acts = state == State::SafeOperational || state == State::Operational;
+  if (!acts || !asked.calls("CONFIGURE") || !asked.call->first_argument) return nullptr;
+  const std::uint8_t wanted = *asked.call->first_argument;
+  if (asked.subsystem.bumpless_between(asked.situation.configuration, wanted) == nullptr) return nullptr;
+  return asked.subsystem.find_configuration(wanted);
+}
+
+/// With power that it is not granted, or a cycle that may keep others waiting, nobody goes on.
+[[nodiscard]] Notice is_carried(const Asked& asked, const descriptor::Configuration& wanted) {
+  const Situation& situation = asked.situation;
+  if (situation.power != nullptr && asked.subsystem.name != situation.mission.ground.subsystem)
+    if (const auto shortage = situation.power->shortage(asked.subsystem.id, wanted.power_w))
+      return notice_of(*shortage);
+  if (!situation.in_force) return std::nullopt;
+  auto all = situation.in_force();
+  for (descriptor::InForce& each : all)
+    if (each.subsystem->id == asked.subsystem.id) each.configuration = &wanted;
+  for (const descriptor::CycleResponse& cycle : descriptor::cycle_responses(all)) {
+    if (cycle.longest) continue;
+    const std::string why =
+        "may not end in time then: " + std::string{cycle.subsystem} + " " + std::string{cycle.name()};
+    FailureNotice notice{FailureCode::NotPermittedNow};
+    return notice.because({ErrorCode::NotPermitted, cycle.period() / std::chrono::microseconds{1}, why});
+  }
+  return std::nullopt;
+}
+
+/// Has the addressee what it needs on its way up, or for another configuration while it acts: links, power, its cycle's time?
 [[nodiscard]] Notice is_provided_for(const Asked& asked) {
   const Situation& situation = asked.situation;
+  if (const auto* wanted = following(asked)) return is_carried(asked, *wanted);
   if (up_to_safe(asked) || up_to_operational(asked))
     if (const auto link = absent_link(asked.subsystem, situation))
       return FailureNotice{FailureCode::LinkAbsent}.with(*link);
@@ -294,12 +328,16 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
     return std::unexpected{situation.down ? is_down() : FailureNotice{FailureCode::UnknownApid}};
   for (const auto rule : rules)
     if (const auto refused = rule(asked)) return std::unexpected{*refused};
-  const bool reserves = up_to_safe(asked) && situation.power != nullptr;
+  const auto* const wanted = following(asked);
+  const bool reserves = (up_to_safe(asked) || wanted != nullptr) && situation.power != nullptr;
+  // Until it has gone over it draws what it draws.
+  const double reserves_w =
+      wanted == nullptr ? demand_w(*subsystem, situation) : std::max(wanted->power_w, demand_w(*subsystem, situation));
   return Permitted{.essential = essential(asked),
                    .releases_stop = up_to_operational(asked),
                    .starts = starts(asked),
                    .stops_the_craft = stops_the_craft(asked),
-                   .reserves_w = reserves ? demand_w(*subsystem, situation) : 0};
+                   .reserves_w = reserves ? reserves_w : 0};
 }
 
 }  // namespace hirosco::supervisor

@@ -4,10 +4,13 @@
 
 #include <cstdint>
 #include <expected>
+#include <functional>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "supervisor/supervision/data_handling/origin.hpp"
@@ -36,6 +39,8 @@ struct Situation {
   bool down{false};
   /// A change of mode is under way (docs/adr/0075).
   bool changing{false};
+  /// What is in force of everybody, for what their cycles take together; without it that is no matter here.
+  std::function<std::vector<descriptor::InForce>()> in_force{};
 };
 
 struct Permitted {
@@ -43,7 +48,8 @@ struct Permitted {
   bool releases_stop{false};  ///< SET_STATE(Operational): lifts the addressee's stop flag
   bool starts{false};  ///< SET_STATE(Offline) to who is down: the supervisor starts its process
   bool stops_the_craft{false};  ///< SAFE_ALL: carried out whoever says it, under whatever source id
-  double reserves_w{0};  ///< SET_STATE(SafeOperational): what the addressee may draw from now on
+  double reserves_w{
+      0};  ///< SET_STATE(SafeOperational), or CONFIGURE while it acts: what the addressee may draw from now on
 };
 
 /// Who is down answers nothing; what brings it up again is said with the refusal.

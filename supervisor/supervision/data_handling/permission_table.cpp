@@ -35,6 +35,31 @@ constexpr std::size_t called_name_octets = 16;
   return data;
 }
 
+/// With none in force, and with each.
+[[nodiscard]] std::vector<const descriptor::Configuration*> all_configurations(const descriptor::Subsystem& subsystem) {
+  std::vector<const descriptor::Configuration*> all{nullptr};
+  for (const auto& each : subsystem.configurations) all.push_back(&each);
+  return all;
+}
+
+[[nodiscard]] std::vector<std::string> refusing(const descriptor::Subsystem& subsystem, std::uint8_t service) {
+  std::vector<std::string> names;
+  for (const auto* each : all_configurations(subsystem))
+    if (!subsystem.offers(service, each)) names.push_back(each == nullptr ? "-" : each->name);
+  return names;
+}
+
+[[nodiscard]] bool offered_everywhere(const descriptor::Subsystem& subsystem, std::uint8_t service) {
+  return refusing(subsystem, service).empty();
+}
+
+/// One that offers the service; 0: none, or none needs to be in force.
+[[nodiscard]] std::uint8_t offering(const descriptor::Subsystem& subsystem, std::uint8_t service) {
+  for (const auto* each : all_configurations(subsystem))
+    if (subsystem.offers(service, each)) return each == nullptr ? std::uint8_t{0} : each->id;
+  return 0;
+}
+
 class Table {
  public:
   Table(const descriptor::Mission& mission, const descriptor::Mode& mode)
@@ -83,15 +108,18 @@ class Table {
     row.service = service;
     row.subtype = subtype;
     row.request = std::move(request);
+    const bool everywhere = offered_everywhere(*asked_.addressee, service);
     for (const auto& state : EnumTexts<State>::table) {
       const auto bit = static_cast<std::uint16_t>(1U << static_cast<unsigned>(state.value));
       Situation situation{.mission = mission_, .mode = mode_, .links = links_, .state = state.value};
+      if (!everywhere) situation.configuration = offering(*asked_.addressee, service);
       const auto decision = decide(*telecommand, asked_.origin, situation);
       situation.changing = true;
       if (decision) row.permitted |= bit;
       if (decision && decision->essential) row.essential |= bit;
       if (decide(*telecommand, asked_.origin, situation)) row.in_change |= bit;
     }
+    if (!everywhere) row.not_in = refusing(*asked_.addressee, service);
     rows_.push_back(std::move(row));
   }
 

@@ -22,6 +22,8 @@ struct PermissionRow {
   std::string request{};
   std::uint16_t permitted{0};  ///< bit n set: while the addressee is in State n
   std::uint16_t essential{0};  ///< the same, forwarded past what waits (decision 24)
+  /// Names of the configurations that do not offer its service (docs/adr/0096), "-" for none in force: there it is refused in all states.
+  std::vector<std::string> not_in{};
   std::uint16_t in_change{0};  ///< bit n set: also while the craft is on its way into another mode (docs/adr/0075)
 };
 

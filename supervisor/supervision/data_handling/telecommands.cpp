@@ -171,7 +171,8 @@ Situation Telecommands::situation_of(std::uint16_t apid) const {
                       .state = std::nullopt,
                       .power = &parts_.power.ledger(),
                       .down = false,
-                      .changing = craft_.changing_to != nullptr};
+                      .changing = craft_.changing_to != nullptr,
+                      .in_force = [this] { return in_force(); }};
   if (apid == supervisor_apid) {
     situation.state = parts_.own.state();
     situation.configuration = parts_.own.configuration();
@@ -183,6 +184,16 @@ Situation Telecommands::situation_of(std::uint16_t apid) const {
   situation.state = addressee->state();
   situation.configuration = addressee->configuration();
   return situation;
+}
+
+std::vector<descriptor::InForce> Telecommands::in_force() const {
+  std::vector<descriptor::InForce> all;
+  for (const Member& member : std::as_const(craft_).members) {
+    if (!member.alive()) continue;
+    const descriptor::Subsystem& subsystem = member.descriptor();
+    all.push_back({&subsystem, subsystem.find_configuration(member.configuration())});
+  }
+  return all;
 }
 
 /// ST[129]: nothing is done but answered. Whoever asks is judged as the sender that it is.

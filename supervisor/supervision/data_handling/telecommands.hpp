@@ -91,6 +91,7 @@ class Telecommands final : public Watch, public Accounts {
   [[nodiscard]] std::optional<pus::FailureNotice> refuse_flood(const pus::TelecommandView& telecommand,
                                                                const Origin& origin, const Permitted& permitted);
   [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
+  [[nodiscard]] std::vector<descriptor::InForce> in_force() const;
   void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
   void answer_question(const Incoming& incoming, const pus::TelecommandView& question);
   void refuse(const WaitingForDisk::Telecommand& waited, pus::FailureCode why);

@@ -124,6 +124,18 @@ class SubsystemReader {
   void read_request(const xml::Element& element, CustomService& service, Unique& subtypes);
   void read_report(const xml::Element& element, CustomService& service, Unique& subtypes, Unique& names);
 
+  // read_service_list.cpp
+  void read_service_loop(const xml::Element& element);
+  /// Of the subsystem, or of one of its configurations.
+  void read_service(const xml::Element& element, std::vector<ServiceUse>& uses, Unique& names, bool of_configuration);
+  void check_service_list(const xml::Element& root);
+  void check_housekeeping_offered(const xml::Element& element, const Configuration& configuration);
+
+  // read_bumpless.cpp
+  void read_bumpless(const xml::Element& element);
+  void read_step(const xml::Element& element, Bumpless& bumpless, Unique& names);
+  void check_steps(const xml::Element& element, const Bumpless& bumpless);
+
   // read_commands.cpp
   void read_commands(const xml::Element& element);
 
@@ -173,6 +185,8 @@ class SubsystemReader {
   Unique function_names_{"function name", "E0201"};
   Unique service_names_{"service name", "E0201"};
   Unique service_types_{"service type", "E0202"};
+  Unique loop_names_{"name of a loop", "E0201"};
+  Unique service_uses_{"service", "E0201"};
   Unique configuration_names_{"configuration name", "E0201"};
   Unique configuration_ids_{"configuration id", "E0202"};
   Unique structure_ids_{"housekeeping structure id", "E0211"};

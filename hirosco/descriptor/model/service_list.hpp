@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/utilities/time.hpp"
+
+/// Which services a subsystem offers, in which loops they run, and between which configurations it goes without a break
+/// (docs/adr/0096). Plain data, as the descriptor says it.
+namespace hirosco::descriptor {
+
+/// Where an element stands in its file; line and column count from 1.
+struct Location {
+  int line{0};
+  int column{0};
+  friend bool operator==(const Location&, const Location&) = default;
+};
+
+/// Most loops that a subsystem has besides its service loop and its cycle.
+inline constexpr std::size_t max_service_loops = 8;
+/// Most requests that wait in one of them.
+inline constexpr std::uint32_t max_service_queue = 64;
+
+/// A loop of its own for services: stepped in its own thread at its own period and priority.
+struct ServiceLoop {
+  std::string name;
+  Duration period{};  ///< 1 ms to 1 s
+  int priority{0};  ///< SCHED_FIFO, on the processor of the cycles; 0 = ordinary scheduling
+  Duration budget{};  ///< most processor time of a step; 0 = not declared
+  std::uint32_t queue{16};  ///< requests that wait at once
+  Location at{};
+};
+
+/// What <Service> says of one service, the framework's or the subsystem's own.
+struct ServiceUse {
+  std::uint8_t type{};
+  bool offered{true};
+  int loop{-1};  ///< index into Subsystem::service_loops; -1: the subsystem's service loop
+  Location at{};
+};
+
+/// A service of the framework, as a descriptor names it and what a descriptor may say of it.
+struct StandardService {
+  std::string_view name;
+  std::uint8_t type;
+  bool may_be_left_out;  ///< the others carry states, links or the test that everybody may ask for
+  bool may_have_loop;  ///< the others speak with the cycle
+};
+inline constexpr std::array standard_services_by_name{
+    StandardService{"ST03", 3, true, true},   StandardService{"ST05", 5, true, false},
+    StandardService{"ST08", 8, false, false}, StandardService{"ST17", 17, false, false},
+    StandardService{"ST20", 20, true, false}, StandardService{"ST128", 128, false, false}};
+
+/// Configurations between which CONFIGURE goes while the subsystem acts, both ways, each with each.
+struct Bumpless {
+  std::vector<std::uint8_t> configurations;  ///< ids
+  /// The largest difference of an actuator's output from one cycle to the next where the configuration changes.
+  struct Step {
+    std::uint16_t device{};  ///< index into Subsystem::devices
+    std::uint16_t output{};  ///< index into Device::output; each element of an array
+    double most{0};  ///< in the unit of the output
+  };
+  std::vector<Step> steps;  ///< one for each output of each actuator that they use
+  Location at{};
+};
+
+}  // namespace hirosco::descriptor

@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/parameter/number.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+
+/// One configuration follows another while the subsystem acts.
+namespace hirosco {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::Rig;
+using testing::Sent;
+
+constexpr double step_bound = 0.05;
+
+constexpr const char* joint_descriptor = R"(<Subsystem name="JOINT" id="10">
+  <ParamRef name="KP" id="0" type="DOUBLE" init="1"/>
+  <ParamRef name="TITLE" id="1" type="TEXT" octets="8" init="none"/>
+  <Device name="MOTOR" actuator="yes">
+    <Input><Field name="ANGLE" type="DOUBLE"/></Input>
+    <Output><Field name="TORQUE" type="DOUBLE" safe="0"/></Output>
+  </Device>
+  <Configuration name="SOFT" id="1" sampling_us="1000" priority="40" budget_us="100" self_test="optional">
+    <Set parameter="KP" value="2"/><Set parameter="TITLE" value="soft"/>
+    <Device name="MOTOR" silence="1000" watchdog_ms="50"><Endnode transfer="shared_memory" address="motor"/></Device>
+    <HKService id="1" interval="4"><SampledOnce><ParamRef name="KP"/></SampledOnce></HKService>
+  </Configuration>
+  <Configuration name="STIFF" id="2" sampling_us="500" priority="60" budget_us="200">
+    <Set parameter="KP" value="9"/><Set parameter="TITLE" value="stiff"/>
+    <Device name="MOTOR" silence="1000" watchdog_ms="50"><Endnode transfer="shared_memory" address="motor"/></Device>
+    <HKService id="2" interval="4"><SampledOnce><ParamRef name="KP"/></SampledOnce></HKService>
+  </Configuration>
+  <Configuration name="OTHER" id="3" sampling_us="1000"/>
+  <Bumpless between="SOFT STIFF"><Step device="MOTOR" output="TORQUE" most="0.05"/></Bumpless>
+</Subsystem>)";
+
+/// A spring to a goal that moves. What it puts out goes on where the gain changes, as the offset takes the difference over.
+struct Joint final : Subsystem {
+  struct Angle {
+    double angle;
+  };
+  struct Torque {
+    double torque;
+  };
+  Parameter<double> kp;
+  Parameter<Text<8>> title;
+  DevicePort<Angle, Torque> motor;
+  double error{0.3}, offset{0}, torque{0};
+  double jump{0};  ///< planted
+  bool refuses{false};
+  int hooks{0}, configured{0};
+  Cycle seen{}, of_hook{};
+  double kp_in_hook{0};
+
+  Result<Step> software_init() override {
+    publish("KP", kp);
+    publish("TITLE", title);
+    use_device("MOTOR", motor);
+    return done;
+  }
+  Result<> configure(const descriptor::Configuration&) override {
+    ++configured;
+    return ok();
+  }
+  Result<> bumpless(const descriptor::Configuration&, const descriptor::Configuration&,
+                    const Cycle& cycle) noexcept override {
+    ++hooks;
+    of_hook = cycle;
+    kp_in_hook = kp.load();
+    if (refuses) return fail(ErrorCode::NotPermitted, "not on the move", 3);
+    offset = torque - kp.load() * error + jump;
+    return ok();
+  }
+  Result<> work(const Cycle& cycle) noexcept {
+    seen = cycle;
+    error = 0.3 * std::sin(0.01 * static_cast<double>(++time));
+    torque = kp.load() * error + offset;
+    motor.output().torque = torque;
+    return ok();
+  }
+  Result<> safe_operational(const Cycle& cycle) noexcept override { return work(cycle); }
+  Result<> operational(const Cycle& cycle) noexcept override { return work(cycle); }
+  std::uint64_t time{0};
+};
+
+struct BumplessChange : ::testing::Test {
+  Joint author;
+  Rig rig{author, joint_descriptor};
+  std::unique_ptr<DataFlow> motor =
+      std::move(rig.flows.open({Transfer::SharedMemory, "motor"}, FlowSide::Device)).value();
+
+  /// One cycle, and what the motor is told in it.
+  DeviceCommand cycle() {
+    rig.cycle();
+    static std::array<std::byte, max_device_frame_octets> frame;
+    const auto received = motor->receive(frame).value();
+    return read_command(Octets{frame}.first(received.octets)).value();
+  }
+  static double torque_of(const DeviceCommand& command) {
+    OctetReader reader{command.payload, std::endian::little};
+    return get_number(reader, Type::Double);
+  }
+  std::uint8_t in_force() const { return static_cast<std::uint8_t>(rig.vital.configuration.load()); }
+  void expect_untouched() {
+    EXPECT_EQ(in_force(), 1);
+    EXPECT_EQ(author.kp.load(), 2.0);
+    EXPECT_EQ(author.title.load().view(), "soft");
+    EXPECT_EQ(rig.subsystem.cycle_demand().period, 1ms);
+    rig.forget_telemetry();
+    rig.settle();
+    EXPECT_EQ(rig.reports(3, 25).empty(), false);
+    for (const auto& report : rig.reports(3, 25)) EXPECT_EQ(report.substr(0, 4), "0001");
+  }
+};
+
+TEST_F(BumplessChange, TenTimesInMotionMovesNoOutputFurtherThanItsStepAndMissesNoCycle) {
+  rig.bring_to(State::Operational);
+  const std::uint64_t before = rig.vital.cycles.load();
+  std::uint64_t cycles = 0;
+  double last = torque_of(cycle());
+  ++cycles;
+  for (int round = 0; round < 10; ++round) {
+    const std::uint8_t id = round % 2 == 0 ? 2 : 1;
+    const Sent sent = rig.configure(id);
+    rig.service();
+    EXPECT_EQ(rig.outcome(sent), "1 3") << "the cycle takes it over";
+    for (int i = 0; i < 30; ++i) {
+      const DeviceCommand command = cycle();
+      ++cycles;
+      EXPECT_EQ(command.mode, DeviceMode::Active) << "no interruption of the output";
+      EXPECT_LE(std::abs(torque_of(command) - last), step_bound);
+      last = torque_of(command);
+    }
+    rig.service();
+    EXPECT_EQ(rig.outcome(sent), "1 3 7");
+    EXPECT_EQ(in_force(), id);
+  }
+  EXPECT_EQ(author.hooks, 10);
+  EXPECT_EQ(author.configured, 1) << "configure() is of Pre-Operational";
+  EXPECT_EQ(rig.vital.cycles.load() - before, cycles);
+  EXPECT_EQ(rig.state(), State::Operational);
+}
+
+TEST_F(BumplessChange, TakesPeriodPriorityBudgetValuesAndHousekeepingAtOneBoundary) {
+  rig.bring_to(State::Operational);
+  const auto before = rig.subsystem.cycle_demand();
+  EXPECT_EQ(before.period, 1ms);
+  EXPECT_EQ(before.priority, 40);
+  static_cast<void>(rig.configure(2));
+  rig.service();
+  EXPECT_EQ(rig.subsystem.cycle_demand().period, 1ms) << "not before the boundary";
+  EXPECT_EQ(author.kp.load(), 2.0);
+  const TimePoint planned = rig.clock.now() + 1ms;
+  rig.clock.set(planned);
+  EXPECT_EQ(rig.subsystem.cycle_step(planned), planned + 500us);
+  const auto after = rig.subsystem.cycle_demand();
+  EXPECT_EQ(after.period, 500us);
+  EXPECT_EQ(after.priority, 60);
+  EXPECT_EQ(after.generation, before.generation) << "the thread of the cycle goes on";
+  EXPECT_EQ(author.kp_in_hook, 9.0) << "the hook sees the new values";
+  EXPECT_EQ(author.of_hook.period, 500us);
+  EXPECT_EQ(author.seen.period, 500us);
+  EXPECT_FALSE(author.seen.first);
+  EXPECT_EQ(author.title.load().view(), "stiff");
+  EXPECT_EQ(rig.vital.period_ns.load(), 500'000U);
+  CycleBudget budget{};
+  ASSERT_TRUE(rig.subsystem.cycle().budget().snapshot(budget));
+  EXPECT_EQ(budget.budget_us, 200.0F) << "held against the budget of this configuration";
+  rig.forget_telemetry();
+  rig.settle();
+  ASSERT_FALSE(rig.reports(3, 25).empty());
+  for (const auto& report : rig.reports(3, 25)) EXPECT_EQ(report.substr(0, 4), "0002");
+}
+
+TEST_F(BumplessChange, OfAPlantedJumpReachesNoActuator) {
+  rig.bring_to(State::Operational);
+  const double last = torque_of(cycle());
+  author.jump = 0.06;
+  const Sent sent = rig.configure(2);
+  rig.service();
+  const DeviceCommand command = cycle();
+  EXPECT_NE(command.mode, DeviceMode::Active);
+  EXPECT_EQ(torque_of(command), 0.0) << "the declared safe value";
+  EXPECT_GT(std::abs(author.torque - last), step_bound);
+  rig.settle();
+  EXPECT_THAT(rig.outcome(sent), HasSubstr("1 3 8:0202"));
+  EXPECT_EQ(rig.state(), State::ErrorOperational);
+  EXPECT_EQ(rig.heard(descriptor::framework_event::configuration_failed), 1);
+}
+
+TEST_F(BumplessChange, IsAsNothingWhenTheAuthorRefusesIt) {
+  rig.bring_to(State::Operational);
+  author.refuses = true;
+  EXPECT_THAT(rig.configure_now(2), HasSubstr("1 3 8:0202"));
+  EXPECT_EQ(rig.state(), State::Operational);
+  expect_untouched();
+  author.refuses = false;
+  EXPECT_EQ(rig.configure_now(2), "1 3 7");
+}
+
+TEST_F(BumplessChange, IsRefusedWhereTheActuatorsAreInhibitedOrTheGuardHasStoppedThem) {
+  rig.bring_to(State::Operational);
+  rig.permit.fence();
+  EXPECT_EQ(rig.configure_now(2), "2:010700");
+  EXPECT_EQ(author.hooks, 0);
+  expect_untouched();
+}
+
+TEST_F(BumplessChange, ThatAFenceOvertakesOnItsWayToTheCycleIsNone) {
+  rig.bring_to(State::Operational);
+  const Sent sent = rig.configure(2);
+  rig.service();
+  rig.permit.fence();
+  rig.settle();
+  EXPECT_THAT(rig.outcome(sent), HasSubstr("1 3 8:0202"));
+  EXPECT_EQ(author.hooks, 0);
+  EXPECT_EQ(in_force(), 1);
+}
+
+TEST_F(BumplessChange, IsForConfigurationsThatAreDeclaredCompatibleInTheStatesOfControl) {
+  rig.bring_to(State::Operational);
+  EXPECT_EQ(rig.configure_now(3), "1 4:000a05") << "not declared";
+  EXPECT_EQ(rig.configure_now(1), "1 4:000a05") << "in force already";
+  expect_untouched();
+  rig.set_state_now(State::ErrorOperational);
+  EXPECT_EQ(rig.configure_now(2), "1 4:000a06");
+  rig.set_state_now(State::SafeOperational);
+  EXPECT_EQ(rig.configure_now(2), "1 3 7");
+  EXPECT_EQ(in_force(), 2);
+}
+
+TEST_F(BumplessChange, IsOneAtATimeAndEndsWhateverBecomesOfTheCycle) {
+  rig.bring_to(State::Operational);
+  const Sent first = rig.configure(2), second = rig.configure(2);
+  rig.service();
+  EXPECT_EQ(rig.outcome(second), "1 4:0108");
+  rig.advance(11s);
+  rig.service();
+  EXPECT_EQ(rig.outcome(first), "1 3 8:0203") << "the cycle stands";
+  rig.cycle();
+  rig.service();
+  EXPECT_EQ(in_force(), 2) << "what the cycle takes in the end is in force, and known to be";
+  EXPECT_EQ(rig.configure_now(1), "1 3 7");
+  const Sent overtaken = rig.configure(2);
+  rig.service();
+  rig.set_state_now(State::PostOperational);
+  EXPECT_THAT(rig.outcome(overtaken), ::testing::AnyOf(HasSubstr("7"), HasSubstr("8:0204")));
+}
+
+}  // namespace
+}  // namespace hirosco

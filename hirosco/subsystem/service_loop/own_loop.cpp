@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/service_loop/own_loop.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace hirosco {
+namespace {
+
+constexpr std::size_t in_octets = 64 * 1024;
+constexpr std::size_t out_octets = 64 * 1024;
+/// In one step, in watched time: longer is no slow request any more.
+constexpr Duration least_hang = std::chrono::milliseconds{500};
+constexpr int hang_periods = 3;
+
+/// In front of a telecommand.
+struct Offered {
+  std::uint32_t mode_epoch{0};
+};
+
+/// In front of what is said.
+struct Said {
+  std::uint8_t service{0};  ///< 0: an event
+  std::uint8_t subtype{0};
+  std::uint16_t number{0};  ///< destination, or the event's id
+};
+
+template <class T>
+[[nodiscard]] Octets octets_of(const T& head) noexcept {
+  return std::as_bytes(std::span{&head, 1});
+}
+
+template <class T>
+[[nodiscard]] T head_of(Octets record) noexcept {
+  T head;
+  std::memcpy(&head, record.data(), sizeof head);
+  return head;
+}
+
+}  // namespace
+
+OwnLoop::OwnLoop(const Parts& parts) : parts_{parts}, in_{in_octets}, out_{out_octets}, verification_{*this} {}
+
+bool OwnLoop::offer(Octets packet, std::uint32_t mode_epoch) noexcept {
+  if (waiting_.load(std::memory_order_acquire) >= parts_.declared.queue) return false;
+  // Counted before it can be taken.
+  waiting_.fetch_add(1, std::memory_order_acq_rel);
+  if (in_.try_write(octets_of(Offered{mode_epoch}), packet)) return true;
+  waiting_.fetch_sub(1, std::memory_order_acq_rel);
+  return false;
+}
+
+void OwnLoop::tell(const Listener& listener) {
+  while (listener.has_room()) {
+    const auto record = out_.front();
+    if (!record) return;
+    const auto said = head_of<Said>(*record);
+    const Octets data = record->subspan(sizeof said);
+    if (said.service == 0) listener.event(said.number, data);
+    else listener.report(said.service, said.subtype, said.number, data);
+    out_.pop();
+  }
+}
+
+bool OwnLoop::hangs(Duration passed) noexcept {
+  const std::uint64_t steps = steps_.load(std::memory_order_acquire);
+  const bool moves = std::exchange(seen_steps_, steps) != steps || !in_step_.load(std::memory_order_acquire);
+  stands_for_ = moves ? Duration{0} : stands_for_ + passed;
+  if (moves) told_ = false;
+  return stands_for_ > std::max(least_hang, hang_periods * parts_.declared.period);
+}
+
+TimePoint OwnLoop::step(TimePoint planned) {
+  {
+    const LockGuard lock{mutex_};
+    in_step_.store(true, std::memory_order_release);
+    for (std::uint32_t left = parts_.declared.queue; left > 0 && has_room(max_packet_octets); --left) {
+      const auto record = in_.front();
+      if (!record) break;
+      handle(*record);
+      in_.pop();
+      waiting_.fetch_sub(1, std::memory_order_acq_rel);
+    }
+    const TimePoint now = parts_.clock.now();
+    for (pus::Service* service : services_) service->step(now);
+    steps_.fetch_add(1, std::memory_order_acq_rel);
+    in_step_.store(false, std::memory_order_release);
+  }
+  const Duration period = parts_.declared.period;
+  const TimePoint next = planned + period;
+  const TimePoint finished = parts_.clock.now();
+  return finished <= next ? next : next + ((finished - next) / period + 1) * period;
+}
+
+void OwnLoop::handle(Octets record) {
+  const auto offered = head_of<Offered>(record);
+  const auto telecommand = pus::TelecommandView::parse(record.subspan(sizeof offered));
+  if (!telecommand) return;  // the service loop has looked
+  const pus::Request request = pus::request_of(*telecommand);
+  // What an old mode permitted is not done under a new one, however long it has waited.
+  if (offered.mode_epoch != 0 && offered.mode_epoch != parts_.permit.mode_epoch.load(std::memory_order_acquire))
+    return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
+  const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
+  if (found == services_.end() || !(*found)->in_force())
+    return verification_.rejected(
+        request, pus::FailureNotice{pus::FailureCode::WrongState}.with(static_cast<std::uint8_t>(state())));
+  (*found)->handle(*telecommand, request);
+}
+
+descriptor::State OwnLoop::state() const noexcept {
+  const std::uint32_t state = parts_.vital.state.load(std::memory_order_acquire);
+  // Its own page: what it says is a state.
+  return static_cast<descriptor::State>(state);
+}
+
+/// Whoever asks is always answered: what a service says of its own accord leaves half of the way out to that.
+bool OwnLoop::has_room(std::size_t octets) const noexcept { return out_.used() + octets <= out_.capacity() / 2; }
+
+void OwnLoop::report(std::uint8_t service, std::uint8_t subtype, std::uint16_t destination, Octets source_data) {
+  static_cast<void>(out_.try_write(octets_of(Said{service, subtype, destination}), source_data));
+}
+
+Result<> OwnLoop::store(const ParameterCell& parameter, Octets big_endian) {
+  for (std::size_t i = 0; i < parts_.dictionary.size(); ++i) {
+    if (parts_.dictionary.cell(i) != &parameter) continue;
+    const ParameterWrite write{static_cast<std::uint16_t>(i), -1, big_endian};
+    return parts_.writes.enqueue(parts_.dictionary, {&write, 1});
+  }
+  return fail(ErrorCode::NotFound, "the parameter is not published");
+}
+
+Result<> OwnLoop::raise(std::string_view event, Octets auxiliary) {
+  const descriptor::Event* declared = descriptor().find_event(event);
+  if (declared == nullptr) return fail(ErrorCode::NotFound, "the descriptor declares no such event");
+  if (!has_room(auxiliary.size())) return fail(ErrorCode::ResourceExhausted, "the service loop is behind");
+  report(0, 0, declared->id, auxiliary);
+  return ok();
+}
+
+LoopsAtRest::LoopsAtRest(const std::vector<std::unique_ptr<OwnLoop>>& loops) noexcept : loops_{loops} {
+  for (const auto& loop : loops_) loop->mutex().lock();
+}
+
+LoopsAtRest::~LoopsAtRest() {
+  for (const auto& loop : loops_) loop->mutex().unlock();
+}
+
+}  // namespace hirosco

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hirosco/parameter/dictionary.hpp"
+#include "hirosco/parameter/write_queue.hpp"
+#include "hirosco/pus/service/service.hpp"
+#include "hirosco/pus/st01_verification/verification.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
+#include "hirosco/utilities/os/mutex.hpp"
+#include "hirosco/utilities/record_ring.hpp"
+
+namespace hirosco {
+
+/// A loop of its own for services of a subsystem (paper 4.1, adr 0096): requests come in by a bounded queue, what its services say
+/// goes out by another one to the service loop, which numbers and sends it. Everything that both loops touch besides is ordered
+/// by the loop's lock, which the service loop takes where it puts a configuration in force or gives one back, never the cycle.
+class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
+ public:
+  struct Parts {
+    const descriptor::ServiceLoop& declared;
+    pus::ServiceHome& subsystem;  ///< whose services they are
+    const VitalPage& vital;
+    const PermitPage& permit;
+    const Clock& clock;
+    const Dictionary& dictionary;
+    WriteQueue& writes;
+  };
+  explicit OwnLoop(const Parts& parts);
+
+  // --- the subsystem's service loop ----------------------------------------------------------------------------------
+  [[nodiscard]] const descriptor::ServiceLoop& declared() const noexcept { return parts_.declared; }
+  /// Before the first step.
+  void host(pus::Service& service) { services_.push_back(&service); }
+  /// A telecommand for one of its services, checked as far as the subsystem checks all of them. False: as many wait as may.
+  [[nodiscard]] bool offer(Octets packet, std::uint32_t mode_epoch) noexcept;
+  /// What it said, oldest first, as long as `has_room`: reports by `report`, events by `event`.
+  struct Listener {
+    std::function<bool()> has_room;
+    std::function<void(std::uint8_t service, std::uint8_t subtype, std::uint16_t destination, Octets data)> report;
+    std::function<void(std::uint16_t event, Octets auxiliary)> event;
+  };
+  void tell(const Listener& listener);
+  /// Looked at after `passed`: it has been in one step for longer than three of its periods and half a second. One that only waits for
+  /// the processor to begin a step is in none.
+  [[nodiscard]] bool hangs(Duration passed) noexcept;
+  /// True once from when it hangs until it moves again.
+  [[nodiscard]] bool newly_hangs() noexcept { return !std::exchange(told_, true); }
+  [[nodiscard]] Duration stands_for() const noexcept { return stands_for_; }
+  /// Reports and events that found no room.  Thread: any.
+  [[nodiscard]] std::uint64_t lost() const noexcept { return out_.dropped(); }
+  [[nodiscard]] Mutex& mutex() noexcept { return mutex_; }
+
+  // --- the loop --------------------------------------------------------------------------------------------------------
+  /// One step that was due at `planned`: requests that wait, then each of its services. Returns when the next is due: on its grid,
+  /// steps that were missed are skipped.  Thread: the loop's.
+  TimePoint step(TimePoint planned);
+  /// It has said what the service loop has not taken yet.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool has_reports() const noexcept { return out_.used() != 0; }
+
+  // --- of its services -------------------------------------------------------------------------------------------------
+  [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept override {
+    return parts_.subsystem.descriptor();
+  }
+  [[nodiscard]] descriptor::State state() const noexcept override;
+  [[nodiscard]] pus::Verification& verification() noexcept override { return verification_; }
+  [[nodiscard]] pus::TelemetrySink& telemetry() noexcept override { return *this; }
+  /// Only ST[17] uses it, which has no loop of its own.
+  [[nodiscard]] pus::SelfTest& self_test() noexcept override { return parts_.subsystem.self_test(); }
+  [[nodiscard]] pus::FailureNotice refusal(pus::FailureCode code, const Error& why) const override {
+    return parts_.subsystem.refusal(code, why);
+  }
+  [[nodiscard]] Result<> store(const ParameterCell& parameter, Octets big_endian) override;
+  [[nodiscard]] Result<> raise(std::string_view event, Octets auxiliary) override;
+  [[nodiscard]] bool has_room(std::size_t octets) const noexcept override;
+
+ private:
+  void report(std::uint8_t service, std::uint8_t subtype, std::uint16_t destination, Octets source_data) override;
+  void handle(Octets record);
+
+  Parts parts_;
+  Mutex mutex_;
+  std::vector<pus::Service*> services_;
+  RecordRing in_;
+  RecordRing out_;
+  pus::Verification verification_;
+  std::atomic<std::uint32_t> waiting_{0};
+  std::atomic<std::uint64_t> steps_{0};
+  std::atomic<bool> in_step_{false};
+  std::uint64_t seen_steps_{0};  ///< by the service loop, like the next
+  Duration stands_for_{};
+  bool told_{false};
+};
+
+/// Holds the locks of all of them, in their order: nothing of their services is under way.
+class LoopsAtRest {
+ public:
+  explicit LoopsAtRest(const std::vector<std::unique_ptr<OwnLoop>>& loops) noexcept;
+  ~LoopsAtRest();
+  LoopsAtRest(const LoopsAtRest&) = delete;
+  LoopsAtRest& operator=(const LoopsAtRest&) = delete;
+
+ private:
+  const std::vector<std::unique_ptr<OwnLoop>>& loops_;
+};
+
+}  // namespace hirosco

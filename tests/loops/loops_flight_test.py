@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""The catalogue with real processes: the threads that its descriptor says, period and priority that follow the configuration
+without a restart, a loop of services that hangs, seen by the guard."""
+import pathlib
+import threading
+import time
+import unittest
+
+import flight
+
+MISSION = pathlib.Path(__file__).resolve().parent / "mission.xml"
+PROGRAM = "hirosco-catalogue"
+
+
+class Loops(unittest.TestCase):
+    def threads(self, craft):
+        """Of the catalogue, by name: scheduling policy and real-time priority (fields 41 and 40 of /proc/PID/task/TID/stat)."""
+        found = {}
+        for task in pathlib.Path(f"/proc/{craft.pid_of(PROGRAM)}/task").iterdir():
+            name, rest = (task / "stat").read_text().split("(", 1)[1].rsplit(")", 1)
+            fields = rest.split()
+            found[name] = (int(fields[38]), int(fields[37]))
+        return found
+
+    def test_period_and_priority_follow_the_configuration_without_a_restart(self):
+        with flight.Flight(MISSION) as craft:
+            craft.wait_told("commissioned: mode operation", 20.0)
+            pid, realtime = craft.pid_of(PROGRAM), self.threads(craft)["cycle"][0] == 1
+            self.assertIn("loop.PAGES", self.threads(craft))
+            if realtime:
+                self.assertEqual(self.threads(craft)["loop.PAGES"], (1, 12))
+            measured = []
+            for configuration, sampling_s, priority in ((2, 0.002, 50), (1, 0.004, 30), (2, 0.002, 50)):
+                code, reports = craft.tc("CATALOGUE", "CONFIGURE", configuration)
+                self.assertEqual((code, reports[-1]), (0, "1,7"))
+                rate = self.rate(craft)
+                measured.append(f"{rate:.0f} Hz")
+                self.assertLess(abs(rate * sampling_s - 1), 0.15, measured)
+                if realtime:
+                    self.assertEqual(self.threads(craft)["cycle"], (1, priority))
+            self.assertEqual(craft.pid_of(PROGRAM), pid)
+            code, reports = craft.tc("CATALOGUE", "COUNT")
+            self.assertEqual((code, reports[-1]), (0, "1,7"))
+            self.assertEqual(craft.tc("CATALOGUE", "CONFIGURE", 3)[0], 0)
+            self.assertNotEqual(craft.tc("CATALOGUE", "COUNT")[0], 0)
+            flight.measure(f"{', '.join(measured)}; real-time: {realtime}")
+            craft.end()
+
+    def rate(self, craft, span_s=2.0):
+        """Wake-ups of the cycle's thread, which sleeps once in a cycle."""
+        def woken():
+            for task in pathlib.Path(f"/proc/{craft.pid_of(PROGRAM)}/task").iterdir():
+                status = (task / "status").read_text()
+                if status.startswith("Name:\tcycle\n"):
+                    return int(status.split("\nvoluntary_ctxt_switches:\t")[1].split()[0])
+            raise AssertionError("no thread of the cycle")
+        begin, first = time.monotonic(), woken()
+        time.sleep(span_s)
+        return (woken() - first) / (time.monotonic() - begin)
+
+    def test_a_loop_that_hangs_is_seen_by_the_guard_and_its_process_ended(self):
+        with flight.Flight(MISSION) as craft:
+            craft.wait_told("commissioned: mode operation", 20.0)
+            begin = craft.count()
+            asking = threading.Thread(target=lambda: craft.tc("CATALOGUE", "HANG", 5000))
+            asking.start()
+            craft.wait_told("CATALOGUE low SERVICE_LOOP_HANGS", 8.0, begin)
+            craft.wait_told("CATALOGUE hangs: its service loop stands still", 8.0, begin)
+            asking.join()
+            craft.end()
+
+
+if __name__ == "__main__":
+    flight.main()
