@@ -53,7 +53,9 @@ Rig::Rig(Subsystem& author, descriptor::Subsystem described, bool realtime, bool
                  .flows = flows,
                  .realtime = realtime,
                  .wakes = wakes,
-                 .explain = [this](std::string_view text) { explanations.emplace_back(text); }},
+                 .explain = [this](std::string_view text) { explanations.emplace_back(text); },
+                 .read_again =
+                     [this](std::string_view text) { return descriptor::read_again(subsystem.descriptor(), text, {}); }},
                 channels.subsystem_end(),
                 vital,
                 permit} {

@@ -36,6 +36,8 @@ struct Situation {
   bool down{false};
   /// A change of mode is under way (docs/adr/0075).
   bool changing{false};
+  /// Another text of the addressee's descriptor is on its way to it (docs/adr/0095).
+  bool rereading{false};
 };
 
 struct Permitted {
