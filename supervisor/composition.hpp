@@ -44,7 +44,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         stored{craft, own, own_telecommands, outside.values},
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count},
-        descriptors{{craft, own, own_telecommands, under_way, outside.readings}} {
+        descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}} {
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
@@ -108,9 +108,9 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Versions versions{{craft, own, processes, reactions, under_way}};
   Descriptors descriptors;
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 15> watches{&stored,       &processes,        &versions, &descriptors, &ground_link, &restoration,
-                                 &losses,       &housekeeping,     &power,    &links,       &log_watch,
-                                 &telecommands, &own_telecommands, &replies,  &resources};
+  std::array<Watch*, 15> watches{&stored,      &processes,    &versions,         &descriptors, &ground_link,
+                                 &restoration, &losses,       &housekeeping,     &power,       &links,
+                                 &log_watch,   &telecommands, &own_telecommands, &replies,     &resources};
 };
 
 }  // namespace hirosco::supervisor

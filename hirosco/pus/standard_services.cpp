@@ -18,10 +18,14 @@
 namespace hirosco::pus {
 
 std::span<const ServiceKind* const> standard_services() noexcept {
-  static constexpr std::array services{&Verification::service_kind, &HousekeepingService::service_kind,
-                                       &EventService::service_kind, &FunctionService::service_kind,
-                                       &TestService::service_kind,  &ParameterService::service_kind,
-                                       &st128::service_kind,        &st129::service_kind,
+  static constexpr std::array services{&Verification::service_kind,
+                                       &HousekeepingService::service_kind,
+                                       &EventService::service_kind,
+                                       &FunctionService::service_kind,
+                                       &TestService::service_kind,
+                                       &ParameterService::service_kind,
+                                       &st128::service_kind,
+                                       &st129::service_kind,
                                        &DescriptorService::service_kind};
   return services;
 }

@@ -50,8 +50,8 @@ void hand_rests(descriptor::Mission& mission) {
 }
 
 Flight::Flight(Plan plan) : files_{std::move(plan.files)} {
-  const descriptor::FileSource source = [this, files = descriptor::file_system()](
-                                            const std::filesystem::path& path) -> Result<std::string> {
+  const descriptor::FileSource source =
+      [this, files = descriptor::file_system()](const std::filesystem::path& path) -> Result<std::string> {
     const auto found = files_.find(path.filename().string());
     return found != files_.end() ? found->second : files(path);
   };

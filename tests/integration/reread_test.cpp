@@ -31,7 +31,8 @@ using ::testing::HasSubstr;
   return {.edit = [](descriptor::Mission& mission) {
     hand_rests(mission);
     for (auto& mode : mission.modes)
-      mode.permits.push_back({.subsystem = "SUPERVISOR", .functions = {"REREAD"}, .services = {}, .parameters = {}, .at = {}});
+      mode.permits.push_back(
+          {.subsystem = "SUPERVISOR", .functions = {"REREAD"}, .services = {}, .parameters = {}, .at = {}});
   }};
 }
 
@@ -48,7 +49,9 @@ struct Reread : ::testing::Test {
     ASSERT_TRUE(flight.commission()) << flight.story().text();
   }
   [[nodiscard]] bool reread() { return flight.craft().command("SUPERVISOR", "REREAD", {Number{joystick}}).completed; }
-  [[nodiscard]] const descriptor::Subsystem& in_the_member() { return flight.craft().subsystem("JOYSTICK")->descriptor(); }
+  [[nodiscard]] const descriptor::Subsystem& in_the_member() {
+    return flight.craft().subsystem("JOYSTICK")->descriptor();
+  }
   static constexpr int joystick = 11;
 };
 
@@ -58,7 +61,8 @@ TEST_F(Reread, HousekeepingOfWhoIsOfflineChangesWithTheSameProcess) {
   const std::string was = "interval=\"" + std::to_string(interval) + "\"";
   flight.write("joystick.xml", changed(shipped, was, "interval=\"" + std::to_string(2 * interval) + "\""));
   EXPECT_FALSE(reread()) << "it is not at rest";
-  for (const auto name : {"JOYSTICK"}) ASSERT_TRUE(flight.set_state(name, State::Offline).completed) << flight.story().text();
+  for (const auto name : {"JOYSTICK"})
+    ASSERT_TRUE(flight.set_state(name, State::Offline).completed) << flight.story().text();
   ASSERT_TRUE(reread()) << flight.story().text();
   EXPECT_EQ(flight.craft().subsystem("JOYSTICK"), process);
   EXPECT_EQ(in_the_member().configurations.front().housekeeping.front().interval_cycles, 2 * interval);
@@ -73,7 +77,8 @@ TEST_F(Reread, ABadEditIsToldByPlaceAndWhoDiesThenComesBackByWhatIsInForce) {
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems.front().apid, joystick);
   EXPECT_THAT(problems.front().file, HasSubstr("joystick.xml"));
-  const auto line = 1 + std::count(bad.begin(), bad.begin() + static_cast<std::ptrdiff_t>(bad.find("interval=\"x")), '\n');
+  const auto line =
+      1 + std::count(bad.begin(), bad.begin() + static_cast<std::ptrdiff_t>(bad.find("interval=\"x")), '\n');
   EXPECT_EQ(problems.front().line, line);
   flight.craft().kill("JOYSTICK");
   ASSERT_TRUE(flight.craft().run_until([&] { return flight.craft().alive("JOYSTICK"); }, 10s)) << flight.story().text();

@@ -24,9 +24,8 @@ std::string problems_of(const std::string& body) {
 
 TEST(FrameworkParameters, AreThereInADescriptorThatDeclaresNoneWithTheSameIdsInAll) {
   const auto subsystem = with("").value.value();
-  const std::pair<const char*, std::uint8_t> wanted[]{
-      {"CYCLE_STATS", 39}, {"CYCLE_TIMES", 40}, {"CYCLE_BUDGET", 38}, {"LINK_STATS", 41}, {"RESOURCE_STATS", 37},
-      {"DESCRIPTOR", 36}};
+  const std::pair<const char*, std::uint8_t> wanted[]{{"CYCLE_STATS", 39}, {"CYCLE_TIMES", 40},    {"CYCLE_BUDGET", 38},
+                                                      {"LINK_STATS", 41},  {"RESOURCE_STATS", 37}, {"DESCRIPTOR", 36}};
   ASSERT_EQ(subsystem.parameters.size(), std::size(wanted));
   for (const auto& [name, id] : wanted) {
     const Parameter* parameter = subsystem.find_parameter(name);
@@ -61,7 +60,8 @@ TEST(FrameworkParameters, AreReferredToLikeDeclaredOnes) {
 }
 
 TEST(FrameworkParameters, DeclaredByHandAreToldOnceInWords) {
-  for (const char* name : {"CYCLE_STATS", "CYCLE_TIMES", "CYCLE_BUDGET", "LINK_STATS", "RESOURCE_STATS", "DESCRIPTOR"}) {
+  for (const char* name :
+       {"CYCLE_STATS", "CYCLE_TIMES", "CYCLE_BUDGET", "LINK_STATS", "RESOURCE_STATS", "DESCRIPTOR"}) {
     const std::string told = "E0213 '" + std::string{name} + "' is built in: every subsystem has it\n";
     EXPECT_EQ(problems_of("<StructRef name=\"" + std::string{name} +
                           R"(" id="40"><ParamRef name="LOST" id="243" type="UINT32"/></StructRef>)"),

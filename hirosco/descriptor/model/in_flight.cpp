@@ -10,14 +10,16 @@ namespace {
 
 constexpr std::string_view layout_why = "its place in memory and on the wire was made when the process started";
 constexpr std::string_view meaning_why = "ground and log read its values by what it was when the flight began";
-constexpr std::string_view content_why = "ground and log read the reports of this id by it: another content has another id";
+constexpr std::string_view content_why =
+    "ground and log read the reports of this id by it: another content has another id";
 constexpr std::string_view code_why = "the program that runs has it built in, or has not";
 constexpr std::string_view timing_why = "guard and links go by it, and that the cycles of the mode end in time";
 constexpr std::string_view link_why = "links are made by it, and their other ends read them so";
 constexpr std::string_view guard_why = "the guard holds it from before the start, out of reach of everybody";
 constexpr std::string_view limit_why = "pools, limits and the books of resources were made when the process started";
 constexpr std::string_view safety_why = "nothing that safety rests on is loosened in flight";
-constexpr std::string_view force_why = "the configuration in force was made of it: read before CONFIGURE, or in Offline";
+constexpr std::string_view force_why =
+    "the configuration in force was made of it: read before CONFIGURE, or in Offline";
 
 constexpr auto its_name = [](const auto& each) { return each.name; };
 constexpr auto its_place = [](const auto& each) { return each.at; };
@@ -56,7 +58,8 @@ class Comparison {
 
   /// But for its range.
   void field(const Field& flown, const Field& fresh, const std::string& what) {
-    [[maybe_unused]] const auto& [name, type, count, unit, minimum, maximum, enumeration, at, text, text_octets] = fresh;
+    [[maybe_unused]] const auto& [name, type, count, unit, minimum, maximum, enumeration, at, text, text_octets] =
+        fresh;
     unless(flown.name == name, at, what + ": its name", layout_why);
     unless(flown.type == type && flown.text == text, at, what + ": its type", layout_why);
     unless(flown.count == count && flown.text_octets == text_octets, at, what + ": how many there are", layout_why);
@@ -65,8 +68,9 @@ class Comparison {
   }
   void fields(const std::vector<Field>& flown, const std::vector<Field>& fresh, const std::string& what,
               std::string_view why) {
-    lists(flown, fresh, what + ": field ", its_name, [](const Field& each) { return each.at; }, why,
-          [&](const Field& a, const Field& b) { field(a, b, what + ": field " + b.name); });
+    lists(
+        flown, fresh, what + ": field ", its_name, [](const Field& each) { return each.at; }, why,
+        [&](const Field& a, const Field& b) { field(a, b, what + ": field " + b.name); });
   }
   void arguments(const std::vector<Function::Argument>& flown, const std::vector<Function::Argument>& fresh,
                  const std::string& what) {
@@ -101,8 +105,8 @@ class Comparison {
     unless(flown.id == id, value.at, what + ": its id", layout_why);
     unless(flown.protection == protection, value.at, what + ": whether it protects", safety_why);
     const bool same_range = flown.field.minimum == value.minimum && flown.field.maximum == value.maximum;
-    unless(!protection || (same_range && flown.init == init), value.at, what + ": range or initial value of a protection",
-           safety_why);
+    unless(!protection || (same_range && flown.init == init), value.at,
+           what + ": range or initial value of a protection", safety_why);
     unless(flown.persistent == persistent, value.at, what + ": whether it outlives the flight", layout_why);
     lists(
         flown.members, members, what + ": member ", [](const Parameter::Member& each) { return each.field.name; },
@@ -125,7 +129,8 @@ class Comparison {
     for (const HousekeepingStructure& each : fresh) {
       const auto before = std::ranges::find(flown, each.id, &HousekeepingStructure::id);
       if (before == flown.end()) continue;
-      unless(same_content(*before, each), each.at, what + " " + std::to_string(each.id) + ": what it reports", content_why);
+      unless(same_content(*before, each), each.at, what + " " + std::to_string(each.id) + ": what it reports",
+             content_why);
     }
   }
   void event(const Event& flown, const Event& fresh) {
@@ -141,8 +146,8 @@ class Comparison {
     unless(flown.type == type, at, what + ": its type", code_why);
     functions(flown.requests, requests, what + ": request ");
     lists(
-        flown.reports, reports, what + ": report ", its_name,
-        [&](const CustomService::Report&) { return fresh.at; }, code_why,
+        flown.reports, reports, what + ": report ", its_name, [&](const CustomService::Report&) { return fresh.at; },
+        code_why,
         [&](const CustomService::Report& a, const CustomService::Report& b) {
           unless(a.subtype == b.subtype, at, what + ": report " + b.name + ": its subtype", code_why);
           arguments(a.fields, b.fields, what + ": report " + b.name);
@@ -160,7 +165,8 @@ class Comparison {
         [](const Device::Output& each) { return each.field.at; }, layout_why,
         [&](const Device::Output& a, const Device::Output& b) {
           field(a.field, b.field, what + ": field " + b.field.name);
-          const bool same = a.safe == b.safe && a.field.minimum == b.field.minimum && a.field.maximum == b.field.maximum;
+          const bool same =
+              a.safe == b.safe && a.field.minimum == b.field.minimum && a.field.maximum == b.field.maximum;
           unless(!actuator || same, b.field.at, what + ": what an actuator may be told", safety_why);
         });
   }
@@ -180,7 +186,8 @@ class Comparison {
     fields(flown.fields, fields_, what, link_why);
   }
   void use(const Subsystem& subsystem, const DeviceUse& flown, const DeviceUse& fresh, const std::string& whose) {
-    [[maybe_unused]] const auto& [device_, silence, every, watchdog_us, watchdog_reduced_us, settings, endnode, fall_backs, at] = fresh;
+    [[maybe_unused]] const auto& [device_, silence, every, watchdog_us, watchdog_reduced_us, settings, endnode,
+                                  fall_backs, at] = fresh;
     const std::string what = whose + ": device " + subsystem.devices[device_].name;
     unless(flown.device == device_, at, what + ": which it is", code_why);
     unless(flown.endnode.byte_order == endnode.byte_order, at, what + ": its byte order", layout_why);
@@ -192,20 +199,20 @@ class Comparison {
     unless(flown.fall_backs.empty() == fall_backs.empty(), at, what + ": whether it has fall-backs", code_why);
   }
   void configuration(const Subsystem& subsystem, const Configuration& flown, const Configuration& fresh) {
-    [[maybe_unused]] const auto& [name, id, priority, sampling, budget, power_w, overruns, self_test, self_test_within, housekeeping,
-                 provides, requires_, devices, initial, at] = fresh;
+    [[maybe_unused]] const auto& [name, id, priority, sampling, budget, power_w, overruns, self_test, self_test_within,
+                                  housekeeping, provides, requires_, devices, initial, at] = fresh;
     const std::string what = "configuration " + name;
     unless(flown.id == id, at, what + ": its id", code_why);
     unless(flown.priority == priority && flown.sampling == sampling && flown.budget == budget, at,
            what + ": priority, sampling time or budget", timing_why);
     unless(flown.self_test == self_test, at, what + ": whether it wants a self test", safety_why);
     structures(flown.housekeeping, housekeeping, what + ": housekeeping");
-    lists(flown.provides, provides, what + ": provided set ", its_name,
-          [](const Provides& each) { return each.at; }, link_why,
-          [&](const Provides& a, const Provides& b) { provided(a, b, what); });
-    lists(flown.requires_, requires_, what + ": required set ", its_name,
-          [](const Requires& each) { return each.at; }, link_why,
-          [&](const Requires& a, const Requires& b) { required(a, b, what); });
+    lists(
+        flown.provides, provides, what + ": provided set ", its_name, [](const Provides& each) { return each.at; },
+        link_why, [&](const Provides& a, const Provides& b) { provided(a, b, what); });
+    lists(
+        flown.requires_, requires_, what + ": required set ", its_name, [](const Requires& each) { return each.at; },
+        link_why, [&](const Requires& a, const Requires& b) { required(a, b, what); });
     lists(
         flown.devices, devices, what + ": device ",
         [&](const DeviceUse& each) {
@@ -215,19 +222,22 @@ class Comparison {
         [&](const DeviceUse& a, const DeviceUse& b) { use(subsystem, a, b, what); });
   }
   void subsystem(const Subsystem& flown, const Subsystem& fresh) {
-    [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_, services, failures,
-                 commands, housekeeping, devices, power_switches, configurations, hang, resources] = fresh;
+    [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_,
+                                  services, failures, commands, housekeeping, devices, power_switches, configurations,
+                                  hang, resources] = fresh;
     unless(flown.name == name && flown.id == id, {}, "its name or id", code_why);
     lists(flown.enumerations, enumerations, "enumeration ", its_name, no_place, meaning_why,
           [&](const Enumeration& a, const Enumeration& b) {
-            unless(same_texts(a.texts, b.texts), {}, "enumeration " + b.name + ": its values and their names", meaning_why);
+            unless(same_texts(a.texts, b.texts), {}, "enumeration " + b.name + ": its values and their names",
+                   meaning_why);
           });
     parameters(flown, fresh);
     lists(flown.events, events, "event ", its_name, its_place, code_why,
           [&](const Event& a, const Event& b) { event(a, b); });
     functions(flown.functions, functions_, "function ");
-    lists(flown.services, services, "service ", its_name, [](const CustomService& each) { return each.at; },
-          code_why, [&](const CustomService& a, const CustomService& b) { service(a, b); });
+    lists(
+        flown.services, services, "service ", its_name, [](const CustomService& each) { return each.at; }, code_why,
+        [&](const CustomService& a, const CustomService& b) { service(a, b); });
     lists(flown.failures, failures, "failure ", its_name, no_place, meaning_why,
           [&](const FailureName& a, const FailureName& b) {
             unless(a.code == b.code, {}, "failure " + b.name + ": its code", meaning_why);
@@ -235,20 +245,24 @@ class Comparison {
     structures(flown.housekeeping, housekeeping, "housekeeping");
     lists(
         flown.commands, commands, "command of ", [](const Commands& each) { return each.subsystem; },
-        [](const Commands& each) { return each.at; }, code_why, [&](const Commands& a, const Commands& b) {
+        [](const Commands& each) { return each.at; }, code_why,
+        [&](const Commands& a, const Commands& b) {
           unless(a.functions == b.functions, b.at, "what it commands " + b.subsystem + " for", code_why);
         });
-    lists(flown.devices, devices, "device ", its_name, [](const Device& each) { return each.at; }, code_why,
-          [&](const Device& a, const Device& b) { device(a, b); });
+    lists(
+        flown.devices, devices, "device ", its_name, [](const Device& each) { return each.at; }, code_why,
+        [&](const Device& a, const Device& b) { device(a, b); });
     lists(
         flown.power_switches, power_switches, "power switch of ", [](const PowerSwitch& each) { return each.device; },
-        [](const PowerSwitch& each) { return each.at; }, guard_why, [&](const PowerSwitch& a, const PowerSwitch& b) {
+        [](const PowerSwitch& each) { return each.at; }, guard_why,
+        [&](const PowerSwitch& a, const PowerSwitch& b) {
           unless(same_end(a.endnode, b.endnode), b.at, "power switch of " + b.device + ": its endnode", guard_why);
         });
     if (found_.empty())  // its devices are known by number
-      lists(flown.configurations, configurations, "configuration ", its_name,
-            [](const Configuration& each) { return each.at; }, code_why,
-            [&](const Configuration& a, const Configuration& b) { configuration(fresh, a, b); });
+      lists(
+          flown.configurations, configurations, "configuration ", its_name,
+          [](const Configuration& each) { return each.at; }, code_why,
+          [&](const Configuration& a, const Configuration& b) { configuration(fresh, a, b); });
     unless(flown.hang.realtime == hang.realtime && flown.hang.reduced == hang.reduced, {}, "when it counts as hanging",
            guard_why);
     unless(flown.resources.most == resources.most && flown.resources.warning_percent == resources.warning_percent &&
@@ -311,13 +325,15 @@ class Comparison {
   }
   static bool same_content(const HousekeepingStructure& a, const HousekeepingStructure& b) {
     return std::ranges::equal(a.sampled_once, b.sampled_once, same_reference) &&
-           std::ranges::equal(a.sampled_repeatedly, b.sampled_repeatedly,
-                              [](const HousekeepingStructure::SampledSet& x, const HousekeepingStructure::SampledSet& y) {
-                                return x.repetitions == y.repetitions &&
-                                       std::ranges::equal(x.parameters, y.parameters, same_reference);
-                              });
+           std::ranges::equal(
+               a.sampled_repeatedly, b.sampled_repeatedly,
+               [](const HousekeepingStructure::SampledSet& x, const HousekeepingStructure::SampledSet& y) {
+                 return x.repetitions == y.repetitions &&
+                        std::ranges::equal(x.parameters, y.parameters, same_reference);
+               });
   }
-  static bool same_structures(const std::vector<HousekeepingStructure>& a, const std::vector<HousekeepingStructure>& b) {
+  static bool same_structures(const std::vector<HousekeepingStructure>& a,
+                              const std::vector<HousekeepingStructure>& b) {
     return std::ranges::equal(a, b, [](const HousekeepingStructure& x, const HousekeepingStructure& y) {
       return x.id == y.id && x.interval_cycles == y.interval_cycles && x.enabled == y.enabled && same_content(x, y);
     });

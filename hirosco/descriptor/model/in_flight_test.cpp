@@ -11,9 +11,9 @@
 namespace hirosco::descriptor {
 namespace {
 
+using testing::changed;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::changed;
 
 const std::string flown_text = R"(<Subsystem name="PAN" id="9">
   <Description>it turns</Description>
@@ -21,7 +21,7 @@ const std::string flown_text = R"(<Subsystem name="PAN" id="9">
     <ParamRef name="GAIN" id="1" type="DOUBLE" init="3" minimum="0" maximum="10" writable="PreOperational"/>
     <ParamRef name="TITLE" id="1" type="TEXT" octets="8" init="old"/>
     <ParamRef name="LIMIT" id="2" type="DOUBLE" init="1" minimum="0" maximum="2" protection="yes"/>
-    <ParamRef name="STAYS" id="3" type="DOUBLE" persistent="yes" writable="PreOperational"/>
+    <ParamRef name="STAYS" id="3" type="DOUBLE" minimum="0" maximum="7" persistent="yes" writable="PreOperational"/>
     <StructRef name="SEEN" id="1" type="STRUCT"><ParamRef name="ANGLE" id="9" type="FLOAT" minimum="-1" maximum="1"/></StructRef>
   </Parameters>
   <Enumeration name="SIDES"><Text value="0">left</Text><Text value="1">right</Text></Enumeration>
@@ -32,7 +32,7 @@ const std::string flown_text = R"(<Subsystem name="PAN" id="9">
     <Function name="RAISE_LIMIT" states="Operational"><Argument name="TO" of="LIMIT"/></Function>
   </FunctionService>
   <CustomService name="GAZE" type="200">
-    <Request name="LOOK" subtype="1" states="Operational"><Argument name="AT" type="UINT8" maximum="4"/></Request>
+    <Request name="LOOK" subtype="1" states="Operational"><Argument name="AT" type="UINT8" minimum="0" maximum="4"/></Request>
     <Report name="SAW" subtype="2"><Field name="WHAT" type="UINT8"/></Report>
   </CustomService>
   <Device name="MOTOR" actuator="yes">
@@ -85,7 +85,7 @@ TEST(InFlight, WhatIsNotBuiltInMayChange) {
            {R"(maximum="10" writable="PreOperational")", R"(maximum="10" writable="PreOperational SafeOperational")"},
            {R"(minimum="-1" maximum="1"/></StructRef>)", R"(minimum="-2" maximum="1"/></StructRef>)"},
            {R"(minimum="-1" maximum="1" default="0")", R"(minimum="-2" maximum="2" default="1")"},
-           {R"(type="UINT8" maximum="4")", R"(type="UINT8" maximum="5")"},
+           {R"(type="UINT8" minimum="0" maximum="4")", R"(type="UINT8" minimum="0" maximum="5")"},
            {R"(<HKService id="11" interval="10">)", R"(<HKService id="11" interval="20" enabled="no">)"},
            {R"(<HKService id="11" interval="10"><SampledOnce><ParamRef name="GAIN"/></SampledOnce></HKService>)",
             R"(<HKService id="12" interval="10"><SampledOnce><ParamRef name="SEEN"/></SampledOnce></HKService>)"},
@@ -115,7 +115,8 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
            {R"(persistent="yes" )", "", "parameter STAYS: whether it outlives the flight"},
            {R"(name="ANGLE" id="9" type="FLOAT")", R"(name="ANGLE" id="8" type="FLOAT")",
             "parameter SEEN.ANGLE: its id"},
-           {R"(<ParamRef name="ANGLE" id="9")", R"(<ParamRef name="MORE" id="7" type="FLOAT"/><ParamRef name="ANGLE" id="9")",
+           {R"(<ParamRef name="ANGLE" id="9")",
+            R"(<ParamRef name="MORE" id="7" type="FLOAT"/><ParamRef name="ANGLE" id="9")",
             "parameter SEEN: member MORE is new"},
            {R"(<ParamRef name="TITLE")", R"(<ParamRef name="FRESH" id="8" type="DOUBLE"/><ParamRef name="TITLE")",
             "parameter FRESH is new"},
@@ -133,7 +134,8 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
            {R"(name="GAZE" type="200")", R"(name="GAZE" type="201")", "service GAZE: its type"},
            {R"(name="LOOK" subtype="1")", R"(name="LOOK" subtype="3")", "service GAZE: request LOOK: its type"},
            {R"(name="SAW" subtype="2")", R"(name="SAW" subtype="4")", "service GAZE: report SAW: its subtype"},
-           {R"(minimum="-5" maximum="5")", R"(minimum="-5" maximum="50")", "device MOTOR: what an actuator may be told"},
+           {R"(minimum="-5" maximum="5")", R"(minimum="-5" maximum="50")",
+            "device MOTOR: what an actuator may be told"},
            {R"(safe="0" minimum="-5")", R"(safe="1" minimum="-5")", "device MOTOR: what an actuator may be told"},
            {"127.0.0.1:4001", "127.0.0.1:4009", "device MOTOR: its second inhibit"},
            {R"(name="LIT" type="UINT8")", R"(name="LIT" type="UINT16")", "device LAMP: field LIT: its type"},
@@ -183,10 +185,14 @@ TEST(InFlight, WhoReferredToAPartRefersToItStill) {
   const Parameter* const gain = flown.find_parameter("GAIN");
   const Function* const turn = flown.find_function("TURN");
   const Configuration* const fast = flown.find_configuration("FAST");
-  std::string text = changed(R"(init="3" minimum="0" maximum="10")", R"(init="5" minimum="1" maximum="20")", flown_text);
+  std::string text =
+      changed(R"(init="3" minimum="0" maximum="10")", R"(init="5" minimum="1" maximum="20")", flown_text);
   text = changed(R"(minimum="-1" maximum="1" default="0")", R"(minimum="-2" maximum="2" default="1")", text);
   text = changed(R"(address="lamp")", R"(address="lamp-2")", text);
-  text = changed(R"(<HKService id="11")", R"(<HKService id="12" interval="5"><SampledOnce><ParamRef name="SEEN"/></SampledOnce></HKService><HKService id="11")", text);
+  text = changed(
+      R"(<HKService id="11")",
+      R"(<HKService id="12" interval="5"><SampledOnce><ParamRef name="SEEN"/></SampledOnce></HKService><HKService id="11")",
+      text);
   take_over(flown, read(text));
   EXPECT_EQ(flown.find_parameter("GAIN"), gain);
   EXPECT_EQ(gain->field.maximum, Number{20.0});
@@ -200,7 +206,8 @@ TEST(InFlight, WhoReferredToAPartRefersToItStill) {
 // What take_over() leaves out would be accepted and have no effect.
 TEST(InFlight, WhatWasTakenIsAllThatWasDifferent) {
   Subsystem flown = read(flown_text);
-  std::string text = changed(R"(<Device name="LAMP" silence="3">)", R"(<Device name="LAMP" silence="9" every="2">)", flown_text);
+  std::string text =
+      changed(R"(<Device name="LAMP" silence="3">)", R"(<Device name="LAMP" silence="9" every="2">)", flown_text);
   text = changed(R"(power_W="5")", R"(power_W="6" overruns="9")", text);
   text = changed(R"(age="3")", R"(age="5")", text);
   text = changed(R"(safe="0" maximum="1")", R"(safe="1" maximum="2")", text);
@@ -210,6 +217,39 @@ TEST(InFlight, WhatWasTakenIsAllThatWasDifferent) {
   EXPECT_THAT(obstacles_in_force(flown, fresh, 1), ::testing::SizeIs(5));
   take_over(flown, read(text));
   EXPECT_EQ(all(obstacles_in_force(flown, fresh, 1)), "");
+}
+
+/// The mission of the test data with another text of one of its files, all others as they were.
+struct Evolution : ::testing::Test {
+  const Mission flown = read_mission(testing::data / "mission.xml", file_system()).value.value();
+  [[nodiscard]] Reading<Mission> with(const std::string& from, const std::string& to) const {
+    const Subsystem& subsystem = flown.find_subsystem("FLYWHEEL")->subsystem;
+    return read_again(flown, subsystem.file, changed(from, to, *subsystem.text));
+  }
+};
+
+TEST_F(Evolution, WhatIsAddedAsksNothingOfOthers) {
+  for (const auto& [from, to] : std::initializer_list<std::pair<const char*, const char*>>{
+           {R"(<ParamRef name="ENABLE" id)",
+            R"(<ParamRef name="MORE" id="9" type="DOUBLE"/><ParamRef name="ENABLE" id)"},
+           {"<FunctionService>", R"(<FunctionService><Function name="MORE"/>)"},
+           {R"(<ParamRef name="ENABLE"/></Provides>)",
+            R"(<ParamRef name="ENABLE"/><ParamRef name="LINK_STATS.LOST"/></Provides>)"}}) {
+    const auto reading = with(from, to);
+    ASSERT_TRUE(reading.value) << testing::rendered(reading.problems, file_system());
+    EXPECT_EQ(all(obstacles(flown.find_subsystem("CORONAGRAPH")->subsystem,
+                            reading.value->find_subsystem("CORONAGRAPH")->subsystem)),
+              "");
+  }
+}
+
+TEST_F(Evolution, WhatIsGoneIsRefusedWithItsUsersNamed) {
+  const auto reading = with(R"(name="SET_FORCE_SCALE")", R"(name="SET_SCALE")");
+  EXPECT_FALSE(reading.value);
+  ASSERT_FALSE(reading.problems.empty());
+  EXPECT_THAT(reading.problems.front().file.string(), ::testing::EndsWith("mission.xml"));
+  EXPECT_GT(reading.problems.front().at.line, 1);
+  EXPECT_THAT(reading.problems.front().message, HasSubstr("SET_FORCE_SCALE"));
 }
 
 }  // namespace

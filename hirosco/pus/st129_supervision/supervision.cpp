@@ -18,10 +18,14 @@ constexpr Part mode[]{number("MODE", Type::Uint8)};
 constexpr Part reason[]{word("WHY")};
 constexpr Part step[]{number("STAGE", Type::Uint8), number("SUBSYSTEM", Type::Uint16), word("WHAT")};
 constexpr Part preview[]{number("MODE", Type::Uint8), list("AGAINST", reason), list("STEPS", step)};
-constexpr Part problem[]{number("SUBSYSTEM", Type::Uint16), number("COUNT", Type::Uint16),
-                         word("FILE"),                      number("LINE", Type::Uint32),
-                         number("COLUMN", Type::Uint32),    word("CODE"),
-                         word("WHAT"),                      word("HINT")};
+constexpr Part problem[]{number("SUBSYSTEM", Type::Uint16),
+                         number("COUNT", Type::Uint16),
+                         word("FILE"),
+                         number("LINE", Type::Uint32),
+                         number("COLUMN", Type::Uint32),
+                         word("CODE"),
+                         word("WHAT"),
+                         word("HINT")};
 constexpr RequestKind requests[]{{permission_question, "IS_IT_PERMITTED", packet},
                                  {mode_question, "PREVIEW_MODE", mode}};
 constexpr ReportKind reports[]{{permission_answer, "PERMISSION", answer},

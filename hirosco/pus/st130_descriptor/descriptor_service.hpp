@@ -28,8 +28,7 @@ class DescriptorService final : public Service {
   static constexpr std::uint8_t service_type = 130;
   enum Subtype : std::uint8_t { judge_text = 1, take_text = 2 };
 
-  DescriptorService(Verification& verification, DescriptorOwner& owner)
-      : verification_{verification}, owner_{owner} {}
+  DescriptorService(Verification& verification, DescriptorOwner& owner) : verification_{verification}, owner_{owner} {}
   static const ServiceKind service_kind;
   [[nodiscard]] const ServiceKind& kind() const noexcept override { return service_kind; }
   void handle(const TelecommandView& telecommand, const Request& request) override;

@@ -326,9 +326,8 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
       .wakes = true,
       .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); },
       .usage = [&meter]() -> std::optional<ProcessUsage> { return meter ? meter->look() : std::nullopt; },
-      .read_again = [&begun, &options](std::string_view text) {
-        return descriptor::read_again(begun, text, options.changes);
-      }};
+      .read_again = [&begun,
+                     &options](std::string_view text) { return descriptor::read_again(begun, text, options.changes); }};
   const auto author = make();
   GenericSubsystem subsystem{*author,
                              std::move(*reading.value),

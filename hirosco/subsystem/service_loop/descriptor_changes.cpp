@@ -42,7 +42,8 @@ using Refused = std::optional<FailureNotice>;
 [[nodiscard]] bool within(const descriptor::Field& field, const std::vector<Value>& values) {
   return std::ranges::all_of(values, [&](const Value& value) {
     const Number* const number = std::get_if<Number>(&value);
-    return number == nullptr || !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum));
+    return number == nullptr ||
+           !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum));
   });
 }
 

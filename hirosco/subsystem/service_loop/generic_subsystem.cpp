@@ -71,8 +71,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       link_service_{verification_, *this, *this},
       descriptor_service_{verification_, *this},
       self_tests_{verification_, *this, platform.clock},
-      services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_,
-                &descriptor_service_},
+      services_{&housekeeping_service_, &event_service_, &function_service_,
+                &parameter_service_,    &link_service_,  &descriptor_service_},
       requester_{descriptor_, channel_, platform.clock.now()} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;

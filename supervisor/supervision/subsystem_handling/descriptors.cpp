@@ -14,6 +14,7 @@
 #include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
 #include "hirosco/utilities/crc32.hpp"
 #include "supervisor/supervision/modes/under_way.hpp"
+#include "supervisor/supervision/stored_values.hpp"
 
 namespace hirosco::supervisor {
 
@@ -33,7 +34,8 @@ constexpr const char* not_in_flight = "E0380";
 }
 
 /// A value that begins its next Software-Init and that no telecommand could set any more.
-[[nodiscard]] const descriptor::Parameter* outside(const descriptor::Subsystem& fresh, const descriptor::Override& kept) {
+[[nodiscard]] const descriptor::Parameter* outside(const descriptor::Subsystem& fresh,
+                                                   const descriptor::Override& kept) {
   const descriptor::Parameter* parameter = fresh.find_parameter(kept.parameter);
   if (parameter == nullptr) return nullptr;
   const descriptor::Field& field = parameter->field;
@@ -57,8 +59,7 @@ constexpr const char* not_in_flight = "E0380";
 }  // namespace
 
 void Descriptors::provide() {
-  parts_.own.on_function("REREAD",
-                         [this](std::uint16_t apid, Call call) -> Outcome { return reread(apid, call); });
+  parts_.own.on_function("REREAD", [this](std::uint16_t apid, Call call) -> Outcome { return reread(apid, call); });
 }
 
 std::optional<Outcome> Descriptors::against(const Member* subject) const {
@@ -73,8 +74,8 @@ std::optional<Outcome> Descriptors::against(const Member* subject) const {
     if (member.recovery.running()) return refused(FailureCode::Busy, "a plan has it in hand");
     const auto state = member.state();
     if (state != State::Offline && state != State::PreOperational)
-      return refused(FailureCode::WrongStatus, "everybody who flies it has to be Offline or in Pre-Operational; not so is",
-                     member.apid());
+      return refused(FailureCode::WrongStatus,
+                     "everybody who flies it has to be Offline or in Pre-Operational; not so is", member.apid());
   }
   return std::nullopt;
 }
@@ -131,15 +132,19 @@ void Descriptors::judge(DescriptorReading reading) {
   }
   Problems problems;
   fresh_.clear();
+  declared_.clear();
   for (const descriptor::MissionSubsystem* member : flown) {
     const auto* fresh = reading.mission.value->find_subsystem(member->subsystem.id);
     if (fresh == nullptr || fresh->subsystem.name != member->subsystem.name) {
-      problems.push_back({.file = file_, .at = {}, .code = not_in_flight,
+      problems.push_back({.file = file_,
+                          .at = {},
+                          .code = not_in_flight,
                           .message = "name or id of " + member->subsystem.name + " cannot change in flight",
                           .hint = "everybody knows it by them"});
       continue;
     }
     descriptor::MissionSubsystem& kept = fresh_.emplace(member->subsystem.id, *fresh).first->second;
+    declared_.emplace(member->subsystem.id, kept.subsystem);
     compare(*member, kept, problems);
   }
   if (!problems.empty()) return refuse(problems);
@@ -155,8 +160,8 @@ void Descriptors::judge(DescriptorReading reading) {
 void Descriptors::compare(const descriptor::MissionSubsystem& flown, descriptor::MissionSubsystem& fresh,
                           Problems& problems) const {
   const auto add = [&](descriptor::Location at, std::string message, std::string hint) {
-    Diagnostic problem{.file = file_, .at = at, .code = not_in_flight, .message = std::move(message),
-                       .hint = std::move(hint)};
+    Diagnostic problem{
+        .file = file_, .at = at, .code = not_in_flight, .message = std::move(message), .hint = std::move(hint)};
     const bool known = std::ranges::any_of(
         problems, [&](const Diagnostic& each) { return each.at == problem.at && each.message == problem.message; });
     if (!known) problems.push_back(std::move(problem));
@@ -170,7 +175,8 @@ void Descriptors::compare(const descriptor::MissionSubsystem& flown, descriptor:
       add(parameter->field.at, fmt::format("the stored value of {} is outside its new range", kept.parameter),
           "set it before");
     if (const auto applied = apply_override(fresh.subsystem, to_string(kept)); !applied)
-      add({}, fmt::format("the value of {}: {}", kept.parameter, applied.error().text), "it is stored, or the mission's");
+      add({}, fmt::format("the value of {}: {}", kept.parameter, applied.error().text),
+          "it is stored, or the mission's");
   }
   const Member* member = std::as_const(craft_).member(flown.subsystem.id);
   if (member == nullptr || !member->alive()) return;
@@ -179,14 +185,16 @@ void Descriptors::compare(const descriptor::MissionSubsystem& flown, descriptor:
       add(obstacle.at, fmt::format("{}: {} cannot change now", flown.subsystem.name, obstacle.what),
           std::string{obstacle.why});
   if (const std::string shut = craft_.launcher.shut_out(flown, fresh); !shut.empty())
-    add({}, fmt::format("{} cannot reach {}", flown.subsystem.name, shut), "its sandbox was made when its process started");
+    add({}, fmt::format("{} cannot reach {}", flown.subsystem.name, shut),
+        "its sandbox was made when its process started");
 }
 
 /// Everybody who runs. Who is down begins with what is in force then.
 void Descriptors::ask(std::uint8_t subtype, Octets data, const MemoryHandle& text) {
   asked_.clear();
   for (const auto& [apid, fresh] : fresh_)
-    if (craft_.member(apid)->alive()) asked_[apid] = {};
+    if (const Member& member = *craft_.member(apid); member.alive())
+      asked_[apid] = {.answer = Answer::Open, .why = {}, .process = member.process()};
   ++round_;
   for (const auto& [apid, asked] : std::map{asked_})
     parts_.desk.send(
@@ -195,7 +203,8 @@ void Descriptors::ask(std::uint8_t subtype, Octets data, const MemoryHandle& tex
           if (round != round_) return;
           const auto found = asked_.find(apid);
           if (found == asked_.end()) return;
-          found->second = {success ? Answer::Yes : why == "no answer" ? Answer::None : Answer::No, why};
+          found->second.answer = success ? Answer::Yes : why == "no answer" ? Answer::None : Answer::No;
+          found->second.why = why;
         },
         Duration{0});
 }
@@ -203,8 +212,11 @@ void Descriptors::ask(std::uint8_t subtype, Octets data, const MemoryHandle& tex
 void Descriptors::judged() {
   for (const auto& [apid, asked] : asked_)
     if (asked.answer != Answer::Yes && craft_.member(apid)->alive())
-      return refuse({{.file = file_, .at = {}, .code = not_in_flight,
-                      .message = craft_.name_of(apid) + " does not take it: " + asked.why, .hint = {}}});
+      return refuse({{.file = file_,
+                      .at = {},
+                      .code = not_in_flight,
+                      .message = craft_.name_of(apid) + " does not take it: " + asked.why,
+                      .hint = {}}});
   phase_ = Phase::Taking;
   ask(DescriptorService::take_text, {}, {});
 }
@@ -215,13 +227,19 @@ void Descriptors::taken() {
                           return each.second.answer != Answer::No || !craft_.member(each.first)->alive();
                         });
   if (!somebody)
-    return refuse({{.file = file_, .at = {}, .code = not_in_flight,
-                    .message = craft_.name_of(asked_.begin()->first) + " did not take it: " + asked_.begin()->second.why,
-                    .hint = {}}});
+    return refuse(
+        {{.file = file_,
+          .at = {},
+          .code = not_in_flight,
+          .message = craft_.name_of(asked_.begin()->first) + " did not take it: " + asked_.begin()->second.why,
+          .hint = {}}});
   take_over();
-  for (const auto& [apid, asked] : asked_) {
+  for (const descriptor::MissionSubsystem* flown : flying(file_)) {
+    const std::uint16_t apid = flown->subsystem.id;
     const Member& member = *craft_.member(apid);
-    if (asked.answer == Answer::Yes || !member.alive()) continue;
+    const auto asked = asked_.find(apid);
+    const bool has_it = asked != asked_.end() && asked->second.answer == Answer::Yes;
+    if (!member.alive() || (has_it && asked->second.process == member.process())) continue;
     craft_.tell(craft_.name_of(apid) + " does not say that it took its descriptor: its process is ended", apid);
     craft_.launcher.kill(member.process());
   }
@@ -233,6 +251,7 @@ void Descriptors::take_over() {
   const std::uint32_t hash = crc32(std::as_bytes(std::span{*text_}));
   for (descriptor::MissionSubsystem* member : flying(file_)) {
     auto fresh = fresh_.extract(member->subsystem.id);
+    parts_.stored.redeclared(declared_.at(member->subsystem.id));
     descriptor::take_over(member->subsystem, std::move(fresh.mapped().subsystem));
     craft_.tell(fmt::format("{} flies by {} as it is now, CRC-32 {:08x}", member->subsystem.name, file_.string(), hash),
                 member->subsystem.id);
@@ -261,7 +280,8 @@ void Descriptors::refuse(const Problems& problems) {
                                   call_ ? call_->request.source : std::uint16_t{0}, data);
   }
   parts_.own.announce("DESCRIPTOR_REFUSED", {static_cast<double>(apid_), static_cast<double>(problems.size())});
-  give_up(FailureCode::ValueNotAcceptable, "problems, each in a TM[129,6]:", static_cast<std::int64_t>(problems.size()));
+  give_up(FailureCode::ValueNotAcceptable,
+          "problems, each in a TM[129,6]:", static_cast<std::int64_t>(problems.size()));
 }
 
 void Descriptors::finish() {

@@ -19,6 +19,7 @@
 
 namespace hirosco::supervisor {
 
+class StoredValues;
 class UnderWay;
 
 /// Reads a descriptor again while it is flown, in Offline and Pre-Operational (docs/adr/0095): the mission is judged as a whole with the
@@ -31,6 +32,7 @@ class Descriptors final : public Watch {
     OwnSubsystem& own;
     CommandDesk& desk;
     const UnderWay& under_way;
+    StoredValues& stored;
     DescriptorReadings* readings;  ///< null: descriptors are what they were at the start
   };
   /// What a file may take to be read.
@@ -51,6 +53,7 @@ class Descriptors final : public Watch {
   struct Asked {
     Answer answer{Answer::Open};
     std::string why;
+    std::uint32_t process{0};  ///< which was asked: another one has begun with the text before
   };
   using Problems = std::vector<descriptor::Diagnostic>;
 
@@ -58,7 +61,8 @@ class Descriptors final : public Watch {
   [[nodiscard]] std::vector<descriptor::MissionSubsystem*> flying(const std::filesystem::path& file);
   void judge(DescriptorReading reading);
   /// What of `fresh` does not fit who flies it now.
-  void compare(const descriptor::MissionSubsystem& flown, descriptor::MissionSubsystem& fresh, Problems& problems) const;
+  void compare(const descriptor::MissionSubsystem& flown, descriptor::MissionSubsystem& fresh,
+               Problems& problems) const;
   void ask(std::uint8_t subtype, Octets data, const MemoryHandle& text);
   void judged();
   void taken();
@@ -77,6 +81,7 @@ class Descriptors final : public Watch {
   TimePoint deadline_{};
   std::uint32_t round_{0};  ///< answers to an earlier one count for nothing
   std::shared_ptr<const std::string> text_;
+  std::map<std::uint16_t, descriptor::Subsystem> declared_;  ///< the same before anything was set
   std::map<std::uint16_t, descriptor::MissionSubsystem> fresh_;  ///< by APID: who flies the file
   std::map<std::uint16_t, Asked> asked_;  ///< of them those whose process runs
 };

@@ -33,7 +33,7 @@ struct PlayedReadings final : DescriptorReadings {
 struct DescriptorsTest : PartsTest {
   PlayedReadings readings;
   PlayedDesk desk;
-  Descriptors descriptors{{craft, parts.own, desk, parts.under_way, &readings}};
+  Descriptors descriptors{{craft, parts.own, desk, parts.under_way, parts.stored, &readings}};
 
   void SetUp() override {
     PartsTest::SetUp();
@@ -86,7 +86,9 @@ struct DescriptorsTest : PartsTest {
     parts.telecommands.forward_durable();
     return !texts(apid).empty();
   }
-  [[nodiscard]] std::string text_of(std::uint16_t apid) const { return *craft.mission.find_subsystem(apid)->subsystem.text; }
+  [[nodiscard]] std::string text_of(std::uint16_t apid) const {
+    return *craft.mission.find_subsystem(apid)->subsystem.text;
+  }
 };
 
 TEST_F(DescriptorsTest, AllWhoFlyAFileTakeItAndTheSupervisorWithThem) {
@@ -95,7 +97,8 @@ TEST_F(DescriptorsTest, AllWhoFlyAFileTakeItAndTheSupervisorWithThem) {
   EXPECT_THAT(desk.sent, ElementsAre("10 TC[130,1] 0 ms", "11 TC[130,1] 0 ms"));
   EXPECT_EQ(most(arm), Number{10}) << "nobody has it yet";
   answer(true);
-  EXPECT_THAT(desk.sent, ElementsAre("10 TC[130,1] 0 ms", "11 TC[130,1] 0 ms", "10 TC[130,2] 0 ms", "11 TC[130,2] 0 ms"));
+  EXPECT_THAT(desk.sent,
+              ElementsAre("10 TC[130,1] 0 ms", "11 TC[130,1] 0 ms", "10 TC[130,2] 0 ms", "11 TC[130,2] 0 ms"));
   answer(true);
   EXPECT_EQ(most(arm), Number{20});
   EXPECT_EQ(most(hand), Number{20});
@@ -145,6 +148,18 @@ TEST_F(DescriptorsTest, WhoDoesNotSayThatItTookItIsEnded) {
   EXPECT_THAT(killed, ElementsAre(played[hand].process));
 }
 
+TEST_F(DescriptorsTest, WhoWasStartedMeanwhileWithTheTextBeforeIsEnded) {
+  craft.member(hand)->died();
+  is_read(wider());
+  desk.answer(true);
+  watch();
+  ASSERT_TRUE(parts.processes.start(hand));
+  desk.answer(true);
+  watch();
+  EXPECT_EQ(most(hand), Number{20});
+  EXPECT_THAT(killed, ElementsAre(played[hand].process));
+}
+
 TEST_F(DescriptorsTest, WhereAllRefuseToTakeItNothingChanges) {
   is_read(wider());
   answer(true);
@@ -176,8 +191,9 @@ TEST_F(DescriptorsTest, WhoHasLeftMeanwhileIsNotAsked) {
 
 TEST_F(DescriptorsTest, EachProblemIsToldWithItsPlace) {
   DescriptorReading bad;
-  bad.mission.problems = {{.file = "arm.xml", .at = {3, 7}, .code = "E0111", .message = "'x' is no number", .hint = {}},
-                          {.file = "mission.xml", .at = {9, 2}, .code = "E0204", .message = "no GAIN", .hint = "take it out"}};
+  bad.mission.problems = {
+      {.file = "arm.xml", .at = {3, 7}, .code = "E0111", .message = "'x' is no number", .hint = {}},
+      {.file = "mission.xml", .at = {9, 2}, .code = "E0204", .message = "no GAIN", .hint = "take it out"}};
   is_read(std::move(bad));
   EXPECT_TRUE(was_told("ARM keeps its descriptor: arm.xml:3:7: error E0111: 'x' is no number"));
   EXPECT_TRUE(was_told("ARM keeps its descriptor: mission.xml:9:2: error E0204: no GAIN (take it out)"));
