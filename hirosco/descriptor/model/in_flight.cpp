@@ -25,6 +25,40 @@ constexpr auto its_name = [](const auto& each) { return each.name; };
 constexpr auto its_place = [](const auto& each) { return each.at; };
 constexpr auto no_place = [](const auto&) { return Location{}; };
 
+[[nodiscard]] bool same_limit(const CycleLimit& a, const CycleLimit& b) {
+  return a.realtime == b.realtime && a.reduced == b.reduced;
+}
+[[nodiscard]] bool same_texts(const std::vector<EnumerationText>& a, const std::vector<EnumerationText>& b) {
+  return std::ranges::equal(
+      a, b, [](const EnumerationText& x, const EnumerationText& y) { return x.value == y.value && x.text == y.text; });
+}
+[[nodiscard]] bool same_address(const Endnode& a, const Endnode& b) {
+  return a.transfer == b.transfer && a.address == b.address && a.byte_order == b.byte_order;
+}
+[[nodiscard]] bool same_end(const std::optional<Endnode>& a, const std::optional<Endnode>& b) {
+  return a.has_value() == b.has_value() && (!a || same_address(*a, *b));
+}
+[[nodiscard]] bool same_terms(const LinkTerms& a, const LinkTerms& b) {
+  return a.methods == b.methods && a.byte_orders == b.byte_orders && a.kinds == b.kinds;
+}
+[[nodiscard]] bool same_reference(const ParameterRef& a, const ParameterRef& b) {
+  return a.parameter == b.parameter && a.member == b.member;
+}
+[[nodiscard]] bool same_content(const HousekeepingStructure& a, const HousekeepingStructure& b) {
+  return std::ranges::equal(a.sampled_once, b.sampled_once, same_reference) &&
+         std::ranges::equal(a.sampled_repeatedly, b.sampled_repeatedly,
+                            [](const HousekeepingStructure::SampledSet& x, const HousekeepingStructure::SampledSet& y) {
+                              return x.repetitions == y.repetitions &&
+                                     std::ranges::equal(x.parameters, y.parameters, same_reference);
+                            });
+}
+[[nodiscard]] bool same_structures(const std::vector<HousekeepingStructure>& a,
+                                   const std::vector<HousekeepingStructure>& b) {
+  return std::ranges::equal(a, b, [](const HousekeepingStructure& x, const HousekeepingStructure& y) {
+    return x.id == y.id && x.interval_cycles == y.interval_cycles && x.enabled == y.enabled && same_content(x, y);
+  });
+}
+
 /// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
 class Comparison {
  public:
@@ -303,42 +337,6 @@ class Comparison {
   }
 
  private:
-  static bool same_limit(const CycleLimit& a, const CycleLimit& b) {
-    return a.realtime == b.realtime && a.reduced == b.reduced;
-  }
-  static bool same_texts(const std::vector<EnumerationText>& a, const std::vector<EnumerationText>& b) {
-    return std::ranges::equal(a, b, [](const EnumerationText& x, const EnumerationText& y) {
-      return x.value == y.value && x.text == y.text;
-    });
-  }
-  static bool same_address(const Endnode& a, const Endnode& b) {
-    return a.transfer == b.transfer && a.address == b.address && a.byte_order == b.byte_order;
-  }
-  static bool same_end(const std::optional<Endnode>& a, const std::optional<Endnode>& b) {
-    return a.has_value() == b.has_value() && (!a || same_address(*a, *b));
-  }
-  static bool same_terms(const LinkTerms& a, const LinkTerms& b) {
-    return a.methods == b.methods && a.byte_orders == b.byte_orders && a.kinds == b.kinds;
-  }
-  static bool same_reference(const ParameterRef& a, const ParameterRef& b) {
-    return a.parameter == b.parameter && a.member == b.member;
-  }
-  static bool same_content(const HousekeepingStructure& a, const HousekeepingStructure& b) {
-    return std::ranges::equal(a.sampled_once, b.sampled_once, same_reference) &&
-           std::ranges::equal(
-               a.sampled_repeatedly, b.sampled_repeatedly,
-               [](const HousekeepingStructure::SampledSet& x, const HousekeepingStructure::SampledSet& y) {
-                 return x.repetitions == y.repetitions &&
-                        std::ranges::equal(x.parameters, y.parameters, same_reference);
-               });
-  }
-  static bool same_structures(const std::vector<HousekeepingStructure>& a,
-                              const std::vector<HousekeepingStructure>& b) {
-    return std::ranges::equal(a, b, [](const HousekeepingStructure& x, const HousekeepingStructure& y) {
-      return x.id == y.id && x.interval_cycles == y.interval_cycles && x.enabled == y.enabled && same_content(x, y);
-    });
-  }
-
   std::vector<Obstacle> found_;
 };
 
