@@ -25,6 +25,7 @@
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
 #include "supervisor/supervision/stored_values.hpp"
+#include "supervisor/supervision/subsystem_handling/descriptors.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
@@ -42,7 +43,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
       : craft{outside.mission, outside.platform, outside.launcher, outside.guard, outside.log, outside.observer},
         stored{craft, own, own_telecommands, outside.values},
         log_watch{craft, own, telecommands, outside.open_database},
-        own_telecommands{craft, telecommands, outside.first_sequence_count} {
+        own_telecommands{craft, telecommands, outside.first_sequence_count},
+        descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}} {
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
@@ -58,6 +60,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
     log_watch.provide();
     power.provide();
     versions.provide();
+    descriptors.provide();
     safe_all.provide();
     shutdown.provide();
   }
@@ -103,10 +106,11 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
                        restarts, restoration, resources, versions, stored}};
   Versions versions{{craft, own, processes, reactions, under_way}};
+  Descriptors descriptors;
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 14> watches{&stored,       &processes,        &versions, &ground_link, &restoration,
-                                 &losses,       &housekeeping,     &power,    &links,       &log_watch,
-                                 &telecommands, &own_telecommands, &replies,  &resources};
+  std::array<Watch*, 15> watches{&stored,      &processes,    &versions,         &descriptors, &ground_link,
+                                 &restoration, &losses,       &housekeeping,     &power,       &links,
+                                 &log_watch,   &telecommands, &own_telecommands, &replies,     &resources};
 };
 
 }  // namespace hirosco::supervisor

@@ -184,6 +184,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   }
   ThreadedValueStore values{clock, std::make_unique<SystemValueDisk>(),
                             std::filesystem::path{log_path}.replace_extension(".values")};
+  ThreadedReadings readings;
   // The threads of log, console and values exist already: they stay ordinary.
   if (realtime) keep_code_in_memory();
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
@@ -213,7 +214,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
        },
        .observer = causes,
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384),
-       .values = &values}};
+       .values = &values,
+       .readings = &readings}};
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
   const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;

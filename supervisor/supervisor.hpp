@@ -10,6 +10,7 @@
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "supervisor/guard/guard.hpp"
+#include "supervisor/platform/launch/descriptor_readings.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
 #include "supervisor/platform/storage/value_store.hpp"
@@ -35,6 +36,7 @@ class Supervisor final {
     Observer& observer;
     std::uint16_t first_sequence_count{0};  ///< of its own telecommands (decision 27)
     ValueStore* values{nullptr};  ///< of persistent parameters; null: they do not outlive the flight
+    DescriptorReadings* readings{nullptr};  ///< of what is read again; null: descriptors stay what they were
   };
   explicit Supervisor(const Parts& parts);
   ~Supervisor();

@@ -11,16 +11,22 @@
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
 #include "hirosco/pus/st17_test/test_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 
 namespace hirosco::pus {
 
 std::span<const ServiceKind* const> standard_services() noexcept {
-  static constexpr std::array services{&Verification::service_kind, &HousekeepingService::service_kind,
-                                       &EventService::service_kind, &FunctionService::service_kind,
-                                       &TestService::service_kind,  &ParameterService::service_kind,
-                                       &st128::service_kind,        &st129::service_kind};
+  static constexpr std::array services{&Verification::service_kind,
+                                       &HousekeepingService::service_kind,
+                                       &EventService::service_kind,
+                                       &FunctionService::service_kind,
+                                       &TestService::service_kind,
+                                       &ParameterService::service_kind,
+                                       &st128::service_kind,
+                                       &st129::service_kind,
+                                       &DescriptorService::service_kind};
   return services;
 }
 

@@ -16,6 +16,7 @@
 #include "hirosco/pus/st05_event/event_service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+#include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
 #include "hirosco/pus/st17_test/test_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/pus/testing/played_self_test.hpp"
@@ -58,7 +59,9 @@ Bytes example_of(Shape shape) {
   return data;
 }
 
-struct Nobody final : FunctionExecutor, ParameterAccess {
+struct Nobody final : FunctionExecutor, ParameterAccess, DescriptorOwner {
+  std::optional<FailureNotice> judge(std::size_t, const MemoryHandle&) override { return std::nullopt; }
+  std::optional<FailureNotice> take() override { return std::nullopt; }
   std::expected<void, FailureNotice> submit(const FunctionCall&, const Request&) override { return {}; }
   std::expected<std::size_t, ErrorCode> read(std::uint32_t, MutableOctets) override { return 0; }
   std::size_t size_of(std::uint32_t) override { return 0; }
@@ -95,7 +98,8 @@ class Table : public ::testing::Test {
   testing::PlayedSelfTest self_test_;
   TestService test_{verification_, sink_, self_test_};
   ParameterService parameters_{nobody_, verification_, sink_};
-  std::vector<Service*> services_{&housekeeping_, &events_, &functions_, &test_, &parameters_};
+  DescriptorService descriptor_{verification_, nobody_};
+  std::vector<Service*> services_{&housekeeping_, &events_, &functions_, &test_, &parameters_, &descriptor_};
 };
 
 TEST_F(Table, HasAnObjectToBeTriedForEachServiceThatASubsystemHas) {
@@ -119,7 +123,7 @@ TEST_F(Table, TakesDataOfTheShapeThatItDeclaresAndNoneThatIsAnOctetShort) {
       EXPECT_EQ(answer(*service, request.subtype, data), wrong_length);
       ++seen;
     }
-  EXPECT_EQ(seen, 9 + 3 + 1 + 3 + 2);
+  EXPECT_EQ(seen, 9 + 3 + 1 + 3 + 2 + 2);
 }
 
 TEST_F(Table, HasEverySubtypeThatAServiceTakes) {

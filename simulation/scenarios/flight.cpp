@@ -49,11 +49,11 @@ void hand_rests(descriptor::Mission& mission) {
   for (auto& device : mission.devices) std::erase_if(device.settings, [](const auto& s) { return s.name == "hand"; });
 }
 
-Flight::Flight(Plan plan) {
-  const auto files = descriptor::file_system();
-  const descriptor::FileSource source = [&](const std::filesystem::path& path) -> Result<std::string> {
-    const auto found = plan.files.find(path.filename().string());
-    return found != plan.files.end() ? found->second : files(path);
+Flight::Flight(Plan plan) : files_{std::move(plan.files)} {
+  const descriptor::FileSource source =
+      [this, files = descriptor::file_system()](const std::filesystem::path& path) -> Result<std::string> {
+    const auto found = files_.find(path.filename().string());
+    return found != files_.end() ? found->second : files(path);
   };
   auto reading = descriptor::read_mission(plan.mission, source);
   std::string problems;
@@ -74,7 +74,8 @@ Flight::Flight(Plan plan) {
                                                           .observer = story_,
                                                           .seed = plan.seed,
                                                           .wrap_channel = plan.wrap_channel,
-                                                          .values = plan.values});
+                                                          .values = plan.values,
+                                                          .files = source});
 }
 
 std::vector<supervisor::LogRecord> Flight::records() {

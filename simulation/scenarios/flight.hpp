@@ -70,6 +70,8 @@ class Flight {
 
   [[nodiscard]] Spacecraft& craft() noexcept { return *craft_; }
   [[nodiscard]] Story& story() noexcept { return story_; }
+  /// From now on this text stands in for the file of this name.
+  void write(const std::string& file_name, std::string text) { files_[file_name] = std::move(text); }
   [[nodiscard]] const descriptor::Mission& mission() const noexcept { return *mission_; }
   [[nodiscard]] std::vector<supervisor::LogRecord> records();
   /// Runs until the start mode is commissioned; false when it never is.
@@ -98,6 +100,7 @@ class Flight {
   Verdict send(Octets packet);
 
  private:
+  std::map<std::string, std::string> files_;
   std::optional<descriptor::Mission> mission_;
   supervisor::MemoryDatabase log_;
   Story story_;

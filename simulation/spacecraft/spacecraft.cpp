@@ -67,7 +67,10 @@ struct Spacecraft::Member {
                        .flows = platform.flows,
                        .realtime = platform.realtime,
                        .explain = std::move(platform.explain),
-                       .links = platform.links};
+                       .links = platform.links,
+                       .read_again = [this, changes = descriptor::changes_of(what)](std::string_view text) {
+                         return descriptor::read_again(described->subsystem, text, changes);
+                       }};
     engine.emplace(*author, what.subsystem, own, channels.subsystem_end(), *vital, *permit);
   }
 
@@ -188,7 +191,8 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
           -> std::unique_ptr<supervisor::Database> { return std::make_unique<supervisor::MemoryDatabase>(); },
       .observer = parts.observer,
       .first_sequence_count = first_count(parts.seed),
-      .values = parts.values != nullptr ? parts.values : &own_values_});
+      .values = parts.values != nullptr ? parts.values : &own_values_,
+      .readings = &readings_});
   supervisor_wake_ = clock_.now();
   supervisor_->start();
 }

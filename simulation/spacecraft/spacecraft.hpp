@@ -59,6 +59,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
     /// Of persistent parameters, from earlier flights and for later ones; null: of this flight alone.
     supervisor::ValueStore* values{nullptr};
+    /// What is read again of descriptors.
+    descriptor::FileSource files{descriptor::file_system()};
   };
   explicit Spacecraft(const Parts& parts);
   ~Spacecraft() override;
@@ -131,6 +133,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   std::vector<Device> devices_;
   supervisor::MemoryValueDisk forgotten_;
   supervisor::DirectValueStore own_values_{forgotten_, "values"};
+  supervisor::DirectReadings readings_{parts_.files};
   std::optional<supervisor::Guard> guard_;
   std::unique_ptr<supervisor::Supervisor> supervisor_;
   TimePoint supervisor_wake_{};

@@ -208,6 +208,11 @@ void StoredValues::ask(std::uint16_t apid, Subject& subject) {
       Duration{0});
 }
 
+void StoredValues::redeclared(const descriptor::Subsystem& subsystem) {
+  if (const auto found = subjects_.find(subsystem.id); found != subjects_.end())
+    found->second.values.redeclare(subsystem);
+}
+
 void StoredValues::ended(std::uint16_t apid) {
   const auto found = subjects_.find(apid);
   if (found == subjects_.end()) return;

@@ -55,6 +55,15 @@ ValueSet::ValueSet(const descriptor::MissionSubsystem& declared) : declared_{dec
   layout_ = hash.value();
 }
 
+void ValueSet::redeclare(const descriptor::Subsystem& declared) {
+  for (const descriptor::Parameter& parameter : declared.parameters) {
+    if (!parameter.persistent) continue;
+    const std::uint32_t id = id_of(declared, parameter);
+    fields_.at(id) = parameter.field;
+    declared_init_.at(id) = parameter.init;
+  }
+}
+
 bool ValueSet::set(std::uint32_t id, Octets value) {
   const auto field = fields_.find(id);
   if (field == fields_.end() || !descriptor::values_within(field->second, value)) return false;

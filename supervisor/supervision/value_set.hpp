@@ -18,6 +18,9 @@ class ValueSet {
   /// As the mission has it before anything was set.
   explicit ValueSet(const descriptor::MissionSubsystem& declared);
 
+  /// Ranges and initial values are these from now on; every value that was set is within its range (docs/adr/0095).
+  void redeclare(const descriptor::Subsystem& declared);
+
   /// It has persistent parameters at all.
   [[nodiscard]] bool wanted() const noexcept { return !fields_.empty(); }
   /// FNV-1a 64 over name, id, type, size and unit of each: values of another layout mean something else.

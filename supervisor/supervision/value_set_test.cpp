@@ -68,6 +68,23 @@ TEST(ValueSet, TakesWhatATelecommandCouldSetOfAPersistentParameter) {
   EXPECT_EQ(set.size(), 1U);
 }
 
+TEST(ValueSet, GoesByTheRangesAndInitialValuesOfADescriptorThatIsReadAgain) {
+  ValueSet set{declared_arm()};
+  set.set(gain_id, two_octets(99));
+  const std::uint64_t layout = set.layout();
+  auto declared = declared_arm().subsystem;
+  declared.parameters[0].field.maximum = Number{20};
+  declared.parameters[0].init = {Number{5}};
+  set.redeclare(declared);
+  EXPECT_TRUE(set.set(limit_id, two_octets(11)));
+  EXPECT_EQ(set.layout(), layout) << "its copies stay whole";
+  set.forget(limit_id);
+  auto member = declared_arm();
+  set.begin(member);
+  EXPECT_EQ(member.subsystem.parameters[0].init, (std::vector<Value>{Number{5}}));
+  EXPECT_EQ(member.subsystem.parameters[1].init, (std::vector<Value>{Number{99}}));
+}
+
 TEST(ValueSet, GoesThroughACopy) {
   ValueSet set{declared_arm()};
   set.set(limit_id, two_octets(7));

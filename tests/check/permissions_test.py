@@ -10,7 +10,7 @@ STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOper
 SAFE, OPERATIONAL = 4, 5
 ALWAYS, NEVER = set(range(10)), set()
 # Requests of the framework's services that anybody may be sent.
-SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4}}
+SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4}, 130: {1, 2}}
 
 
 def words(element, name):
@@ -65,7 +65,7 @@ def expected(sender, addressee, mode, service, subtype, request, supervisor):
     plain = function or (addressee.requests.get((service, subtype), (None,))[0])
     if service == 129 and not to_supervisor:
         return NEVER, NEVER, NEVER
-    if service == 128 and not on_board:
+    if service in (128, 130) and not on_board:
         return NEVER, NEVER, NEVER
     if ground and to_supervisor and (target is not None or function == "CONFIGURE"):
         return NEVER, NEVER, NEVER

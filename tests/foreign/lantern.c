@@ -418,6 +418,7 @@ int main(int argc, char** argv) {
     else if (!strcmp(argv[i], "--channel")) channel = argv[i + 1];
     else if (!strcmp(argv[i], "--vital")) vital = argv[i + 1];
     else if (!strcmp(argv[i], "--permit")) permit = argv[i + 1];
+    else if (!strcmp(argv[i], "--text")) close(atoi(argv[i + 1]));  /* what it says is built in here */
     else if (!change(argv[i], argv[i + 1])) return fprintf(stderr, "lantern: nothing here for %s %s\n", argv[i], argv[i + 1]), 3;
   }
   if (!descriptor || !channel || !vital || !permit)

@@ -10,6 +10,7 @@
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/requests.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/words/describe.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "supervisor/platform/storage/database.hpp"
@@ -155,6 +156,20 @@ struct Encoded {
   return subtype == 7 || (failure && subtype != 6);
 }
 
+/// What keeps a descriptor from being read again, as `hirosco check` would say it.
+void print_problem(const pus::TelemetryView& report, bool json) {
+  if (report.subtype() != pus::st129::descriptor_problem) return;
+  const auto problem = pus::st129::read_descriptor_problem(report.source_data());
+  if (!problem) return;
+  const auto printable = [](const std::string& text) { return pus::text_of(std::as_bytes(std::span{text})); };
+  std::string text = fmt::format("{}:{}:{}: error {}: {}", printable(problem->file), problem->line, problem->column,
+                                 printable(problem->code), printable(problem->what));
+  if (!problem->hint.empty()) text += " (" + printable(problem->hint) + ")";
+  if (!json) return fmt::print("{}\n", text);
+  std::ranges::replace_if(text, [](char c) { return c == '"' || c == '\\'; }, '\'');
+  fmt::print("{{\"report\":\"129,6\",\"text\":\"{}\",\"from\":{}}}\n", text, report.apid());
+}
+
 }  // namespace
 
 int telecommand(const TelecommandOptions& options) {
@@ -202,7 +217,9 @@ int telecommand(const TelecommandOptions& options) {
       return exit_finding;
     }
     const auto report = pus::TelemetryView::parse(**received);
-    if (!report || report->destination() != source || report->service() != 1) continue;
+    if (!report || report->destination() != source) continue;
+    if (report->service() == pus::st129::service_type) print_problem(*report, options.connection.json);
+    if (report->service() != 1) continue;
     if (OctetReader{report->source_data()}.get<std::uint32_t>() != id) continue;
     const double after_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     bool success = false;

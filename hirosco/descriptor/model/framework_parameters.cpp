@@ -49,7 +49,8 @@ std::vector<Parameter> framework_parameters() {
           {member("MEMORY", 246, Uint32, "kB"), member("MEMORY_HIGH", 247, Uint32, "kB"),
            member("DESCRIPTORS", 248, Uint32), member("DESCRIPTORS_HIGH", 249, Uint32), member("THREADS", 250, Uint32),
            member("THREADS_HIGH", 251, Uint32), member("POOL_USED", 252, Uint32, "", most_pools),
-           member("POOL_HIGH", 253, Uint32, "", most_pools), member("POOL_REFUSED", 254, Uint32)})};
+           member("POOL_HIGH", 253, Uint32, "", most_pools), member("POOL_REFUSED", 254, Uint32)}),
+      structure(framework_parameter::descriptor, 36, {member("HASH", 255, Uint32), member("CHANGES", 240, Uint16)})};
 }
 
 std::string output_parameter(const Device& device) {

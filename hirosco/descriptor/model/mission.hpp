@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -193,6 +195,8 @@ struct Mission {
   std::string start_mode;  ///< empty = stay in the initial mode, commission nothing
   std::vector<Plan> plans;
   std::vector<ShownValue> console;  ///< in the order of the file
+  /// The files that it was read from, as they were: what flies is judged by them, whatever the disk says by now (docs/adr/0095).
+  std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts{};
 
   [[nodiscard]] const MissionSubsystem* find_subsystem(std::string_view subsystem) const noexcept;
   [[nodiscard]] const MissionSubsystem* find_subsystem(std::uint16_t apid) const noexcept;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -345,6 +346,7 @@ struct Subsystem {
   std::uint16_t id{};  ///< APID
   std::string description;
   std::filesystem::path file;  ///< where it was read from
+  std::shared_ptr<const std::string> text;  ///< of that file, as it was read; null: it was made by hand
   std::vector<Enumeration> enumerations;
   std::vector<Parameter> parameters;
   std::vector<Event> events;  ///< the author's, then the framework's (framework_events.hpp)

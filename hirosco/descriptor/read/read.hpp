@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hirosco/descriptor/model/mission.hpp"
@@ -47,6 +48,14 @@ struct Reading {
 [[nodiscard]] Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source);
 /// Reads and checks a mission with every subsystem it names (paths relative to the mission file).  Realtime: allocates.
 [[nodiscard]] Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source);
+
+/// Another text of the descriptor of a subsystem that flies, with `changes` of it applied as its process was told them when it started
+/// (changes_of()); whom it commands stays as resolved.  Realtime: allocates.
+[[nodiscard]] Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
+                                            const std::vector<std::pair<std::string, std::string>>& changes);
+/// The mission that flies with another text of one of its files, judged as a whole: the others are as they were when it was read.
+/// Realtime: allocates.
+[[nodiscard]] Reading<Mission> read_again(const Mission& flown, const std::filesystem::path& file, std::string text);
 
 /// Reads the manifest of a mission (docs/adr/0089).  Realtime: allocates.
 [[nodiscard]] Reading<Manifest> read_manifest(const std::filesystem::path& file, const FileSource& source);

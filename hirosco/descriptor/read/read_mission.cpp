@@ -411,11 +411,20 @@ const Subsystem* MissionReader::find(const xml::Attribute& at, std::string_view 
 
 Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source) {
   detail::Problems problems{file};
-  const auto root = detail::read_root(file, source, "Mission", problems);
+  std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts;
+  // Each file once: who flies one descriptor twice has the same of both.
+  const FileSource once = [&](const std::filesystem::path& asked) -> Result<std::string> {
+    if (const auto known = texts.find(asked); known != texts.end()) return *known->second;
+    auto content = source(asked);
+    if (content) texts[asked] = std::make_shared<const std::string>(*content);
+    return content;
+  };
+  const auto root = detail::read_root(file, once, "Mission", problems);
   Reading<Mission> reading;
   if (!root) return {std::nullopt, problems.take(), {}};
-  detail::MissionReader reader{problems, source};
+  detail::MissionReader reader{problems, once};
   Mission mission = reader.read(*root);
+  mission.texts = std::move(texts);
   mission.file = file;
   reading.problems = problems.take();
   std::ranges::move(reader.take_subsystem_problems(), std::back_inserter(reading.problems));

@@ -13,9 +13,9 @@ namespace {
 
 /// Built in: in every subsystem, and in the supervisor besides (decision 10).
 constexpr std::array<std::string_view, 2> common_functions{"SET_STATE", "CONFIGURE"};
-constexpr std::array<std::string_view, 11> supervisor_functions{
-    "SET_MODE", "ENTER_MODE", "LINK",      "UNLINK",   "SET_DATABASE", "SET_POWER_BUDGET",
-    "REPLACE",  "CONFIRM",    "TAKE_BACK", "SAFE_ALL", "SHUTDOWN"};
+constexpr std::array<std::string_view, 12> supervisor_functions{
+    "SET_MODE", "ENTER_MODE", "LINK",      "UNLINK", "SET_DATABASE", "SET_POWER_BUDGET",
+    "REPLACE",  "CONFIRM",    "TAKE_BACK", "REREAD", "SAFE_ALL",     "SHUTDOWN"};
 
 constexpr std::size_t most_steps = 16;
 

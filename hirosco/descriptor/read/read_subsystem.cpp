@@ -233,11 +233,18 @@ void SubsystemReader::read_output(const xml::Element& element, Device& device, U
 
 Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source) {
   detail::Problems problems{file};
-  const auto root = detail::read_root(file, source, "Subsystem", problems);
+  std::shared_ptr<const std::string> text;
+  const FileSource kept = [&](const std::filesystem::path& asked) {
+    auto content = source(asked);
+    if (content) text = std::make_shared<const std::string>(*content);
+    return content;
+  };
+  const auto root = detail::read_root(file, kept, "Subsystem", problems);
   Reading<Subsystem> reading;
   if (root) {
     Subsystem subsystem = detail::SubsystemReader{problems}.read(*root);
     subsystem.file = file;
+    subsystem.text = std::move(text);
     if (problems.count() == 0) reading.value = std::move(subsystem);
   }
   reading.problems = problems.take();

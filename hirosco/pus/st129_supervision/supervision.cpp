@@ -18,11 +18,20 @@ constexpr Part mode[]{number("MODE", Type::Uint8)};
 constexpr Part reason[]{word("WHY")};
 constexpr Part step[]{number("STAGE", Type::Uint8), number("SUBSYSTEM", Type::Uint16), word("WHAT")};
 constexpr Part preview[]{number("MODE", Type::Uint8), list("AGAINST", reason), list("STEPS", step)};
+constexpr Part problem[]{number("SUBSYSTEM", Type::Uint16),
+                         number("COUNT", Type::Uint16),
+                         word("FILE"),
+                         number("LINE", Type::Uint32),
+                         number("COLUMN", Type::Uint32),
+                         word("CODE"),
+                         word("WHAT"),
+                         word("HINT")};
 constexpr RequestKind requests[]{{permission_question, "IS_IT_PERMITTED", packet},
                                  {mode_question, "PREVIEW_MODE", mode}};
 constexpr ReportKind reports[]{{permission_answer, "PERMISSION", answer},
                                {telecommand_copy, "COPY", packet},
-                               {mode_preview, "MODE_PREVIEW", preview}};
+                               {mode_preview, "MODE_PREVIEW", preview},
+                               {descriptor_problem, "DESCRIPTOR_PROBLEM", problem}};
 
 }  // namespace kind
 
@@ -41,6 +50,31 @@ void put_words(OctetWriter& writer, std::string_view words) {
 }
 
 }  // namespace
+
+std::vector<std::byte> write_descriptor_problem(const DescriptorProblem& problem) {
+  constexpr std::size_t words = 4, octets_before = 12;
+  std::vector<std::byte> data(octets_before + words * (most + 1));
+  OctetWriter writer{data};
+  const std::string_view file{problem.file};
+  writer.put(problem.apid).put(problem.count);
+  put_words(writer, file.substr(file.size() - std::min(file.size(), most)));
+  writer.put(problem.line).put(problem.column);
+  for (const std::string_view text : {problem.code, problem.what, problem.hint}) put_words(writer, text);
+  data.resize(writer.size());
+  return data;
+}
+
+std::optional<DescriptorProblem> read_descriptor_problem(Octets data) {
+  OctetReader reader{data};
+  DescriptorProblem problem;
+  problem.apid = reader.get<std::uint16_t>();
+  problem.count = reader.get<std::uint16_t>();
+  problem.file = get_words(reader);
+  problem.line = reader.get<std::uint32_t>();
+  problem.column = reader.get<std::uint32_t>();
+  for (std::string* const text : {&problem.code, &problem.what, &problem.hint}) *text = get_words(reader);
+  return reader.exhausted() ? std::optional{std::move(problem)} : std::nullopt;
+}
 
 std::optional<ModePreview> read_mode_preview(Octets data) {
   OctetReader reader{data};

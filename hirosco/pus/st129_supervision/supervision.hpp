@@ -20,6 +20,9 @@
 ///   TM[129,5]  the answer, also beside a SET_MODE that is refused: mode u8; how many reasons are against it u8 (0 = it is
 ///              possible), each as words; how many steps it would take u8, each its stage u8 from 1, its subject's APID u16, words.
 ///              A stage begins when the one before has ended.
+///   TM[129,6]  beside a REREAD that is refused (docs/adr/0095), one for each problem: whose descriptor, APID u16; how many there are
+///              u16; file, as words; line u32, column u32 (0: the file as a whole); its number in docs/descriptor-errors.md, what is
+///              wrong and what to do about it, as words
 namespace hirosco::pus::st129 {
 
 inline constexpr std::uint8_t service_type = 129;
@@ -29,7 +32,8 @@ enum Subtype : std::uint8_t {
   permission_answer = 2,
   telecommand_copy = 3,
   mode_question = 4,
-  mode_preview = 5
+  mode_preview = 5,
+  descriptor_problem = 6
 };
 
 struct ModePreview {
@@ -42,6 +46,18 @@ struct ModePreview {
   std::vector<std::string> against;
   std::vector<Step> steps;
 };
+
+struct DescriptorProblem {
+  std::uint16_t apid{};
+  std::uint16_t count{};
+  std::string file;
+  std::uint32_t line{}, column{};
+  std::string code, what, hint;
+};
+/// Words are cut at 255 octets, a file's name in front.
+[[nodiscard]] std::vector<std::byte> write_descriptor_problem(const DescriptorProblem& problem);
+/// Empty: it is not of this form.
+[[nodiscard]] std::optional<DescriptorProblem> read_descriptor_problem(Octets data);
 
 inline constexpr std::size_t max_preview_octets = max_telemetry_octets - telemetry_overhead_octets;
 /// Into `buffer`, of max_preview_octets. Steps and reasons beyond 255 of each, and steps that find no room, are left out; words

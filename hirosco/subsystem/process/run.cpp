@@ -3,6 +3,7 @@
 #include "hirosco/subsystem/process/run.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <csignal>
@@ -25,6 +26,7 @@
 #include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/xml/reader.hpp"
 
 namespace hirosco {
 namespace {
@@ -38,6 +40,7 @@ struct Options {
   int channel{-1};
   int vital{-1};
   int permit{-1};
+  int text{-1};  ///< of the descriptor; -1: its file is read
   [[nodiscard]] bool complete() const { return !descriptor.empty() && channel >= 0 && vital >= 0 && permit >= 0; }
 };
 
@@ -55,9 +58,20 @@ struct Options {
     else if (name == "--channel") options.channel = number_of(argv[i + 1]);
     else if (name == "--vital") options.vital = number_of(argv[i + 1]);
     else if (name == "--permit") options.permit = number_of(argv[i + 1]);
+    else if (name == "--text") options.text = number_of(argv[i + 1]);
     else options.changes.emplace_back(name, argv[i + 1]);
   }
   return options;
+}
+
+/// Empty: none was handed over, or it cannot be read.
+[[nodiscard]] std::optional<std::string> handed_text(int descriptor) {
+  if (descriptor < 0) return std::nullopt;
+  const FileDescriptor owned{descriptor};
+  const auto size = ::lseek(descriptor, 0, SEEK_END);
+  if (size <= 0 || size > static_cast<off_t>(xml::max_document_octets)) return std::nullopt;
+  std::string text(static_cast<std::size_t>(size), '\0');
+  return ::pread(descriptor, text.data(), text.size(), 0) == size ? std::optional{std::move(text)} : std::nullopt;
 }
 
 [[nodiscard]] Mapping map_page(SealedMemory& memory, int descriptor, Access access) {
@@ -90,13 +104,18 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     fmt::print(stderr,
                "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
                "  --descriptor FILE --channel FD --vital FD --permit FD [--as NAME:ID] [--set PARAMETER=VALUES]\n"
-               "  [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--commands NAME=ID:FILE]\n",
+               "  [--text FD] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--commands NAME=ID:FILE]\n",
                argv[0]);
     return exit_usage;
   }
   const auto source = descriptor::file_system();
-  auto reading = descriptor::read_subsystem(options.descriptor, source);
-  for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
+  // What flies is what the supervisor has judged, whatever the file says by now.
+  const auto handed = handed_text(options.text);
+  const descriptor::FileSource in_force = [&](const std::filesystem::path& file) -> Result<std::string> {
+    return handed ? Result<std::string>{*handed} : source(file);
+  };
+  auto reading = descriptor::read_subsystem(options.descriptor, in_force);
+  for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, in_force, false));
   if (!reading.value) return exit_environment;
   for (const auto& [word, text] : options.changes)
     if (const auto applied = word == "--commands" ? descriptor::apply_commands(*reading.value, text, source)
@@ -122,6 +141,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     static_cast<void>(set_shared_priority(service_loop_priority));
   }
   auto meter = ProcessMeter::own();
+  const descriptor::Subsystem begun = *reading.value;
   const Platform platform{
       .clock = clock,
       .memory = memory,
@@ -129,7 +149,9 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
       .realtime = realtime,
       .wakes = true,
       .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); },
-      .usage = [&meter]() -> std::optional<ProcessUsage> { return meter ? meter->look() : std::nullopt; }};
+      .usage = [&meter]() -> std::optional<ProcessUsage> { return meter ? meter->look() : std::nullopt; },
+      .read_again = [&begun,
+                     &options](std::string_view text) { return descriptor::read_again(begun, text, options.changes); }};
   const auto author = make();
   GenericSubsystem subsystem{*author,
                              std::move(*reading.value),

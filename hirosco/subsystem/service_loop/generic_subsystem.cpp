@@ -70,14 +70,17 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       parameter_service_{*this, verification_, *this},
       housekeeping_service_{descriptor_, home_of(3).verification(), home_of(3).telemetry()},
       link_service_{verification_, *this, *this},
+      descriptor_service_{verification_, *this},
       self_tests_{verification_, *this, platform.clock},
-      services_{&housekeeping_service_, &event_service_, &function_service_, &parameter_service_, &link_service_},
+      services_{&housekeeping_service_, &event_service_, &function_service_,
+                &parameter_service_,    &link_service_,  &descriptor_service_},
       requester_{descriptor_, channel_, platform.clock.now()} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
     made_services_.push_back(kind->make(*this));
     services_.push_back(made_services_.back().get());
   }
+  tell_descriptor();
   if (OwnLoop* const loop = loop_of(housekeeping_service_.type())) loop->host(housekeeping_service_);
   loops_looked_at_ = platform_.clock.now();
   author_.framework_ = this;

@@ -15,6 +15,7 @@
 #include "hirosco/data_transfer/control/channel.hpp"
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/memory/memory.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/parameter/write_queue.hpp"
 #include "hirosco/pus/packet/packet_counters.hpp"
@@ -22,6 +23,7 @@
 #include "hirosco/pus/st03_housekeeping/configured_housekeeping.hpp"
 #include "hirosco/pus/st05_event/event_service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/subsystem/author/custom_service.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
@@ -53,6 +55,15 @@ struct Platform {
   LinkMechanisms links{standard_link_mechanisms()};
   /// What the process has taken, empty when nobody can tell; asked ten times in a second. Service loop only.
   std::function<std::optional<ProcessUsage>()> usage{};
+  /// Reads another text of its descriptor, with what its mission changes applied (docs/adr/0095). Service loop only; null: it keeps
+  /// the one that it began with.
+  std::function<descriptor::Reading<descriptor::Subsystem>(std::string_view text)> read_again{};
+};
+
+/// The descriptor in force, as housekeeping.
+struct DescriptorInForce {
+  std::uint32_t hash{};  ///< CRC-32 of its text
+  std::uint16_t changes{};  ///< taken since the process started
 };
 
 /// What an author did not do as the descriptor says, in words.
@@ -67,6 +78,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
                                private pus::ParameterAccess,
                                private LinkServiceOwner,
                                private pus::SelfTest,
+                               private pus::DescriptorOwner,
                                private pus::ServiceHome {
  public:
   /// `vital` and `permit` are the mapped pages, at least as large as VitalPage and PermitPage and initialised.
@@ -177,12 +189,19 @@ class GenericSubsystem final : private pus::TelemetrySink,
     return self_tests_.record(cycle_.self_test_passed());
   }
 
+  // DescriptorOwner
+  std::optional<pus::FailureNotice> judge(std::size_t octets, const MemoryHandle& text) override;
+  std::optional<pus::FailureNotice> take() override;
+
   // ServiceHome
   [[nodiscard]] pus::SelfTest& self_test() noexcept override { return *this; }
   [[nodiscard]] pus::FailureNotice refusal(pus::FailureCode code, const Error& why) const override {
     return notice_of(static_cast<std::uint16_t>(code), {why.code, why.text, why.value});
   }
 
+  [[nodiscard]] std::optional<pus::FailureNotice> against(const descriptor::Subsystem& fresh);
+  [[nodiscard]] std::optional<pus::FailureNotice> left_outside(const descriptor::Subsystem& fresh);
+  void tell_descriptor();
   void receive_messages();
   void dispatch(const Message& message);
   Result<> store(const ParameterCell& parameter, Octets big_endian) override;
@@ -272,6 +291,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   pus::ParameterService parameter_service_;
   pus::ConfiguredHousekeeping housekeeping_service_;
   LinkService link_service_;
+  pus::DescriptorService descriptor_service_;
+  std::optional<descriptor::Subsystem> coming_;  ///< judged, and not taken yet
+  Parameter<DescriptorInForce> descriptor_in_force_;
+  std::uint16_t descriptor_changes_{0};
   SelfTests self_tests_;
   std::vector<std::unique_ptr<pus::Service>> made_services_;  ///< by their kinds
   std::vector<pus::Service*> services_;  ///< the framework's, then the author's

@@ -46,17 +46,20 @@ Rig::Rig(Subsystem& author, const std::string& descriptor_text, bool realtime, b
     : Rig{author, read_descriptor(descriptor_text), realtime, wakes} {}
 
 Rig::Rig(Subsystem& author, descriptor::Subsystem described, bool realtime, bool wakes)
-    : subsystem{author,
-                std::move(described),
-                {.clock = clock,
-                 .memory = memory,
-                 .flows = flows,
-                 .realtime = realtime,
-                 .wakes = wakes,
-                 .explain = [this](std::string_view text) { explanations.emplace_back(text); }},
-                channels.subsystem_end(),
-                vital,
-                permit} {
+    : subsystem{
+          author,
+          std::move(described),
+          {.clock = clock,
+           .memory = memory,
+           .flows = flows,
+           .realtime = realtime,
+           .wakes = wakes,
+           .explain = [this](std::string_view text) { explanations.emplace_back(text); },
+           .read_again =
+               [this](std::string_view text) { return descriptor::read_again(subsystem.descriptor(), text, {}); }},
+          channels.subsystem_end(),
+          vital,
+          permit} {
   permit.release();
 }
 

@@ -87,6 +87,11 @@ class ProcessLauncher {
   virtual void use(const descriptor::MissionSubsystem& /*subsystem*/, const std::string& /*version*/) {}
   /// It is not used any more: its memory is given back.
   virtual void drop(const descriptor::MissionSubsystem& /*subsystem*/, const std::string& /*version*/) {}
+  /// What an address of `fresh` needs that the process of `flown`, which runs, was not let through to when it started; empty: nothing.
+  [[nodiscard]] virtual std::string shut_out(const descriptor::MissionSubsystem& /*flown*/,
+                                             const descriptor::MissionSubsystem& /*fresh*/) {
+    return {};
+  }
   /// Empty while it runs.
   [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
   virtual void kill(std::uint32_t process) = 0;

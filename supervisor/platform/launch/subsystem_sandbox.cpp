@@ -58,7 +58,10 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
     if (!commanded.file.empty()) sandbox.readable.push_back(place_of(commanded.file).string());
   sandbox.writable.emplace_back("/dev/null");
   for (const auto& configuration : subsystem.subsystem.configurations)
-    for (const auto& use : configuration.devices) add_address(use.endnode, sandbox);
+    for (const auto& use : configuration.devices) {
+      add_address(use.endnode, sandbox);
+      for (const auto& other : use.fall_backs) add_address(other, sandbox);
+    }
   return sandbox;
 }
 

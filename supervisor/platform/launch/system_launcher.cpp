@@ -32,6 +32,7 @@ constexpr int channel_number = 3;
 constexpr int vital_number = 4;
 constexpr int permit_number = 5;
 constexpr int script_number = 6;
+constexpr int text_number = 7;
 
 [[nodiscard]] FileDescriptor open_statm(const std::string& process) {
   return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
@@ -199,6 +200,14 @@ template <class Page>
   return std::pair{std::move(handle), std::move(mapping)};
 }
 
+[[nodiscard]] Result<MemoryHandle> make_text(SealedMemory& memory, const std::string& text) {
+  HIROSCO_TRY_LET(MemoryHandle handle, memory.create("hirosco-descriptor", text.size()));
+  HIROSCO_TRY_LET(const Mapping mapping, memory.map(handle, Access::ReadWrite));
+  std::ranges::copy(std::as_bytes(std::span{text}), mapping.octets.begin());
+  HIROSCO_TRY(memory.seal_writers(handle));
+  return handle;
+}
+
 /// What comes with HIROSCO is found from where a program stands, and one that runs from memory stands nowhere.
 [[nodiscard]] std::string placed(const std::string& file) {
   if (!file.starts_with(shipped_prefix)) return file;
@@ -215,6 +224,7 @@ template <class Page>
                                  "--channel",    std::to_string(channel_number),
                                  "--vital",      std::to_string(vital_number),
                                  "--permit",     std::to_string(permit_number)};
+  if (subsystem.subsystem.text) words.insert(words.end(), {"--text", std::to_string(text_number)});
   for (const auto& [word, text] : descriptor::changes_of(subsystem)) {
     // "NAME=12:FILE"
     const auto file_at = word == "--commands" ? text.find(':') + 1 : text.size();
@@ -276,6 +286,14 @@ void SystemLauncher::drop(const descriptor::MissionSubsystem& subsystem, const s
   if (held_ && !version.empty()) held_->drop(version_of(subsystem.executable, version));
 }
 
+std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
+                                     const descriptor::MissionSubsystem& fresh) {
+  const Sandbox had = sandbox_of(flown, {}), wants = sandbox_of(fresh, {});
+  for (const std::string& place : wants.writable)
+    if (std::ranges::find(had.writable, place) == had.writable.end()) return place;
+  return {};
+}
+
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
   std::filesystem::path& program = programs_[subsystem.executable];
   const ProgramImage* image = nullptr;
@@ -304,6 +322,12 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   start.inherited = {{ends.second.get(), channel_number},
                      {SealedMemory::descriptor(vital.first), vital_number},
                      {SealedMemory::descriptor(permit.first), permit_number}};
+  // What it reads is what the mission was judged with, whatever the file says by now (docs/adr/0095).
+  MemoryHandle text;
+  if (subsystem.subsystem.text) {
+    HIROSCO_TRY_LET(text, make_text(memory_, *subsystem.subsystem.text));
+    start.inherited.push_back({SealedMemory::descriptor(text), text_number});
+  }
   start.limits = limits_of(subsystem.subsystem.resources);
   std::optional<PreparedSandbox> sandbox;
   const bool script = image != nullptr ? image->is_script() : is_script(program);

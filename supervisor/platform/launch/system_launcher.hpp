@@ -29,6 +29,8 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
                                                           const std::string& version) override;
   void use(const descriptor::MissionSubsystem& subsystem, const std::string& version) override;
+  [[nodiscard]] std::string shut_out(const descriptor::MissionSubsystem& flown,
+                                     const descriptor::MissionSubsystem& fresh) override;
   void drop(const descriptor::MissionSubsystem& subsystem, const std::string& version) override;
   /// From now on it starts what the manifest of this mission lists, and nothing else. Reads all of it first.
   const HeldPrograms& hold_to(const descriptor::Mission& mission);

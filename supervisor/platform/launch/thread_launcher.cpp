@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "hirosco/data_transfer/control/local_channel.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/process/loops.hpp"
 
@@ -108,7 +109,11 @@ void ThreadLauncher::Member::fly() {
                                 if (parts->explain) parts->explain(described.subsystem.name + ": " + std::string{text});
                               },
                           .links = parts->links,
-                          .usage = {}};
+                          .usage = {},
+                          .read_again =
+                              [this, changes = descriptor::changes_of(described)](std::string_view text) {
+                                return descriptor::read_again(described.subsystem, text, changes);
+                              }};
   const auto author = make();
   if (!author) throw std::bad_alloc{};
   GenericSubsystem subsystem{*author,

@@ -2,22 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/storage/value_copy.hpp"
 
+#include "hirosco/utilities/crc32.hpp"
+
 namespace hirosco::supervisor {
 namespace {
 
 constexpr std::uint32_t copy_magic = 0x48565043;  // "HVPC"
 constexpr std::size_t sum_octets = 4;
-
-/// CRC-32 of IEEE 802.3.
-[[nodiscard]] std::uint32_t check_sum(Octets octets) noexcept {
-  constexpr std::uint32_t polynomial = 0xEDB8'8320;
-  std::uint32_t sum = 0xFFFF'FFFF;
-  for (const std::byte octet : octets) {
-    sum ^= std::to_integer<std::uint32_t>(octet);
-    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ ((sum & 1U) != 0 ? polynomial : 0U);
-  }
-  return ~sum;
-}
 
 }  // namespace
 
@@ -27,14 +18,14 @@ std::vector<std::byte> write_copy(const ValueCopy& copy) {
   writer.put(copy_magic).put(value_copy_version).put(copy.layout).put(copy.sequence);
   writer.put(static_cast<std::int64_t>(copy.since.time_since_epoch().count()));
   writer.put(static_cast<std::uint32_t>(copy.values.size())).put(Octets{copy.values});
-  writer.put(check_sum(Octets{octets}.first(octets.size() - sum_octets)));
+  writer.put(crc32(Octets{octets}.first(octets.size() - sum_octets)));
   return octets;
 }
 
 std::expected<ValueCopy, CopyFault> read_copy(Octets octets) {
   if (octets.size() < value_copy_overhead) return std::unexpected{CopyFault::Damaged};
   // First of all, as what says the version may be damaged itself. Every version has its sum at the end.
-  if (OctetReader{octets.last(sum_octets)}.get<std::uint32_t>() != check_sum(octets.first(octets.size() - sum_octets)))
+  if (OctetReader{octets.last(sum_octets)}.get<std::uint32_t>() != crc32(octets.first(octets.size() - sum_octets)))
     return std::unexpected{CopyFault::Damaged};
   OctetReader reader{octets};
   if (reader.get<std::uint32_t>() != copy_magic) return std::unexpected{CopyFault::Damaged};

@@ -256,7 +256,8 @@ constexpr unsigned all_states = 0x03FF;
 /// What the old mode permitted and the new one may not would cross the change: until it has ended the craft is looked at, and taken
 /// towards safety, nothing else.
 [[nodiscard]] Notice crosses_no_change(const Asked& asked) {
-  if (!asked.situation.changing || !is_bound(asked)) return std::nullopt;
+  const Situation& situation = asked.situation;
+  if ((!situation.changing && !situation.rereading) || !is_bound(asked)) return std::nullopt;
   const std::uint8_t service = asked.telecommand.service();
   const bool sets = service == pus::ParameterService::service_type &&
                     asked.telecommand.subtype() == pus::ParameterService::set_values;
@@ -265,7 +266,8 @@ constexpr unsigned all_states = 0x03FF;
                     sets || states_of(asked) != all_states;
   if (!acts) return std::nullopt;
   FailureNotice notice{FailureCode::NotPermittedNow};
-  return notice.because({ErrorCode::NotPermitted, asked.situation.mode.id, "a change of mode is under way, from mode"});
+  if (situation.rereading) return notice.because({ErrorCode::NotPermitted, 0, "its descriptor is being read again"});
+  return notice.because({ErrorCode::NotPermitted, situation.mode.id, "a change of mode is under way, from mode"});
 }
 
 /// Does the mode open it?

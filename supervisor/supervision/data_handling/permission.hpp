@@ -41,6 +41,8 @@ struct Situation {
   bool changing{false};
   /// What is in force of everybody, for what their cycles take together; without it that is no matter here.
   std::function<std::vector<descriptor::InForce>()> in_force{};
+  /// Another text of the addressee's descriptor is on its way to it (docs/adr/0095).
+  bool rereading{false};
 };
 
 struct Permitted {

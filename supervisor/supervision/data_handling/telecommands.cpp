@@ -183,6 +183,7 @@ Situation Telecommands::situation_of(std::uint16_t apid) const {
   if (addressee == nullptr || situation.down) return situation;
   situation.state = addressee->state();
   situation.configuration = addressee->configuration();
+  situation.rereading = addressee->descriptor_changes;
   return situation;
 }
 

@@ -46,6 +46,8 @@ class Member {
   std::optional<TimePoint> closed_at;
   /// Its process ends for another version of it, or has: nobody else starts it.
   bool exchanged{false};
+  /// Another text of its descriptor is on its way to it: nothing is permitted that the old one would judge.
+  bool descriptor_changes{false};
   /// In how many steps in a row the operating system refused to read its channel.
   std::uint32_t refused{0};
   /// Messages of it that could not be read or are not of a kind that it may send, those that were told, and when again.

@@ -1,0 +1,415 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/descriptor/model/in_flight.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace hirosco::descriptor {
+namespace {
+
+constexpr std::string_view layout_why = "its place in memory and on the wire was made when the process started";
+constexpr std::string_view meaning_why = "ground and log read its values by what it was when the flight began";
+constexpr std::string_view content_why =
+    "ground and log read the reports of this id by it: another content has another id";
+constexpr std::string_view code_why = "the program that runs has it built in, or has not";
+constexpr std::string_view timing_why = "guard and links go by it, and that the cycles of the mode end in time";
+constexpr std::string_view link_why = "links are made by it, and their other ends read them so";
+constexpr std::string_view guard_why = "the guard holds it from before the start, out of reach of everybody";
+constexpr std::string_view limit_why = "pools, limits and the books of resources were made when the process started";
+constexpr std::string_view safety_why = "nothing that safety rests on is loosened in flight";
+constexpr std::string_view force_why =
+    "the configuration in force was made of it: read before CONFIGURE, or in Offline";
+
+constexpr auto its_name = [](const auto& each) { return each.name; };
+constexpr auto its_place = [](const auto& each) { return each.at; };
+constexpr auto no_place = [](const auto&) { return Location{}; };
+
+[[nodiscard]] bool same_limit(const CycleLimit& a, const CycleLimit& b) {
+  return a.realtime == b.realtime && a.reduced == b.reduced;
+}
+[[nodiscard]] bool same_texts(const std::vector<EnumerationText>& a, const std::vector<EnumerationText>& b) {
+  return std::ranges::equal(
+      a, b, [](const EnumerationText& x, const EnumerationText& y) { return x.value == y.value && x.text == y.text; });
+}
+[[nodiscard]] bool same_address(const Endnode& a, const Endnode& b) {
+  return a.transfer == b.transfer && a.address == b.address && a.byte_order == b.byte_order;
+}
+[[nodiscard]] bool same_end(const std::optional<Endnode>& a, const std::optional<Endnode>& b) {
+  return a.has_value() == b.has_value() && (!a || same_address(*a, *b));
+}
+[[nodiscard]] bool same_terms(const LinkTerms& a, const LinkTerms& b) {
+  return a.methods == b.methods && a.byte_orders == b.byte_orders && a.kinds == b.kinds;
+}
+[[nodiscard]] bool same_reference(const ParameterRef& a, const ParameterRef& b) {
+  return a.parameter == b.parameter && a.member == b.member;
+}
+[[nodiscard]] bool same_content(const HousekeepingStructure& a, const HousekeepingStructure& b) {
+  return std::ranges::equal(a.sampled_once, b.sampled_once, same_reference) &&
+         std::ranges::equal(a.sampled_repeatedly, b.sampled_repeatedly,
+                            [](const HousekeepingStructure::SampledSet& x, const HousekeepingStructure::SampledSet& y) {
+                              return x.repetitions == y.repetitions &&
+                                     std::ranges::equal(x.parameters, y.parameters, same_reference);
+                            });
+}
+[[nodiscard]] bool same_structures(const std::vector<HousekeepingStructure>& a,
+                                   const std::vector<HousekeepingStructure>& b) {
+  return std::ranges::equal(a, b, [](const HousekeepingStructure& x, const HousekeepingStructure& y) {
+    return x.id == y.id && x.interval_cycles == y.interval_cycles && x.enabled == y.enabled && same_content(x, y);
+  });
+}
+
+/// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
+class Comparison {
+ public:
+  [[nodiscard]] std::vector<Obstacle> take() { return std::move(found_); }
+
+  void unless(bool same, Location at, std::string what, std::string_view why) {
+    if (!same) found_.push_back({at, std::move(what), why});
+  }
+  /// Who is there by name in one of the two only, then each pair in order.
+  template <class T>
+  void lists(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name, auto&& at,
+             std::string_view why, auto&& pair) {
+    const auto has = [&](const std::vector<T>& list, const auto& wanted) {
+      return std::ranges::any_of(list, [&](const T& each) { return name(each) == wanted; });
+    };
+    bool whole = true;
+    const auto told = [&](const T& which, const char* how) {
+      found_.push_back({at(which), kind + name(which) + how, why});
+      whole = false;
+    };
+    for (const T& each : fresh)
+      if (!has(flown, name(each))) told(each, " is new");
+    for (const T& each : flown)
+      if (!has(fresh, name(each))) told(each, " is gone");
+    if (!whole) return;
+    for (std::size_t i = 0; i < flown.size() && i < fresh.size(); ++i) {
+      if (name(flown[i]) != name(fresh[i])) return told(fresh[i], " has another place in the order");
+      pair(flown[i], fresh[i]);
+    }
+  }
+
+  /// But for its range.
+  void field(const Field& flown, const Field& fresh, const std::string& what) {
+    [[maybe_unused]] const auto& [name, type, count, unit, minimum, maximum, enumeration, at, text, text_octets] =
+        fresh;
+    unless(flown.name == name, at, what + ": its name", layout_why);
+    unless(flown.type == type && flown.text == text, at, what + ": its type", layout_why);
+    unless(flown.count == count && flown.text_octets == text_octets, at, what + ": how many there are", layout_why);
+    unless(flown.unit == unit, at, what + ": its unit", meaning_why);
+    unless(flown.enumeration == enumeration, at, what + ": its enumeration", meaning_why);
+  }
+  void fields(const std::vector<Field>& flown, const std::vector<Field>& fresh, const std::string& what,
+              std::string_view why) {
+    lists(
+        flown, fresh, what + ": field ", its_name, [](const Field& each) { return each.at; }, why,
+        [&](const Field& a, const Field& b) { field(a, b, what + ": field " + b.name); });
+  }
+  void arguments(const std::vector<Function::Argument>& flown, const std::vector<Function::Argument>& fresh,
+                 const std::string& what) {
+    lists(
+        flown, fresh, what + ": argument ", [](const Function::Argument& each) { return each.field.name; },
+        [](const Function::Argument& each) { return each.field.at; }, code_why,
+        [&](const Function::Argument& a, const Function::Argument& b) {
+          [[maybe_unused]] const auto& [value, of, fallback, texts] = b;
+          const std::string which = what + ": argument " + value.name;
+          field(a.field, value, which);
+          unless(a.of == of, value.at, which + ": whose value it is", code_why);
+          unless(a.fallback.has_value() == fallback.has_value(), value.at, which + ": whether it may be left out",
+                 code_why);
+          unless(same_texts(a.texts, texts), value.at, which + ": its values and their names", meaning_why);
+        });
+  }
+  void function(const Function& flown, const Function& fresh, const std::string& kind) {
+    [[maybe_unused]] const auto& [name, service, subtype, states, essential, arguments_, description, at] = fresh;
+    const std::string what = kind + name;
+    unless(flown.service == service && flown.subtype == subtype, at, what + ": its type", code_why);
+    unless(flown.states == states && flown.essential == essential, at, what + ": when it is permitted", safety_why);
+    arguments(flown.arguments, arguments_, what);
+  }
+  void functions(const std::vector<Function>& flown, const std::vector<Function>& fresh, const std::string& kind) {
+    lists(flown, fresh, kind, its_name, its_place, code_why,
+          [&](const Function& a, const Function& b) { function(a, b, kind); });
+  }
+  void parameter(const Parameter& flown, const Parameter& fresh) {
+    [[maybe_unused]] const auto& [value, id, init, writable_states, protection, persistent, members] = fresh;
+    const std::string what = "parameter " + value.name;
+    field(flown.field, value, what);
+    unless(flown.id == id, value.at, what + ": its id", layout_why);
+    unless(flown.protection == protection, value.at, what + ": whether it protects", safety_why);
+    const bool same_range = flown.field.minimum == value.minimum && flown.field.maximum == value.maximum;
+    unless(!protection || (same_range && flown.init == init), value.at,
+           what + ": range or initial value of a protection", safety_why);
+    unless(flown.persistent == persistent, value.at, what + ": whether it outlives the flight", layout_why);
+    lists(
+        flown.members, members, what + ": member ", [](const Parameter::Member& each) { return each.field.name; },
+        [](const Parameter::Member& each) { return each.field.at; }, layout_why,
+        [&](const Parameter::Member& a, const Parameter::Member& b) {
+          [[maybe_unused]] const auto& [member, member_id] = b;
+          field(a.field, member, what + "." + member.name);
+          unless(a.id == member_id, member.at, what + "." + member.name + ": its id", layout_why);
+        });
+  }
+  void parameters(const Subsystem& flown, const Subsystem& fresh) {
+    lists(
+        flown.parameters, fresh.parameters, "parameter ", [](const Parameter& each) { return each.field.name; },
+        [](const Parameter& each) { return each.field.at; }, layout_why,
+        [&](const Parameter& a, const Parameter& b) { parameter(a, b); });
+  }
+  /// One may come, go, be switched or have another interval; what it reports stays with its id.
+  void structures(const std::vector<HousekeepingStructure>& flown, const std::vector<HousekeepingStructure>& fresh,
+                  const std::string& what) {
+    for (const HousekeepingStructure& each : fresh) {
+      const auto before = std::ranges::find(flown, each.id, &HousekeepingStructure::id);
+      if (before == flown.end()) continue;
+      unless(same_content(*before, each), each.at, what + " " + std::to_string(each.id) + ": what it reports",
+             content_why);
+    }
+  }
+  void event(const Event& flown, const Event& fresh) {
+    [[maybe_unused]] const auto& [name, id, severity, arguments_, at, safety] = fresh;
+    const std::string what = "event " + name;
+    unless(flown.id == id, at, what + ": its id", code_why);
+    unless(flown.severity == severity && flown.safety == safety, at, what + ": what follows it", safety_why);
+    fields(flown.arguments, arguments_, what, code_why);
+  }
+  void service(const CustomService& flown, const CustomService& fresh) {
+    [[maybe_unused]] const auto& [name, type, requests, reports, at] = fresh;
+    const std::string what = "service " + name;
+    unless(flown.type == type, at, what + ": its type", code_why);
+    functions(flown.requests, requests, what + ": request ");
+    lists(
+        flown.reports, reports, what + ": report ", its_name, [&](const CustomService::Report&) { return fresh.at; },
+        code_why,
+        [&](const CustomService::Report& a, const CustomService::Report& b) {
+          unless(a.subtype == b.subtype, at, what + ": report " + b.name + ": its subtype", code_why);
+          arguments(a.fields, b.fields, what + ": report " + b.name);
+        });
+  }
+  void device(const Device& flown, const Device& fresh) {
+    [[maybe_unused]] const auto& [name, part_of, actuator, input, output, stop, stop_within, enable, at] = fresh;
+    const std::string what = "device " + name;
+    unless(flown.part_of == part_of && flown.actuator == actuator, at, what + ": what it is", code_why);
+    unless(flown.stop == stop && flown.stop_within == stop_within, at, what + ": how it stops", guard_why);
+    unless(same_end(flown.enable, enable), at, what + ": its second inhibit", guard_why);
+    fields(flown.input, input, what, layout_why);
+    lists(
+        flown.output, output, what + ": field ", [](const Device::Output& each) { return each.field.name; },
+        [](const Device::Output& each) { return each.field.at; }, layout_why,
+        [&](const Device::Output& a, const Device::Output& b) {
+          field(a.field, b.field, what + ": field " + b.field.name);
+          const bool same =
+              a.safe == b.safe && a.field.minimum == b.field.minimum && a.field.maximum == b.field.maximum;
+          unless(!actuator || same, b.field.at, what + ": what an actuator may be told", safety_why);
+        });
+  }
+  void required(const Requires& flown, const Requires& fresh, const std::string& whose) {
+    [[maybe_unused]] const auto& [name, from, terms, depth, required_, age, missing, fields_, at] = fresh;
+    const std::string what = whose + ": required set " + name;
+    unless(flown.from == from && same_terms(flown.terms, terms) && flown.depth == depth, at, what + ": its terms",
+           link_why);
+    unless(flown.required == required_ && flown.missing == missing, at, what + ": what is without it", safety_why);
+    fields(flown.fields, fields_, what, link_why);
+  }
+  void provided(const Provides& flown, const Provides& fresh, const std::string& whose) {
+    [[maybe_unused]] const auto& [name, terms, parameters_, fields_, at] = fresh;
+    const std::string what = whose + ": provided set " + name;
+    unless(same_terms(flown.terms, terms), at, what + ": its terms", link_why);
+    unless(std::ranges::equal(flown.parameters, parameters_, same_reference), at, what + ": its parameters", link_why);
+    fields(flown.fields, fields_, what, link_why);
+  }
+  void use(const Subsystem& subsystem, const DeviceUse& flown, const DeviceUse& fresh, const std::string& whose) {
+    [[maybe_unused]] const auto& [device_, silence, every, watchdog_us, watchdog_reduced_us, settings, endnode,
+                                  fall_backs, at] = fresh;
+    const std::string what = whose + ": device " + subsystem.devices[device_].name;
+    unless(flown.device == device_, at, what + ": which it is", code_why);
+    unless(flown.endnode.byte_order == endnode.byte_order, at, what + ": its byte order", layout_why);
+    unless(std::ranges::equal(flown.settings, settings, {}, &Setting::name, &Setting::name), at,
+           what + ": which settings it has", code_why);
+    unless(!subsystem.devices[device_].actuator ||
+               (flown.watchdog_us == watchdog_us && flown.watchdog_reduced_us == watchdog_reduced_us),
+           at, what + ": the watchdog of an actuator", safety_why);
+    unless(flown.fall_backs.empty() == fall_backs.empty(), at, what + ": whether it has fall-backs", code_why);
+  }
+  void configuration(const Subsystem& subsystem, const Configuration& flown, const Configuration& fresh) {
+    [[maybe_unused]] const auto& [name, id, priority, sampling, budget, power_w, overruns, self_test, self_test_within,
+                                  housekeeping, provides, requires_, devices, initial, at] = fresh;
+    const std::string what = "configuration " + name;
+    unless(flown.id == id, at, what + ": its id", code_why);
+    unless(flown.priority == priority && flown.sampling == sampling && flown.budget == budget, at,
+           what + ": priority, sampling time or budget", timing_why);
+    unless(flown.self_test == self_test, at, what + ": whether it wants a self test", safety_why);
+    structures(flown.housekeeping, housekeeping, what + ": housekeeping");
+    lists(
+        flown.provides, provides, what + ": provided set ", its_name, [](const Provides& each) { return each.at; },
+        link_why, [&](const Provides& a, const Provides& b) { provided(a, b, what); });
+    lists(
+        flown.requires_, requires_, what + ": required set ", its_name, [](const Requires& each) { return each.at; },
+        link_why, [&](const Requires& a, const Requires& b) { required(a, b, what); });
+    lists(
+        flown.devices, devices, what + ": device ",
+        [&](const DeviceUse& each) {
+          return each.device < subsystem.devices.size() ? subsystem.devices[each.device].name : std::string{};
+        },
+        [](const DeviceUse& each) { return each.at; }, code_why,
+        [&](const DeviceUse& a, const DeviceUse& b) { use(subsystem, a, b, what); });
+  }
+  void subsystem(const Subsystem& flown, const Subsystem& fresh) {
+    [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_,
+                                  services, failures, commands, housekeeping, devices, power_switches, configurations,
+                                  hang, resources] = fresh;
+    unless(flown.name == name && flown.id == id, {}, "its name or id", code_why);
+    lists(flown.enumerations, enumerations, "enumeration ", its_name, no_place, meaning_why,
+          [&](const Enumeration& a, const Enumeration& b) {
+            unless(same_texts(a.texts, b.texts), {}, "enumeration " + b.name + ": its values and their names",
+                   meaning_why);
+          });
+    parameters(flown, fresh);
+    lists(flown.events, events, "event ", its_name, its_place, code_why,
+          [&](const Event& a, const Event& b) { event(a, b); });
+    functions(flown.functions, functions_, "function ");
+    lists(
+        flown.services, services, "service ", its_name, [](const CustomService& each) { return each.at; }, code_why,
+        [&](const CustomService& a, const CustomService& b) { service(a, b); });
+    lists(flown.failures, failures, "failure ", its_name, no_place, meaning_why,
+          [&](const FailureName& a, const FailureName& b) {
+            unless(a.code == b.code, {}, "failure " + b.name + ": its code", meaning_why);
+          });
+    structures(flown.housekeeping, housekeeping, "housekeeping");
+    lists(
+        flown.commands, commands, "command of ", [](const Commands& each) { return each.subsystem; },
+        [](const Commands& each) { return each.at; }, code_why,
+        [&](const Commands& a, const Commands& b) {
+          unless(a.functions == b.functions, b.at, "what it commands " + b.subsystem + " for", code_why);
+        });
+    lists(
+        flown.devices, devices, "device ", its_name, [](const Device& each) { return each.at; }, code_why,
+        [&](const Device& a, const Device& b) { device(a, b); });
+    lists(
+        flown.power_switches, power_switches, "power switch of ", [](const PowerSwitch& each) { return each.device; },
+        [](const PowerSwitch& each) { return each.at; }, guard_why,
+        [&](const PowerSwitch& a, const PowerSwitch& b) {
+          unless(same_end(a.endnode, b.endnode), b.at, "power switch of " + b.device + ": its endnode", guard_why);
+        });
+    if (found_.empty())  // its devices are known by number
+      lists(
+          flown.configurations, configurations, "configuration ", its_name,
+          [](const Configuration& each) { return each.at; }, code_why,
+          [&](const Configuration& a, const Configuration& b) { configuration(fresh, a, b); });
+    unless(flown.hang.realtime == hang.realtime && flown.hang.reduced == hang.reduced, {}, "when it counts as hanging",
+           guard_why);
+    unless(flown.resources.most == resources.most && flown.resources.warning_percent == resources.warning_percent &&
+               std::ranges::equal(flown.resources.pools, resources.pools,
+                                  [](const Pool& a, const Pool& b) {
+                                    return a.block_octets == b.block_octets && a.blocks == b.blocks;
+                                  }),
+           {}, "its resources", limit_why);
+  }
+
+  // --- what the configuration in force was made of ---------------------------------------------------------------------
+  void in_force(const Subsystem& flown, const Subsystem& fresh, const Configuration& now, const Configuration& then) {
+    const std::string what = "configuration " + now.name;
+    unless(same_structures(flown.housekeeping, fresh.housekeeping), then.at, what + ": housekeeping of the subsystem",
+           force_why);
+    unless(same_structures(now.housekeeping, then.housekeeping), then.at, what + ": its housekeeping", force_why);
+    unless(same_limit(now.overruns, then.overruns) && now.self_test_within == then.self_test_within &&
+               now.power_w == then.power_w,
+           then.at, what + ": its limits or power", force_why);
+    for (std::size_t i = 0; i < now.requires_.size() && i < then.requires_.size(); ++i)
+      unless(same_limit(now.requires_[i].age, then.requires_[i].age), then.requires_[i].at,
+             what + ": required set " + then.requires_[i].name + ": its age", force_why);
+    for (std::size_t i = 0; i < now.devices.size() && i < then.devices.size(); ++i) {
+      const DeviceUse &a = now.devices[i], &b = then.devices[i];
+      const Device &had = flown.devices[a.device], &has = fresh.devices[b.device];
+      const bool same = same_limit(a.silence, b.silence) && a.every == b.every && a.watchdog_us == b.watchdog_us &&
+                        a.watchdog_reduced_us == b.watchdog_reduced_us && same_end(a.endnode, b.endnode) &&
+                        std::ranges::equal(a.fall_backs, b.fall_backs, same_address) &&
+                        std::ranges::equal(a.settings, b.settings, {}, &Setting::value, &Setting::value);
+      unless(same, b.at, what + ": device " + has.name + ": its endnodes, limits or settings", force_why);
+      unless(std::ranges::equal(had.output, has.output,
+                                [](const Device::Output& x, const Device::Output& y) {
+                                  return x.safe == y.safe && x.field.minimum == y.field.minimum &&
+                                         x.field.maximum == y.field.maximum;
+                                }),
+             has.at, what + ": device " + has.name + ": what it may be told", force_why);
+    }
+  }
+
+ private:
+  std::vector<Obstacle> found_;
+};
+
+void take_field(Field& flown, const Field& fresh) {
+  flown.minimum = fresh.minimum;
+  flown.maximum = fresh.maximum;
+  flown.at = fresh.at;
+}
+
+void take_functions(std::vector<Function>& flown, std::vector<Function>& fresh) {
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    flown[i].description = std::move(fresh[i].description);
+    flown[i].at = fresh[i].at;
+    for (std::size_t a = 0; a < flown[i].arguments.size(); ++a) {
+      take_field(flown[i].arguments[a].field, fresh[i].arguments[a].field);
+      flown[i].arguments[a].fallback = std::move(fresh[i].arguments[a].fallback);
+    }
+  }
+}
+
+void take_configuration(Configuration& flown, Configuration& fresh) {
+  flown.power_w = fresh.power_w;
+  flown.overruns = fresh.overruns;
+  flown.self_test_within = fresh.self_test_within;
+  flown.housekeeping = std::move(fresh.housekeeping);
+  flown.initial = std::move(fresh.initial);
+  flown.at = fresh.at;
+  for (std::size_t i = 0; i < flown.requires_.size(); ++i) {
+    flown.requires_[i].age = fresh.requires_[i].age;
+    flown.requires_[i].at = fresh.requires_[i].at;
+  }
+  for (std::size_t i = 0; i < flown.devices.size(); ++i) flown.devices[i] = std::move(fresh.devices[i]);
+}
+
+}  // namespace
+
+std::vector<Obstacle> obstacles(const Subsystem& flown, const Subsystem& fresh) {
+  Comparison comparison;
+  comparison.subsystem(flown, fresh);
+  return comparison.take();
+}
+
+std::vector<Obstacle> obstacles_in_force(const Subsystem& flown, const Subsystem& fresh, std::uint8_t id) {
+  Comparison comparison;
+  const Configuration* now = flown.find_configuration(id);
+  const Configuration* then = fresh.find_configuration(id);
+  if (now != nullptr && then != nullptr) comparison.in_force(flown, fresh, *now, *then);
+  return comparison.take();
+}
+
+void take_over(Subsystem& flown, Subsystem&& fresh) {
+  flown.description = std::move(fresh.description);
+  flown.text = std::move(fresh.text);
+  for (std::size_t i = 0; i < flown.parameters.size(); ++i) {
+    Parameter &had = flown.parameters[i], &has = fresh.parameters[i];
+    take_field(had.field, has.field);
+    had.init = std::move(has.init);
+    had.writable_states = has.writable_states;
+    for (std::size_t m = 0; m < had.members.size(); ++m) take_field(had.members[m].field, has.members[m].field);
+  }
+  take_functions(flown.functions, fresh.functions);
+  for (std::size_t i = 0; i < flown.services.size(); ++i)
+    take_functions(flown.services[i].requests, fresh.services[i].requests);
+  flown.housekeeping = std::move(fresh.housekeeping);
+  for (std::size_t i = 0; i < flown.devices.size(); ++i) {
+    flown.devices[i].at = fresh.devices[i].at;
+    for (std::size_t o = 0; o < flown.devices[i].output.size(); ++o) {
+      take_field(flown.devices[i].output[o].field, fresh.devices[i].output[o].field);
+      flown.devices[i].output[o].safe = std::move(fresh.devices[i].output[o].safe);
+    }
+  }
+  for (std::size_t i = 0; i < flown.configurations.size(); ++i)
+    take_configuration(flown.configurations[i], fresh.configurations[i]);
+}
+
+}  // namespace hirosco::descriptor

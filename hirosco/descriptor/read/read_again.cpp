@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hirosco/descriptor/read/read.hpp"
+
+namespace hirosco::descriptor {
+
+Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
+                              const std::vector<std::pair<std::string, std::string>>& changes) {
+  Reading<Subsystem> reading = read_subsystem(
+      flown.file, [&](const std::filesystem::path&) -> Result<std::string> { return std::string{text}; });
+  if (!reading.value) return reading;
+  for (Commands& commands : reading.value->commands) {
+    const auto known = std::ranges::find(flown.commands, commands.subsystem, &Commands::subsystem);
+    if (known == flown.commands.end()) continue;
+    commands.apid = known->apid;
+    commands.file = known->file;
+    commands.requests = known->requests;
+  }
+  for (const auto& [word, change] : changes) {
+    if (word == "--commands") continue;
+    const auto applied = apply_change(*reading.value, word, change);
+    if (applied) continue;
+    reading.problems.push_back({.file = flown.file,
+                                .at = {},
+                                .code = "E0204",
+                                .message = fmt::format("{} {}: {}", word, change, applied.error().text),
+                                .hint = "the mission, or a stored value, changes what is not there any more"});
+    reading.value.reset();
+    return reading;
+  }
+  return reading;
+}
+
+Reading<Mission> read_again(const Mission& flown, const std::filesystem::path& file, std::string text) {
+  return read_mission(flown.file, [&](const std::filesystem::path& asked) -> Result<std::string> {
+    if (asked == file) return text;
+    const auto known = flown.texts.find(asked);
+    if (known == flown.texts.end()) return fail(ErrorCode::NotFound, "is no file of this flight");
+    return *known->second;
+  });
+}
+
+}  // namespace hirosco::descriptor

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/descriptor/model/framework_parameters.hpp"
+#include "hirosco/descriptor/model/in_flight.hpp"
+#include "hirosco/descriptor/model/wire_values.hpp"
+#include "hirosco/parameter/number.hpp"
+#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
+#include "hirosco/utilities/crc32.hpp"
+
+/// Another text of the descriptor in the same process (docs/adr/0095): judged, then taken in one piece or not at all.
+namespace hirosco {
+namespace {
+
+using pus::FailureCode;
+using pus::FailureNotice;
+using Refused = std::optional<FailureNotice>;
+
+[[nodiscard]] FailureNotice refuse(FailureCode code, const char* words, std::int64_t number = 0) {
+  FailureNotice notice{code};
+  return notice.because({ErrorCode::NotPermitted, number, words});
+}
+
+/// What Software-Init begins with; zeros and no words where nothing is declared.
+[[nodiscard]] std::vector<Value> begins_with(const descriptor::Parameter& parameter) {
+  if (!parameter.init.empty()) return parameter.init;
+  std::vector<Value> values;
+  const auto add = [&](const descriptor::Field& field) {
+    const Value nothing = field.type == Type::Text ? Value{std::string{}} : Value{Number{0}};
+    values.insert(values.end(), field.values(), nothing);
+  };
+  if (parameter.members.empty()) add(parameter.field);
+  for (const auto& member : parameter.members) add(member.field);
+  return values;
+}
+
+[[nodiscard]] bool within(const descriptor::Field& field, const std::vector<Value>& values) {
+  return std::ranges::all_of(values, [&](const Value& value) {
+    const Number* const number = std::get_if<Number>(&value);
+    return number == nullptr ||
+           !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum));
+  });
+}
+
+}  // namespace
+
+std::optional<FailureNotice> GenericSubsystem::judge(std::size_t octets, const MemoryHandle& text) {
+  coming_.reset();
+  if (!platform_.read_again) return refuse(FailureCode::NotPermittedNow, "nobody reads descriptors here");
+  if (!text) return refuse(FailureCode::IllegalField, "no text came beside it");
+  if (const auto sound = platform_.memory.verify(text, octets, true); !sound)
+    return refuse(FailureCode::IllegalField, sound.error().text, sound.error().value);
+  const auto mapped = platform_.memory.map(text, Access::ReadOnly);
+  if (!mapped) return refuse(FailureCode::CapacityExceeded, mapped.error().text, mapped.error().value);
+  auto reading = platform_.read_again({reinterpret_cast<const char*>(mapped->octets.data()), octets});
+  if (!reading.value) {
+    if (platform_.explain)
+      for (const auto& problem : reading.problems)
+        platform_.explain(descriptor_.name + ": " + std::to_string(problem.at.line) + ": " + problem.message);
+    return refuse(FailureCode::ValueNotAcceptable, "errors in the descriptor, the first in line",
+                  reading.problems.empty() ? 0 : reading.problems.front().at.line);
+  }
+  descriptor::add_framework_events(*reading.value);
+  if (auto refused = against(*reading.value)) return refused;
+  coming_ = std::move(reading.value);
+  return std::nullopt;
+}
+
+/// Why it cannot be taken now; the words are kept here, as an error does not own them.
+std::optional<FailureNotice> GenericSubsystem::against(const descriptor::Subsystem& fresh) {
+  if (way_ || release_owed_) return FailureNotice{FailureCode::Busy};
+  if (state_ != State::Offline && state_ != State::PreOperational) return wrong_state();
+  auto found = descriptor::obstacles(descriptor_, fresh);
+  if (found.empty() && configuration_ != nullptr)
+    found = descriptor::obstacles_in_force(descriptor_, fresh, configuration_->id);
+  if (!found.empty()) {
+    refusal_ = found.front().what + ": " + std::string{found.front().why};
+    return refuse(FailureCode::NotPermittedNow, refusal_.c_str(), found.front().at.line);
+  }
+  return left_outside(fresh);
+}
+
+/// A value that is there, and that a telecommand could not set any more: it is set first, or the range stays.
+std::optional<FailureNotice> GenericSubsystem::left_outside(const descriptor::Subsystem& fresh) {
+  std::vector<std::byte> room;
+  for (std::size_t index = 0; index < fresh.parameters.size(); ++index) {
+    const descriptor::Parameter& parameter = fresh.parameters[index];
+    const auto outside = [&] {
+      refusal_ = "the value of " + parameter.field.name + " is outside its new range: set it before";
+      return refuse(FailureCode::NotPermittedNow, refusal_.c_str(), parameter.field.at.line);
+    };
+    if (parameter.persistent && !within(parameter.field, dictionary_.spec(index).init)) return outside();
+    if (!parameter.writable() || !initialised_) continue;
+    room.resize(parameter.octets());
+    if (dictionary_.snapshot_encode(index, -1, room) != room.size()) return FailureNotice{FailureCode::Busy};
+    OctetReader reader{room};
+    const auto fits = [&](const descriptor::Field& field) {
+      return descriptor::values_within(field, reader.get(field.octets())).has_value();
+    };
+    bool good = parameter.members.empty() ? fits(parameter.field) : true;
+    for (const auto& member : parameter.members) good = fits(member.field) && good;
+    if (!good) return outside();
+  }
+  return std::nullopt;
+}
+
+std::optional<FailureNotice> GenericSubsystem::take() {
+  if (!coming_) return FailureNotice{FailureCode::WrongStatus};
+  descriptor::Subsystem fresh = std::move(*coming_);
+  coming_.reset();
+  if (auto refused = against(fresh)) return refused;
+  descriptor::take_over(descriptor_, std::move(fresh));
+  ++descriptor_changes_;
+  // What a persistent parameter was left with outlives its descriptor.
+  for (std::size_t index = 0; index < descriptor_.parameters.size(); ++index)
+    if (const auto& parameter = descriptor_.parameters[index]; !parameter.persistent)
+      dictionary_.begin_with(index, begins_with(parameter));
+  tell_descriptor();
+  return std::nullopt;
+}
+
+/// Which text is in force, as housekeeping: from Software-Init on, and at once where that was already.
+void GenericSubsystem::tell_descriptor() {
+  const auto index = dictionary_.index_of(descriptor::framework_parameter::descriptor);
+  if (!index || !descriptor_.text) return;
+  const std::uint32_t hash = crc32(std::as_bytes(std::span{*descriptor_.text}));
+  dictionary_.begin_with(*index, {Number{hash}, Number{descriptor_changes_}});
+  if (!initialised_) return;
+  std::array<std::byte, 6> data;
+  OctetWriter{data}.put(hash).put(descriptor_changes_);
+  const ParameterWrite write{*index, -1, data};
+  if (!writes_.enqueue(dictionary_, {&write, 1})) return;
+  if (!wanted_.load(std::memory_order_relaxed) && cycle_rests()) writes_.apply(dictionary_);
+}
+
+}  // namespace hirosco

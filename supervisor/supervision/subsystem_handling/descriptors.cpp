@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/subsystem_handling/descriptors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "hirosco/descriptor/model/in_flight.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
+#include "hirosco/utilities/crc32.hpp"
+#include "supervisor/supervision/modes/under_way.hpp"
+#include "supervisor/supervision/stored_values.hpp"
+
+namespace hirosco::supervisor {
+
+using descriptor::Diagnostic;
+using descriptor::State;
+using pus::DescriptorService;
+using pus::FailureCode;
+
+namespace {
+
+constexpr const char* not_in_flight = "E0380";
+
+[[nodiscard]] std::string line_of(const Diagnostic& problem) {
+  std::string line = fmt::format("{}:{}:{}: error {}: {}", problem.file.string(), problem.at.line, problem.at.column,
+                                 problem.code, problem.message);
+  return problem.hint.empty() ? line : line + " (" + problem.hint + ")";
+}
+
+/// A value that begins its next Software-Init and that no telecommand could set any more.
+[[nodiscard]] const descriptor::Parameter* outside(const descriptor::Subsystem& fresh,
+                                                   const descriptor::Override& kept) {
+  const descriptor::Parameter* parameter = fresh.find_parameter(kept.parameter);
+  if (parameter == nullptr) return nullptr;
+  const descriptor::Field& field = parameter->field;
+  const bool good = std::ranges::all_of(kept.values, [&](const Value& value) {
+    const Number* const number = std::get_if<Number>(&value);
+    return number == nullptr ||
+           !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum));
+  });
+  return good ? nullptr : parameter;
+}
+
+/// Sealed memory that holds the text.
+[[nodiscard]] Result<MemoryHandle> sealed(MemoryProvider& memory, const std::string& text) {
+  HIROSCO_TRY_LET(MemoryHandle handle, memory.create("hirosco-descriptor", text.size()));
+  HIROSCO_TRY_LET(const Mapping mapped, memory.map(handle, Access::ReadWrite));
+  std::memcpy(mapped.octets.data(), text.data(), text.size());
+  HIROSCO_TRY(memory.seal_writers(handle));
+  return handle;
+}
+
+}  // namespace
+
+void Descriptors::provide() {
+  parts_.own.on_function("REREAD", [this](std::uint16_t apid, Call call) -> Outcome { return reread(apid, call); });
+}
+
+std::optional<Outcome> Descriptors::against(const Member* subject) const {
+  if (subject == nullptr) return refused(FailureCode::UnknownIdentifier);
+  if (parts_.readings == nullptr) return refused(FailureCode::NotPermittedNow, "this flight reads no file again");
+  if (craft_.shutting_down) return refused(FailureCode::NotPermittedNow, "the craft shuts down");
+  if (parts_.under_way.running()) return refused(FailureCode::Busy, "the craft is commissioned or changes its mode");
+  for (const Member& member : craft_.members) {
+    if (member.descriptor().file != subject->descriptor().file) continue;
+    if (member.exchanged) return refused(FailureCode::Busy, "another version of it is about to be started");
+    if (!member.alive()) continue;
+    if (member.recovery.running()) return refused(FailureCode::Busy, "a plan has it in hand");
+    const auto state = member.state();
+    if (state != State::Offline && state != State::PreOperational)
+      return refused(FailureCode::WrongStatus,
+                     "everybody who flies it has to be Offline or in Pre-Operational; not so is", member.apid());
+  }
+  return std::nullopt;
+}
+
+std::vector<descriptor::MissionSubsystem*> Descriptors::flying(const std::filesystem::path& file) {
+  std::vector<descriptor::MissionSubsystem*> found;
+  for (auto& member : craft_.mission.subsystems)
+    if (member.subsystem.file == file) found.push_back(&member);
+  return found;
+}
+
+Outcome Descriptors::reread(std::uint16_t apid, const Call& call) {
+  const Member* subject = std::as_const(craft_).member(apid);
+  if (auto why_not = against(subject)) return *why_not;
+  if (phase_ != Phase::Idle) return refused(FailureCode::Busy, "another descriptor is being read again");
+  if (const auto begun = parts_.readings->begin(craft_.mission, subject->descriptor().file); !begun)
+    return refused(FailureCode::Busy, begun.error().text);
+  phase_ = Phase::Reading;
+  apid_ = apid;
+  file_ = subject->descriptor().file;
+  call_ = call;
+  deadline_ = craft_.now + longest_reading;
+  return running;
+}
+
+void Descriptors::watch(TimePoint now) {
+  // What a disk gives that late is of no use to anybody, but keeps no later one from being read.
+  if (phase_ == Phase::Idle && parts_.readings != nullptr) static_cast<void>(parts_.readings->outcome());
+  const bool open = std::ranges::any_of(asked_, [](const auto& each) { return each.second.answer == Answer::Open; });
+  switch (phase_) {
+    case Phase::Idle: return;
+    case Phase::Reading:
+      if (auto reading = parts_.readings->outcome()) return judge(std::move(*reading));
+      if (now > deadline_) give_up(FailureCode::Timeout, "its file is not read in time");
+      return;
+    case Phase::Judging:
+      if (!open) judged();
+      return;
+    case Phase::Taking:
+      if (!open) taken();
+      return;
+  }
+}
+
+void Descriptors::judge(DescriptorReading reading) {
+  if (!reading.mission.value) return refuse(reading.mission.problems);
+  if (auto why_not = against(std::as_const(craft_).member(apid_)))
+    return give_up(FailureCode::WrongStatus, "it has left Offline and Pre-Operational, or a change has begun");
+  text_ = std::move(reading.text);
+  const auto flown = flying(file_);
+  if (flown.front()->subsystem.text && *flown.front()->subsystem.text == *text_) {
+    craft_.tell(fmt::format("{}: the text is the one in force", file_.string()), apid_);
+    return finish();
+  }
+  Problems problems;
+  fresh_.clear();
+  declared_.clear();
+  for (const descriptor::MissionSubsystem* member : flown) {
+    const auto* fresh = reading.mission.value->find_subsystem(member->subsystem.id);
+    if (fresh == nullptr || fresh->subsystem.name != member->subsystem.name) {
+      problems.push_back({.file = file_,
+                          .at = {},
+                          .code = not_in_flight,
+                          .message = "name or id of " + member->subsystem.name + " cannot change in flight",
+                          .hint = "everybody knows it by them"});
+      continue;
+    }
+    descriptor::MissionSubsystem& kept = fresh_.emplace(member->subsystem.id, *fresh).first->second;
+    declared_.emplace(member->subsystem.id, kept.subsystem);
+    compare(*member, kept, problems);
+  }
+  if (!problems.empty()) return refuse(problems);
+  const auto memory = sealed(craft_.platform.memory, *text_);
+  if (!memory) return give_up(FailureCode::CapacityExceeded, memory.error().text, memory.error().value);
+  phase_ = Phase::Judging;
+  hold(true);
+  std::array<std::byte, 4> octets;
+  OctetWriter{octets}.put(static_cast<std::uint32_t>(text_->size()));
+  ask(DescriptorService::judge_text, octets, *memory);
+}
+
+void Descriptors::compare(const descriptor::MissionSubsystem& flown, descriptor::MissionSubsystem& fresh,
+                          Problems& problems) const {
+  const auto add = [&](descriptor::Location at, std::string message, std::string hint) {
+    Diagnostic problem{
+        .file = file_, .at = at, .code = not_in_flight, .message = std::move(message), .hint = std::move(hint)};
+    const bool known = std::ranges::any_of(
+        problems, [&](const Diagnostic& each) { return each.at == problem.at && each.message == problem.message; });
+    if (!known) problems.push_back(std::move(problem));
+  };
+  for (const auto& obstacle : descriptor::obstacles(flown.subsystem, fresh.subsystem))
+    add(obstacle.at, obstacle.what + " cannot change in flight", std::string{obstacle.why});
+  // What telecommands have set of persistent parameters goes on.
+  fresh.overrides = flown.overrides;
+  for (const descriptor::Override& kept : fresh.overrides) {
+    if (const auto* parameter = outside(fresh.subsystem, kept))
+      add(parameter->field.at, fmt::format("the stored value of {} is outside its new range", kept.parameter),
+          "set it before");
+    if (const auto applied = apply_override(fresh.subsystem, to_string(kept)); !applied)
+      add({}, fmt::format("the value of {}: {}", kept.parameter, applied.error().text),
+          "it is stored, or the mission's");
+  }
+  const Member* member = std::as_const(craft_).member(flown.subsystem.id);
+  if (member == nullptr || !member->alive()) return;
+  if (const auto* configuration = flown.subsystem.find_configuration(member->configuration()))
+    for (const auto& obstacle : descriptor::obstacles_in_force(flown.subsystem, fresh.subsystem, configuration->id))
+      add(obstacle.at, fmt::format("{}: {} cannot change now", flown.subsystem.name, obstacle.what),
+          std::string{obstacle.why});
+  if (const std::string shut = craft_.launcher.shut_out(flown, fresh); !shut.empty())
+    add({}, fmt::format("{} cannot reach {}", flown.subsystem.name, shut),
+        "its sandbox was made when its process started");
+}
+
+/// Everybody who runs. Who is down begins with what is in force then.
+void Descriptors::ask(std::uint8_t subtype, Octets data, const MemoryHandle& text) {
+  asked_.clear();
+  for (const auto& [apid, fresh] : fresh_)
+    if (const Member& member = *craft_.member(apid); member.alive())
+      asked_[apid] = {.answer = Answer::Open, .why = {}, .process = member.process()};
+  ++round_;
+  for (const auto& [apid, asked] : std::map{asked_})
+    parts_.desk.send(
+        apid, DescriptorService::service_type, subtype, data, text,
+        [this, apid = apid, round = round_](bool success, const std::string& why) {
+          if (round != round_) return;
+          const auto found = asked_.find(apid);
+          if (found == asked_.end()) return;
+          found->second.answer = success ? Answer::Yes : why == "no answer" ? Answer::None : Answer::No;
+          found->second.why = why;
+        },
+        Duration{0});
+}
+
+void Descriptors::judged() {
+  for (const auto& [apid, asked] : asked_)
+    if (asked.answer != Answer::Yes && craft_.member(apid)->alive())
+      return refuse({{.file = file_,
+                      .at = {},
+                      .code = not_in_flight,
+                      .message = craft_.name_of(apid) + " does not take it: " + asked.why,
+                      .hint = {}}});
+  phase_ = Phase::Taking;
+  ask(DescriptorService::take_text, {}, {});
+}
+
+/// Who has it, or may have it, must not be the only one.
+void Descriptors::taken() {
+  const bool somebody = asked_.empty() || std::ranges::any_of(asked_, [&](const auto& each) {
+                          return each.second.answer != Answer::No || !craft_.member(each.first)->alive();
+                        });
+  if (!somebody)
+    return refuse(
+        {{.file = file_,
+          .at = {},
+          .code = not_in_flight,
+          .message = craft_.name_of(asked_.begin()->first) + " did not take it: " + asked_.begin()->second.why,
+          .hint = {}}});
+  take_over();
+  for (const descriptor::MissionSubsystem* flown : flying(file_)) {
+    const std::uint16_t apid = flown->subsystem.id;
+    const Member& member = *craft_.member(apid);
+    const auto asked = asked_.find(apid);
+    const bool has_it = asked != asked_.end() && asked->second.answer == Answer::Yes;
+    if (!member.alive() || (has_it && asked->second.process == member.process())) continue;
+    craft_.tell(craft_.name_of(apid) + " does not say that it took its descriptor: its process is ended", apid);
+    craft_.launcher.kill(member.process());
+  }
+  finish();
+}
+
+/// The supervisor's own copies, in this one step: permission, modes, ledger, forms of its story, and with what processes start.
+void Descriptors::take_over() {
+  const std::uint32_t hash = crc32(std::as_bytes(std::span{*text_}));
+  for (descriptor::MissionSubsystem* member : flying(file_)) {
+    auto fresh = fresh_.extract(member->subsystem.id);
+    parts_.stored.redeclared(declared_.at(member->subsystem.id));
+    descriptor::take_over(member->subsystem, std::move(fresh.mapped().subsystem));
+    craft_.tell(fmt::format("{} flies by {} as it is now, CRC-32 {:08x}", member->subsystem.name, file_.string(), hash),
+                member->subsystem.id);
+    parts_.own.announce("DESCRIPTOR_TAKEN", {static_cast<double>(member->subsystem.id), static_cast<double>(hash)});
+  }
+  craft_.mission.texts[file_] = text_;
+}
+
+/// Each problem reaches whoever asked; the story has all of them.
+void Descriptors::refuse(const Problems& problems) {
+  const std::string name = craft_.name_of(apid_);
+  std::vector<std::byte> data;
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    const Diagnostic& problem = problems[i];
+    craft_.tell(name + " keeps its descriptor: " + line_of(problem), apid_);
+    if (i == most_problems_told) break;
+    data = pus::st129::write_descriptor_problem({.apid = apid_,
+                                                 .count = static_cast<std::uint16_t>(problems.size()),
+                                                 .file = problem.file.string(),
+                                                 .line = static_cast<std::uint32_t>(problem.at.line),
+                                                 .column = static_cast<std::uint32_t>(problem.at.column),
+                                                 .code = problem.code,
+                                                 .what = problem.message,
+                                                 .hint = problem.hint});
+    parts_.own.telemetry().report(pus::st129::service_type, pus::st129::descriptor_problem,
+                                  call_ ? call_->request.source : std::uint16_t{0}, data);
+  }
+  parts_.own.announce("DESCRIPTOR_REFUSED", {static_cast<double>(apid_), static_cast<double>(problems.size())});
+  give_up(FailureCode::ValueNotAcceptable,
+          "problems, each in a TM[129,6]:", static_cast<std::int64_t>(problems.size()));
+}
+
+void Descriptors::finish() {
+  hold(false);
+  phase_ = Phase::Idle;
+  asked_.clear();
+  ++round_;
+  if (const auto call = std::exchange(call_, std::nullopt)) parts_.own.finish(*call);
+}
+
+void Descriptors::give_up(FailureCode code, const char* words, std::int64_t number) {
+  hold(false);
+  phase_ = Phase::Idle;
+  asked_.clear();
+  ++round_;
+  if (const auto call = std::exchange(call_, std::nullopt)) parts_.own.abort(*call, code, words, number);
+}
+
+/// What would be judged by the old text and done by the new one waits for the end.
+void Descriptors::hold(bool held) {
+  for (Member& member : craft_.members)
+    if (member.descriptor().file == file_) member.descriptor_changes = held;
+}
+
+}  // namespace hirosco::supervisor
