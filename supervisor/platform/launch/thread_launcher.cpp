@@ -111,8 +111,8 @@ void ThreadLauncher::Member::fly() {
                           .links = parts->links,
                           .usage = {},
                           .read_again =
-                              [this, changes = descriptor::changes_of(described)](std::string_view text) {
-                                return descriptor::read_again(described.subsystem, text, changes);
+                              [begun = described.subsystem, changes = descriptor::changes_of(described)](std::string_view text) {
+                                return descriptor::read_again(begun, text, changes);
                               }};
   const auto author = make();
   if (!author) throw std::bad_alloc{};
