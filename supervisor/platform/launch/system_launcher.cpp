@@ -215,7 +215,7 @@ template <class Page>
                                  "--permit",     std::to_string(permit_number)};
   for (const auto& [word, text] : descriptor::changes_of(subsystem)) {
     // "NAME=12:FILE"
-    const auto file_at = word == "--commands" ? text.find(':') + 1 : text.size();
+    const auto file_at = descriptor::needs_other(word) ? text.find(':') + 1 : text.size();
     words.insert(words.end(), {word, text.substr(0, file_at) + placed(text.substr(file_at))});
   }
   return words;
