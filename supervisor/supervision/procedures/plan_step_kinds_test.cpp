@@ -68,7 +68,7 @@ struct PlanStepKinds : PartsTest {
         for (const Received& each : received(apid)) {
           sent.push_back(craft.name_of(apid) + " " + each.text);
           if (each.text.starts_with("SET_STATE "))
-            set(apid, static_cast<State>(std::stoi(each.text.substr(10))), played[apid].vital->configuration);
+            set(apid, static_cast<State>(std::stoi(each.text.substr(10))));
           if (each.text.starts_with("CONFIGURE "))
             played[apid].vital->configuration = static_cast<std::uint8_t>(std::stoi(each.text.substr(10)));
           verify(apid, each.request, 7);

@@ -68,10 +68,11 @@ struct HandOver : std::enable_shared_from_this<HandOver> {
     const auto told = std::exchange(done, nullptr);
     runner.cancel();
     if (!told) return;
-    if (success)
-      means.craft.tell("the task of " + means.craft.name_of(step.subject) + " is with " +
-                           means.craft.name_of(receiver_of(step)),
-                       step.subject);
+    const std::string whose = "the task of " + means.craft.name_of(step.subject);
+    // Of one that is dead nobody else tells it.
+    means.craft.tell(success ? whose + " is with " + means.craft.name_of(receiver_of(step))
+                             : "nobody takes over " + whose + ": " + why,
+                     step.subject);
     told(success, why);
   }
 
