@@ -11,6 +11,7 @@
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
 #include "supervisor/supervision/data_handling/replies.hpp"
+#include "supervisor/supervision/data_handling/subscriptions.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
@@ -50,6 +51,12 @@ struct SupervisorParts final : OwnSubsystem::Author {
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
     telecommands.answers(pus::st129::mode_question,
                          [this](const pus::Request& asked, Octets data) { modes.preview(asked, data); });
+    telecommands.answers(pus::st129::plan_question,
+                         [this](const pus::Request& asked, Octets data) { reactions.preview(asked, data); });
+    telecommands.answers(pus::st129::subscribe,
+                         [this](const pus::Request& asked, Octets data) { subscriptions.begin(asked, data); });
+    telecommands.answers(pus::st129::unsubscribe,
+                         [this](const pus::Request& asked, Octets data) { subscriptions.end(asked, data); });
     telecommands.starts_with([this](std::uint16_t apid) { return processes.start(apid); });
   }
 
@@ -80,18 +87,21 @@ struct SupervisorParts final : OwnSubsystem::Author {
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
   Replies replies{craft, unanswered};
-  Telemetry telemetry{craft,
-                      own,
-                      traffic,
-                      ground_route,
-                      {&traffic, &commanded, &stored, &replies, &reception, &power, &own_telecommands, &links}};
-  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic}};
+  Subscriptions subscriptions{craft, own};
+  Telemetry telemetry{
+      craft,
+      own,
+      traffic,
+      ground_route,
+      {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &own_telecommands, &links}};
+  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic, subscriptions}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
   ResourceHandling resources{craft, own};
   // modes and procedures
-  Means means{craft, own_telecommands, graph, restarts, under_way, commanded, losses};
+  Waiting waiting;
+  Means means{craft, own_telecommands, graph, restarts, under_way, commanded, losses, waiting};
   Commissioning commissioning{means};
   Modes modes{{means, own, power.ledger(), commissioning}};
   UnderWay under_way{commissioning, modes};
@@ -108,9 +118,9 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Versions versions{{craft, own, processes, reactions, under_way}};
   Descriptors descriptors;
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 15> watches{&stored,      &processes,    &versions,         &descriptors, &ground_link,
-                                 &restoration, &losses,       &housekeeping,     &power,       &links,
-                                 &log_watch,   &telecommands, &own_telecommands, &replies,     &resources};
+  std::array<Watch*, 17> watches{&stored,        &processes, &versions,     &descriptors,      &ground_link, &restoration,
+                                 &losses,        &housekeeping, &power,     &links,            &log_watch,   &telecommands,
+                                 &own_telecommands, &replies, &resources,   &subscriptions,    &waiting};
 };
 
 }  // namespace hirosco::supervisor

@@ -57,6 +57,8 @@ class LossHandling {
   virtual void lost(std::uint8_t link) = 0;
   /// True: this event of a member tells of a link whose loss is answered here, by no plan.
   virtual bool answers(std::uint16_t apid, std::string_view event) = 0;
+  /// Which link that is, without answering; 0: none.
+  [[nodiscard]] virtual std::uint8_t answered_link(std::uint16_t apid, std::string_view event) const = 0;
 };
 
 }  // namespace hirosco::supervisor

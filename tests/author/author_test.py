@@ -117,6 +117,8 @@ class Built(Outside, unittest.TestCase):
         refused = [line for line in told if "SUPERVISOR -> SWITCH" in line and "TM[1,2]" in line]
         self.assertGreaterEqual(len(refused), 1)
         self.assertTrue(any("not permitted in this state" in line for line in refused), refused)
+        heard = [line for line in told if "SWITCH -> SUPERVISOR" in line and "SUBSCRIBE" in line]
+        self.assertGreaterEqual(len(heard), 2, "it hears the lamp's housekeeping and its event")
         # A bulb that never gets as bright, and a lamp that dies before it has ended what it had begun.
         told = self.hirosco("simulate", blinking, "--for", "8s", "--at", "3 lamp old 0.1", "--at", "4.3 kill DESK_LAMP",
                             code=None).split("\n")
@@ -127,10 +129,11 @@ class Built(Outside, unittest.TestCase):
 
     def test_whom_the_mission_does_not_have_nobody_commands(self):
         wrong = self.lamp / "wrong.xml"
-        wrong.write_text((self.lamp / "switched.xml").read_text().replace(
-            '<Commands subsystem="LAMP" to="DESK_LAMP"/>', ""))
-        told = self.hirosco("check", wrong, code=1)
-        self.assertIn("'SWITCH' commands 'LAMP', which is not in the mission", told)
+        text = (self.lamp / "switched.xml").read_text()
+        for element, does in (("Commands", "commands"), ("Subscribes", "hears")):
+            wrong.write_text(text.replace(f'<{element} subsystem="LAMP" to="DESK_LAMP"/>', ""))
+            told = self.hirosco("check", wrong, code=1)
+            self.assertIn(f"'SWITCH' {does} 'LAMP', which is not in the mission", told)
 
     def test_what_comes_with_the_installed_tree_is_simulated_from_anywhere(self):
         for mission in ("hello", "rokviss"):

@@ -10,7 +10,7 @@ STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOper
 SAFE, OPERATIONAL = 4, 5
 ALWAYS, NEVER = set(range(10)), set()
 # Requests of the framework's services that anybody may be sent.
-SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4}, 130: {1, 2}}
+SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4, 6, 8, 9}, 130: {1, 2}}
 
 
 def words(element, name):
@@ -39,6 +39,16 @@ class Subsystem:
         for c in root.findall("Configuration"):
             self.left_out[c.get("name")] = everywhere | left_out(c.findall("Service"))
         self.commands = {c.get("subsystem"): set(words(c, "functions")) for c in root.findall("Commands")}
+        # What the framework's services may be asked about, and what is heard: {whose: rows of the table}.
+        self.things, self.heard = {}, {}
+        for c in root.findall("Commands"):
+            self.things[c.get("subsystem")] = (
+                {(20, 3, f"set {p}") for p in words(c, "sets")} | {(20, 1, f"read {p}") for p in words(c, "reads")} |
+                {(3, subtype, f"{does} {s}") for s in words(c, "housekeeping")
+                 for subtype, does in ((5, "enable"), (6, "disable"), (27, "one shot of"), (31, "interval of"))} |
+                {(5, subtype, f"{does} {e}") for e in words(c, "events") for subtype, does in ((5, "enable"), (6, "disable"))})
+        for s in root.findall("Subscribes"):
+            self.heard[s.get("subsystem")] = words(s, "housekeeping") + words(s, "events")
 
 
 def read(mission, installed):
@@ -53,6 +63,9 @@ def read(mission, installed):
         member = Subsystem(at(s.get("descriptor")), s.get("name"))
         for c in s.findall("Commands"):
             member.commands[c.get("to")] = member.commands.pop(c.get("subsystem"))
+            member.things[c.get("to")] = member.things.pop(c.get("subsystem"))
+        for c in s.findall("Subscribes"):
+            member.heard[c.get("to")] = member.heard.pop(c.get("subsystem"))
         members.append(member)
     return supervisor, members, root.find("Modes").findall("Mode")
 
@@ -65,12 +78,17 @@ def expected(sender, addressee, mode, service, subtype, request, supervisor):
     plain = function or (addressee.requests.get((service, subtype), (None,))[0])
     if service == 129 and not to_supervisor:
         return NEVER, NEVER, NEVER
+    if service == 129 and subtype in (8, 9):
+        # Only what its descriptor names is heard, and by subsystems only.
+        names = {f"hear {what} of {whose}" for whose, all_ in getattr(sender, "heard", {}).items() for what in all_}
+        return (ALWAYS, ALWAYS, ALWAYS) if request in names else (NEVER, NEVER, NEVER)
     if service in (128, 130) and not on_board:
         return NEVER, NEVER, NEVER
     if ground and to_supervisor and (target is not None or function == "CONFIGURE"):
         return NEVER, NEVER, NEVER
     if not ground and not on_board:
-        declared = plain in sender.commands.get(addressee.name, ())
+        declared = (plain in sender.commands.get(addressee.name, ()) or
+                    (service, subtype, request) in sender.things.get(addressee.name, ()))
         if not declared and not (to_supervisor and function == "SAFE_ALL"):
             return NEVER, NEVER, NEVER
     # What is essential passes everywhere, whoever may ask for it at all.
@@ -111,6 +129,16 @@ def places(text):
     return {i for i, c in enumerate(text) if c != "."}
 
 
+def things_of(sender, addressee, supervisor):
+    """Rows of what one subsystem may ask the framework's services of another about, and of what it may hear."""
+    if not isinstance(sender, Subsystem) or sender is supervisor:
+        return set()
+    asked = {row for row in sender.things.get(addressee.name, ()) if row[:2] != (20, 3)}
+    if addressee is supervisor:
+        asked |= {(129, 8, f"hear {what} of {whose}") for whose, all_ in sender.heard.items() for what in all_}
+    return asked
+
+
 def requests_of(addressee, seen_parameters):
     """Everything that can be asked of it, as (service, subtype, its name in the table or None for a framework's request)."""
     asked = {(service, subtype, None) for service, subtypes in SERVICES.items() for subtype in subtypes}
@@ -125,7 +153,7 @@ def compare(hirosco, mission, installed, tampered=lambda modes: None):
     table = subprocess.run([hirosco, "permissions", mission, "--csv"], capture_output=True, text=True, check=True).stdout
     rows = list(csv.DictReader(table.splitlines()))
     everybody = {s.name: s for s in [supervisor, *members]}
-    senders = {"ground", supervisor.name} | {m.name for m in members if m.commands}
+    senders = {"ground", supervisor.name} | {m.name for m in members if m.commands or m.heard}
     assert {r["sender"] for r in rows} == senders and {r["mode"] for r in rows} == {m.get("name") for m in modes}
     cells, permitted, asked = 0, 0, {}
     for row in rows:
@@ -140,6 +168,7 @@ def compare(hirosco, mission, installed, tampered=lambda modes: None):
         not_in = [name for name, out in addressee.left_out.items() if out.get(service)]
         assert row["not_in"].split() == not_in, (mission.parent.name, row, not_in)
         own_name = service in (8, 20) and (service, subtype) != (20, 1)
+        own_name = own_name or (service, subtype, row["request"]) in things_of(sender, addressee, supervisor)
         asked.setdefault((row["mode"], row["sender"], row["addressee"]), []).append(
             (service, subtype, row["request"] if own_name else None))
         cells, permitted = cells + 10, permitted + len(told[0])
@@ -149,7 +178,8 @@ def compare(hirosco, mission, installed, tampered=lambda modes: None):
                 got = asked[m.get("name"), s, a.name]
                 parameters = {name.removeprefix("set ") for service, subtype, name in got if (service, subtype) == (20, 3)}
                 assert parameters >= set(a.writable), (a.name, parameters)
-                assert len(got) == len(set(got)) and set(got) == requests_of(a, parameters), (m.get("name"), s, a.name)
+                things = things_of(everybody.get(s), a, supervisor)
+                assert len(got) == len(set(got)) and set(got) == requests_of(a, parameters) | things, (m.get("name"), s, a.name)
     assert 0 < permitted < cells
     return cells, permitted
 

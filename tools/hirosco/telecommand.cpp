@@ -167,7 +167,7 @@ void print_problem(const pus::TelemetryView& report, bool json) {
   if (!problem->hint.empty()) text += " (" + printable(problem->hint) + ")";
   if (!json) return fmt::print("{}\n", text);
   std::ranges::replace_if(text, [](char c) { return c == '"' || c == '\\'; }, '\'');
-  fmt::print("{{\"report\":\"129,6\",\"text\":\"{}\",\"from\":{}}}\n", text, report.apid());
+  fmt::print("{{\"report\":\"129,10\",\"text\":\"{}\",\"from\":{}}}\n", text, report.apid());
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
@@ -72,6 +74,80 @@ std::string_view resolve(Commands& commands, const Subsystem& commanded) {
     const Function* found = commanded.find_named(name);
     if (found == nullptr) return name;
     commands.requests.push_back(*found);
+  }
+  return {};
+}
+
+namespace {
+
+[[nodiscard]] std::string_view resolve_parameter(Thing& thing, const Subsystem& other) {
+  const auto dot = thing.name.find('.');
+  const Parameter* parameter = other.find_parameter(std::string_view{thing.name}.substr(0, dot));
+  if (parameter == nullptr) return "it has no such parameter";
+  ParameterRef place{.text = thing.name,
+                     .parameter = static_cast<std::uint16_t>(parameter - other.parameters.data()),
+                     .member = std::nullopt,
+                     .at = {}};
+  Type type = parameter->field.type;
+  std::uint8_t id = parameter->id;
+  if (dot != std::string::npos) {
+    const auto member =
+        std::ranges::find(parameter->members, std::string_view{thing.name}.substr(dot + 1),
+                          [](const Parameter::Member& each) { return std::string_view{each.field.name}; });
+    if (member == parameter->members.end()) return "it has no such parameter";
+    place.member = static_cast<std::uint16_t>(member - parameter->members.begin());
+    type = member->field.type;
+    id = member->id;
+  }
+  if (thing.kind == Thing::Kind::Set && !parameter->writable())
+    return "its descriptor makes this parameter never writable";
+  thing.id = ParameterId{other.id, type, id}.wire();
+  thing.fields = fields_of(other, place);
+  return {};
+}
+
+/// A structure of several configurations must be one and the same.
+[[nodiscard]] std::string_view resolve_structure(Thing& thing, const Subsystem& other) {
+  const auto fields = [&](const HousekeepingStructure& structure) {
+    std::vector<Field> all;
+    for (const ParameterRef& reference : structure.sampled_once)
+      for (Field& field : fields_of(other, reference)) all.push_back(std::move(field));
+    return all;
+  };
+  const auto is_same = [](const Field& a, const Field& b) { return a.type == b.type && a.elements() == b.elements(); };
+  bool found = false;
+  std::string_view why;
+  const auto look = [&](const std::vector<HousekeepingStructure>& structures) {
+    for (const HousekeepingStructure& each : structures) {
+      if (std::to_string(each.id) != thing.name) continue;
+      auto these = fields(each);
+      if (!each.sampled_repeatedly.empty()) why = "it samples values several times in an interval";
+      if (found && !std::ranges::equal(these, thing.fields, is_same))
+        why = "its configurations have several of this id";
+      found = true;
+      thing.id = each.id;
+      thing.fields = std::move(these);
+    }
+  };
+  look(other.housekeeping);
+  for (const Configuration& configuration : other.configurations) look(configuration.housekeeping);
+  return found ? why : "it has no such housekeeping structure";
+}
+
+}  // namespace
+
+NoThing resolve(std::vector<Thing>& things, const Subsystem& other) {
+  for (Thing& thing : things) {
+    std::string_view why;
+    if (thing.kind == Thing::Kind::Event) {
+      const Event* event = other.find_event(thing.name);
+      if (event == nullptr) return {&thing, "it has no such event"};
+      thing.id = event->id;
+      thing.fields = event->arguments;
+    } else {
+      why = thing.kind == Thing::Kind::Housekeeping ? resolve_structure(thing, other) : resolve_parameter(thing, other);
+    }
+    if (!why.empty()) return {&thing, why};
   }
   return {};
 }

@@ -59,6 +59,20 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
   });
 }
 
+[[nodiscard]] bool same_use_of_service(const ServiceUse& a, const ServiceUse& b) {
+  return a.type == b.type && a.offered == b.offered && a.loop == b.loop;
+}
+[[nodiscard]] bool same_bumpless(const Bumpless& a, const Bumpless& b) {
+  return a.configurations == b.configurations &&
+         std::ranges::equal(a.steps, b.steps, [](const Bumpless::Step& x, const Bumpless::Step& y) {
+           return x.device == y.device && x.output == y.output && x.most == y.most;
+         });
+}
+[[nodiscard]] bool same_things(const std::vector<Thing>& a, const std::vector<Thing>& b) {
+  return std::ranges::equal(a, b,
+                            [](const Thing& x, const Thing& y) { return x.kind == y.kind && x.name == y.name; });
+}
+
 /// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
 class Comparison {
  public:
@@ -205,7 +219,7 @@ class Comparison {
         });
   }
   void required(const Requires& flown, const Requires& fresh, const std::string& whose) {
-    [[maybe_unused]] const auto& [name, from, terms, depth, required_, age, missing, fields_, at] = fresh;
+    [[maybe_unused]] const auto& [name, from, terms, depth, required_, starts, age, missing, fields_, at] = fresh;
     const std::string what = whose + ": required set " + name;
     unless(flown.from == from && same_terms(flown.terms, terms) && flown.depth == depth, at, what + ": its terms",
            link_why);
@@ -233,12 +247,16 @@ class Comparison {
     unless(flown.fall_backs.empty() == fall_backs.empty(), at, what + ": whether it has fall-backs", code_why);
   }
   void configuration(const Subsystem& subsystem, const Configuration& flown, const Configuration& fresh) {
-    [[maybe_unused]] const auto& [name, id, priority, sampling, budget, power_w, overruns, self_test, self_test_within,
-                                  housekeeping, provides, requires_, devices, initial, at] = fresh;
+    [[maybe_unused]] const auto& [name, id, priority, sampling, started_by, least, budget, power_w, overruns, self_test,
+                                  self_test_within, housekeeping, provides, requires_, devices, initial, services,
+                                  at] = fresh;
     const std::string what = "configuration " + name;
     unless(flown.id == id, at, what + ": its id", code_why);
     unless(flown.priority == priority && flown.sampling == sampling && flown.budget == budget, at,
            what + ": priority, sampling time or budget", timing_why);
+    unless(flown.started_by == started_by && flown.least == least, at, what + ": what starts its cycles", timing_why);
+    unless(std::ranges::equal(flown.services, services, same_use_of_service), at, what + ": which services it has",
+           code_why);
     unless(flown.self_test == self_test, at, what + ": whether it wants a self test", safety_why);
     structures(flown.housekeeping, housekeeping, what + ": housekeeping");
     lists(
@@ -257,8 +275,8 @@ class Comparison {
   }
   void subsystem(const Subsystem& flown, const Subsystem& fresh) {
     [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_,
-                                  services, failures, commands, housekeeping, devices, power_switches, configurations,
-                                  hang, resources] = fresh;
+                                  services, failures, commands, subscribes, housekeeping, devices, power_switches,
+                                  configurations, hang, resources, service_loops, service_uses, bumpless] = fresh;
     unless(flown.name == name && flown.id == id, {}, "its name or id", code_why);
     lists(flown.enumerations, enumerations, "enumeration ", its_name, no_place, meaning_why,
           [&](const Enumeration& a, const Enumeration& b) {
@@ -281,8 +299,24 @@ class Comparison {
         flown.commands, commands, "command of ", [](const Commands& each) { return each.subsystem; },
         [](const Commands& each) { return each.at; }, code_why,
         [&](const Commands& a, const Commands& b) {
-          unless(a.functions == b.functions, b.at, "what it commands " + b.subsystem + " for", code_why);
+          unless(a.functions == b.functions && same_things(a.things, b.things), b.at,
+                 "what it commands " + b.subsystem + " for", code_why);
         });
+    lists(
+        flown.subscribes, subscribes, "what it hears of ", [](const Subscribes& each) { return each.subsystem; },
+        [](const Subscribes& each) { return each.at; }, code_why,
+        [&](const Subscribes& a, const Subscribes& b) {
+          unless(same_things(a.things, b.things), b.at, "what it hears of " + b.subsystem, code_why);
+        });
+    lists(flown.service_loops, service_loops, "loop of services ", its_name, its_place, timing_why,
+          [&](const ServiceLoop& a, const ServiceLoop& b) {
+            unless(a.period == b.period && a.priority == b.priority && a.budget == b.budget && a.queue == b.queue, b.at,
+                   "loop of services " + b.name, timing_why);
+          });
+    unless(std::ranges::equal(flown.service_uses, service_uses, same_use_of_service), {}, "which services it has",
+           code_why);
+    unless(std::ranges::equal(flown.bumpless, bumpless, same_bumpless), {},
+           "which configurations follow each other without a break", safety_why);
     lists(
         flown.devices, devices, "device ", its_name, [](const Device& each) { return each.at; }, code_why,
         [&](const Device& a, const Device& b) { device(a, b); });

@@ -35,8 +35,10 @@ struct Readdressed {
   std::string enable;  ///< of the second inhibit; empty = the descriptor's
 };
 
-/// Whom this instance commands, where it is not who has the name that its descriptor says.
+/// Whom this instance commands, or hears, where it is not who has the name that its descriptor says.
 struct Redirected {
+  enum class Kind : std::uint8_t { Commands, Subscribes };
+  Kind kind{Kind::Commands};
   std::string subsystem;  ///< as the descriptor calls it
   std::string to;  ///< as the mission does
 };
@@ -53,10 +55,15 @@ struct MissionSubsystem {
 
 /// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs
 /// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address" "DEVICE=address", "--enable" "DEVICE=address",
-/// "--commands" "NAME=12:FILE".
+/// "--commands" and "--subscribes" "NAME=12:FILE".
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsystem& member);
+/// Words of it that need the other's descriptor: "NAME=12:FILE".
+[[nodiscard]] constexpr bool needs_other(std::string_view word) noexcept {
+  return word == "--commands" || word == "--subscribes";
+}
 /// One of them, into `subsystem`. NotFound: no such parameter or device, or it has no second inhibit; OutOfRange: the
-/// values do not fit; InvalidArgument: not of this form. All but "--commands", which needs the other's descriptor.
+/// values do not fit; InvalidArgument: not of this form. All but "--commands" and "--subscribes", which need the other's
+/// descriptor.
 [[nodiscard]] Result<> apply_change(Subsystem& subsystem, std::string_view word, std::string_view text);
 
 /// A simulated device process standing in for hardware.
@@ -135,6 +142,8 @@ struct PlanStep {
   std::string kind;
   std::vector<std::int64_t> values{};
   std::string subsystem{};  ///< whom it moves; empty = whose event it is
+  std::vector<std::string> words{};  ///< in the places of their values: names, as the mission writes them
+  std::vector<double> arguments{};  ///< of a function that it calls
 };
 
 /// Of plans that are as safe as each other the higher pre-empts the lower on a member (docs/adr/0090).

@@ -331,14 +331,38 @@ struct FailureName {
   std::string name;
 };
 
+/// One thing of another subsystem that a service of the framework is about (adr 0098).
+struct Thing {
+  enum class Kind : std::uint8_t {
+    Set,  ///< a parameter, by ST[20]
+    Read,  ///< likewise
+    Housekeeping,  ///< a structure, by ST[03]; its name is its id
+    Event,  ///< ST[05]
+  };
+  Kind kind{Kind::Set};
+  std::string name;
+  std::uint32_t id{0};  ///< on the wire; like the next not known before a mission says who the other is
+  std::vector<Field> fields{};  ///< values of the parameter, of a report, arguments of the event
+};
+
 /// Whom a subsystem may command, and what for; whatever else it sends is refused (adr 0062).
 struct Commands {
   std::string subsystem;  ///< as this descriptor calls it
   std::vector<std::string> functions;  ///< and requests of its own services, by name
+  std::vector<Thing> things{};  ///< that the framework's services may be asked for
   Location at;
   std::uint16_t apid{0};  ///< as the mission has it, like the next two; 0 = not known yet
   std::filesystem::path file{};  ///< its descriptor
   std::vector<Function> requests{};  ///< what it says of `functions`, in their order
+};
+
+/// Whose housekeeping and events it may have the supervisor pass on to it (adr 0098).
+struct Subscribes {
+  std::string subsystem;  ///< as this descriptor calls it
+  std::vector<Thing> things;
+  Location at;
+  std::uint16_t apid{0};  ///< as the mission has it, like the next; 0 = not known yet
+  std::filesystem::path file{};  ///< its descriptor
 };
 
 struct Subsystem {
@@ -354,6 +378,7 @@ struct Subsystem {
   std::vector<CustomService> services;  ///< of its own, beside the framework's
   std::vector<FailureName> failures;
   std::vector<Commands> commands;  ///< no subsystem twice
+  std::vector<Subscribes> subscribes{};  ///< likewise
   std::vector<HousekeepingStructure> housekeeping;  ///< valid in every configuration
   std::vector<Device> devices;
   std::vector<PowerSwitch> power_switches;  ///< at most one for each device
@@ -386,6 +411,12 @@ struct Subsystem {
 
 /// Says who is commanded. The first of the functions that it does not have; empty when it has all.
 [[nodiscard]] std::string_view resolve(Commands& commands, const Subsystem& commanded);
+/// Says whose things these are. The first that cannot be had, and why in words; null: all can.
+struct NoThing {
+  const Thing* thing{nullptr};
+  std::string_view why{};
+};
+[[nodiscard]] NoThing resolve(std::vector<Thing>& things, const Subsystem& other);
 
 /// Names of the actuator devices that have no second inhibit: nothing but their subsystem keeps them from moving.
 [[nodiscard]] std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem);

@@ -102,6 +102,75 @@ TEST(Commands, OfSomebodyWhoIsNotThereOrForWhatThatDoesNotHaveAreRefused) {
   EXPECT_EQ(first_problem(with_porter(rings, twice + twice)), "E0201");
 }
 
+constexpr const char* chime = R"(<Subsystem name="CHIME" id="43">
+  <Parameters><ParamRef name="PITCH" id="1" type="DOUBLE" minimum="0" maximum="1" writable="Operational"/><ParamRef name="SWING" id="2" type="FLOAT"/></Parameters>
+  <Configuration name="ONE" id="1" sampling_us="1000">
+    <HKService id="4900" interval="10"><SampledOnce><ParamRef name="SWING"/></SampledOnce></HKService>
+    <HKService id="4902" interval="10"><SampledOnce><ParamRef name="PITCH"/></SampledOnce><SampledNREPTimes nrep="2"><ParamRef name="SWING"/></SampledNREPTimes></HKService>
+    <EventService><Event name="CRACKED" id="4901" severity="low"/></EventService>
+  </Configuration>
+</Subsystem>)";
+FileSource with_listener(const std::string& says, const std::string& inside = "") {
+  const std::string first = R"(<Subsystem executable="hirosco-flywheel" descriptor="flywheel.xml"/>)";
+  return overlay({{"mission.xml", changed(first, first + R"(
+    <Subsystem executable="porter" descriptor="porter.xml">)" +
+                                                     inside + R"(</Subsystem>
+    <Subsystem executable="chime" descriptor="chime.xml"/>
+    <Subsystem executable="chime" descriptor="chime.xml" name="OTHER" id="44"/>)")},
+                  {"porter.xml", commanding(says)},
+                  {"chime.xml", chime}});
+}
+
+TEST(Subscribes, AMissionSaysWhoseAndItsProcessIsToldTheSame) {
+  const std::string says =
+      R"(<Subscribes subsystem="CHIME" housekeeping="4900" events="CRACKED"/>)"
+      R"(<Commands subsystem="CHIME" sets="PITCH" reads="SWING" housekeeping="4900" events="CRACKED"/>)";
+  for (const bool redirected : {false, true}) {
+    const std::string inside = redirected ? R"(<Subscribes subsystem="CHIME" to="OTHER"/>)" : "";
+    const auto source = with_listener(says, inside);
+    const auto reading = read_mission(data / "mission.xml", source);
+    ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
+    const auto* porter = reading.value->find_subsystem("PORTER");
+    const Subscribes& heard = porter->subsystem.subscribes.at(0);
+    EXPECT_EQ(heard.apid, redirected ? 44 : 43);
+    ASSERT_EQ(heard.things.size(), 2U);
+    EXPECT_EQ(heard.things[0].id, 4900U);
+    EXPECT_EQ(heard.things[0].fields.size(), 1U);
+    EXPECT_EQ(heard.things[1].id, 4901U);
+    const Commands& commands = porter->subsystem.commands.at(0);
+    EXPECT_EQ(commands.apid, 43) << "each element for itself";
+    EXPECT_EQ(commands.things.at(0).id, (ParameterId{43, Type::Double, 1}.wire()));
+    Subsystem launched = *read_text(commanding(says)).value;
+    for (const auto& [word, text] : changes_of(*porter)) {
+      const auto applied =
+          needs_other(word) ? apply_other(launched, word, text, source) : apply_change(launched, word, text);
+      ASSERT_TRUE(applied) << word << " " << text;
+    }
+    EXPECT_EQ(launched.subscribes[0].apid, heard.apid);
+    EXPECT_EQ(launched.subscribes[0].things[0].id, 4900U);
+    EXPECT_EQ(launched.commands[0].things[0].id, commands.things[0].id);
+  }
+}
+
+TEST(Subscribes, OfAnotherFormOrWhatNobodyHasAreRefused) {
+  const auto problem = [](const std::string& says, const std::string& inside = "") {
+    return first_problem(with_listener(says, inside));
+  };
+  EXPECT_EQ(problem(R"(<Subscribes subsystem="CHIME"/>)"), "E0105");
+  EXPECT_EQ(problem(R"(<Subscribes subsystem="CHIME" events=" "/>)"), "E0109");
+  EXPECT_EQ(problem(R"(<Subscribes subsystem="CHIME" events="CRACKED CRACKED"/>)"), "E0201");
+  EXPECT_EQ(problem(R"(<Subscribes subsystem="CHIME" events="MELTED"/>)"), "E0310");
+  EXPECT_EQ(problem(R"(<Subscribes subsystem="CHIME" housekeeping="4999"/>)"), "E0310");
+  EXPECT_EQ(problem(R"(<Subscribes subsystem="CHIME" housekeeping="4902"/>)"), "E0310") << "sampled several times";
+  EXPECT_EQ(problem(R"(<Commands subsystem="CHIME" sets="SWING"/>)"), "E0310") << "never writable";
+  EXPECT_EQ(problem(R"(<Commands subsystem="CHIME" reads="SWINGS"/>)"), "E0310");
+  EXPECT_EQ(problem(R"(<Subscribes subsystem="GONG" events="CRACKED"/>)"), "E0304");
+  EXPECT_EQ(problem(R"(<Subscribes subsystem="PORTER" events="CRACKED"/>)"), "E0304") << "itself";
+  EXPECT_EQ(problem(R"(<Commands subsystem="CHIME" reads="SWING"/>)", R"(<Subscribes subsystem="CHIME" to="OTHER"/>)"),
+            "E0304")
+      << "it hears nobody";
+}
+
 TEST(Commands, WordsOfAnotherFormForAProcessAreRefused) {
   const auto source = with_porter(rings);
   Subsystem porter = read_subsystem(data / "porter.xml", source).value.value();

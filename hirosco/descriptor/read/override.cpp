@@ -70,6 +70,8 @@ std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsyst
   }
   for (const Commands& commands : member.subsystem.commands)
     if (commands.apid != 0) changes.emplace_back("--commands", to_string(commands));
+  for (const Subscribes& subscribes : member.subsystem.subscribes)
+    if (subscribes.apid != 0) changes.emplace_back("--subscribes", to_string(subscribes));
   return changes;
 }
 

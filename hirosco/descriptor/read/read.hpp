@@ -67,6 +67,12 @@ inline constexpr std::string_view manifest_extension = ".sha256";
 /// none of that name, or who has the file has no such function; InvalidArgument: not of this form.
 [[nodiscard]] std::string to_string(const Commands& commands);
 [[nodiscard]] Result<> apply_commands(Subsystem& subsystem, std::string_view text, const FileSource& source);
+/// The same of whom it hears.
+[[nodiscard]] std::string to_string(const Subscribes& subscribes);
+[[nodiscard]] Result<> apply_subscribes(Subsystem& subsystem, std::string_view text, const FileSource& source);
+/// Either of them, by its word (needs_other()).
+[[nodiscard]] Result<> apply_other(Subsystem& subsystem, std::string_view word, std::string_view text,
+                                   const FileSource& source);
 
 /// file:line:col: error: …, the source line, a caret and the hint (docs: ground habits). `source_line` may be empty.
 [[nodiscard]] std::string render(const Diagnostic& problem, const FileSource& source, bool colour);

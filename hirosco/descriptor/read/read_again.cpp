@@ -19,9 +19,14 @@ Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
     commands.apid = known->apid;
     commands.file = known->file;
     commands.requests = known->requests;
+    commands.things = known->things;
+  }
+  for (Subscribes& subscribes : reading.value->subscribes) {
+    const auto known = std::ranges::find(flown.subscribes, subscribes.subsystem, &Subscribes::subsystem);
+    if (known != flown.subscribes.end()) subscribes = *known;
   }
   for (const auto& [word, change] : changes) {
-    if (word == "--commands") continue;
+    if (needs_other(word)) continue;
     const auto applied = apply_change(*reading.value, word, change);
     if (applied) continue;
     reading.problems.push_back({.file = flown.file,

@@ -11,6 +11,24 @@
 namespace hirosco::descriptor {
 namespace detail {
 
+namespace {
+
+/// What the attribute names, each once.
+void read_things(Attributes& attributes, std::string_view attribute, Thing::Kind kind, Problems& problems,
+                 std::vector<Thing>& things) {
+  const auto* named = attributes.optional(attribute);
+  if (named == nullptr) return;
+  Unique names{std::string{attribute}, "E0201"};
+  const auto all = words(named->value);
+  if (all.empty()) problems.add(*named, "E0109", fmt::format("attribute '{}' is empty", attribute));
+  for (const auto name : all) {
+    names.add(std::string{name}, place(named->value_at), problems, named->value.size());
+    things.push_back({.kind = kind, .name = std::string{name}});
+  }
+}
+
+}  // namespace
+
 void SubsystemReader::read_commands(const xml::Element& element) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
@@ -19,32 +37,61 @@ void SubsystemReader::read_commands(const xml::Element& element) {
   commands.subsystem = attributes.name("subsystem");
   if (!commands.subsystem.empty())
     commanded_.add(commands.subsystem, commands.at, problems_, element.name.size() + 1, "name all functions in one");
-  const auto* functions = attributes.required("functions");
-  if (functions == nullptr) return;
-  Unique names{"function", "E0201"};
-  for (const auto function : words(functions->value)) {
-    names.add(std::string{function}, place(functions->value_at), problems_, functions->value.size());
-    commands.functions.emplace_back(function);
+  using enum Thing::Kind;
+  read_things(attributes, "sets", Set, problems_, commands.things);
+  read_things(attributes, "reads", Read, problems_, commands.things);
+  read_things(attributes, "housekeeping", Housekeeping, problems_, commands.things);
+  read_things(attributes, "events", Event, problems_, commands.things);
+  const auto* functions = commands.things.empty() ? attributes.required("functions") : attributes.optional("functions");
+  if (functions != nullptr) {
+    Unique names{"function", "E0201"};
+    for (const auto function : words(functions->value)) {
+      names.add(std::string{function}, place(functions->value_at), problems_, functions->value.size());
+      commands.functions.emplace_back(function);
+    }
+    if (commands.functions.empty()) problems_.add(*functions, "E0109", "attribute 'functions' is empty");
   }
-  if (commands.functions.empty()) problems_.add(*functions, "E0109", "attribute 'functions' is empty");
   subsystem_.commands.push_back(std::move(commands));
 }
 
-/// Another subsystem than the descriptor's word names is commanded by this instance.
-void MissionReader::read_redirected(const xml::Element& element, MissionSubsystem& member, Unique& names) {
+void SubsystemReader::read_subscribes(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  Subscribes subscribes;
+  subscribes.at = place(element.at);
+  subscribes.subsystem = attributes.name("subsystem");
+  if (!subscribes.subsystem.empty())
+    heard_.add(subscribes.subsystem, subscribes.at, problems_, element.name.size() + 1, "name all of it in one");
+  read_things(attributes, "housekeeping", Thing::Kind::Housekeeping, problems_, subscribes.things);
+  read_things(attributes, "events", Thing::Kind::Event, problems_, subscribes.things);
+  if (attributes.optional("housekeeping") == nullptr && attributes.optional("events") == nullptr)
+    problems_.add(element, "E0105", "<Subscribes> needs 'housekeeping' or 'events'",
+                  "housekeeping=\"4800\" events=\"BURNT_OUT\"");
+  subsystem_.subscribes.push_back(std::move(subscribes));
+}
+
+/// Another subsystem than the descriptor's word names is commanded, or heard, by this instance.
+void MissionReader::read_redirected(const xml::Element& element, MissionSubsystem& member, Redirected::Kind kind,
+                                    Unique& names) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   const auto* subsystem = attributes.required("subsystem");
   const auto* to = attributes.required("to");
   if (subsystem == nullptr || to == nullptr) return;
   names.add(subsystem->value, place(subsystem->value_at), problems_, subsystem->value.size());
+  const bool commands = kind == Redirected::Kind::Commands;
   std::vector<std::string_view> known;
-  for (const Commands& commands : member.subsystem.commands) known.push_back(commands.subsystem);
+  if (commands)
+    for (const Commands& each : member.subsystem.commands) known.push_back(each.subsystem);
+  else
+    for (const Subscribes& each : member.subsystem.subscribes) known.push_back(each.subsystem);
   if (std::ranges::find(known, subsystem->value) == known.end())
     problems_.add(*subsystem, "E0304",
-                  fmt::format("'{}' commands no subsystem {}", member.subsystem.name, in_quotes(subsystem->value)),
-                  known.empty() ? "its descriptor says whom: <Commands>" : did_you_mean(subsystem->value, known));
-  member.redirected.push_back({subsystem->value, to->value});
+                  fmt::format("'{}' {} no subsystem {}", member.subsystem.name, commands ? "commands" : "hears",
+                              in_quotes(subsystem->value)),
+                  known.empty() ? fmt::format("its descriptor says whom: <{}>", element.name)
+                                : did_you_mean(subsystem->value, known));
+  member.redirected.push_back({kind, subsystem->value, to->value});
   redirections_.emplace_back(to, member.subsystem.name);
 }
 
@@ -52,58 +99,142 @@ void MissionReader::resolve_commands() {
   if (!whole()) return;
   for (const auto& [to, commanding] : redirections_)
     if (const Subsystem* found = find(*to, to->value, false); found != nullptr && found->name == commanding)
-      problems_.add(*to, "E0304", fmt::format("'{}' cannot command itself", commanding));
-  for (MissionSubsystem& member : mission_.subsystems)
+      problems_.add(*to, "E0304", fmt::format("'{}' cannot command or hear itself", commanding));
+  for (MissionSubsystem& member : mission_.subsystems) {
     for (Commands& commands : member.subsystem.commands) resolve_one(member, commands);
+    for (Subscribes& subscribes : member.subsystem.subscribes) resolve_one(member, subscribes);
+  }
+}
+
+const MissionSubsystem* MissionReader::find_other(const MissionSubsystem& member, const std::string& named,
+                                                  Redirected::Kind kind) {
+  const auto redirected = std::ranges::find_if(
+      member.redirected, [&](const Redirected& each) { return each.kind == kind && each.subsystem == named; });
+  const bool as_written = redirected == member.redirected.end();
+  const std::string& name = as_written ? named : redirected->to;
+  const MissionSubsystem* found = mission_.find_subsystem(name);
+  if (found != nullptr && found != &member) return found;
+  const bool commands = kind == Redirected::Kind::Commands;
+  if (as_written)
+    problems_.add(member.at, "E0304",
+                  fmt::format("'{}' {} {}, which is {}", member.subsystem.name, commands ? "commands" : "hears",
+                              in_quotes(name), found == nullptr ? "not in the mission" : "itself"),
+                  fmt::format("say who it is here: <{} subsystem=\"{}\" to=\"...\"/>",
+                              commands ? "Commands" : "Subscribes", named),
+                  10);
+  return nullptr;
 }
 
 void MissionReader::resolve_one(const MissionSubsystem& member, Commands& commands) {
-  const auto redirected = std::ranges::find(member.redirected, commands.subsystem, &Redirected::subsystem);
-  const bool as_written = redirected == member.redirected.end();
-  const std::string& name = as_written ? commands.subsystem : redirected->to;
-  const MissionSubsystem* found = mission_.find_subsystem(name);
-  if (found == nullptr || found == &member) {
-    if (as_written)
-      problems_.add(member.at, "E0304",
-                    fmt::format("'{}' commands {}, which is {}", member.subsystem.name, in_quotes(name),
-                                found == nullptr ? "not in the mission" : "itself"),
-                    fmt::format("say who it is here: <Commands subsystem=\"{}\" to=\"...\"/>", commands.subsystem), 10);
-    return;
-  }
-  const std::string_view missing = resolve(commands, found->subsystem);
-  if (missing.empty()) return;
-  std::vector<std::string_view> known;
-  for (const Function& function : found->subsystem.functions) known.push_back(function.name);
-  for (const CustomService& service : found->subsystem.services)
-    for (const Function& request : service.requests) known.push_back(request.name);
+  const MissionSubsystem* found = find_other(member, commands.subsystem, Redirected::Kind::Commands);
+  if (found == nullptr) return;
   Problems problems{member.subsystem.file};
-  problems.add(commands.at, "E0310", fmt::format("'{}' has no function {}", name, in_quotes(missing)),
-               did_you_mean(missing, known), 9);
+  if (const std::string_view missing = resolve(commands, found->subsystem); !missing.empty()) {
+    std::vector<std::string_view> known;
+    for (const Function& function : found->subsystem.functions) known.push_back(function.name);
+    for (const CustomService& service : found->subsystem.services)
+      for (const Function& request : service.requests) known.push_back(request.name);
+    problems.add(commands.at, "E0310",
+                 fmt::format("'{}' has no function {}", found->subsystem.name, in_quotes(missing)),
+                 did_you_mean(missing, known), 9);
+  }
+  resolve_things(commands.things, found->subsystem, commands.at, problems);
   subsystem_problems_.push_back(problems.take());
+}
+
+void MissionReader::resolve_one(const MissionSubsystem& member, Subscribes& subscribes) {
+  const MissionSubsystem* found = find_other(member, subscribes.subsystem, Redirected::Kind::Subscribes);
+  if (found == nullptr) return;
+  subscribes.apid = found->subsystem.id;
+  subscribes.file = found->subsystem.file;
+  Problems problems{member.subsystem.file};
+  resolve_things(subscribes.things, found->subsystem, subscribes.at, problems);
+  subsystem_problems_.push_back(problems.take());
+}
+
+void MissionReader::resolve_things(std::vector<Thing>& things, const Subsystem& other, const Location& at,
+                                   Problems& problems) {
+  const NoThing missing = resolve(things, other);
+  if (missing.thing == nullptr) return;
+  std::vector<std::string_view> known;
+  switch (missing.thing->kind) {
+    case Thing::Kind::Event:
+      for (const Event& each : other.events) known.push_back(each.name);
+      break;
+    case Thing::Kind::Housekeeping: break;
+    default:
+      for (const Parameter& each : other.parameters) known.push_back(each.field.name);
+  }
+  problems.add(at, "E0310",
+               fmt::format("{} of '{}' cannot be had: {}", in_quotes(missing.thing->name), other.name, missing.why),
+               known.empty() ? "a structure is named by its id" : did_you_mean(missing.thing->name, known), 9);
 }
 
 }  // namespace detail
 
-std::string to_string(const Commands& commands) {
-  return fmt::format("{}={}:{}", commands.subsystem, commands.apid, commands.file.string());
+namespace {
+
+/// "NAME=ID:FILE", taken apart.
+struct Other {
+  std::string_view name;
+  std::uint16_t id{0};
+  std::string_view file;
+};
+[[nodiscard]] Result<Other> take_apart(std::string_view text) {
+  const auto equals = text.find('=');
+  const auto colon = text.find(':', equals == text.npos ? text.size() : equals);
+  Other other;
+  if (colon != text.npos) {
+    const auto read = std::from_chars(text.data() + equals + 1, text.data() + colon, other.id);
+    other.name = text.substr(0, equals);
+    other.file = text.substr(colon + 1);
+    if (read.ec == std::errc{} && read.ptr == text.data() + colon) return other;
+  }
+  return fail(ErrorCode::InvalidArgument, "NAME=ID:FILE is wanted");
+}
+[[nodiscard]] Result<Subsystem> read_other(const Other& other, const FileSource& source) {
+  auto reading = read_subsystem(other.file, source);
+  if (!reading.value) return fail(ErrorCode::NotFound, "the descriptor of the other cannot be read");
+  reading.value->id = other.id;
+  return std::move(*reading.value);
+}
+
+[[nodiscard]] std::string to_text(const std::string& name, std::uint16_t apid, const std::filesystem::path& file) {
+  return fmt::format("{}={}:{}", name, apid, file.string());
+}
+
+}  // namespace
+
+std::string to_string(const Commands& commands) { return to_text(commands.subsystem, commands.apid, commands.file); }
+std::string to_string(const Subscribes& subscribes) {
+  return to_text(subscribes.subsystem, subscribes.apid, subscribes.file);
 }
 
 Result<> apply_commands(Subsystem& subsystem, std::string_view text, const FileSource& source) {
-  const auto equals = text.find('=');
-  const auto colon = text.find(':', equals == text.npos ? text.size() : equals);
-  if (colon == text.npos) return fail(ErrorCode::InvalidArgument, "NAME=ID:FILE is wanted");
-  const auto commands = std::ranges::find(subsystem.commands, text.substr(0, equals), &Commands::subsystem);
-  if (commands == subsystem.commands.end()) return fail(ErrorCode::NotFound, "it commands no such subsystem");
-  std::uint16_t id = 0;
-  const auto read = std::from_chars(text.data() + equals + 1, text.data() + colon, id);
-  if (read.ec != std::errc{} || read.ptr != text.data() + colon)
-    return fail(ErrorCode::InvalidArgument, "NAME=ID:FILE is wanted");
-  auto reading = read_subsystem(text.substr(colon + 1), source);
-  if (!reading.value) return fail(ErrorCode::NotFound, "the descriptor of who is commanded cannot be read");
-  reading.value->id = id;
-  if (!resolve(*commands, *reading.value).empty())
-    return fail(ErrorCode::NotFound, "who is commanded has no such function");
+  HIROSCO_TRY_LET(const Other other, take_apart(text));
+  const auto named = std::ranges::find(subsystem.commands, other.name, &Commands::subsystem);
+  if (named == subsystem.commands.end()) return fail(ErrorCode::NotFound, "it commands no such subsystem");
+  HIROSCO_TRY_LET(const Subsystem described, read_other(other, source));
+  if (!resolve(*named, described).empty()) return fail(ErrorCode::NotFound, "who is commanded has no such function");
+  if (resolve(named->things, described).thing != nullptr)
+    return fail(ErrorCode::NotFound, "who is commanded has no such parameter, structure or event");
   return ok();
+}
+
+Result<> apply_subscribes(Subsystem& subsystem, std::string_view text, const FileSource& source) {
+  HIROSCO_TRY_LET(const Other other, take_apart(text));
+  const auto named = std::ranges::find(subsystem.subscribes, other.name, &Subscribes::subsystem);
+  if (named == subsystem.subscribes.end()) return fail(ErrorCode::NotFound, "it hears no such subsystem");
+  HIROSCO_TRY_LET(const Subsystem described, read_other(other, source));
+  named->apid = described.id;
+  named->file = described.file;
+  if (resolve(named->things, described).thing != nullptr)
+    return fail(ErrorCode::NotFound, "who is heard has no such structure or event");
+  return ok();
+}
+
+Result<> apply_other(Subsystem& subsystem, std::string_view word, std::string_view text, const FileSource& source) {
+  return word == "--commands" ? apply_commands(subsystem, text, source) : apply_subscribes(subsystem, text, source);
 }
 
 }  // namespace hirosco::descriptor

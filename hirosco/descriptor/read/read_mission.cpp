@@ -234,10 +234,13 @@ void MissionReader::read_member(const xml::Element& element) {
   if (!subsystem) return;  // what is set in it cannot be judged
   member.subsystem = std::move(*subsystem);
   read_identity(attributes, member);
-  Unique names{"parameter", "E0201"}, devices{"device", "E0201"}, commanded{"commanded subsystem", "E0201"};
+  Unique names{"parameter", "E0201"}, devices{"device", "E0201"};
+  Unique commanded{"commanded subsystem", "E0201"}, heard{"subsystem that is heard", "E0201"};
+  using enum Redirected::Kind;
   each_child(element, problems_,
              {{"Set", [&](const xml::Element& child) { read_override(child, member, names); }, 255},
-              {"Commands", [&](const xml::Element& child) { read_redirected(child, member, commanded); }, 255},
+              {"Commands", [&](const auto& child) { read_redirected(child, member, Commands, commanded); }, 255},
+              {"Subscribes", [&](const auto& child) { read_redirected(child, member, Subscribes, heard); }, 255},
               {"Device", [&](const xml::Element& child) { read_readdressed(child, member, devices); }, 255}});
   check_endnodes(member.subsystem);
   mission_.subsystems.push_back(std::move(member));

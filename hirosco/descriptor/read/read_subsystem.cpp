@@ -44,6 +44,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
       {"Device", [this](const auto& element) { read_device(element); }, 255},
       {"Hang", [this](const auto& element) { read_hang(element); }, 1},
       {"Commands", [this](const auto& element) { read_commands(element); }, 255},
+      {"Subscribes", [this](const auto& element) { read_subscribes(element); }, 255},
       {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
       {"CustomService", later(custom_services), max_custom_services},
       {"ServiceLoop", [this](const auto& element) { read_service_loop(element); }, max_service_loops},

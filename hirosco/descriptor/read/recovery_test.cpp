@@ -43,6 +43,32 @@ TEST(MissionRecovery, APlanHasAPriorityAndAStepMayNameWhomItMoves) {
   EXPECT_EQ(plan.steps.at(1).subsystem, "") << "whose event it is";
 }
 
+TEST(MissionRecovery, StepsNameWhatIsLookedUpForThem) {
+  const auto reading = read_mission(
+      data / "mission.xml",
+      overlay(
+          {{"mission.xml",
+            changed(
+                R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)",
+                R"(<Plan name="note"><When severity="low info" subsystem="CORONAGRAPH"/>)"
+                R"(<Do action="configure" configuration="COUPLED"/><Do action="link" link="1"/><Do action="fence"/>)"
+                R"(<Do action="wait_for" state="Operational" of="FLYWHEEL" within_ms="250"/>)"
+                R"(<Do action="run" plan="to-safe"/><Do action="kill" subsystem="FLYWHEEL"/>)")}}));
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const Mission& mission = *reading.value;
+  const auto& steps = mission.plans.at(2).steps;
+  ASSERT_EQ(steps.size(), 6U);
+  const auto* coronagraph = mission.find_subsystem("CORONAGRAPH");
+  EXPECT_EQ(steps[0].values.at(0), coronagraph->subsystem.find_configuration("COUPLED")->id);
+  EXPECT_EQ(steps[0].words, std::vector<std::string>{"COUPLED"});
+  EXPECT_EQ(steps[1].values, std::vector<std::int64_t>{1});
+  EXPECT_EQ(steps[3].values, (std::vector<std::int64_t>{static_cast<std::int64_t>(State::Operational),
+                                                        mission.find_subsystem("FLYWHEEL")->subsystem.id, 250}));
+  EXPECT_EQ(steps[4].kind, "set_state") << "the other plan's step stands in the place of the one that runs it";
+  EXPECT_EQ(steps[4].values, std::vector<std::int64_t>{static_cast<std::int64_t>(State::SafeOperational)});
+  EXPECT_EQ(steps[5].subsystem, "FLYWHEEL");
+}
+
 TEST(MissionRecovery, WhatIsToldOfPlansHasTheirNames) {
   const std::string supervisor = file_system()(data / "supervisor.xml").value();
   const auto reading = read_mission(

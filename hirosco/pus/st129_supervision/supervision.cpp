@@ -26,11 +26,27 @@ constexpr Part problem[]{number("SUBSYSTEM", Type::Uint16),
                          word("CODE"),
                          word("WHAT"),
                          word("HINT")};
+constexpr Part event[]{number("SUBSYSTEM", Type::Uint16), number("EVENT", Type::Uint16)};
+constexpr Part plan[]{number("SUBSYSTEM", Type::Uint16),
+                      number("EVENT", Type::Uint16),
+                      number("SEVERITY", Type::Uint8),
+                      number("PLAN", Type::Uint16),
+                      word("NAME"),
+                      list("AGAINST", reason),
+                      list("STEPS", step)};
+constexpr std::string_view what_may_be_heard[]{"", "structure", "event"};
+constexpr Part subscribed[]{number("SUBSYSTEM", Type::Uint16),
+                            {.name = "WHAT", .type = Type::Uint8, .names = what_may_be_heard},
+                            number("ID", Type::Uint16)};
 constexpr RequestKind requests[]{{permission_question, "IS_IT_PERMITTED", packet},
-                                 {mode_question, "PREVIEW_MODE", mode}};
+                                 {mode_question, "PREVIEW_MODE", mode},
+                                 {plan_question, "PREVIEW_PLAN", event},
+                                 {subscribe, "SUBSCRIBE", subscribed},
+                                 {unsubscribe, "UNSUBSCRIBE", subscribed}};
 constexpr ReportKind reports[]{{permission_answer, "PERMISSION", answer},
                                {telecommand_copy, "COPY", packet},
                                {mode_preview, "MODE_PREVIEW", preview},
+                               {plan_preview, "PLAN_PREVIEW", plan},
                                {descriptor_problem, "DESCRIPTOR_PROBLEM", problem}};
 
 }  // namespace kind
@@ -47,6 +63,39 @@ void put_words(OctetWriter& writer, std::string_view words) {
 [[nodiscard]] std::string get_words(OctetReader& reader) {
   const Octets words = reader.get(reader.get<std::uint8_t>());
   return {reinterpret_cast<const char*>(words.data()), words.size()};
+}
+
+/// Reasons and steps, as both previews end.
+void get_outlook(OctetReader& reader, std::vector<std::string>& against, std::vector<ModePreview::Step>& steps) {
+  for (auto left = reader.get<std::uint8_t>(); left != 0 && reader.good(); --left) against.push_back(get_words(reader));
+  for (auto left = reader.get<std::uint8_t>(); left != 0 && reader.good(); --left) {
+    ModePreview::Step step{.stage = reader.get<std::uint8_t>(), .subject = reader.get<std::uint16_t>(), .what = {}};
+    step.what = get_words(reader);
+    steps.push_back(std::move(step));
+  }
+}
+
+/// What stands in `writer` already, and these.
+[[nodiscard]] Octets put_outlook(MutableOctets buffer, OctetWriter& writer, const std::vector<std::string>& against,
+                                 const std::vector<ModePreview::Step>& steps) {
+  const std::size_t reasons = std::min(against.size(), most);
+  writer.put(static_cast<std::uint8_t>(reasons));
+  for (std::size_t i = 0; i < reasons; ++i) put_words(writer, against[i]);
+  const std::size_t count_at = writer.size();
+  writer.put(std::uint8_t{0});
+  std::size_t octets = writer.size();
+  std::uint8_t count = 0;
+  for (const ModePreview::Step& each : steps) {
+    if (count == most) break;
+    writer.put(each.stage).put(each.subject);
+    put_words(writer, each.what);
+    if (!writer.good()) break;
+    octets = writer.size();
+    ++count;
+  }
+  if (octets <= count_at) return {};  // reasons alone found no room: a buffer that is too small
+  buffer[count_at] = std::byte{count};
+  return Octets{buffer}.first(octets);
 }
 
 }  // namespace
@@ -79,37 +128,49 @@ std::optional<DescriptorProblem> read_descriptor_problem(Octets data) {
 std::optional<ModePreview> read_mode_preview(Octets data) {
   OctetReader reader{data};
   ModePreview preview{.mode = reader.get<std::uint8_t>(), .against = {}, .steps = {}};
-  for (auto left = reader.get<std::uint8_t>(); left != 0 && reader.good(); --left)
-    preview.against.push_back(get_words(reader));
-  for (auto left = reader.get<std::uint8_t>(); left != 0 && reader.good(); --left) {
-    ModePreview::Step step{.stage = reader.get<std::uint8_t>(), .subject = reader.get<std::uint16_t>(), .what = {}};
-    step.what = get_words(reader);
-    preview.steps.push_back(std::move(step));
-  }
+  get_outlook(reader, preview.against, preview.steps);
   return reader.exhausted() ? std::optional{std::move(preview)} : std::nullopt;
 }
 
 Octets write_mode_preview(MutableOctets buffer, const ModePreview& preview) {
   OctetWriter writer{buffer};
   writer.put(preview.mode);
-  const std::size_t reasons = std::min(preview.against.size(), most);
-  writer.put(static_cast<std::uint8_t>(reasons));
-  for (std::size_t i = 0; i < reasons; ++i) put_words(writer, preview.against[i]);
-  const std::size_t count_at = writer.size();
-  writer.put(std::uint8_t{0});
-  std::size_t octets = writer.size();
-  std::uint8_t steps = 0;
-  for (const ModePreview::Step& each : preview.steps) {
-    if (steps == most) break;
-    writer.put(each.stage).put(each.subject);
-    put_words(writer, each.what);
-    if (!writer.good()) break;
-    octets = writer.size();
-    ++steps;
-  }
-  if (octets <= count_at) return {};  // reasons alone found no room: a buffer that is too small
-  buffer[count_at] = std::byte{steps};
-  return Octets{buffer}.first(octets);
+  return put_outlook(buffer, writer, preview.against, preview.steps);
+}
+
+std::optional<PlanPreview> read_plan_preview(Octets data) {
+  OctetReader reader{data};
+  PlanPreview preview;
+  preview.subsystem = reader.get<std::uint16_t>();
+  preview.event = reader.get<std::uint16_t>();
+  preview.severity = reader.get<std::uint8_t>();
+  preview.plan = reader.get<std::uint16_t>();
+  preview.name = get_words(reader);
+  get_outlook(reader, preview.against, preview.steps);
+  return reader.exhausted() ? std::optional{std::move(preview)} : std::nullopt;
+}
+
+Octets write_plan_preview(MutableOctets buffer, const PlanPreview& preview) {
+  OctetWriter writer{buffer};
+  writer.put(preview.subsystem).put(preview.event).put(preview.severity).put(preview.plan);
+  put_words(writer, preview.name);
+  return put_outlook(buffer, writer, preview.against, preview.steps);
+}
+
+std::array<std::byte, subscribed_octets> write_subscribed(const Subscribed& subscribed) noexcept {
+  std::array<std::byte, subscribed_octets> data{};
+  OctetWriter{data}.put(subscribed.apid).put(static_cast<std::uint8_t>(subscribed.what)).put(subscribed.id);
+  return data;
+}
+
+std::optional<Subscribed> read_subscribed(Octets data) noexcept {
+  OctetReader reader{data};
+  Subscribed subscribed{.apid = reader.get<std::uint16_t>()};
+  const auto what = reader.get<std::uint8_t>();
+  subscribed.what = static_cast<Subscribed::What>(what);
+  subscribed.id = reader.get<std::uint16_t>();
+  const bool known = what == 1 || what == 2;
+  return known && reader.exhausted() ? std::optional{subscribed} : std::nullopt;
 }
 
 const ServiceKind service_kind{.type = service_type,

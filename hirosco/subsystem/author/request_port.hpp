@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "hirosco/parameter/layout.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
+#include "hirosco/subsystem/author/native_values.hpp"
 #include "hirosco/subsystem/author/typed_values.hpp"
 #include "hirosco/utilities/octets.hpp"
 
@@ -40,17 +42,32 @@ struct RequestReport {
 };
 using RequestHandler = std::function<void(const RequestReport&)>;
 
+/// What is asked for: a function or a request of an own service, or what a service of the framework does with something that the
+/// other has (adr 0098).
+enum class Ask : std::uint8_t {
+  Function,
+  SetValue,  ///< ST[20]: its value or values, those of a structure in order
+  ReadValue,  ///< ST[20]: value_in() of what is answered
+  EnableHousekeeping,  ///< ST[03], of a structure by its id, as the next four
+  DisableHousekeeping,
+  OneShotHousekeeping,  ///< once, to the ground and to who hears it
+  SetInterval,  ///< in cycles, std::uint32_t
+  EnableEvent,  ///< ST[05]: its report to the ground
+  DisableEvent,
+};
+
 /// A function of another subsystem, or a request of its own services, as an author holds it: named, and bound in
 /// Software-Init.
 class RequestPort {
  public:
   [[nodiscard]] std::string_view subsystem() const noexcept { return subsystem_; }
   [[nodiscard]] std::string_view function() const noexcept { return function_; }
+  [[nodiscard]] Ask what() const noexcept { return what_; }
   [[nodiscard]] std::span<const NativeField> arguments() const noexcept { return arguments_; }
 
  protected:
-  RequestPort(const char* subsystem, const char* function, std::span<const NativeField> arguments) noexcept
-      : subsystem_{subsystem}, function_{function}, arguments_{arguments} {}
+  RequestPort(const char* subsystem, Ask what, const char* function, std::span<const NativeField> arguments) noexcept
+      : subsystem_{subsystem}, function_{function}, what_{what}, arguments_{arguments} {}
   RequestPort(const RequestPort&) = delete;
   RequestPort& operator=(const RequestPort&) = delete;
   ~RequestPort() = default;
@@ -58,6 +75,7 @@ class RequestPort {
  private:
   std::string_view subsystem_;
   std::string_view function_;
+  Ask what_;
   std::span<const NativeField> arguments_;
 };
 
@@ -71,10 +89,25 @@ class Request final : public RequestPort {
                 "a request takes numbers or enumerations, bool, std::string_view for text, or a std::array of all but "
                 "text: no Sized, for its length is the other's descriptor's");
   /// Both are string literals: the subsystem as <Commands> of the descriptor calls it.
-  Request(const char* subsystem, const char* function) noexcept : RequestPort{subsystem, function, fields} {}
+  Request(const char* subsystem, const char* function) noexcept
+      : RequestPort{subsystem, Ask::Function, function, fields} {}
+  /// Of a framework's service: `Request<double> set_{"LAMP", Ask::SetValue, "BRIGHTNESS"};`
+  Request(const char* subsystem, Ask what, const char* thing) noexcept : RequestPort{subsystem, what, thing, fields} {}
 
  private:
   static constexpr std::array<NativeField, sizeof...(Arguments)> fields{detail::native_argument<Arguments>()...};
 };
+
+/// What Ask::ReadValue was answered with. T: the type of the parameter, or an aggregate of its members. Empty: it is not that.
+template <class T>
+[[nodiscard]] std::optional<T> value_in(const RequestReport& report) {
+  constexpr std::size_t head_octets = 5;  // how many, and which
+  static constexpr auto layout = layout_of<T>();
+  T value{};
+  if (report.stage != RequestReport::Stage::Answered || report.data.size() < head_octets) return std::nullopt;
+  if (!take_fields(report.data.subspan(head_octets), layout, std::as_writable_bytes(std::span{&value, 1})))
+    return std::nullopt;
+  return value;
+}
 
 }  // namespace hirosco

@@ -19,6 +19,7 @@
 #include "hirosco/subsystem/author/ports.hpp"
 #include "hirosco/subsystem/author/request_port.hpp"
 #include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/subsystem/author/subscription_port.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
@@ -124,6 +125,15 @@ class Subsystem {
   /// from the other's descriptor, fail Software-Init. The handler hears each stage of each such request, in the service
   /// loop, and one end: completed, refused or failed with the reason, or not in `patience`.
   void use_request(RequestPort& request, RequestHandler handler, Duration patience = request_patience);
+  /// Names what is heard of another subsystem: a Subscription of a housekeeping structure, or an EventSubscription. What <Subscribes>
+  /// of the descriptor does not say, and values that differ from the other's descriptor, fail Software-Init. From then on to
+  /// Software-Deinit the handler is called in the service loop with each report that the supervisor passes on, through deaths and
+  /// restarts of the other: periodic housekeeping while it is switched on there, every event.
+  template <class Port>
+  void use_subscription(Port& heard, typename Port::Handler handler) {
+    heard.handle(std::move(handler));
+    bind_subscription(heard);
+  }
   /// Gives a function of the descriptor its handler: a callable that takes its arguments in order (numbers, enumerations,
   /// bool, std::array or Sized of those, std::string_view for text, which lasts until the handler returns) and, last, a
   /// Call if it wants to report later. Returns Result<> or Outcome. Runs at a cycle boundary; must not throw. Each C++ type
@@ -164,6 +174,9 @@ class Subsystem {
                                 const std::type_identity_t<Arguments>&... arguments) {
     return send_request(asked, detail::values_of<Arguments...>(arguments...));
   }
+  /// What was named by use_subscription() is heard, or not, from now on. NotPermitted: it was not named.
+  Result<> subscribe(SubscriptionPort& heard) { return set_subscription(heard, true); }
+  Result<> unsubscribe(SubscriptionPort& heard) { return set_subscription(heard, false); }
   /// Reports an event from the service loop, in any state.
   template <class... Arguments>
   void raise_in_service(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) {
@@ -183,6 +196,8 @@ class Subsystem {
   void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
   void raise_encoded_in_service(const EventPort& event, Octets auxiliary);
   Result<std::uint32_t> send_request(const RequestPort& asked, pus::GivenValues values);
+  void bind_subscription(SubscriptionPort& heard);
+  Result<> set_subscription(SubscriptionPort& heard, bool wanted);
   void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
   GenericSubsystem* framework_{nullptr};
 };

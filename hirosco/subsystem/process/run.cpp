@@ -104,7 +104,8 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     fmt::print(stderr,
                "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
                "  --descriptor FILE --channel FD --vital FD --permit FD [--as NAME:ID] [--set PARAMETER=VALUES]\n"
-               "  [--text FD] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--commands NAME=ID:FILE]\n",
+               "  [--text FD] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--commands NAME=ID:FILE]\n"
+               "  [--subscribes NAME=ID:FILE]\n",
                argv[0]);
     return exit_usage;
   }
@@ -118,8 +119,8 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, in_force, false));
   if (!reading.value) return exit_environment;
   for (const auto& [word, text] : options.changes)
-    if (const auto applied = word == "--commands" ? descriptor::apply_commands(*reading.value, text, source)
-                                                  : descriptor::apply_change(*reading.value, word, text);
+    if (const auto applied = descriptor::needs_other(word) ? descriptor::apply_other(*reading.value, word, text, source)
+                                                           : descriptor::apply_change(*reading.value, word, text);
         !applied) {
       fmt::print(stderr, "{}: {} {}: {}\n", argv[0], word, text, applied.error().text);
       return exit_environment;

@@ -74,7 +74,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       self_tests_{verification_, *this, platform.clock},
       services_{&housekeeping_service_, &event_service_, &function_service_,
                 &parameter_service_,    &link_service_,  &descriptor_service_},
-      requester_{descriptor_, channel_, platform.clock.now()} {
+      requester_{descriptor_, channel_, platform.clock.now()},
+      subscriber_{descriptor_, channel_} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
     made_services_.push_back(kind->make(*this));
@@ -114,6 +115,8 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
   release_late();
   advance(now);
   requester_.step(now);
+  // As for what is asked: its own reports come first.
+  if (backlog_.empty()) subscriber_.step(now);
   author_.service(now);
   for (pus::Service* service : services_)
     if (loop_of(service->type()) == nullptr) service->step(now);
@@ -147,10 +150,10 @@ void GenericSubsystem::dispatch(const Message& message) {
   const auto header = pus::read_primary_header(message.packet);
   if (!header) return;
   if (!header->telecommand) {
-    if (requester_.waits())
-      if (const auto report = pus::TelemetryView::parse(message.packet);
-          report && report->destination() == descriptor_.id)
-        requester_.hear(*report);
+    if (const auto report = pus::TelemetryView::parse(message.packet)) {
+      if (subscriber_.hear(*report)) return;
+      if (requester_.waits() && report->destination() == descriptor_.id) requester_.hear(*report);
+    }
     return author_.telemetry(message.packet);
   }
   if (pus::to_be_discarded(message.packet)) return;

@@ -36,6 +36,7 @@
 #include "hirosco/subsystem/service_loop/requester.hpp"
 #include "hirosco/subsystem/service_loop/self_tests.hpp"
 #include "hirosco/subsystem/service_loop/st128_link_service.hpp"
+#include "hirosco/subsystem/service_loop/subscriber.hpp"
 
 /// The active part of the component framework (paper 4.1 and 4.2): standard behaviour of every subsystem around one
 /// author's class. Two steps, driven from outside: service_step() and, while cycle_demand() asks for it, cycle_step().
@@ -144,6 +145,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void use_event(EventPort& event);
   void use_request(const RequestPort& request, RequestHandler handler, Duration patience);
   Result<std::uint32_t> send_request(const RequestPort& asked, pus::GivenValues values);
+  void use_subscription(SubscriptionPort& heard);
+  Result<> set_subscription(SubscriptionPort& heard, bool wanted) { return subscriber_.set(heard, wanted); }
   /// An event with its auxiliary data, from the service loop in any state: before Software-Init it is not bound yet.
   void raise_named(std::string_view event, Octets auxiliary);
   /// For one that announces its events by name: each that it declares counts as used.
@@ -340,6 +343,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::uint32_t generation_{0};
   Backlog backlog_;
   Requester requester_;
+  Subscriber subscriber_;
   std::array<std::uint64_t, 6> told_losses_{};
   TimePoint losses_told_at_{};
   std::uint64_t last_heartbeat_{0};

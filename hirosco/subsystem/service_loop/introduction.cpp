@@ -85,6 +85,10 @@ void GenericSubsystem::use_request(const RequestPort& request, RequestHandler ha
     mistake(std::move(problem));
 }
 
+void GenericSubsystem::use_subscription(SubscriptionPort& heard) {
+  if (std::string problem = subscriber_.use(heard); !problem.empty()) mistake(std::move(problem));
+}
+
 void GenericSubsystem::require_link(std::string_view set, LinkInputPort& port) {
   const auto sets = descriptor::required_sets(descriptor_);
   if (std::ranges::find(sets, set) == sets.end())
@@ -158,6 +162,7 @@ void GenericSubsystem::check_introduction() {
 }
 
 void GenericSubsystem::forget_introduction() {
+  subscriber_.forget();
   requester_.forget();  // first: who waits may still end what it was asked itself
   const LoopsAtRest at_rest{loops_};
   dictionary_.unpublish_all();

@@ -7,6 +7,9 @@
 
 #include "hirosco/pus/requests.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
+#include "hirosco/pus/st20_parameter/parameter_service.hpp"
 
 namespace hirosco {
 namespace {
@@ -30,6 +33,53 @@ constexpr std::uint16_t counts = 16'384;
   }
 }
 
+struct Service {
+  Ask asked{};
+  descriptor::Thing::Kind of{};
+  std::string_view attribute;  ///< of <Commands>
+  std::uint8_t type{}, subtype{};
+  std::size_t id_octets{};
+};
+[[nodiscard]] const Service& service_of(Ask asked) noexcept {
+  using enum Ask;
+  using Kind = descriptor::Thing::Kind;
+  using Housekeeping = pus::HousekeepingService;
+  using Events = pus::EventService;
+  using Parameters = pus::ParameterService;
+  static constexpr std::array table{
+      Service{SetValue, Kind::Set, "sets", Parameters::service_type, Parameters::set_values, 4},
+      Service{ReadValue, Kind::Read, "reads", Parameters::service_type, Parameters::report_values, 4},
+      Service{EnableHousekeeping, Kind::Housekeeping, "housekeeping", Housekeeping::service_type,
+              Housekeeping::enable_periodic, 2},
+      Service{DisableHousekeeping, Kind::Housekeeping, "housekeeping", Housekeeping::service_type,
+              Housekeeping::disable_periodic, 2},
+      Service{OneShotHousekeeping, Kind::Housekeeping, "housekeeping", Housekeeping::service_type,
+              Housekeeping::one_shot, 2},
+      Service{SetInterval, Kind::Housekeeping, "housekeeping", Housekeeping::service_type,
+              Housekeeping::modify_interval, 2},
+      Service{EnableEvent, Kind::Event, "events", Events::service_type, Events::enable_reports, 2},
+      Service{DisableEvent, Kind::Event, "events", Events::service_type, Events::disable_reports, 2}};
+  return *std::ranges::find(table, asked, &Service::asked);
+}
+
+/// A parameter's words have all their octets, where an argument's have their length before them.
+[[nodiscard]] Result<std::vector<std::byte>> encode_thing(const std::vector<std::byte>& before,
+                                                          const descriptor::Function& function,
+                                                          pus::GivenValues values) {
+  std::vector<std::byte> data{before};
+  for (const pus::Argument& argument : function.arguments) {
+    const std::size_t count = std::min(pus::value_count(argument), values.size());
+    const std::size_t begin = data.size();
+    HIROSCO_TRY(pus::append_values(data, pus::ArgumentList{&argument, 1}, values.first(count), pus::Ids::None));
+    values = values.subspan(count);
+    if (argument.field.type != Type::Text) continue;
+    data.erase(data.begin() + static_cast<std::ptrdiff_t>(begin),
+               data.begin() + static_cast<std::ptrdiff_t>(begin + sizeof(std::uint16_t)));
+    data.resize(begin + argument.field.elements());
+  }
+  return data;
+}
+
 }  // namespace
 
 /// A subsystem that was started again must not take answers to its predecessor for its own: it goes on counting elsewhere.
@@ -43,17 +93,54 @@ std::string Requester::use(const RequestPort& port, RequestHandler handler, Dura
   const std::string who = "use_request " + std::string{port.subsystem()} + " " + std::string{port.function()} + ": ";
   const auto commands = std::ranges::find(descriptor_.commands, port.subsystem(), &descriptor::Commands::subsystem);
   if (commands == descriptor_.commands.end()) return who + "the descriptor has no <Commands> of this subsystem";
-  const auto named = std::ranges::find(commands->functions, port.function());
-  if (named == commands->functions.end()) return who + "<Commands> does not name this function";
-  if (commands->requests.size() != commands->functions.size()) return who + "no mission says who that is";
-  const auto place = static_cast<std::size_t>(named - commands->functions.begin());
-  const descriptor::Function& function = commands->requests[place];
-  if (!same_types(port.arguments(), function.arguments))
+  Bound made{.port = &port, .apid = commands->apid, .handler = std::move(handler), .patience = patience};
+  const std::string problem =
+      port.what() == Ask::Function ? bind_function(port, *commands, made) : bind_thing(port, *commands, made);
+  if (!problem.empty()) return who + problem;
+  if (!same_types(port.arguments(), made.function.arguments))
     return who + "its arguments are (" + types_text(port.arguments()) + "), the descriptor of " +
-           std::string{port.subsystem()} + " declares (" + types_text(pus::ArgumentList{function.arguments}) + ")";
+           std::string{port.subsystem()} + " declares (" + types_text(pus::ArgumentList{made.function.arguments}) + ")";
   const auto before = std::ranges::find(bound_, &port, &Bound::port);
   Bound& bound = before != bound_.end() ? *before : bound_.emplace_back();
-  bound = {&port, commands->apid, &function, std::move(handler), patience};
+  bound = std::move(made);
+  return {};
+}
+
+std::string Requester::bind_function(const RequestPort& port, const descriptor::Commands& commands,
+                                     Bound& bound) const {
+  const auto named = std::ranges::find(commands.functions, port.function());
+  if (named == commands.functions.end()) return "<Commands> does not name this function";
+  if (commands.requests.size() != commands.functions.size()) return "no mission says who that is";
+  bound.function = commands.requests[static_cast<std::size_t>(named - commands.functions.begin())];
+  return {};
+}
+
+std::string Requester::bind_thing(const RequestPort& port, const descriptor::Commands& commands, Bound& bound) const {
+  const Service& service = service_of(port.what());
+  const auto named = std::ranges::find_if(commands.things, [&](const descriptor::Thing& each) {
+    return each.kind == service.of && each.name == port.function();
+  });
+  if (named == commands.things.end()) return "<Commands> does not name it in '" + std::string{service.attribute} + "'";
+  if (commands.apid == 0) return "no mission says who that is";
+  bound.function.name = named->name;
+  bound.function.service = service.type;
+  bound.function.subtype = service.subtype;
+  bound.before.resize(1 + service.id_octets);
+  OctetWriter writer{bound.before};
+  writer.put(std::uint8_t{1});
+  if (service.id_octets == sizeof(std::uint32_t)) writer.put(named->id);
+  else writer.put(static_cast<std::uint16_t>(named->id));
+  const auto add = [&](descriptor::Field field) {
+    bound.function.arguments.push_back({.field = std::move(field), .of = {}, .fallback = {}});
+  };
+  if (port.what() == Ask::SetValue)
+    for (const descriptor::Field& field : named->fields) add(field);
+  if (port.what() == Ask::SetInterval) {
+    descriptor::Field cycles;
+    cycles.name = "INTERVAL";
+    cycles.type = Type::Uint32;
+    add(std::move(cycles));
+  }
   return {};
 }
 
@@ -68,14 +155,16 @@ Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues 
   }
   if (sent_in_window_ == most_a_second)
     return fail(ErrorCode::ResourceExhausted, "requests in a second", static_cast<std::int64_t>(most_a_second));
-  HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_request(*bound->function, values));
+  HIROSCO_TRY_LET(const std::vector<std::byte> data, bound->before.empty()
+                                                         ? pus::encode_request(bound->function, values)
+                                                         : encode_thing(bound->before, bound->function, values));
   std::array<std::byte, max_packet_octets> buffer;
   HIROSCO_TRY_LET(const Octets packet, pus::write_telecommand(buffer,
                                                               {.apid = bound->apid,
                                                                .sequence_count = next_count_,
                                                                .ack = pus::ack_all,
-                                                               .service = bound->function->service,
-                                                               .subtype = bound->function->subtype,
+                                                               .service = bound->function.service,
+                                                               .subtype = bound->function.subtype,
                                                                .source = descriptor_.id},
                                                               data));
   HIROSCO_TRY(channel_.send({.packet = packet}));
@@ -120,7 +209,7 @@ void Requester::hear_verification(const pus::TelemetryView& report) {
 /// No other report says whom it answers: it is the oldest request to this service.
 void Requester::hear_answer(const pus::TelemetryView& report) {
   const auto open = std::ranges::find_if(open_, [&](const Open& each) {
-    return each.bound->apid == report.apid() && each.bound->function->service == report.service();
+    return each.bound->apid == report.apid() && each.bound->function.service == report.service();
   });
   if (open == open_.end() || !open->bound->handler) return;
   open->bound->handler(

@@ -43,10 +43,16 @@ class Requester {
   void forget();
 
  private:
+  struct Bound;
+  [[nodiscard]] std::string bind_function(const RequestPort& port, const descriptor::Commands& commands,
+                                          Bound& bound) const;
+  [[nodiscard]] std::string bind_thing(const RequestPort& port, const descriptor::Commands& commands,
+                                       Bound& bound) const;
   struct Bound {
     const RequestPort* port{nullptr};
     std::uint16_t apid{0};
-    const descriptor::Function* function{nullptr};
+    descriptor::Function function{};
+    std::vector<std::byte> before{};  ///< its arguments, of a framework's service: how many, and which
     RequestHandler handler;
     Duration patience{};
   };

@@ -64,6 +64,10 @@ void Subsystem::abort_call(const Call& call, pus::FailureCode code, const Error&
 Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, pus::GivenValues values) {
   return framework_->send_request(asked, values);
 }
+void Subsystem::bind_subscription(SubscriptionPort& heard) { framework_->use_subscription(heard); }
+Result<> Subsystem::set_subscription(SubscriptionPort& heard, bool wanted) {
+  return framework_->set_subscription(heard, wanted);
+}
 Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
   return framework_->submit_ground_telecommand(client, packet);
 }

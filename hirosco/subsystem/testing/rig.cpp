@@ -35,9 +35,21 @@ descriptor::Subsystem read_descriptor(const std::string& text, const std::vector
   for (const std::string& other : commanded) {
     const descriptor::Subsystem described = read_descriptor(other);
     const auto named = std::ranges::find(commanding.commands, described.name, &descriptor::Commands::subsystem);
-    if (named == commanding.commands.end()) throw std::runtime_error{"it does not command " + described.name};
-    if (const auto missing = descriptor::resolve(*named, described); !missing.empty())
-      throw std::runtime_error{described.name + " has no function " + std::string{missing}};
+    const auto heard = std::ranges::find(commanding.subscribes, described.name, &descriptor::Subscribes::subsystem);
+    const bool commands = named != commanding.commands.end(), hears = heard != commanding.subscribes.end();
+    if (!commands && !hears) throw std::runtime_error{"it neither commands nor hears " + described.name};
+    const auto have = [&](std::vector<descriptor::Thing>& things) {
+      if (const auto missing = descriptor::resolve(things, described); missing.thing != nullptr)
+        throw std::runtime_error{missing.thing->name + " of " + described.name + ": " + std::string{missing.why}};
+    };
+    if (commands) {
+      if (const auto missing = descriptor::resolve(*named, described); !missing.empty())
+        throw std::runtime_error{described.name + " has no function " + std::string{missing}};
+      have(named->things);
+    }
+    if (!hears) continue;
+    heard->apid = described.id;
+    have(heard->things);
   }
   return commanding;
 }

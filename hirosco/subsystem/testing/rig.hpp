@@ -144,7 +144,7 @@ class Rig {
 
 [[nodiscard]] std::string hex(Octets octets);
 [[nodiscard]] descriptor::Subsystem read_descriptor(const std::string& text);
-/// The same of one that commands those who have the other descriptors, under the names that these have.
+/// The same of one that commands, or hears, those who have the other descriptors, under the names that these have.
 [[nodiscard]] descriptor::Subsystem read_descriptor(const std::string& text, const std::vector<std::string>& commanded);
 
 }  // namespace hirosco::testing

@@ -56,6 +56,8 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
   sandbox.readable.push_back(place_of(subsystem.subsystem.file).string());
   for (const auto& commanded : subsystem.subsystem.commands)
     if (!commanded.file.empty()) sandbox.readable.push_back(place_of(commanded.file).string());
+  for (const auto& heard : subsystem.subsystem.subscribes)
+    if (!heard.file.empty()) sandbox.readable.push_back(place_of(heard.file).string());
   sandbox.writable.emplace_back("/dev/null");
   for (const auto& configuration : subsystem.subsystem.configurations)
     for (const auto& use : configuration.devices) {

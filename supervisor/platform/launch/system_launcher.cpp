@@ -227,7 +227,7 @@ template <class Page>
   if (subsystem.subsystem.text) words.insert(words.end(), {"--text", std::to_string(text_number)});
   for (const auto& [word, text] : descriptor::changes_of(subsystem)) {
     // "NAME=12:FILE"
-    const auto file_at = word == "--commands" ? text.find(':') + 1 : text.size();
+    const auto file_at = descriptor::needs_other(word) ? text.find(':') + 1 : text.size();
     words.insert(words.end(), {word, text.substr(0, file_at) + placed(text.substr(file_at))});
   }
   return words;

@@ -7,8 +7,10 @@
 #include <array>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 #include "hirosco/pus/st05_event/event_service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/pus/standard_services.hpp"
 
@@ -16,6 +18,7 @@ namespace hirosco::supervisor {
 namespace {
 
 using descriptor::State;
+using descriptor::Thing;
 using pus::FailureCode;
 using pus::FailureNotice;
 
@@ -149,18 +152,78 @@ using Notice = std::optional<FailureNotice>;
 /// What the supervisor does for the whole craft is the ground's to ask for; a subsystem may stop it, nothing else.
 [[nodiscard]] bool stops_the_craft(const Asked& asked) { return asked.to_supervisor() && asked.calls("SAFE_ALL"); }
 
+/// What a request of the framework's services is about, where a descriptor can declare that.
+[[nodiscard]] std::optional<Thing::Kind> thing_of(std::uint8_t service, std::uint8_t subtype) noexcept {
+  using Housekeeping = pus::HousekeepingService;
+  using Events = pus::EventService;
+  using Parameters = pus::ParameterService;
+  const auto is = [=](std::uint8_t type, std::initializer_list<std::uint8_t> subtypes) {
+    return service == type && std::ranges::find(subtypes, subtype) != subtypes.end();
+  };
+  if (is(Parameters::service_type, {Parameters::set_values})) return Thing::Kind::Set;
+  if (is(Parameters::service_type, {Parameters::report_values})) return Thing::Kind::Read;
+  if (is(Events::service_type, {Events::enable_reports, Events::disable_reports})) return Thing::Kind::Event;
+  if (is(Housekeeping::service_type, {Housekeeping::enable_periodic, Housekeeping::disable_periodic,
+                                      Housekeeping::one_shot, Housekeeping::modify_interval}))
+    return Thing::Kind::Housekeeping;
+  return std::nullopt;
+}
+
+/// Is each that the telecommand names among these, and is there one?
+[[nodiscard]] bool names_only(const Asked& asked, Thing::Kind kind, const std::vector<Thing>& things) {
+  OctetReader reader{asked.telecommand.application_data()};
+  const auto count = reader.get<std::uint8_t>();
+  const bool of_parameters = kind == Thing::Kind::Set || kind == Thing::Kind::Read;
+  const bool has_interval = asked.telecommand.subtype() == pus::HousekeepingService::modify_interval;
+  for (unsigned i = 0; i < count; ++i) {
+    const std::uint32_t id = of_parameters ? reader.get<std::uint32_t>() : reader.get<std::uint16_t>();
+    const auto found =
+        std::ranges::find_if(things, [&](const Thing& each) { return each.kind == kind && each.id == id; });
+    if (!reader.good() || found == things.end()) return false;
+    if (kind == Thing::Kind::Housekeeping && has_interval) static_cast<void>(reader.get<std::uint32_t>());
+    if (kind == Thing::Kind::Set)
+      for (const descriptor::Field& field : found->fields) static_cast<void>(reader.get(field.octets()));
+  }
+  return count > 0 && reader.exhausted();
+}
+
 /// Does the descriptor of who sends it say that it commands the addressee, and for this?
 [[nodiscard]] bool is_declared(const Asked& asked) {
   const auto* sender = asked.situation.mission.find_subsystem(asked.origin.apid());
   if (sender == nullptr) return false;
+  const auto kind = thing_of(asked.telecommand.service(), asked.telecommand.subtype());
   return std::ranges::any_of(sender->subsystem.commands, [&](const descriptor::Commands& commands) {
-    return commands.apid == asked.telecommand.apid() &&
-           std::ranges::find(commands.functions, asked.name()) != commands.functions.end();
+    if (commands.apid != asked.telecommand.apid()) return false;
+    if (kind) return names_only(asked, *kind, commands.things);
+    return std::ranges::find(commands.functions, asked.name()) != commands.functions.end();
+  });
+}
+
+[[nodiscard]] bool is_about_subscriptions(const Asked& asked) {
+  const std::uint8_t subtype = asked.telecommand.subtype();
+  return asked.to_supervisor() && asked.telecommand.service() == pus::st129::service_type &&
+         (subtype == pus::st129::subscribe || subtype == pus::st129::unsubscribe);
+}
+
+/// Does its descriptor say that it hears this? Nobody but a subsystem hears anything.
+[[nodiscard]] bool may_hear(const Asked& asked) {
+  const auto* sender =
+      asked.origin.is_subsystem() ? asked.situation.mission.find_subsystem(asked.origin.apid()) : nullptr;
+  const auto wanted = pus::st129::read_subscribed(asked.telecommand.application_data());
+  if (sender == nullptr || !wanted) return false;
+  const bool event = wanted->what == pus::st129::Subscribed::What::Event;
+  const auto kind = event ? Thing::Kind::Event : Thing::Kind::Housekeeping;
+  return std::ranges::any_of(sender->subsystem.subscribes, [&](const descriptor::Subscribes& subscribes) {
+    return subscribes.apid == wanted->apid && std::ranges::any_of(subscribes.things, [&](const Thing& thing) {
+             return thing.kind == kind && thing.id == wanted->id;
+           });
   });
 }
 
 /// May this sender ask for it?
 [[nodiscard]] Notice is_the_senders(const Asked& asked) {
+  if (is_about_subscriptions(asked))
+    return may_hear(asked) ? std::nullopt : Notice{FailureNotice{FailureCode::NotDeclared}};
   if (asked.origin.is_supervisor()) return std::nullopt;
   const auto* kind = pus::standard_service(asked.telecommand.service());
   if (kind != nullptr && kind->needs == pus::Needs::SupervisorAsks) return wrong_mode(asked);

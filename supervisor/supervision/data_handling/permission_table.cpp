@@ -8,7 +8,10 @@
 #include <utility>
 
 #include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
+#include "hirosco/pus/st05_event/event_service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/pus/standard_services.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
@@ -76,6 +79,7 @@ class Table {
     ask_function("CONFIGURE", call_of("CONFIGURE", 0));
     for (const descriptor::Function& function : addressee.functions)
       ask_function(function.name, call_of(function.name));
+    ask_declared(origin, addressee);
     for (const descriptor::CustomService& service : addressee.services)
       for (const descriptor::Function& request : service.requests)
         ask(service.type, request.subtype, fmt::format("{} {}", service.name, request.name), {});
@@ -84,6 +88,49 @@ class Table {
   [[nodiscard]] std::vector<PermissionRow> take() && { return std::move(rows_); }
 
  private:
+  /// What one subsystem may ask the services of another about, thing by thing, and what it may hear.
+  void ask_declared(const Origin& origin, const descriptor::Subsystem& addressee) {
+    const auto* sender = origin.is_subsystem() ? mission_.find_subsystem(origin.apid()) : nullptr;
+    if (sender == nullptr) return;
+    for (const descriptor::Commands& commands : sender->subsystem.commands)
+      for (const descriptor::Thing& thing : commands.things)
+        if (commands.apid == addressee.id) ask_thing(thing);
+    if (addressee.id != supervisor_apid) return;
+    for (const descriptor::Subscribes& subscribes : sender->subsystem.subscribes)
+      for (const descriptor::Thing& thing : subscribes.things) {
+        using What = pus::st129::Subscribed::What;
+        const bool event = thing.kind == descriptor::Thing::Kind::Event;
+        const auto data = pus::st129::write_subscribed(
+            {subscribes.apid, event ? What::Event : What::Structure, static_cast<std::uint16_t>(thing.id)});
+        ask(pus::st129::service_type, pus::st129::subscribe,
+            fmt::format("hear {} of {}", thing.name, mission_.find_subsystem(subscribes.apid)->subsystem.name), data);
+      }
+  }
+
+  void ask_thing(const descriptor::Thing& thing) {
+    using Kind = descriptor::Thing::Kind;
+    if (thing.kind == Kind::Set) return;  // among all parameters
+    const bool parameter = thing.kind == Kind::Read;
+    std::vector<std::byte> data(1 + (parameter ? sizeof(std::uint32_t) : sizeof(std::uint16_t)));
+    OctetWriter writer{data};
+    writer.put(std::uint8_t{1});
+    if (parameter) writer.put(thing.id);
+    else writer.put(static_cast<std::uint16_t>(thing.id));
+    using Housekeeping = pus::HousekeepingService;
+    using Events = pus::EventService;
+    if (parameter)
+      return ask(pus::ParameterService::service_type, pus::ParameterService::report_values, "read " + thing.name, data);
+    if (thing.kind == Kind::Event) {
+      ask(Events::service_type, Events::enable_reports, "enable " + thing.name, data);
+      return ask(Events::service_type, Events::disable_reports, "disable " + thing.name, data);
+    }
+    ask(Housekeeping::service_type, Housekeeping::enable_periodic, "enable " + thing.name, data);
+    ask(Housekeeping::service_type, Housekeeping::disable_periodic, "disable " + thing.name, data);
+    ask(Housekeeping::service_type, Housekeeping::one_shot, "one shot of " + thing.name, data);
+    data.resize(data.size() + sizeof(std::uint32_t));
+    ask(Housekeeping::service_type, Housekeeping::modify_interval, "interval of " + thing.name, data);
+  }
+
   void ask_service(std::uint8_t type, const pus::RequestKind& request) {
     const bool sets =
         type == pus::ParameterService::service_type && request.subtype == pus::ParameterService::set_values;
@@ -137,7 +184,8 @@ std::vector<PermissionRow> permission_table(const descriptor::Mission& mission, 
   std::vector<const descriptor::Subsystem*> addressees{&mission.supervisor};
   for (const auto& member : mission.subsystems) {
     addressees.push_back(&member.subsystem);
-    if (!member.subsystem.commands.empty()) origins.push_back(Origin::subsystem(member.subsystem.id));
+    if (!member.subsystem.commands.empty() || !member.subsystem.subscribes.empty())
+      origins.push_back(Origin::subsystem(member.subsystem.id));
   }
   Table table{mission, mode};
   for (const Origin& origin : origins)

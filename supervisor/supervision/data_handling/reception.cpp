@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "supervisor/supervision/data_handling/subscriptions.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
 namespace hirosco::supervisor {
@@ -66,7 +67,8 @@ void Reception::take(Member& member, const Message& message) {
   const std::uint16_t from = member.apid();
   if (message.kind == MessageKind::Event) {
     read_own();
-    if (!parts_.reactions.take_event(from, message.packet)) count_unreadable(from);
+    if (!parts_.reactions.take_event(from, message.packet)) return count_unreadable(from);
+    parts_.subscriptions.hear_event(from, message.packet);
     return;
   }
   const auto header = pus::read_primary_header(message.packet);

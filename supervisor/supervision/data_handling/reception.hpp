@@ -13,6 +13,7 @@
 namespace hirosco::supervisor {
 
 class Reactions;
+class Subscriptions;
 
 /// Reads what the members and the supervisor itself say, and hands it on by its kind. The ground is read no faster than its
 /// telecommands are answered (adr 0029). Thread: the supervisor's.
@@ -26,6 +27,7 @@ class Reception final : public Hearer {
     Reactions& reactions;
     Unanswered& unanswered;
     Traffic& traffic;
+    Subscriptions& subscriptions;
   };
   explicit Reception(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

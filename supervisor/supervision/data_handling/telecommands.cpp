@@ -295,6 +295,7 @@ void Telecommands::forward(const Outgoing& outgoing) {
   if (releases_stop && !to_itself && !craft_.guard.release(apid, fences))
     return reject({.packet = packet, .origin = origin}, request, FailureNotice{FailureCode::NotPermittedNow});
   Member* addressee = craft_.member(apid);
+  if (releases_stop && addressee != nullptr) addressee->fences_when_free = craft_.guard.fences(apid);
   Channel* channel = to_itself ? &parts_.own.channel() : addressee != nullptr ? addressee->channel() : nullptr;
   // The ground hears what was said before this telecommand in the state in which it was said.
   if (addressee != nullptr && channel != nullptr && craft_.is_ground_link(*addressee))

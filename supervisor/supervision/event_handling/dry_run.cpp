@@ -23,6 +23,9 @@ namespace {
     const std::int64_t value = step.values[i];
     std::string said = std::to_string(value);
     if (attribute.kind == Kind::SteadyState) said = to_text(static_cast<descriptor::State>(value));
+    if (i < step.words.size() && !step.words[i].empty()) said = step.words[i];
+    else if (attribute.otherwise && attribute.kind != Kind::Word && attribute.kind != Kind::Number) continue;
+    if (attribute.kind == Kind::SeenState) said = to_text(static_cast<descriptor::State>(value));
     if (attribute.kind == Kind::Word)
       said = std::ranges::find(attribute.words, value, &descriptor::StepAttribute::Word::value)->text;
     text += fmt::format(" {}={}", attribute.name, said);

@@ -37,6 +37,21 @@ void PlanRuns::begin(const PlanStart& plan) {
   run.runner.start(std::move(procedure));
 }
 
+std::list<PlanRuns::Run>::const_iterator PlanRuns::in_its_way(const PlanStart& plan) const {
+  const PlanRank begins = rank_of(plan, 0);
+  return std::ranges::find_if(runs_, [&](const Run& run) {
+    return run.plan.subject == plan.subject && run.runner.running() && !pre_empts(begins, run.rank());
+  });
+}
+
+std::string PlanRuns::against(const PlanStart& plan) const {
+  if (plan.of_loss) return {};
+  if (std::as_const(means_.craft).member(plan.subject)->recovery.going_down())
+    return "it is on its way down with its network";
+  const auto run = in_its_way(plan);
+  return run != runs_.end() ? "plan " + run->plan.occasion.plan + " runs" : std::string{};
+}
+
 bool PlanRuns::makes_way(const PlanStart& plan) {
   // The way down is the safest there is: nothing pre-empts it, and nothing is to be told of who is on it.
   if (recovery_of(plan.subject).going_down() && !plan.of_loss) return false;
@@ -44,11 +59,8 @@ bool PlanRuns::makes_way(const PlanStart& plan) {
   const auto is_same = [&](const Run& run) {
     return run.plan.number == plan.number && run.plan.occasion.event == plan.occasion.event;
   };
-  const auto is_in_its_way = [&](const Run& run) {
-    return run.plan.subject == plan.subject && run.runner.running() && !pre_empts(begins, run.rank());
-  };
   if (!plan.of_loss) {
-    const auto first = std::ranges::find_if(runs_, is_in_its_way);
+    const auto first = in_its_way(plan);
     if (first != runs_.end()) {
       // The same is told of when it begins, any other once.
       if (first->plan.number == plan.number || !first->refused.insert(plan.number).second) return false;

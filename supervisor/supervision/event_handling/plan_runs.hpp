@@ -40,6 +40,8 @@ class PlanRuns {
       : means_{means}, own_{own}, failed_{std::move(failed)} {}
 
   void begin(const PlanStart& plan);
+  /// Why begin() would refuse it now, in words; empty: it would not.
+  [[nodiscard]] std::string against(const PlanStart& plan) const;
 
  private:
   struct Run {
@@ -48,10 +50,12 @@ class PlanRuns {
     ProcedureRunner runner;
     PlanStart plan;
     std::size_t at{0};  ///< the step that is taken now
-    std::set<std::uint16_t> refused{};  ///< plans that were told of it
+    mutable std::set<std::uint16_t> refused{};  ///< plans that were told of it
   };
   /// False: it may not begin.
   [[nodiscard]] bool makes_way(const PlanStart& plan);
+  /// That runs for its subject and does not give way.
+  [[nodiscard]] std::list<Run>::const_iterator in_its_way(const PlanStart& plan) const;
   void cancel(Run& run);
   void give_up(Run& run, std::uint16_t by, const std::string& name);
   /// Whoever goes down with this one's network follows no plan of its own any more.

@@ -3,6 +3,7 @@
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
@@ -45,14 +46,17 @@ bool Reactions::take_event(std::uint16_t from, Octets message) {
 
 /// What we tell of a subsystem is answered where it is told: by the plan that names it or us, or the event, as severe as our
 /// descriptor calls it.
-std::vector<PlanStart> Reactions::answer_to(const Member& origin, std::string_view event, Severity severity) const {
+Reaction Reactions::reaction_to(const Member& origin, std::string_view event, Severity& severity) const {
   const descriptor::Subsystem& supervisor = craft_.mission.supervisor;
   const bool ours = descriptor::is_about_subsystem(event) && origin.descriptor().find_event(event) == nullptr;
   const auto* declared = ours ? supervisor.find_event(event) : nullptr;
   if (declared != nullptr) severity = declared->severity;
-  const Reaction reaction =
-      choose_reaction(craft_.mission, {origin.descriptor().name, event, severity, craft_.mode->name,
-                                       ours ? std::string_view{supervisor.name} : std::string_view{}});
+  return choose_reaction(craft_.mission, {origin.descriptor().name, event, severity, craft_.mode->name,
+                                          ours ? std::string_view{supervisor.name} : std::string_view{}});
+}
+
+std::vector<PlanStart> Reactions::answer_to(const Member& origin, std::string_view event, Severity severity) const {
+  const Reaction reaction = reaction_to(origin, event, severity);
   std::vector<PlanStart> starts;
   if (craft_.shutting_down) return starts;  // everything is on its way down already
   const auto add = [&](const Member& subject) {
@@ -94,10 +98,14 @@ PlanStart Reactions::start_for(const Member& subject, const Member* whose, const
     const ProcedureStep step{find_step_kind(planned.kind),
                              subject.apid(),
                              planned.values,
-                             {start.occasion.plan, whose != nullptr ? start.occasion.event : std::string{}}};
+                             {start.occasion.plan, whose != nullptr ? start.occasion.event : std::string{}},
+                             planned.words,
+                             planned.arguments};
     const bool does_something =
         step.kind->run != nullptr && (step.kind->answers == nullptr || step.kind->answers(step, craft_));
-    if (for_it && does_something && (only.empty() || only == event)) start.steps.push_back(step);
+    // What is about the craft is done once where a plan is for all.
+    const bool elsewhere = whose == nullptr && step.kind->of_craft && &subject != first_of_all();
+    if (for_it && does_something && !elsewhere && (only.empty() || only == event)) start.steps.push_back(step);
   }
   return start;
 }
@@ -112,21 +120,103 @@ void Reactions::escalate(const PlanStart& plan, const ProcedureEnd& end) {
   if (!craft_.shutting_down) runs_.begin(start_for(subject, &subject, last, Severity::High, event_of_failure));
 }
 
+const Member* Reactions::first_of_all() const {
+  const auto first = std::ranges::find_if(craft_.members, [this](const Member& each) { return is_of_all(each); });
+  return first != craft_.members.end() ? &*first : nullptr;
+}
+
 /// The supervisor has no network and no actuators: what a plan asks for concerns all that have.
-void Reactions::react_to_own(std::string_view event, Severity severity) {
-  if (descriptor::is_about_subsystem(event) || descriptor::is_of_plans(event)) return;
-  const Reaction reaction = choose_reaction(
+std::vector<PlanStart> Reactions::answer_to_own(const Reaction& reaction, std::string_view event,
+                                                Severity severity) const {
+  std::vector<PlanStart> starts;
+  for (const Member& subject : craft_.members)
+    if (is_of_all(subject))
+      if (PlanStart start = start_for(subject, nullptr, reaction, severity, event); !start.steps.empty())
+        starts.push_back(std::move(start));
+  return starts;
+}
+
+Reaction Reactions::reaction_to_own(std::string_view event, Severity severity) const {
+  return choose_reaction(
       craft_.mission,
       {craft_.mission.supervisor.name, event, severity, craft_.mode->name, {}, RaisedEvent::Origin::Supervisor});
+}
+
+void Reactions::react_to_own(std::string_view event, Severity severity) {
+  if (descriptor::is_about_subsystem(event) || descriptor::is_of_plans(event)) return;
+  const Reaction reaction = reaction_to_own(event, severity);
   const auto acts = [](const descriptor::PlanStep& planned) { return find_step_kind(planned.kind)->run != nullptr; };
   if (craft_.shutting_down || std::ranges::none_of(reaction.steps, acts)) return;
   craft_.tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event},
               supervisor_apid);
   if (means_.under_way.cancel("plan " + std::string{reaction.plan})) craft_.fail();
-  for (const Member& subject : craft_.members) {
-    if (!subject.alive() || craft_.is_ground_link(subject)) continue;
-    if (PlanStart start = start_for(subject, nullptr, reaction, severity, event); !start.steps.empty())
-      runs_.begin(start);
+  for (const PlanStart& start : answer_to_own(reaction, event, severity)) runs_.begin(start);
+}
+
+/// What would be done now, by the code that does it, up to where it would begin.
+void Reactions::preview(const pus::Request& asked, Octets data) {
+  pus::Verification& verification = own_.verification();
+  verification.accepted(asked);
+  OctetReader reader{data};
+  const auto apid = reader.get<std::uint16_t>();
+  const auto id = reader.get<std::uint16_t>();
+  const Member* origin = std::as_const(craft_).member(apid);
+  const descriptor::Event* event = reader.exhausted() ? find_event(apid, id) : nullptr;
+  if (event == nullptr)
+    return verification.start_failed(asked, pus::FailureNotice{pus::FailureCode::UnknownIdentifier});
+  verification.started(asked);
+  pus::st129::PlanPreview preview;
+  preview.subsystem = apid;
+  preview.event = id;
+  preview.severity = static_cast<std::uint8_t>(event->severity);
+  if (craft_.shutting_down) preview.against.emplace_back("the craft shuts down");
+  if (const std::uint8_t link = origin != nullptr ? means_.losses.answered_link(apid, event->name) : std::uint8_t{0}) {
+    preview.plan = PlanRuns::loss_of_a_link;
+    preview.name = "loss of link " + std::to_string(link);
+    preview.steps.push_back({1, apid, std::string{to_text(craft_.mission.find_link(link)->on_loss)}});
+  } else {
+    Severity severity = event->severity;
+    const Reaction reaction =
+        origin != nullptr ? reaction_to(*origin, event->name, severity) : reaction_to_own(event->name, event->severity);
+    preview.plan = reaction.number;
+    preview.name = reaction.plan;
+    look_ahead(origin != nullptr ? answer_to(*origin, event->name, event->severity)
+                                 : answer_to_own(reaction, event->name, event->severity),
+               preview);
+  }
+  std::array<std::byte, pus::st129::max_preview_octets> buffer;
+  own_.telemetry().report(pus::st129::service_type, pus::st129::plan_preview, asked.source,
+                          pus::st129::write_plan_preview(buffer, preview));
+  verification.completed(asked);
+}
+
+/// What the supervisor tells of a subsystem is asked about under that one's id, what it tells of itself under its own.
+const descriptor::Event* Reactions::find_event(std::uint16_t apid, std::uint16_t id) const {
+  const auto find_in = [&](const descriptor::Subsystem& subsystem) {
+    const auto found = std::ranges::find(subsystem.events, id, &descriptor::Event::id);
+    return found != subsystem.events.end() ? &*found : nullptr;
+  };
+  const Member* origin = std::as_const(craft_).member(apid);
+  if (origin != nullptr)
+    if (const auto* own = find_in(origin->descriptor())) return own;
+  const auto* ours = find_in(craft_.mission.supervisor);
+  if (ours == nullptr || descriptor::is_of_plans(ours->name)) return nullptr;
+  const bool fits = descriptor::is_about_subsystem(ours->name) ? origin != nullptr : apid == supervisor_apid;
+  return fits ? ours : nullptr;
+}
+
+void Reactions::look_ahead(const std::vector<PlanStart>& starts, pus::st129::PlanPreview& preview) const {
+  for (const PlanStart& start : starts) {
+    const std::string name = craft_.name_of(start.subject);
+    if (const std::string why = runs_.against(start); !why.empty()) preview.against.push_back(name + ": " + why);
+    std::uint8_t stage = 0;
+    for (const ProcedureStep& step : start.steps) {
+      const std::string what = text_of(step, craft_.mission);
+      preview.steps.push_back({++stage, start.subject, what});
+      if (step.kind->against == nullptr) continue;
+      if (const std::string why = step.kind->against(step, means_); !why.empty())
+        preview.against.push_back(name + ", " + what + ": " + why);
+    }
   }
 }
 

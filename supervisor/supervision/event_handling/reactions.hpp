@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/words/describe.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
@@ -22,8 +23,10 @@ class Reactions {
  public:
   Reactions(const Means& means, OwnSubsystem& own)
       : craft_{means.craft},
+        own_{own},
         desk_{means.desk, own},
-        means_{means.craft, desk_, means.links, means.restarts, means.under_way, means.commanded, means.losses},
+        means_{means.craft,     desk_,           means.links,  means.restarts,
+               means.under_way, means.commanded, means.losses, means.waiting},
         runs_{means_, own, [this](const PlanStart& plan, const ProcedureEnd& end) { escalate(plan, end); }},
         describer_{craft_.mission} {}
   Reactions(const Reactions&) = delete;
@@ -35,12 +38,26 @@ class Reactions {
   void react(Member& origin, std::string_view event, descriptor::Severity severity);
   /// What they do first of all about this event, fences, where it is as good as certain and its reaction waits for more.
   void act_first(const Member& origin, std::string_view event, descriptor::Severity severity) const;
+  /// TC[129,6]: what it would do about an event now, and what is against it. Nothing is moved, kept or sent but the answer.
+  void preview(const pus::Request& asked, Octets data);
 
  private:
   /// For each whom the plan moves, with what there is to do for it: the one whose event it is first.
   [[nodiscard]] std::vector<PlanStart> answer_to(const Member& origin, std::string_view event,
                                                  descriptor::Severity severity) const;
+  /// Which plan; the severity is then that of our descriptor, where it is us who tell.
+  [[nodiscard]] Reaction reaction_to(const Member& origin, std::string_view event,
+                                     descriptor::Severity& severity) const;
   void react_to_own(std::string_view event, descriptor::Severity severity);
+  [[nodiscard]] Reaction reaction_to_own(std::string_view event, descriptor::Severity severity) const;
+  [[nodiscard]] std::vector<PlanStart> answer_to_own(const Reaction& reaction, std::string_view event,
+                                                     descriptor::Severity severity) const;
+  /// Whom a plan for our own events moves; and the first of them.
+  [[nodiscard]] bool is_of_all(const Member& member) const { return member.alive() && !craft_.is_ground_link(member); }
+  [[nodiscard]] const Member* first_of_all() const;
+  /// Null: nobody tells of it.
+  [[nodiscard]] const descriptor::Event* find_event(std::uint16_t apid, std::uint16_t id) const;
+  void look_ahead(const std::vector<PlanStart>& starts, pus::st129::PlanPreview& preview) const;
   /// `whose`: the event's; null: the supervisor's, and the plan is for all that act.
   [[nodiscard]] PlanStart start_for(const Member& subject, const Member* whose, const Reaction& reaction,
                                     descriptor::Severity severity, std::string_view event) const;
@@ -60,6 +77,7 @@ class Reactions {
   };
 
   Craft& craft_;
+  OwnSubsystem& own_;
   Desk desk_;
   Means means_;
   PlanRuns runs_;

@@ -10,6 +10,7 @@
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/commanded_states.hpp"
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/procedures/waiting.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/restarts.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
@@ -26,6 +27,7 @@ struct Means {
   Undertaking& under_way;
   CommandedStates& commanded;
   LossHandling& losses;
+  Waiting& waiting;
 };
 
 /// Why a plan runs; empty where none does.
@@ -47,6 +49,8 @@ struct ProcedureStep {
   std::uint16_t subject{0};              ///< APID
   std::vector<std::int64_t> values{};    ///< as many as its kind has
   Occasion occasion{};
+  std::vector<std::string> words{};      ///< as of descriptor::PlanStep, as the next
+  std::vector<double> arguments{};
 };
 
 /// A kind of step: a file in steps/ and a row in step_kinds.hpp.
@@ -62,6 +66,10 @@ struct StepKind {
   void (*act_first)(const ProcedureStep&, const Means&){nullptr};
   /// For plans: whether there is something to do now. Null: always.
   bool (*answers)(const ProcedureStep&, const Craft&){nullptr};
+  /// For plans: why it could not be done now, in words; empty: it could. Nothing is done. Null: nothing is ever against it.
+  std::string (*against)(const ProcedureStep&, const Means&){nullptr};
+  /// For plans: it is about the craft and no subsystem, and done once where a plan is for all.
+  bool of_craft{false};
   /// For plans. Null: Safety::None.
   Safety (*safety)(const ProcedureStep&){nullptr};
   /// For plans: whether a lesser event of its subject begins nothing else while it runs.

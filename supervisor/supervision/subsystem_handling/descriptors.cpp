@@ -281,7 +281,7 @@ void Descriptors::refuse(const Problems& problems) {
   }
   parts_.own.announce("DESCRIPTOR_REFUSED", {static_cast<double>(apid_), static_cast<double>(problems.size())});
   give_up(FailureCode::ValueNotAcceptable,
-          "problems, each in a TM[129,6]:", static_cast<std::int64_t>(problems.size()));
+          "problems, each in a TM[129,10]:", static_cast<std::int64_t>(problems.size()));
 }
 
 void Descriptors::finish() {

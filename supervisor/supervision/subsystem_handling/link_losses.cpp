@@ -34,13 +34,17 @@ void LinkLosses::lost(std::uint8_t id) {
 
 /// The event of the consumer's own cycle: its producer may live and say nothing, or this be quicker than its end.
 bool LinkLosses::answers(std::uint16_t apid, std::string_view event) {
+  const std::uint8_t id = answered_link(apid, event);
+  if (id != 0) lost(id);
+  return id != 0;
+}
+
+std::uint8_t LinkLosses::answered_link(std::uint16_t apid, std::string_view event) const {
   constexpr std::string_view stale = "_STALE";
-  if (!event.ends_with(stale)) return false;
+  if (!event.ends_with(stale)) return 0;
   const std::uint8_t id = means_.links.link_into(apid, event.substr(0, event.size() - stale.size()));
   const auto* link = craft_.mission.find_link(id);
-  if (link == nullptr || link->on_loss == OnLoss::Down) return false;
-  lost(id);
-  return true;
+  return link == nullptr || link->on_loss == OnLoss::Down ? std::uint8_t{0} : id;
 }
 
 void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer) {

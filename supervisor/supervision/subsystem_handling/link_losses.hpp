@@ -24,6 +24,7 @@ class LinkLosses final : public Watch, public Undertaking, public LossHandling {
 
   void lost(std::uint8_t link) override;
   bool answers(std::uint16_t apid, std::string_view event) override;
+  [[nodiscard]] std::uint8_t answered_link(std::uint16_t apid, std::string_view event) const override;
   /// Those that are held over, and those on their way to another configuration.
   void watch(TimePoint now) override;
   bool cancel(std::string_view why) override;

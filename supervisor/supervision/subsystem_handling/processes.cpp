@@ -3,6 +3,7 @@
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 
 #include <string>
+#include <utility>
 
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
@@ -85,6 +86,7 @@ Result<> Processes::launch(Member& member) {
   }
   craft_.guard.adopt(member.apid(), *launched);
   member.started(std::move(*launched));
+  if (!std::exchange(member.was_started, true)) member.fences_when_free = craft_.guard.fences(member.apid());
   member.enter_mode(craft_.mode_epoch);
   craft_.tell("started " + name, member.apid());
   return ok();

@@ -84,7 +84,7 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
 
   /// What steps act with, and a desk that the test plays.
   [[nodiscard]] Means means_with(CommandDesk& desk) {
-    return {craft, desk, parts.graph, parts.restarts, parts.under_way, parts.commanded, parts.losses};
+    return {craft, desk, parts.graph, parts.restarts, parts.under_way, parts.commanded, parts.losses, parts.waiting};
   }
   void SetUp() override {
     clock.set(TimePoint{10s});

@@ -19,6 +19,16 @@ class Switch final : public Subsystem {
     std::uint32_t failed;
   };
 
+  struct Seen {  // SEEN in switch.xml
+    double brightness;
+    std::uint32_t reports;
+    std::uint32_t programs;
+  };
+  struct Lamp {  // structure 4800 of the lamp: its CUR_VALUES
+    double brightness;
+    double current_a;
+  };
+
   Result<> offline() override {
     panel_.on_request("PRESS", [this](double brightness, const Call& call) -> Outcome {
       const auto asked = request(fade_, brightness);
@@ -32,7 +42,17 @@ class Switch final : public Subsystem {
   Result<Step> software_init() override {
     publish("BLINK_S", blink_s_);
     publish("ANSWERS", answers_);
+    publish("SEEN", seen_);
     use_request(fade_, [this](const RequestReport& report) { hear(report); });
+    use_request(look_, [](const RequestReport&) {});
+    use_subscription(lamp_, [this](const Lamp& lamp) {
+      brightness_.store(lamp.brightness);
+      ++reports_;
+    });
+    use_subscription(programmed_, [this](std::uint64_t, std::uint8_t, std::uint8_t, std::array<float, 3>) {
+      ++programs_;
+      static_cast<void>(request(look_));  // at once, and not only with the next period
+    });
     return done;
   }
 
@@ -59,15 +79,22 @@ class Switch final : public Subsystem {
 
   Result<> operational(const Cycle&) noexcept override {
     answers_.store({completed_, refused_, failed_});
+    seen_.store({brightness_, reports_, programs_});
     return ok();
   }
 
   Request<double> fade_{"LAMP", "FADE"};
+  Request<> look_{"LAMP", Ask::OneShotHousekeeping, "4800"};
+  Subscription<Lamp> lamp_{"LAMP", "4800"};
+  EventSubscription<std::uint64_t, std::uint8_t, std::uint8_t, std::array<float, 3>> programmed_{"LAMP", "PROGRAMMED"};
   Parameter<double> blink_s_;
   Parameter<Answers> answers_;
+  Parameter<Seen> seen_;
   CustomService panel_{"PANEL"};
   std::map<std::uint32_t, Call> pressed_;  // who waits for which request
   std::atomic<std::uint32_t> completed_{0}, refused_{0}, failed_{0};  // counted in the service loop, shown by the cycle
+  std::atomic<double> brightness_{0};
+  std::atomic<std::uint32_t> reports_{0}, programs_{0};
   TimePoint next_blink_{};
   bool bright_{false};
 };

@@ -6,6 +6,7 @@
 
 #include <hirosco/descriptor/read/read.hpp>
 #include <hirosco/subsystem/testing/rig.hpp>
+#include <utility>
 
 using namespace hirosco;
 
@@ -16,6 +17,9 @@ TEST(Switch, IsDoneWithAPressWhenTheLampIsAndSaysWhyNot) {
   hirosco::testing::Rig rig{
       *author, hirosco::testing::read_descriptor(files("switch.xml").value(), {files("lamp.xml").value()})};
   rig.bring_to(State::PreOperational);
+  ASSERT_EQ(rig.asked.size(), 2U) << "what it hears";
+  for (const auto& each : std::exchange(rig.asked, {})) rig.verify(each, 7);
+  rig.settle();
   std::vector<std::byte> bright(sizeof(double));
   OctetWriter{bright}.put(0.75);
 
@@ -35,4 +39,33 @@ TEST(Switch, IsDoneWithAPressWhenTheLampIsAndSaysWhyNot) {
   rig.settle();
   const std::string words = "not permitted in this state";
   EXPECT_NE(rig.outcome(second).find(hirosco::testing::hex(std::as_bytes(std::span{words}))), std::string::npos);
+}
+
+TEST(Switch, SeesHowBrightTheLampIsAndLooksWhenItWasProgrammed) {
+  const auto files = descriptor::file_system();
+  const auto author = make_switch();
+  hirosco::testing::Rig rig{
+      *author, hirosco::testing::read_descriptor(files("switch.xml").value(), {files("lamp.xml").value()})};
+  rig.bring_to(State::Operational);
+  for (const auto& each : std::exchange(rig.asked, {})) rig.verify(each, 7);
+  constexpr std::uint16_t lamp = 7, structure = 4800, programmed = 4801;
+  std::vector<std::byte> values(2 + 2 * sizeof(double));
+  OctetWriter{values}.put(structure).put(0.25).put(0.1);
+  rig.answer(lamp, 3, 25, values, std::uint16_t{0});
+  std::vector<std::byte> event(2 + 8 + 1 + 1 + 3 * sizeof(float));
+  OctetWriter{event}.put(programmed).put(std::uint64_t{5}).put(std::uint8_t{1}).put(std::uint8_t{0});
+  rig.answer(lamp, 5, 1, event);
+  rig.settle();
+  ASSERT_EQ(rig.asked.size(), 1U);
+  EXPECT_EQ(hirosco::testing::hex(rig.asked[0].data), "0112c0") << "one shot of 4800";
+  rig.forget_telemetry();
+  for (int i = 0; i < 12; ++i) rig.settle(1);
+  ASSERT_FALSE(rig.reports(3, 25).empty());
+  // 4810, ANSWERS, then SEEN: 0.25, one report, one program.
+  EXPECT_EQ(rig.reports(3, 25).back(),
+            "12ca"
+            "000000000000000000000000"
+            "3fd0000000000000"
+            "00000001"
+            "00000001");
 }

@@ -65,10 +65,16 @@ class MissionReader {
   [[nodiscard]] std::string executable(Attributes& attributes);
 
   // read_commands.cpp
-  void read_redirected(const xml::Element& element, MissionSubsystem& member, Unique& names);
-  /// Whom the members command, once all are known.
+  void read_redirected(const xml::Element& element, MissionSubsystem& member, Redirected::Kind kind, Unique& names);
+  /// Whom the members command and hear, once all are known.
   void resolve_commands();
   void resolve_one(const MissionSubsystem& member, Commands& commands);
+  void resolve_one(const MissionSubsystem& member, Subscribes& subscribes);
+  static void resolve_things(std::vector<Thing>& things, const Subsystem& other, const Location& at,
+                             Problems& problems);
+  /// Whom the mission means by that name; null: nobody, and it was reported.
+  [[nodiscard]] const MissionSubsystem* find_other(const MissionSubsystem& member, const std::string& named,
+                                                   Redirected::Kind kind);
 
   // read_console.cpp
   void read_console(const xml::Element& element);
@@ -112,12 +118,26 @@ class MissionReader {
   void read_commission(const xml::Element& element, Mode& mode, Unique& names);
   void read_establish(const xml::Element& element, Mode& mode, Unique& ids);
   void read_permit(const xml::Element& element, Mode& mode);
+  // read_plans.cpp
   void read_recovery(const xml::Element& element);
   void read_plan(const xml::Element& element);
   void read_when(const xml::Element& element, Plan& plan);
   void read_do(const xml::Element& element, Plan& plan);
-  [[nodiscard]] std::int64_t read_value(Attributes& attributes, const StepAttribute& described);
+  /// `place`: of the step in its plan.
+  [[nodiscard]] std::int64_t read_value(Attributes& attributes, const StepAttribute& described, std::size_t place,
+                                        PlanStep& step);
+  struct NamedInStep {
+    std::size_t step, attribute;
+    const xml::Attribute* at;
+    StepAttribute::Kind kind;
+  };
+  void resolve_names(Plan& plan);
+  void resolve_name(const Plan& plan, PlanStep& step, const NamedInStep& named);
+  void check_arguments(const xml::Attribute& at, const Function& function, PlanStep& step);
+  void check_notice(const xml::Attribute& at);
+  void expand_runs(const xml::Element& element);
   void check_answers(const xml::Element& element, const Plan& plan);
+  // read_modes.cpp
   [[nodiscard]] State read_steady_state(Attributes& attributes, std::string_view name, State fallback);
   void check_functions(const xml::Attribute& at, const Permit& permit);
   void check_parameters(const xml::Attribute& at, const Permit& permit);
@@ -132,6 +152,7 @@ class MissionReader {
   std::vector<std::vector<Diagnostic>> subsystem_problems_;
   std::vector<Diagnostic> warnings_;
   std::vector<std::pair<const xml::Attribute*, std::string>> redirections_;  ///< where, and whose
+  std::vector<NamedInStep> named_in_steps_;  ///< of the plan that is read
   std::size_t doubtful_links_{0};    ///< that were reported: what a mode establishes cannot be judged then
   bool incomplete_{false};           ///< a subsystem could not be read: names may be missing for that reason only
   Unique subsystem_names_{"subsystem name", "E0301"};

@@ -138,6 +138,7 @@ class SubsystemReader {
 
   // read_commands.cpp
   void read_commands(const xml::Element& element);
+  void read_subscribes(const xml::Element& element);
 
   // read_services.cpp
   /// Rows for each_child(): the services, read into `services`.
@@ -182,6 +183,7 @@ class SubsystemReader {
   Unique failure_names_{"name of a failure", "E0201"};
   Unique failure_codes_{"failure code", "E0202"};
   Unique commanded_{"commanded subsystem", "E0201"};
+  Unique heard_{"subsystem that is heard", "E0201"};
   Unique function_names_{"function name", "E0201"};
   Unique service_names_{"service name", "E0201"};
   Unique service_types_{"service type", "E0202"};

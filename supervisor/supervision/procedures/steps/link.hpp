@@ -9,7 +9,7 @@
 
 namespace hirosco::supervisor::steps {
 
-/// A real-time link up: the value is its id. The subject is the supervisor, who leads the handshake.
+/// A real-time link up: the value is its id. The supervisor leads the handshake, whoever the subject is.
 inline constexpr StepKind link{
     .name = "link",
     .values = 1,
@@ -17,8 +17,9 @@ inline constexpr StepKind link{
                const descriptor::Mission&) { return "link " + std::to_string(step.values[0]); },
     .run =
         [](const ProcedureStep& step, const Means& means, CommandDone done) {
-          means.desk.command(step.subject, "LINK", static_cast<double>(step.values[0]), std::move(done));
+          means.desk.command(supervisor_apid, "LINK", static_cast<double>(step.values[0]), std::move(done));
         },
+    .of_craft = true,
 };
 
 }  // namespace hirosco::supervisor::steps

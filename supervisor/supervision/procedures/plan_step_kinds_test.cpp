@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/testing/parts_rig.hpp"
+
+/// What each kind of step of a recovery plan does, from the event to the octets. ARM tells BROKEN and LATE; ARM and HAND are joined by
+/// real-time links; CAMERA is the ground link in the others' tests, and not here.
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using enum descriptor::State;
+
+constexpr std::uint16_t broken = 2000, late = 2001;
+
+struct PlanStepKinds : PartsTest {
+  void SetUp() override {
+    PartsTest::SetUp();
+    craft.mission.ground.subsystem.clear();
+    for (auto& member : craft.mission.subsystems) {
+      for (const auto& [name, id] : {std::pair{"BROKEN", broken}, std::pair{"LATE", late}}) {
+        descriptor::Event event;
+        event.name = name;
+        event.id = id;
+        event.severity = Severity::Low;
+        member.subsystem.events.push_back(event);
+      }
+      descriptor::Function stow = function("STOW", in_states({Operational}));
+      descriptor::Function::Argument angle;
+      angle.field.name = "ANGLE";
+      angle.field.type = Type::Double;
+      stow.arguments.push_back(angle);
+      member.subsystem.functions.push_back(stow);
+      descriptor::Function notice = function("PARTNER_FAILED", in_states({Operational}));
+      descriptor::Function::Argument who;
+      who.field.name = "WHO";
+      who.field.type = Type::Uint16;
+      notice.arguments.push_back(who);
+      if (member.subsystem.id == hand) member.subsystem.functions.push_back(notice);
+    }
+    start_all(Operational);
+    for (const std::uint16_t apid : {arm, hand, camera}) let_go(apid);
+    start_supervisor();
+    for (const std::uint16_t apid : {arm, hand, camera}) received(apid);
+    story.clear();
+  }
+  /// As the ground's SET_STATE Operational does.
+  void let_go(std::uint16_t apid) {
+    ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+    craft.member(apid)->fences_when_free = guard.fences(apid);
+  }
+  void plan(std::vector<descriptor::PlanStep> steps, std::string event = "BROKEN") {
+    descriptor::Plan made;
+    made.name = "test";
+    made.event = std::move(event);
+    made.steps = std::move(steps);
+    craft.mission.plans.push_back(std::move(made));
+  }
+  void happens(std::uint16_t id = broken) { event(arm, id, Severity::Low); }
+  static descriptor::PlanStep to_be(State state) { return {"set_state", {static_cast<std::int64_t>(state)}}; }
+  /// Everybody and the supervisor do what they are told, until nothing more comes.
+  void all_obey() {
+    for (int turn = 0; turn < 60; ++turn) {
+      for (const std::uint16_t apid : {arm, hand, camera})
+        for (const Received& each : received(apid)) {
+          sent.push_back(craft.name_of(apid) + " " + each.text);
+          if (each.text.starts_with("SET_STATE "))
+            set(apid, static_cast<State>(std::stoi(each.text.substr(10))));
+          if (each.text.starts_with("CONFIGURE "))
+            played[apid].vital->configuration = static_cast<std::uint8_t>(std::stoi(each.text.substr(10)));
+          verify(apid, each.request, 7);
+        }
+      own_step();
+      parts.waiting.watch(clock.now());
+    }
+  }
+  std::vector<std::string> sent;
+};
+
+TEST_F(PlanStepKinds, CommandCallsAFunctionWithItsNumbers) {
+  plan({{"command", {2, 1}, {}, {"STOW", "0.5"}, {0.5}}});
+  happens();
+  EXPECT_THAT(texts(arm), ElementsAre("STOW"));
+  EXPECT_TRUE(was_told("plan test: ARM STOW 0.5 because of BROKEN"));
+  EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(PlanStepKinds, ACommandThatFailsEscalatesOnceAndIsTold) {
+  plan({{"command", {2, 1}, {}, {"STOW", "0.5"}, {0.5}}, to_be(PreOperational)});
+  happens();
+  const auto begun = received(arm);
+  ASSERT_EQ(begun.size(), 1U);
+  verify(arm, begun[0].request, 8, pus::FailureCode::ExecutionError);
+  EXPECT_TRUE(was_told("plan failed (ARM STOW 0.5: execution error): escalating"));
+  EXPECT_TRUE(guard.fenced(arm)) << "the plan for high severity: down with its network";
+  EXPECT_EQ(std::ranges::count_if(story, [](const std::string& line) { return line.find("escalating") != line.npos; }), 1);
+}
+
+TEST_F(PlanStepKinds, ConfigureAndThenAState) {
+  plan({to_be(SafeOperational), to_be(PreOperational), {"configure", {2}, {}, {"COUPLED"}}});
+  happens();
+  all_obey();
+  EXPECT_THAT(sent, ElementsAre("ARM SET_STATE 4", "ARM SET_STATE 3", "ARM CONFIGURE 2"));
+}
+
+TEST_F(PlanStepKinds, LinkAndUnlinkAreTheSupervisorsAndDoneOnceThoughAPlanIsForAll) {
+  plan({{"unlink", {1}}}, "LOG_DAMAGED");
+  plan({{"link", {1}}}, "LATE");
+  parts.own.announce("LOG_DAMAGED", {1});
+  own_step();
+  EXPECT_EQ(std::ranges::count_if(story, [](const std::string& line) { return line.find("UNLINK") != line.npos; }), 1)
+      << "link 1 is not up: refused, told";
+  happens(late);
+  own_step();
+  EXPECT_THAT(texts(arm), Contains("TC[128,1]")) << "the handshake has begun";
+}
+
+TEST_F(PlanStepKinds, FenceStopsTheActuatorsAndNothingElse) {
+  plan({{"fence"}});
+  happens();
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_FALSE(guard.fenced(hand));
+  EXPECT_THAT(texts(arm), IsEmpty());
+  EXPECT_TRUE(was_told("plan test: ARM fenced because of BROKEN"));
+}
+
+TEST_F(PlanStepKinds, FenceOfAnotherLeavesWhoseEventItIs) {
+  plan({{"fence", {}, "HAND"}});
+  happens();
+  EXPECT_FALSE(guard.fenced(arm));
+  EXPECT_TRUE(guard.fenced(hand));
+}
+
+TEST_F(PlanStepKinds, WhatFencesDoesSoBeforeTheFirstStepBegins) {
+  plan({{"command", {2, 1}, {}, {"STOW", "0.5"}, {0.5}}, {"kill"}});
+  happens();
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_THAT(killed, IsEmpty()) << "the command runs";
+  all_obey();
+  EXPECT_THAT(killed, ElementsAre(played[arm].process));
+  EXPECT_TRUE(was_told("plan test: ARM is ended because of BROKEN"));
+}
+
+TEST_F(PlanStepKinds, WaitForHoldsTheNextStepUntilSomebodyIsThere) {
+  plan({{"wait_for", {static_cast<int>(PreOperational), hand, 5000}, {}, {"", "HAND"}}, to_be(SafeOperational)});
+  happens();
+  EXPECT_THAT(texts(arm), IsEmpty());
+  EXPECT_TRUE(guard.fenced(arm)) << "what stops does not wait";
+  wait(4s);
+  parts.waiting.watch(clock.now());
+  EXPECT_THAT(texts(arm), IsEmpty());
+  set(hand, PreOperational);
+  parts.waiting.watch(clock.now());
+  EXPECT_THAT(texts(arm), ElementsAre(to(SafeOperational)));
+}
+
+TEST_F(PlanStepKinds, WaitForFailsAtItsTimeAndSoDoesItsPlan) {
+  plan({{"wait_for", {static_cast<int>(Offline), 0, 5000}}, to_be(SafeOperational)});
+  happens();
+  wait(5s);
+  parts.waiting.watch(clock.now());
+  EXPECT_TRUE(was_told("plan failed (ARM until ARM is Offline: not in its time): escalating"));
+}
+
+TEST_F(PlanStepKinds, NotifyNetworkTellsItsMembersAndTakesNobodyDown) {
+  parts.graph.set_up(1, true);
+  plan({{"notify_network", {0}, {}, {"PARTNER_FAILED"}}});
+  happens();
+  EXPECT_THAT(texts(hand), ElementsAre("PARTNER_FAILED"));
+  EXPECT_THAT(texts(arm), IsEmpty());
+  EXPECT_THAT(texts(camera), IsEmpty()) << "it is in no network";
+  for (const std::uint16_t apid : {arm, hand}) EXPECT_FALSE(guard.fenced(apid));
+  EXPECT_TRUE(was_told("plan test: PARTNER_FAILED to HAND because of BROKEN of ARM"));
+}
+
+TEST_F(PlanStepKinds, PowerIsTheCraftsBudget) {
+  plan({{"power", {400}}});
+  happens();
+  own_step();
+  EXPECT_EQ(parts.power.ledger().budget_mw(), 400'000U);
+}
+
+// --- hand_over: ARM's task to CAMERA ------------------------------------------------------------------------------------
+
+struct HandingOver : PlanStepKinds {
+  void SetUp() override {
+    PlanStepKinds::SetUp();
+    set(camera, Offline);
+    plan({{"hand_over", {camera, 1}, {}, {"CAMERA", "ONLY"}}});
+  }
+};
+
+TEST_F(HandingOver, TheGiverStopsAndTheReceiverComesUpFromWhereItIs) {
+  happens();
+  EXPECT_TRUE(guard.fenced(arm)) << "before anybody obeys";
+  all_obey();
+  EXPECT_THAT(sent, ElementsAre("ARM SET_STATE 4", "CAMERA SET_STATE 3", "CAMERA CONFIGURE 1", "CAMERA SET_STATE 4",
+                                "CAMERA SET_STATE 5"));
+  EXPECT_FALSE(guard.fenced(camera));
+  EXPECT_TRUE(was_told("the task of ARM is with CAMERA"));
+  EXPECT_FALSE(was_told("escalating"));
+}
+
+TEST_F(HandingOver, AGiverThatDoesNotObeyHoldsUpNobody) {
+  happens();
+  const auto begun = received(arm);
+  ASSERT_EQ(begun.size(), 1U);
+  verify(arm, begun[0].request, 8, pus::FailureCode::ExecutionError);
+  all_obey();
+  EXPECT_EQ(craft.member(camera)->state(), Operational);
+}
+
+TEST_F(HandingOver, ItGoesOnBehindTheWayDownOfTheGiversNetwork) {
+  parts.graph.set_up(1, true);
+  craft.mission.plans.back().steps.insert(craft.mission.plans.back().steps.begin(), {"shut_down_network"});
+  happens();
+  all_obey();
+  for (const std::uint16_t apid : {arm, hand}) {
+    EXPECT_TRUE(guard.fenced(apid));
+    EXPECT_EQ(craft.member(apid)->state(), Offline);
+  }
+  EXPECT_EQ(craft.member(camera)->state(), Operational);
+  EXPECT_FALSE(guard.fenced(camera));
+}
+
+/// No plan lets go who was stopped: by a stop of everything, by another plan, by a fence of whatever origin.
+TEST_F(HandingOver, WhoWasStoppedReceivesNothingUntilSomebodyLetItGo) {
+  parts.safe_all.asked();
+  ASSERT_TRUE(guard.fenced(camera));
+  set(arm, Operational);
+  received(arm);
+  happens();
+  all_obey();
+  EXPECT_TRUE(guard.fenced(camera));
+  EXPECT_NE(craft.member(camera)->state(), Operational);
+  EXPECT_TRUE(was_told("CAMERA was stopped, and nobody has let it go since"));
+  EXPECT_TRUE(was_told("escalating"));
+}
+
+/// At each moment of the way up.
+TEST_F(HandingOver, AStopOnTheWayUpEndsIt) {
+  for (int steps = 0; steps < 5; ++steps) {
+    SCOPED_TRACE(steps);
+    set(camera, Offline);
+    set(arm, Operational);
+    craft.member(arm)->recovery.started();
+    let_go(camera);
+    craft.member(camera)->fences_when_free = guard.fences(camera);
+    happens();
+    for (int step = 0; step < steps; ++step) {
+      for (const std::uint16_t apid : {arm, camera})
+        for (const Received& each : received(apid)) {
+          if (each.text.starts_with("SET_STATE "))
+            set(apid, static_cast<State>(std::stoi(each.text.substr(10))));
+          verify(apid, each.request, 7);
+        }
+      own_step();
+    }
+    parts.safe_all.asked();
+    all_obey();
+    EXPECT_TRUE(guard.fenced(camera));
+    EXPECT_TRUE(guard.fenced(arm));
+    wait(30s);
+    parts.own_telecommands.watch(clock.now());
+  }
+}
+
+TEST_F(HandingOver, ItFailsWhereNobodyCanReceive) {
+  ends[played[camera].process] = {};
+  parts.processes.watch(clock.now());
+  happens();
+  all_obey();
+  EXPECT_TRUE(was_told("plan failed (ARM task to CAMERA in ONLY: CAMERA is down): escalating"));
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

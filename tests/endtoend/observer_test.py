@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""observer_test.py: the promises of the ten states (paper 4.2) as an outside observer sees them: what a subsystem's process holds stands in
+/proc, what it says on the ground link, what its device gets at the device. Ten times up and down; nothing of a subsystem is asked."""
+import binascii
+import collections
+import os
+import pathlib
+import re
+import struct
+import time
+import unittest
+
+import flight
+
+IMAGER = flight.REPOSITORY / "tests/imager/mission.xml"
+OFFLINE, PRE_OPERATIONAL, SAFE_OPERATIONAL, OPERATIONAL, POST_OPERATIONAL = 0, 3, 4, 5, 7
+ROUNDS = 10
+# What may grow is a page here and there of the allocator's own; what a state takes is far more than that.
+SAME_KB = 256
+
+
+POS_SCALE = flight.MANIPULATOR << 16 | 10 << 8 | 8     # its id on the wire: subsystem, layout DOUBLE, number
+DESCRIPTOR_VALUE = 1.0
+
+
+class Operator(flight.Telemetry):
+    """Sets and reads one parameter of the manipulator, on the same connection."""
+
+    count = 0
+
+    def send(self, subtype, data):
+        """TC[20,subtype]; the data of TM[20,2] where one came, once it is completed."""
+        self.count += 1
+        body = struct.pack(">BBBH", 0x2F, 20, subtype, 0x4712) + data
+        packet = struct.pack(">HHH", 0x1800 | flight.MANIPULATOR, 0xC000 | self.count, len(body) + 1) + body
+        self._socket.sendall(packet + struct.pack(">H", binascii.crc_hqx(packet, 0xFFFF)))
+        end = time.monotonic() + 10.0
+        while time.monotonic() < end:
+            with self._mutex:
+                reports = list(self.reports)
+            ends = [r.subtype for r in reports if r.service == 1 and r.subtype in (2, 4, 7, 8, 10) and r.data[:4] == packet[:4]]
+            if ends:
+                assert ends == [7], f"TC[20,{subtype}]: TM[1,{ends}]"
+                values = [r.data for r in reports if (r.apid, r.service, r.subtype) == (flight.MANIPULATOR, 20, 2)]
+                return values[-1] if values else None
+            time.sleep(0.01)
+        raise AssertionError(f"no end of TC[20,{subtype}]")
+
+    def set_scale(self, value):
+        self.send(3, struct.pack(">BId", 1, POS_SCALE, value))
+
+    def scale(self):
+        self.forget()
+        return struct.unpack(">BId", self.send(1, struct.pack(">BI", 1, POS_SCALE)))[2]
+
+
+class Holding:
+    """What a process holds now: descriptors, shared mappings, each by the name that the system has for it."""
+
+    def __init__(self, pid):
+        folder = pathlib.Path(f"/proc/{pid}")
+        self.descriptors = collections.Counter()
+        for entry in (folder / "fd").iterdir():
+            try:
+                self.descriptors[re.sub(r"\d{3,}", "N", os.readlink(entry))] += 1
+            except FileNotFoundError:
+                pass                       # closed while it was looked at
+        self.mappings = collections.Counter()
+        for line in (folder / "maps").read_text().splitlines():
+            words = line.split(None, 5)
+            if len(words) == 6 and words[1].endswith("s"):
+                self.mappings[words[5].removesuffix(" (deleted)")] += 1
+        status = dict(line.split(":", 1) for line in (folder / "status").read_text().splitlines() if ":" in line)
+        self.memory_kb = int(status["RssAnon"].split()[0])
+        self.threads = int(status["Threads"])
+
+    def devices(self):
+        """Names of memory that it shares with devices."""
+        named = [name for name in [*self.descriptors, *self.mappings] if name.startswith("/dev/shm/")]
+        return sorted(set(named))
+
+    def links(self):
+        return sum(count for name, count in self.mappings.items() if name.startswith("/memfd:hirosco-link"))
+
+    def __eq__(self, other):
+        return (self.descriptors, self.mappings, self.threads) == (other.descriptors, other.mappings, other.threads)
+
+    def __repr__(self):
+        return f"{dict(self.descriptors)} {dict(self.mappings)} {self.threads} threads {self.memory_kb} kB"
+
+
+class Observer(unittest.TestCase):
+    def do(self, craft, subsystem, function, *arguments):
+        code, reports = craft.tc(subsystem, function, *arguments)
+        self.assertEqual(code, 0, f"{subsystem} {function} {arguments}: {reports}")
+
+    def both(self, craft, function, *arguments):
+        for name in ("joystick", "manipulator"):
+            self.do(craft, name, function, *arguments)
+
+    def looks(self, craft):
+        return {name: Holding(craft.pid_of(f"hirosco-{name}")) for name in ("joystick", "manipulator")}
+
+    def assert_rests(self, looks, what):
+        """No device, no link."""
+        for name, holding in looks.items():
+            self.assertEqual(holding.devices(), [], f"{what}: {name}")
+            self.assertEqual(holding.links(), 0, f"{what}: {name}")
+
+    def housekeeping_of(self, telemetry, apid, seconds):
+        """How many reports of this subsystem came in this time, each kind."""
+        telemetry.forget()
+        time.sleep(seconds)
+        found = collections.Counter()
+        for report in list(telemetry.reports):
+            if report.apid == apid and (report.service, report.subtype) == (3, 25):
+                found[report.data[:2].hex()] += 1
+        return found
+
+    def test_each_state_holds_what_the_paper_promises_and_each_way_down_gives_back_what_the_way_up_took(self):
+        with flight.Flight() as craft:
+            craft.wait_commissioned()
+            with Operator() as telemetry:
+                self.go_up_and_down(craft, telemetry)
+
+    def go_up_and_down(self, craft, telemetry):
+        self.both(craft, "SET_STATE", SAFE_OPERATIONAL)
+        telemetry.set_scale(0.5)
+        self.assertEqual(telemetry.scale(), 0.5)
+        self.both(craft, "SET_STATE", OPERATIONAL)
+        self.do(craft, "supervisor", "SET_MODE", 1)
+        before = {}
+        for turn in range(ROUNDS):
+            # Operational, with links and devices.
+            looks = self.looks(craft)
+            for name, holding in looks.items():
+                self.assertEqual(len(holding.devices()), 1, f"{name} has its device")
+                self.assertEqual(holding.links(), 2, f"{name} has its links")
+            self.go(craft, before, "Operational", turn)
+            self.both(craft, "SET_STATE", SAFE_OPERATIONAL)
+            self.go(craft, before, "Safe-Operational", turn)
+            if turn == 0:
+                self.look_at_safe_operational(craft, telemetry)
+            self.both(craft, "SET_STATE", POST_OPERATIONAL)
+            self.assert_rests(self.go(craft, before, "Post-Operational", turn), "Post-Operational")
+            self.both(craft, "SET_STATE", PRE_OPERATIONAL)
+            self.assert_rests(self.go(craft, before, "Pre-Operational, no configuration", turn), "Pre-Operational")
+            self.both(craft, "SET_STATE", OFFLINE)
+            self.assert_rests(self.go(craft, before, "Offline", turn), "Offline")
+            if turn == 0:
+                self.look_at_offline(craft, telemetry)
+            self.both(craft, "SET_STATE", PRE_OPERATIONAL)
+            self.assert_rests(self.go(craft, before, "Pre-Operational, no configuration", turn), "Pre-Operational")
+            if turn == 0:
+                self.look_at_initial_values(telemetry)
+            self.both(craft, "CONFIGURE", 2)
+            for name, holding in self.go(craft, before, "Pre-Operational, configured", turn).items():
+                self.assertEqual((len(holding.devices()), holding.links()), (1, 0), name)
+            for link in (1, 2):
+                self.do(craft, "supervisor", "LINK", link)
+            self.go(craft, before, "Pre-Operational, linked", turn)
+            if turn == 0:
+                self.look_at_pre_operational(telemetry)
+            self.both(craft, "SET_STATE", SAFE_OPERATIONAL)
+            self.both(craft, "SET_STATE", OPERATIONAL)
+        for state, looks in before.items():
+            flight.measure(f"{state}: " + ", ".join(f"{name} {look.memory_kb} kB" for name, look in looks.items()))
+
+    def go(self, craft, before, state, turn):
+        """What both hold in this state, in each turn what they held in the first two: what is made once and kept is made then."""
+        looks = self.looks(craft)
+        if turn < 2:
+            before[state] = looks
+            return looks
+        for name, holding in looks.items():
+            self.assertEqual(holding, before[state][name], f"{name} in {state}, turn {turn + 1}")
+            self.assertLess(holding.memory_kb, before[state][name].memory_kb + SAME_KB, f"{name} in {state}, turn {turn + 1}")
+        return looks
+
+    def look_at_offline(self, craft, telemetry):
+        for apid in (flight.MANIPULATOR, flight.JOYSTICK):
+            self.assertEqual(self.housekeeping_of(telemetry, apid, 1.0), {}, "no housekeeping in Offline")
+        self.assertEqual(craft.truth("robot")["motor_1"], 0.0)
+
+    def look_at_initial_values(self, telemetry):
+        """What was set before the way down is gone: Software-Init has the descriptor's values."""
+        self.assertEqual(telemetry.scale(), DESCRIPTOR_VALUE)
+
+    def look_at_pre_operational(self, telemetry):
+        """Housekeeping comes, and the links deliver: the joystick's own housekeeping has the robot's set, and how old it is."""
+        for apid in (flight.MANIPULATOR, flight.JOYSTICK):
+            self.assertTrue(self.housekeeping_of(telemetry, apid, 1.5), "housekeeping from Pre-Operational on")
+        telemetry.forget()
+        self.assertLess(telemetry.wait_housekeeping(4721, 2)[-1][1]["peer_age"], 200)
+
+    def look_at_safe_operational(self, craft, telemetry):
+        """The cycle goes on, and no motor gives anything once the robot's controlled stop is over."""
+        craft.wait_at_rest("robot", time.monotonic())
+        self.assertTrue(self.housekeeping_of(telemetry, flight.MANIPULATOR, 1.5), "its cycle samples")
+        truth = craft.truth("robot")
+        self.assertEqual((truth["motor_1"], truth["motor_2"]), (0.0, 0.0))
+
+    def test_a_device_has_power_only_between_hardware_init_and_hardware_deinit(self):
+        with flight.Flight(IMAGER) as craft:
+            craft.wait_told("commissioned: mode operation", 20.0)
+            self.do(craft, "supervisor", "SET_MODE", 1)
+            rests = None
+            for _ in range(ROUNDS):
+                self.assertEqual(craft.truth("imager")["powered"], 1.0)
+                for state in (SAFE_OPERATIONAL, POST_OPERATIONAL, PRE_OPERATIONAL):
+                    self.do(craft, "imager", "SET_STATE", state)
+                    self.assertEqual(craft.truth("imager")["powered"], 1.0)
+                self.do(craft, "imager", "SET_STATE", OFFLINE)
+                self.assertEqual(craft.truth("imager")["powered"], 0.0)
+                holding = Holding(craft.pid_of("hirosco-imager"))
+                self.assertEqual(holding.devices(), [])
+                rests = rests or holding
+                self.assertEqual(holding, rests)
+                self.do(craft, "imager", "SET_STATE", PRE_OPERATIONAL)
+                self.assertEqual(craft.truth("imager")["powered"], 1.0)
+                self.do(craft, "imager", "CONFIGURE", 1)
+                self.do(craft, "imager", "SET_STATE", SAFE_OPERATIONAL)
+                self.do(craft, "imager", "SET_STATE", OPERATIONAL)
+
+
+if __name__ == "__main__":
+    flight.main()
