@@ -7,6 +7,16 @@
 #include "hirosco/descriptor/read/read.hpp"
 
 namespace hirosco::descriptor {
+namespace {
+
+/// What was resolved when the flight began is what is meant.
+void resolve_as(std::vector<Thing>& things, const std::vector<Thing>& known) {
+  for (Thing& thing : things)
+    for (const Thing& before : known)
+      if (before.kind == thing.kind && before.name == thing.name) thing = before;
+}
+
+}  // namespace
 
 Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
                               const std::vector<std::pair<std::string, std::string>>& changes) {
@@ -19,11 +29,14 @@ Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
     commands.apid = known->apid;
     commands.file = known->file;
     commands.requests = known->requests;
-    commands.things = known->things;
+    resolve_as(commands.things, known->things);
   }
   for (Subscribes& subscribes : reading.value->subscribes) {
     const auto known = std::ranges::find(flown.subscribes, subscribes.subsystem, &Subscribes::subsystem);
-    if (known != flown.subscribes.end()) subscribes = *known;
+    if (known == flown.subscribes.end()) continue;
+    subscribes.apid = known->apid;
+    subscribes.file = known->file;
+    resolve_as(subscribes.things, known->things);
   }
   for (const auto& [word, change] : changes) {
     if (needs_other(word)) continue;
