@@ -25,6 +25,7 @@
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
 #include "supervisor/supervision/stored_values.hpp"
+#include "supervisor/supervision/subsystem_handling/adoption.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
@@ -42,7 +43,10 @@ struct SupervisorParts final : OwnSubsystem::Author {
       : craft{outside.mission, outside.platform, outside.launcher, outside.guard, outside.log, outside.observer},
         stored{craft, own, own_telecommands, outside.values},
         log_watch{craft, own, telecommands, outside.open_database},
-        own_telecommands{craft, telecommands, outside.first_sequence_count} {
+        own_telecommands{craft, telecommands, outside.first_sequence_count},
+        memory{outside.journal,
+               {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &versions}} {
+    if (outside.journal != nullptr) craft.remembers = [this] { memory.note(); };
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
@@ -82,7 +86,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
                       traffic,
                       ground_route,
                       {&traffic, &commanded, &stored, &replies, &reception, &power, &own_telecommands, &links}};
-  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic}};
+  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic, adoption}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
@@ -104,7 +108,11 @@ struct SupervisorParts final : OwnSubsystem::Author {
                        restarts, restoration, resources, versions, stored}};
   Versions versions{{craft, own, processes, reactions, under_way}};
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 14> watches{&stored,       &processes,        &versions, &ground_link, &restoration,
+  // what outlives this supervisor
+  Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
+                     safe_all, shutdown, memory}};
+  Memory memory;
+  std::array<Watch*, 15> watches{&adoption, &stored,       &processes,        &versions, &ground_link, &restoration,
                                  &losses,       &housekeeping,     &power,    &links,       &log_watch,
                                  &telecommands, &own_telecommands, &replies,  &resources};
 };

@@ -23,7 +23,9 @@
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
-#include "supervisor/keeper/keeper.hpp"
+#include "supervisor/keeper/kept.hpp"
+#include "supervisor/keeper/kept_endnodes.hpp"
+#include "supervisor/keeper/kept_store.hpp"
 #include "supervisor/platform/launch/system_launcher.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/epoch_file.hpp"
@@ -137,6 +139,42 @@ class Waker {
   std::set<int> members_;
 };
 
+/// What the keeper holds for this supervisor and for one after it; where there is none, memory of our own.
+class Kept {
+ public:
+  explicit Kept(const descriptor::Mission& mission) : mission_{mission} {
+    if (auto mapped = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite)) {
+      page_memory_ = std::move(*mapped);
+      page_ = reinterpret_cast<KeeperPage*>(page_memory_.octets().data());
+    }
+    if (auto mapped = MappedMemory::map(keeper_journal_descriptor, journal_octets, MapMode::ReadWrite)) {
+      journal_memory_ = std::move(*mapped);
+      journal_.emplace(journal_memory_.octets());
+    }
+  }
+  [[nodiscard]] KeeperPage& page() noexcept { return *page_; }
+  [[nodiscard]] StoreClient store() const noexcept {
+    return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1};
+  }
+  [[nodiscard]] Journal* journal() noexcept { return journal_ ? &*journal_ : nullptr; }
+  [[nodiscard]] InhibitNotes notes() const { return InhibitNotes{mission_, *page_}; }
+  /// From the keeper, which has told the devices what the guard before had told them.
+  void take_inhibits(const Clock& clock) const {
+    constexpr Duration longest = 100ms;
+    const std::uint32_t start = page_->starts.load();
+    page_->wants_inhibits.store(start, std::memory_order_release);
+    for (const TimePoint limit = clock.now() + longest; page_->left_inhibits.load() < start && clock.now() < limit;)
+      sleep_until(clock.now() + 500us);
+  }
+
+ private:
+  const descriptor::Mission& mission_;
+  MappedMemory page_memory_, journal_memory_;
+  KeeperPage own_;
+  KeeperPage* page_{&own_};
+  std::optional<Journal> journal_;
+};
+
 int serve(const descriptor::Mission& mission, const Options& options) {
   sigset_t signals;
   sigemptyset(&signals);
@@ -148,6 +186,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   ::signal(SIGPIPE, SIG_IGN);
   const FileDescriptor signal_descriptor{::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK)};
 
+  const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
+  Kept keeper{mission};
   const SystemClock clock;
   SealedMemory memory;
   SystemFlowFactory flows;
@@ -167,6 +207,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     fmt::print(stderr, "hirosco: no flight without a log: libpq.so.5 is not installed (libpq5)\n");
     return exit_environment;
   }
+  launcher.keep_with(keeper.store(), mission);
   Console console{mission, options.style};
   UnprovokedReactions causes{clock, console};
   if (mission.manifest) {
@@ -194,8 +235,11 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
     return exit_environment;
   }
-  Guard guard{
-      {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .on_finding = [&] { guard_found->notify(); }}};
+  Guard guard{{.clock = clock,
+               .flows = flows,
+               .first_epoch = *first_epoch,
+               .notes = keeper.notes(),
+               .on_finding = [&] { guard_found->notify(); }}};
   Supervisor supervisor{
       {.mission = mission,
        .platform =
@@ -208,27 +252,28 @@ int serve(const descriptor::Mission& mission, const Options& options) {
        },
        .observer = causes,
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384),
+       .journal = keeper.journal(),
        .values = &values}};
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
-  const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
   Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
               kept ? keeper_descriptor : -1};
-  const KeeperPage* keeper_page = nullptr;
-  std::atomic<std::uint64_t> unwatched{0};
-  std::atomic<std::uint64_t>* own_beats = &unwatched;
-  auto page_memory = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite);
-  if (kept && page_memory) {
-    auto* page = reinterpret_cast<KeeperPage*>(page_memory->octets().data());
-    keeper_page = page;
-    own_beats = &page->supervisor;
-  }
+  KeeperPage& page = keeper.page();
   Progress keeper_progress;
   bool keeper_still = false;
   const TimePoint started = clock.now();
   TimePoint next_status = started + status_period;
-  supervisor.start();
-  const auto guard_thread = GuardShell::start(guard, clock, options.runtime);
+  if (page.starts.load() > 1) {
+    keeper.take_inhibits(clock);
+    supervisor.adopt(page.stops_asked.load() != page.stops_taken.load());
+    page.stops_taken.store(page.stops_asked.load());
+    // Until its thread runs: no device is to miss its enable.
+    static_cast<void>(guard.step(clock.now()));
+  } else {
+    supervisor.start();
+  }
+  const auto guard_thread =
+      GuardShell::start(guard, clock, options.runtime, [&] { page.stops_taken.store(page.stops_asked.load()); });
   if (!guard_thread) {
     fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
                guard_thread.error().value);
@@ -237,9 +282,9 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   }
   while (!supervisor.finished()) {
     const TimePoint wake = supervisor.step(clock.now());
-    own_beats->fetch_add(1, std::memory_order_relaxed);
-    const bool still = keeper_page != nullptr &&
-                       keeper_progress.stands_still(keeper_page->keeper.load(std::memory_order_relaxed), clock.now());
+    page.supervisor.fetch_add(1, std::memory_order_relaxed);
+    const bool still =
+        kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
     if (still && !keeper_still) supervisor.keeper_stands_still();
     keeper_still = still;
     waker.follow(supervisor, launcher);
@@ -262,6 +307,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;)
     sleep_until(clock.now() + 10ms);
   launcher.kill_all();
+  page.finished.store(1);
   static_cast<void>(log.flush(last_wait));
   const auto unprovoked = unprovoked_reactions(causes.uncommanded(), options.runtime);
   if (!unprovoked.empty()) {

@@ -74,7 +74,8 @@ Flight::Flight(Plan plan) {
                                                           .observer = story_,
                                                           .seed = plan.seed,
                                                           .wrap_channel = plan.wrap_channel,
-                                                          .values = plan.values});
+                                                          .values = plan.values,
+                                                          .revives_after = plan.revives_after});
 }
 
 std::vector<supervisor::LogRecord> Flight::records() {

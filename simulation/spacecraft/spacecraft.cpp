@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <new>
 
 #include "hirosco/pus/requests.hpp"
 #include "simulation/devices/device_arguments.hpp"
@@ -77,6 +78,10 @@ struct Spacecraft::Member {
   ChannelPair channels;
   std::shared_ptr<VitalPage> vital;
   std::shared_ptr<PermitPage> permit;
+  std::vector<Mapping> permits;  ///< of supervisors that went on
+  [[nodiscard]] PermitPage& newest_permit() noexcept {
+    return permits.empty() ? *permit : *reinterpret_cast<PermitPage*>(permits.back().octets.data());
+  }
   std::optional<GenericSubsystem> engine;
   TimePoint service_wake{};
   TimePoint cycle_wake{never};
@@ -96,13 +101,17 @@ namespace {
 /// The supervisor's end of a simulated channel: closing it ends the subsystem, as the end of a process would.
 class ChannelEnd final : public Channel {
  public:
-  explicit ChannelEnd(ChannelPair& pair) : pair_{pair} {}
-  ~ChannelEnd() override { pair_.close_supervisor_end(); }
+  /// `kept`: by the keeper, while the supervisor dies.
+  ChannelEnd(ChannelPair& pair, const bool& kept) : pair_{pair}, kept_{kept} {}
+  ~ChannelEnd() override {
+    if (!kept_) pair_.close_supervisor_end();
+  }
   Result<> send(const Message& message) override { return pair_.supervisor_end().send(message); }
   Result<Found> receive(MessageBuffer& buffer) override { return pair_.supervisor_end().receive(buffer); }
 
  private:
   ChannelPair& pair_;
+  const bool& kept_;
 };
 
 }  // namespace
@@ -167,13 +176,32 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
                                                   value + "': " + taken.error().text);
     devices_.push_back({&described, std::move(device)});
   }
+  if (parts.revives_after) {
+    constexpr std::size_t octets = std::size_t{256} << 10;
+    journal_memory_.resize(octets);
+    journal_.emplace(journal_memory_);
+    std::vector<FlowAddress> endnodes;
+    for (auto& endnode : supervisor::kept_endnodes(parts.mission)) endnodes.push_back(std::move(endnode.address));
+    bridge_.emplace(*kept_, flows_, std::move(endnodes));
+  }
+  make_supervisor(1);
+  supervisor_->start();
+}
+
+void Spacecraft::make_supervisor(std::uint32_t first_epoch) {
+  const Parts& parts = parts_;
+  kept_->starts.fetch_add(1);
   const Platform platform{.clock = clock_,
                           .memory = memory_,
                           .flows = flows_,
                           .realtime = parts.realtime,
                           .explain = {},
                           .links = local_link_mechanisms()};
-  guard_.emplace(supervisor::Guard::Parts{.clock = clock_, .flows = flows_, .first_epoch = 1, .on_finding = [this] {
+  guard_.emplace(supervisor::Guard::Parts{.clock = clock_,
+                                          .flows = flows_,
+                                          .first_epoch = first_epoch,
+                                          .notes = supervisor::InhibitNotes{parts.mission, *kept_},
+                                          .on_finding = [this] {
                                             if (supervisor_wake_ != never) supervisor_wake_ = clock_.now();
                                           }});
   guard_wake_ = clock_.now();
@@ -186,13 +214,46 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       .open_database = parts.open_database ? parts.open_database : [](supervisor::DatabaseStrategy)
           -> std::unique_ptr<supervisor::Database> { return std::make_unique<supervisor::MemoryDatabase>(); },
       .observer = parts.observer,
-      .first_sequence_count = first_count(parts.seed),
+      .first_sequence_count = first_count(parts.seed + kept_->starts.load() - 1),
+      .journal = journal_ ? &*journal_ : nullptr,
       .values = parts.values != nullptr ? parts.values : &own_values_});
   supervisor_wake_ = clock_.now();
-  supervisor_->start();
 }
 
 Spacecraft::~Spacecraft() = default;
+
+void Spacecraft::kill_supervisor() {
+  if (!supervisor_) return;
+  ++supervisor_deaths_;
+  const std::uint32_t highest = guard_->highest_epoch();
+  supervisor_dies_ = true;
+  supervisor_.reset();
+  guard_.reset();
+  supervisor_dies_ = false;
+  supervisor_wake_ = guard_wake_ = never;
+  if (!bridge_) return;
+  next_first_epoch_ = highest + 1;
+  bridge_->begin_at(clock_.now());
+  guard_wake_ = clock_.now();
+  revive_at_ = clock_.now() + *parts_.revives_after;
+}
+
+void Spacecraft::revive_supervisor() {
+  revive_at_.reset();
+  kept_->wants_inhibits.store(kept_->starts.load() + 1);
+  static_cast<void>(bridge_->step(clock_.now()));
+  make_supervisor(next_first_epoch_);
+  supervisor_->adopt(kept_->stops_asked.load() != kept_->stops_taken.load());
+  kept_->stops_taken.store(kept_->stops_asked.load());
+}
+
+void Spacecraft::step_supervisor() {
+  try {
+    supervisor_wake_ = supervisor_->step(clock_.now());
+  } catch (const SupervisorDies&) {
+    kill_supervisor();
+  }
+}
 
 Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::MissionSubsystem& described) {
   const auto make = parts_.subsystems.find(described.executable);
@@ -216,14 +277,46 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   if (before != nullptr) member.vital->counters = before->vital->counters;
   member.service_wake = clock_.now();
   supervisor::LaunchedSubsystem launched;
-  std::unique_ptr<Channel> channel = std::make_unique<ChannelEnd>(member.channels);
-  if (parts_.wrap_channel) channel = parts_.wrap_channel(described.subsystem.name, std::move(channel));
   launched.vital = mapping_of(member.vital);
   launched.permit = mapping_of(member.permit);
-  launched.port = std::make_unique<supervisor::LocalMemberPort>(std::move(channel), launched.vital, launched.permit);
+  launched.port =
+      std::make_unique<supervisor::LocalMemberPort>(supervisor_end(member), launched.vital, launched.permit);
   launched.process = static_cast<std::uint32_t>(members_.size());
   launched.grip = std::make_shared<Grip>(*this, members_.size() - 1);
   return launched;
+}
+
+std::unique_ptr<Channel> Spacecraft::supervisor_end(Member& member) {
+  std::unique_ptr<Channel> channel = std::make_unique<ChannelEnd>(member.channels, supervisor_dies_);
+  return parts_.wrap_channel ? parts_.wrap_channel(member.described->subsystem.name, std::move(channel))
+                             : std::move(channel);
+}
+
+std::optional<supervisor::AdoptedSubsystem> Spacecraft::adopt(const descriptor::MissionSubsystem& described) {
+  const auto found = std::ranges::find_if(members_, [&](const auto& member) {
+    return member->described->subsystem.id == described.subsystem.id && member->engine.has_value();
+  });
+  if (found == members_.end()) return std::nullopt;
+  Member& member = **found;
+  const PermitPage& before = member.newest_permit();
+  supervisor::AdoptedSubsystem adopted;
+  adopted.epoch = before.epoch.load();
+  adopted.permitted = before.permits(adopted.epoch);
+  adopted.stopped = before.stop.load() != 0;
+  adopted.powered = before.powered.load();
+  auto handle = memory_.create("permit", sizeof(PermitPage));
+  auto page = memory_.map(*handle, Access::ReadWrite);
+  ::new (page->octets.data()) PermitPage;
+  static_cast<void>(memory_.seal_writers(*handle));
+  member.permits.push_back(*page);
+  adopted.permit = std::move(*handle);
+  adopted.launched.vital = mapping_of(member.vital);
+  adopted.launched.permit = std::move(*page);
+  adopted.launched.port = std::make_unique<supervisor::LocalMemberPort>(supervisor_end(member), adopted.launched.vital,
+                                                                        adopted.launched.permit);
+  adopted.launched.process = static_cast<std::uint32_t>(found - members_.begin() + 1);
+  adopted.launched.grip = std::make_shared<Grip>(*this, static_cast<std::size_t>(found - members_.begin()));
+  return adopted;
 }
 
 std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) { return members_[process - 1]->end; }
@@ -292,8 +385,8 @@ bool Spacecraft::run_until(const std::function<bool()>& condition, Duration limi
 /// Goes to the next thing that is due and does it. At one instant the order is fixed: devices, cycles, service loops,
 /// guard, supervisor, each in mission order. False when nothing is left before `end`.
 bool Spacecraft::advance(TimePoint end) {
-  if (supervisor_->finished()) return false;
-  TimePoint next = std::min(supervisor_wake_, guard_wake_);
+  if (supervisor_ && supervisor_->finished()) return false;
+  TimePoint next = std::min({supervisor_wake_, guard_wake_, revive_at_.value_or(never)});
   for (const Device& device : devices_) next = std::min(next, device.device->next_wake());
   for (const auto& member : members_) {
     if (!member->engine || member->stopped) continue;
@@ -312,8 +405,14 @@ bool Spacecraft::advance(TimePoint end) {
     if (may_cycle(*member) && member->cycle_wake <= next) step_cycle(*member);
   for (const auto& member : members_)
     if (member->engine && !member->stopped && !member->stuck && member->service_wake <= next) step_service(*member);
-  if (guard_wake_ <= next) guard_wake_ = guard_->step(next);
-  if (supervisor_wake_ <= next) supervisor_wake_ = supervisor_->step(next);
+  if (revive_at_ && *revive_at_ <= next) revive_supervisor();
+  if (guard_wake_ <= next && !guard_) {
+    static_cast<void>(bridge_->step(next));
+    guard_wake_ = next + supervisor::InhibitBridge::pace;
+  } else if (guard_wake_ <= next) {
+    guard_wake_ = guard_->step(next);
+  }
+  if (supervisor_wake_ <= next) step_supervisor();
   return true;
 }
 
@@ -391,7 +490,7 @@ const VitalPage* Spacecraft::vital(std::string_view name) const noexcept {
 
 PermitPage* Spacecraft::permit(std::string_view name) noexcept {
   Member* member = find(name);
-  return member != nullptr ? member->permit.get() : nullptr;
+  return member != nullptr ? &member->newest_permit() : nullptr;
 }
 
 CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view name,

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 #include <cerrno>
 #include <charconv>
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -188,6 +190,35 @@ class LinuxGrip final : public ProcessGrip {
   std::size_t taken_count_{0};
 };
 
+/// The supervisor's end of a channel. The keeper has a duplicate, so that closing it alone would not end what is at the other end;
+/// a supervisor that is killed closes nothing.
+class OwnedEnd final : public Channel {
+ public:
+  explicit OwnedEnd(FileDescriptor socket) noexcept : channel_{std::move(socket)} {}
+  ~OwnedEnd() override { ::shutdown(channel_.wait_descriptor(), SHUT_RDWR); }
+  Result<> send(const Message& message) override { return channel_.send(message); }
+  std::size_t send_all(std::span<const Message> messages) override { return channel_.send_all(messages); }
+  Result<Found> receive(MessageBuffer& buffer) override { return channel_.receive(buffer); }
+  [[nodiscard]] int wait_descriptor() const noexcept override { return channel_.wait_descriptor(); }
+
+ private:
+  SocketChannel channel_;
+};
+
+/// Of the process behind a handle; empty: there is none, or it has ended.
+[[nodiscard]] std::optional<int> pid_of(int handle) {
+  if (handle < 0) return std::nullopt;
+  const FileDescriptor file{::open(("/proc/self/fdinfo/" + std::to_string(handle)).c_str(), O_RDONLY | O_CLOEXEC)};
+  std::array<char, 512> text;
+  const auto octets = file ? ::read(file.get(), text.data(), text.size()) : 0;
+  const std::string_view lines{text.data(), static_cast<std::size_t>(std::max<ssize_t>(octets, 0))};
+  constexpr std::string_view word = "\nPid:\t";
+  const auto at = lines.find(word);
+  int pid = 0;
+  if (at != std::string_view::npos) std::from_chars(lines.data() + at + word.size(), lines.data() + lines.size(), pid);
+  return pid > 0 ? std::optional{pid} : std::nullopt;
+}
+
 /// A page in memory of its own, constructed in place.
 template <class Page>
 [[nodiscard]] Result<std::pair<MemoryHandle, Mapping>> make_page(SealedMemory& memory, const char* name) {
@@ -311,7 +342,15 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     program.clear();  // it may be elsewhere by now
     return fail(spawned.error());
   }
-  Process process = std::move(*spawned);
+  HIROSCO_TRY_LET(LaunchedSubsystem launched,
+                  hold(std::move(*spawned), std::move(ends.first), std::move(vital.second), std::move(permit.second)));
+  keep(subsystem.subsystem.name, launched, vital.first, permit.first);
+  if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
+  if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
+  return launched;
+}
+
+Result<LaunchedSubsystem> SystemLauncher::hold(Process process, FileDescriptor channel, Mapping vital, Mapping permit) {
   auto grip = grip_of(process);
   if (!grip) {
     // One that nobody could end is not let go at all.
@@ -319,13 +358,11 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     return fail(grip.error());
   }
   LaunchedSubsystem launched;
-  launched.vital = std::move(vital.second);
-  launched.permit = std::move(permit.second);
-  launched.port = std::make_unique<LocalMemberPort>(std::make_unique<SocketChannel>(std::move(ends.first)),
-                                                    launched.vital, launched.permit);
+  launched.vital = std::move(vital);
+  launched.permit = std::move(permit);
+  launched.port = std::make_unique<LocalMemberPort>(std::make_unique<OwnedEnd>(std::move(channel)), launched.vital,
+                                                    launched.permit);
   launched.process = next_++;
-  if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
-  if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
   launched.grip = std::move(*grip);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
   if (!memory_use_[0]) memory_use_[0] = open_statm("self");
@@ -334,12 +371,75 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   return launched;
 }
 
+void SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mission) {
+  store_ = store;
+  for (const auto& subsystem : mission.subsystems) slots_.emplace(subsystem.subsystem.name, slots_.size());
+}
+
+/// What cannot be kept ends with this process, as everything did that has no keeper.
+void SystemLauncher::keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
+                          const MemoryHandle& permit) {
+  const auto slot = slots_.find(name);
+  const auto process = processes_.find(launched.process);
+  if (slot == slots_.end() || process == processes_.end()) return;
+  if (store_.keep(slot->second,
+                  {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
+                   SealedMemory::descriptor(permit), process->second.handle().get()}))
+    kept_[launched.process] = slot->second;
+}
+
+std::optional<AdoptedSubsystem> SystemLauncher::adopt(const descriptor::MissionSubsystem& subsystem) {
+  const std::string& name = subsystem.subsystem.name;
+  const auto slot = slots_.find(name);
+  if (slot == slots_.end()) return std::nullopt;
+  auto kept = StoreClient::inherited(slot->second);
+  const auto of = [&](KeptRole role) -> FileDescriptor& { return kept[static_cast<std::size_t>(role)]; };
+  const auto pid = pid_of(of(KeptRole::Process).get());
+  if (!pid) {
+    store_.forget(slot->second);
+    return std::nullopt;
+  }
+  auto adopted = take_over(name, *pid, of(KeptRole::Process), of(KeptRole::Channel),
+                           SealedMemory::adopt(std::move(of(KeptRole::Vital))),
+                           SealedMemory::adopt(std::move(of(KeptRole::Permit))));
+  if (!adopted) return std::nullopt;
+  return std::move(*adopted);
+}
+
+Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, int pid, FileDescriptor& handle,
+                                                   FileDescriptor& channel, const MemoryHandle& vital,
+                                                   const MemoryHandle& old_permit) {
+  HIROSCO_TRY_LET(Process process, Process::adopt(pid, std::move(handle)));
+  HIROSCO_TRY(memory_.verify(vital, sizeof(VitalPage), false));
+  HIROSCO_TRY_LET(Mapping vital_page, memory_.map(vital, Access::ReadWrite));
+  HIROSCO_TRY(memory_.verify(old_permit, sizeof(PermitPage), true));
+  HIROSCO_TRY_LET(const Mapping before, memory_.map(old_permit, Access::ReadOnly));
+  HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
+  HIROSCO_TRY(memory_.seal_writers(permit.first));
+  const auto& page = *reinterpret_cast<const PermitPage*>(before.octets.data());
+  AdoptedSubsystem adopted;
+  adopted.epoch = page.epoch.load(std::memory_order_acquire);
+  adopted.permitted = page.permits(adopted.epoch);
+  adopted.stopped = page.stop.load(std::memory_order_acquire) != 0;
+  adopted.powered = page.powered.load(std::memory_order_acquire);
+  vital_[name] = vital_page;
+  HIROSCO_TRY_LET(adopted.launched,
+                  hold(std::move(process), std::move(channel), std::move(vital_page), std::move(permit.second)));
+  keep(name, adopted.launched, vital, permit.first);
+  adopted.permit = std::move(permit.first);
+  return adopted;
+}
+
 std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
   const auto found = processes_.find(process);
   if (found == processes_.end()) return ProcessEnd{};
   const auto status = found->second.poll();
   if (!status || !*status) return std::nullopt;
   const ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
+  if (const auto slot = kept_.find(process); slot != kept_.end()) {
+    store_.forget(slot->second);
+    kept_.erase(slot);
+  }
   processes_.erase(found);
   memory_use_.erase(process);
   meters_.erase(process);

@@ -9,6 +9,7 @@
 
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
+#include "supervisor/keeper/kept_store.hpp"
 #include "supervisor/platform/launch/error_lines.hpp"
 #include "supervisor/platform/launch/held_programs.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
@@ -23,6 +24,9 @@ namespace hirosco::supervisor {
 class SystemLauncher final : public ProcessLauncher {
  public:
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] std::optional<AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& subsystem) override;
+  /// From now on the keeper holds what it launches, slot by slot in the order of this mission, and adopt() finds what it held.
+  void keep_with(StoreClient store, const descriptor::Mission& mission);
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
                                                           const std::string& version) override;
@@ -43,6 +47,14 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] int wait_descriptor(std::uint32_t process);
 
  private:
+  /// It has started, or goes on.
+  [[nodiscard]] Result<LaunchedSubsystem> hold(Process process, FileDescriptor channel, Mapping vital,
+                                               Mapping permit);
+  [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, int pid, FileDescriptor& handle,
+                                                   FileDescriptor& channel, const MemoryHandle& vital,
+                                                   const MemoryHandle& old_permit);
+  void keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
+            const MemoryHandle& permit);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
 
   SealedMemory memory_;
@@ -55,6 +67,9 @@ class SystemLauncher final : public ProcessLauncher {
   std::map<std::string, std::string, std::less<>> versions_;  ///< by subsystem, where it is not the mission's own
   /// Without one: where each executable was found: a disk is not searched again in flight, where it might hang.
   std::map<std::string, std::filesystem::path, std::less<>> programs_;
+  StoreClient store_{-1};
+  std::map<std::string, std::size_t, std::less<>> slots_;
+  std::map<std::uint32_t, std::size_t> kept_;  ///< slot of each process
   std::uint32_t next_{1};
 };
 

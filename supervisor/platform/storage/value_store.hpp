@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <utility>
 #include <optional>
 #include <string>
 #include <string_view>

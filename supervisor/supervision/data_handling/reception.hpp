@@ -12,6 +12,7 @@
 
 namespace hirosco::supervisor {
 
+class Adoption;
 class Reactions;
 
 /// Reads what the members and the supervisor itself say, and hands it on by its kind. The ground is read no faster than its
@@ -26,6 +27,7 @@ class Reception final : public Hearer {
     Reactions& reactions;
     Unanswered& unanswered;
     Traffic& traffic;
+    Adoption& adoption;
   };
   explicit Reception(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
