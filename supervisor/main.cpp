@@ -188,6 +188,12 @@ int serve(const descriptor::Mission& mission, const Options& options) {
 
   const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
   Kept keeper{mission};
+  KeeperPage& page = keeper.page();
+  const bool goes_on = page.starts.load() > 1;
+  // First of all: their numbers are free again after that.
+  auto inherited = goes_on ? StoreClient::inherited() : decltype(StoreClient::inherited()){};
+  // Who has to be there before others make themselves safe waits for no ordinary work. Threads are ordinary all the same.
+  if (goes_on && realtime_permitted()) static_cast<void>(set_fifo_priority(supervisor_priority));
   const SystemClock clock;
   SealedMemory memory;
   SystemFlowFactory flows;
@@ -207,7 +213,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     fmt::print(stderr, "hirosco: no flight without a log: libpq.so.5 is not installed (libpq5)\n");
     return exit_environment;
   }
-  launcher.keep_with(keeper.store(), mission);
+  launcher.keep_with(keeper.store(), mission, std::move(inherited), &page);
   Console console{mission, options.style};
   UnprovokedReactions causes{clock, console};
   if (mission.manifest) {
@@ -217,8 +223,18 @@ int serve(const descriptor::Mission& mission, const Options& options) {
                                               held.count(), held.octets() / 1024, 1e3 * seconds(clock.now() - begun)));
   }
   ThreadedPacketLog::Options log_options;
-  log_options.on_progress = [&] { log_progress->notify(); };
+  std::atomic<const ThreadedPacketLog*> written{nullptr};
+  log_options.on_progress = [&] {
+    if (const ThreadedPacketLog* of = written.load()) page.log_durable.store(of->durable());
+    log_progress->notify();
+  };
+  log_options.number = &page.log_number;
+  if (const auto run = page.log_run.load(); goes_on && run != 0)
+    log_options.resume =
+        LogResumption{OnboardTime{Duration{run}}, page.log_number.load(), page.log_durable.load()};
   ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};
+  written = &log;
+  page.log_run.store(log.run().time_since_epoch().count());
   if (const auto why_not = begin_log(log, clock, log_start_limit)) {
     fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
     return exit_environment;
@@ -258,12 +274,11 @@ int serve(const descriptor::Mission& mission, const Options& options) {
 
   Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
               kept ? keeper_descriptor : -1};
-  KeeperPage& page = keeper.page();
   Progress keeper_progress;
   bool keeper_still = false;
   const TimePoint started = clock.now();
   TimePoint next_status = started + status_period;
-  if (page.starts.load() > 1) {
+  if (goes_on) {
     keeper.take_inhibits(clock);
     supervisor.adopt(page.stops_asked.load() != page.stops_taken.load());
     page.stops_taken.store(page.stops_asked.load());

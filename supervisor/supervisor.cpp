@@ -34,9 +34,9 @@ void Supervisor::adopt(bool stop_asked) {
   craft.now = craft.platform.clock.now();
   parts_->own.start(craft.mode_epoch);
   craft.guard.beat();
-  parts_->stored.begin();
   parts_->adoption.begin(stop_asked);
   parts_->own.enter_mode(craft.mode_epoch);
+  parts_->stored.begin();
 }
 
 TimePoint Supervisor::step(TimePoint now) {

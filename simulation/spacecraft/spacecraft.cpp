@@ -247,12 +247,45 @@ void Spacecraft::revive_supervisor() {
   kept_->stops_taken.store(kept_->stops_asked.load());
 }
 
-void Spacecraft::step_supervisor() {
-  try {
-    supervisor_wake_ = supervisor_->step(clock_.now());
-  } catch (const SupervisorDies&) {
-    kill_supervisor();
+struct Spacecraft::LastMoment {
+  struct Page {
+    PermitPage* page;
+    std::uint32_t epoch, stop, mode_epoch, powered;
+    std::uint64_t go, heartbeat;
+  };
+  std::vector<Page> pages;
+  std::vector<std::byte> journal;
+  std::array<std::uint64_t, supervisor::most_inhibits> enabled;
+};
+
+void Spacecraft::supervisor_dies_here() {
+  if (last_moment_) return;
+  auto moment = std::make_unique<LastMoment>();
+  for (const auto& member : members_) {
+    PermitPage& page = member->newest_permit();
+    moment->pages.push_back({&page, page.epoch, page.stop, page.mode_epoch, page.powered.load(), page.go, page.heartbeat});
   }
+  moment->journal = journal_memory_;
+  for (std::size_t i = 0; i < moment->enabled.size(); ++i) moment->enabled[i] = kept_->inhibits[i].go;
+  last_moment_ = std::move(moment);
+}
+
+void Spacecraft::step_supervisor() {
+  supervisor_wake_ = supervisor_->step(clock_.now());
+  if (!last_moment_) return;
+  const auto moment = std::move(*last_moment_);
+  for (const LastMoment::Page& then : moment->pages) {
+    then.page->epoch = then.epoch;
+    then.page->stop = then.stop;
+    then.page->mode_epoch = then.mode_epoch;
+    then.page->powered = then.powered;
+    then.page->go = then.go;
+    then.page->heartbeat = then.heartbeat;
+  }
+  std::ranges::copy(moment->journal, journal_memory_.begin());
+  for (std::size_t i = 0; i < moment->enabled.size(); ++i) kept_->inhibits[i].go = moment->enabled[i];
+  kill_supervisor();
+  last_moment_.reset();
 }
 
 Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::MissionSubsystem& described) {

@@ -88,8 +88,10 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   void keep_down() noexcept { revive_at_.reset(); }
   /// Supervisors that have died.
   [[nodiscard]] int supervisor_deaths() const noexcept { return supervisor_deaths_; }
-  /// Thrown by what the supervisor has from outside (`wrap_channel`, a log): it ends there, in the middle of its step.
-  struct SupervisorDies {};
+  /// It ends at this very moment, in the middle of its step: of what it does from here on until that returns nothing reaches pages
+  /// or the journal; whoever stands between it and its channels (`wrap_channel`) keeps back what it sends.
+  void supervisor_dies_here();
+  [[nodiscard]] bool supervisor_is_dying() const noexcept { return last_moment_.has_value(); }
   /// The process stands still, as by SIGSTOP, and goes on; the supervisor by its own name.
   void stop(std::string_view name, bool stopped);
   /// Its next cycle never ends: with one processor for all cycles (adr 0007) nobody else's runs, until it is killed.
@@ -154,6 +156,9 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   std::optional<supervisor::InhibitBridge> bridge_;
   std::optional<TimePoint> revive_at_;  ///< there is no supervisor now
   std::uint32_t next_first_epoch_{1};
+  /// What a supervisor that dies in the middle of its step leaves behind.
+  struct LastMoment;
+  std::optional<std::unique_ptr<LastMoment>> last_moment_;
   int supervisor_deaths_{0};
   bool supervisor_dies_{false};
   std::optional<supervisor::Guard> guard_;

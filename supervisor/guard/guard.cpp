@@ -107,6 +107,14 @@ bool Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, bool 
   return true;
 }
 
+bool Guard::has_stopped_by_itself(std::uint16_t apid) const {
+  const LockGuard lock{mutex_};
+  const GuardedMember* member = find(apid);
+  return member != nullptr && member->released && std::ranges::any_of(member->devices, [](const WatchedDevice& device) {
+           return device.heard && device.last.output != DeviceOutput::Active;
+         });
+}
+
 void Guard::forget(std::uint16_t apid) {
   const LockGuard lock{mutex_};
   GuardedMember* member = find(apid);

@@ -71,6 +71,8 @@ class Guard {
   /// can begin to move by this; and permitted only if it was, and is Operational, and `may_go_on`.
   /// \return it is permitted.
   bool take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, bool may_go_on);
+  /// It is permitted, and a device of it says that it does not put out what it is told: it stopped while nobody told it that it may.
+  [[nodiscard]] bool has_stopped_by_itself(std::uint16_t apid) const;
   /// It has ended: its devices stay inhibited.
   void forget(std::uint16_t apid);
   void beat() noexcept { beats_.fetch_add(1, std::memory_order_relaxed); }

@@ -150,8 +150,9 @@ struct Shared {
 /// A flight with its supervisors, one after the other.
 class Flight {
  public:
-  Flight(KeeperPlan& plan, Shared& shared, const sigset_t& signals)
+  Flight(KeeperPlan& plan, Shared& shared, const std::vector<Process>& devices, const sigset_t& signals)
       : plan_{plan},
+        devices_{devices},
         shared_{shared},
         page_{shared.page()},
         signals_{signals},
@@ -160,6 +161,7 @@ class Flight {
 
   [[nodiscard]] Result<> start() {
     page_.starts.fetch_add(1);
+    page_.supervisor.store(0);  // it is watched from its first step on
     ProcessStart start = plan_.supervisor;
     start.inherited.insert(start.inherited.end(), {{shared_.watched.get(), keeper_descriptor},
                                                    {shared_.page_memory.get(), keeper_page_descriptor},
@@ -181,6 +183,7 @@ class Flight {
     for (;;) {
       page_.keeper.fetch_add(1, std::memory_order_relaxed);
       shared_.store->take();
+      reap();
       if (const auto code = look_after()) return *code;
       take_signal(next_signal(signals_, revive_at_ ? 1ms : look));
     }
@@ -220,6 +223,18 @@ class Flight {
     return std::nullopt;
   }
 
+  /// Subsystems whose supervisor died have us for their parent: how they end nobody else is told.
+  void reap() {
+    if (page_.starts.load() < 2) return;
+    each_child([&](int pid) {
+      const bool ours = std::ranges::find(devices_, pid, &Process::pid) != devices_.end();
+      int status = 0;
+      if (ours || pid == supervisor_->pid() || ::waitpid(pid, &status, WNOHANG) != pid) return;
+      const int how = WIFSIGNALED(status) ? static_cast<int>(ended_by_signal) + WTERMSIG(status) : WEXITSTATUS(status);
+      page_.tell_end(static_cast<std::uint32_t>(pid), static_cast<std::uint32_t>(how));
+    });
+  }
+
   /// By SIGSTOP: it neither steps nor guards.
   [[nodiscard]] bool stopped() const noexcept {
     siginfo_t info{};
@@ -250,6 +265,7 @@ class Flight {
 
   const SystemClock clock_;
   KeeperPlan& plan_;
+  const std::vector<Process>& devices_;
   Shared& shared_;
   KeeperPage& page_;
   const sigset_t& signals_;
@@ -291,7 +307,7 @@ int keep(KeeperPlan plan) {
   static_cast<void>(set_fifo_priority(keeper_priority));
   int code = 0;
   {
-    Flight flight{plan, shared, set};
+    Flight flight{plan, shared, devices, set};
     if (const auto started = flight.start(); !started)
       code = refused(("cannot start " + plan.supervisor.executable).c_str(), started.error().value);
     else code = flight.fly();

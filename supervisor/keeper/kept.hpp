@@ -27,8 +27,8 @@ inline constexpr int keeper_journal_descriptor = 9;
 inline constexpr int first_kept_descriptor = 16;
 
 /// What is kept of one subsystem; its slot is its place in the mission.
-enum class KeptRole : std::uint8_t { Channel, Vital, Permit, Process };
-inline constexpr std::size_t kept_roles = 4;
+enum class KeptRole : std::uint8_t { Channel, Vital, Permit, Process, Errors };
+inline constexpr std::size_t kept_roles = 5;
 inline constexpr std::size_t most_kept = 96;
 [[nodiscard]] constexpr int kept_descriptor(std::size_t slot, KeptRole role) noexcept {
   return first_kept_descriptor + static_cast<int>(slot * kept_roles) + static_cast<int>(role);
@@ -57,6 +57,14 @@ struct KeptInhibit {
 };
 inline constexpr std::size_t most_inhibits = 64;
 
+/// How a process ended whose parent, a supervisor, was gone: the keeper is told, as nobody else is.
+struct KeptEnd {
+  std::atomic<std::uint32_t> pid{0};
+  std::atomic<std::uint32_t> how{0};  ///< exit code, or 0x100 and the signal
+};
+inline constexpr std::uint32_t ended_by_signal = 0x100;
+inline constexpr std::size_t most_ends = 64;
+
 /// Memory in which keeper and supervisor see each other move: one that is alive and stands still is as lost as one that
 /// has died (hazard SF18).
 struct KeeperPage {
@@ -66,9 +74,28 @@ struct KeeperPage {
   std::atomic<std::uint32_t> starts{0};  ///< supervisors that were started
   std::atomic<std::uint32_t> wants_inhibits{0};  ///< the start that takes the second inhibits over
   std::atomic<std::uint32_t> left_inhibits{0};  ///< the start for which the keeper has let go of them
+  std::atomic<std::int64_t> log_run{0};  ///< of the records of this flight's log, as on-board time in ns; 0: none yet
+  std::atomic<std::uint64_t> log_number{0};  ///< of the newest record
+  std::atomic<std::uint64_t> log_durable{0};  ///< up to here they are on the disk
   std::atomic<std::uint64_t> stops_asked{0};  ///< SIGUSR1 that came to the keeper
   std::atomic<std::uint64_t> stops_taken{0};  ///< those that a guard has carried out
   std::array<KeptInhibit, most_inhibits> inhibits;  ///< in the order of kept_endnodes()
+  std::atomic<std::uint32_t> ends_told{0};
+  std::array<KeptEnd, most_ends> ends;  ///< the newest
+
+  void tell_end(std::uint32_t pid, std::uint32_t how) noexcept {
+    KeptEnd& place = ends[ends_told.load(std::memory_order_relaxed) % most_ends];
+    place.pid.store(0, std::memory_order_release);
+    place.how.store(how, std::memory_order_release);
+    place.pid.store(pid, std::memory_order_release);
+    ends_told.fetch_add(1, std::memory_order_release);
+  }
+  /// Empty: it was not told.
+  [[nodiscard]] std::optional<std::uint32_t> end_of(std::uint32_t pid) const noexcept {
+    for (const KeptEnd& end : ends)
+      if (end.pid.load(std::memory_order_acquire) == pid) return end.how.load(std::memory_order_acquire);
+    return std::nullopt;
+  }
 };
 
 /// How long the keeper may stand still once it has moved.
@@ -84,8 +111,9 @@ class Progress {
   explicit Progress(Duration patience = keeper_patience) : patience_{patience} {}
   /// True while it has moved and then stood still for longer than the patience. A counter that is damaged has moved once.
   [[nodiscard]] bool stands_still(std::uint64_t count, TimePoint now) noexcept {
-    if (looked_) still_ += std::min(now - *looked_, most_unwatched);
+    if (has_looked_) still_ += std::min(now - looked_, most_unwatched);
     looked_ = now;
+    has_looked_ = true;
     if (count != seen_) {
       seen_ = count;
       begun_ = true;
@@ -99,7 +127,8 @@ class Progress {
   std::uint64_t seen_{0};
   bool begun_{false};
   Duration still_{};
-  std::optional<TimePoint> looked_;
+  TimePoint looked_{};
+  bool has_looked_{false};
 };
 
 /// When another supervisor is started after one that has ended: at once, and after a pause that doubles where none lives long.

@@ -103,17 +103,19 @@ void StoreClient::forget(std::size_t slot) noexcept {
   if (socket_ >= 0 && slot < most_kept) static_cast<void>(send(socket_, static_cast<SlotNumber>(slot), {}));
 }
 
-std::array<FileDescriptor, kept_roles> StoreClient::inherited(std::size_t slot) noexcept {
-  std::array<FileDescriptor, kept_roles> found;
-  if (slot >= most_kept) return found;
-  for (std::size_t role = 0; role < kept_roles; ++role) {
-    const int number = kept_descriptor(slot, static_cast<KeptRole>(role));
-    if (::fcntl(number, F_GETFD) < 0) return {};
-    // Nobody whom this process starts gets it, and the number is free for whatever comes.
-    found[role].reset(::fcntl(number, F_DUPFD_CLOEXEC, 0));
+std::map<std::size_t, std::array<FileDescriptor, kept_roles>> StoreClient::inherited() {
+  std::map<std::size_t, std::array<FileDescriptor, kept_roles>> found;
+  for (std::size_t slot = 0; slot < most_kept; ++slot) {
+    std::array<FileDescriptor, kept_roles> here;
+    bool whole = true;
+    for (std::size_t role = 0; role < kept_roles; ++role) {
+      const int number = kept_descriptor(slot, static_cast<KeptRole>(role));
+      if (::fcntl(number, F_GETFD) < 0) whole = false;
+      else ::fcntl(number, F_SETFD, FD_CLOEXEC);  // nobody whom this process starts gets it
+      if (whole) here[role].reset(number);
+    }
+    if (whole) found.emplace(slot, std::move(here));
   }
-  for (std::size_t role = 0; role < kept_roles; ++role)
-    FileDescriptor{kept_descriptor(slot, static_cast<KeptRole>(role))}.reset();
   return found;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -46,8 +47,9 @@ class StoreClient {
   [[nodiscard]] Result<> keep(std::size_t slot, const std::array<int, kept_roles>& descriptors) noexcept;
   /// It has ended.
   void forget(std::size_t slot) noexcept;
-  /// What was kept of this slot; invalid ones: nothing. Once.
-  [[nodiscard]] static std::array<FileDescriptor, kept_roles> inherited(std::size_t slot) noexcept;
+  /// What the supervisor before had handed over, by slot. To be called once, before this process opens anything: the numbers are
+  /// free again after that.
+  [[nodiscard]] static std::map<std::size_t, std::array<FileDescriptor, kept_roles>> inherited();
 
  private:
   int socket_;

@@ -15,15 +15,20 @@ namespace hirosco::testing {
 namespace {
 
 using simulation::CommandOutcome;
-using simulation::Spacecraft;
 
 /// Counts the moments at which a supervisor may die, and lets it die in one of them.
 struct Deaths {
   bool armed{false};
   int at{0};  ///< the moment in which it dies, from 1; 0: in none
   int passed{0};
-  void moment() {
-    if (armed && ++passed == at) throw Spacecraft::SupervisorDies{};
+  std::function<void()> dies;
+  std::function<bool()> dying;
+  /// False: it is dead already.
+  [[nodiscard]] bool moment() {
+    if (dying && dying()) return false;
+    if (!armed || ++passed != at) return true;
+    dies();
+    return false;
   }
 };
 
@@ -31,14 +36,16 @@ class MortalChannel final : public Channel {
  public:
   MortalChannel(std::unique_ptr<Channel> channel, Deaths& deaths) : channel_{std::move(channel)}, deaths_{deaths} {}
   Result<> send(const Message& message) override {
-    deaths_.moment();
+    if (!deaths_.moment()) return ok();
     auto sent = channel_->send(message);
-    deaths_.moment();
+    static_cast<void>(deaths_.moment());
     return sent;
   }
   Result<Found> receive(MessageBuffer& buffer) override {
+    if (deaths_.dying && deaths_.dying()) return Found{};
     auto found = channel_->receive(buffer);
-    if (found && found->flow != Flow::None) deaths_.moment();
+    const bool lives = !found || found->flow == Flow::None || deaths_.moment();
+    if (!lives) return Found{};
     return found;
   }
 
@@ -73,6 +80,8 @@ struct MortalFlight {
                 },
                 .revives_after = 300ms}} {
     deaths.at = dies_at;
+    deaths.dies = [this] { flight.craft().supervisor_dies_here(); };
+    deaths.dying = [this] { return flight.craft().supervisor_is_dying(); };
   }
   [[nodiscard]] bool may_move(const char* name) {
     const auto* page = flight.craft().permit(name);

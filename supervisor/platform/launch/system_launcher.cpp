@@ -21,6 +21,7 @@
 
 #include "hirosco/data_transfer/control/socket_channel.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
+#include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
@@ -335,7 +336,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     start.sandbox = &*sandbox;
   }
   // What it writes to its standard error is shown with its name, within limits.
-  const auto errors = errors_.open(subsystem.subsystem.name);
+  FileDescriptor errors_read;
+  const auto errors = errors_.open(subsystem.subsystem.name, &errors_read);
   if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
   auto spawned = Process::spawn(start);
   if (!spawned) {
@@ -344,7 +346,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   }
   HIROSCO_TRY_LET(LaunchedSubsystem launched,
                   hold(std::move(*spawned), std::move(ends.first), std::move(vital.second), std::move(permit.second)));
-  keep(subsystem.subsystem.name, launched, vital.first, permit.first);
+  keep(subsystem.subsystem.name, launched, vital.first, permit.first, errors_read);
   if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
   if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
   return launched;
@@ -371,20 +373,24 @@ Result<LaunchedSubsystem> SystemLauncher::hold(Process process, FileDescriptor c
   return launched;
 }
 
-void SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mission) {
+void SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mission,
+                               std::map<std::size_t, std::array<FileDescriptor, kept_roles>> inherited,
+                               const KeeperPage* page) {
   store_ = store;
+  inherited_ = std::move(inherited);
+  page_ = page;
   for (const auto& subsystem : mission.subsystems) slots_.emplace(subsystem.subsystem.name, slots_.size());
 }
 
 /// What cannot be kept ends with this process, as everything did that has no keeper.
 void SystemLauncher::keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
-                          const MemoryHandle& permit) {
+                          const MemoryHandle& permit, const FileDescriptor& errors) {
   const auto slot = slots_.find(name);
   const auto process = processes_.find(launched.process);
   if (slot == slots_.end() || process == processes_.end()) return;
-  if (store_.keep(slot->second,
-                  {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
-                   SealedMemory::descriptor(permit), process->second.handle().get()}))
+  const int handle = process->second.handle().get();
+  if (store_.keep(slot->second, {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
+                                 SealedMemory::descriptor(permit), handle, errors ? errors.get() : handle}))
     kept_[launched.process] = slot->second;
 }
 
@@ -392,24 +398,21 @@ std::optional<AdoptedSubsystem> SystemLauncher::adopt(const descriptor::MissionS
   const std::string& name = subsystem.subsystem.name;
   const auto slot = slots_.find(name);
   if (slot == slots_.end()) return std::nullopt;
-  auto kept = StoreClient::inherited(slot->second);
-  const auto of = [&](KeptRole role) -> FileDescriptor& { return kept[static_cast<std::size_t>(role)]; };
-  const auto pid = pid_of(of(KeptRole::Process).get());
-  if (!pid) {
-    store_.forget(slot->second);
-    return std::nullopt;
-  }
-  auto adopted = take_over(name, *pid, of(KeptRole::Process), of(KeptRole::Channel),
-                           SealedMemory::adopt(std::move(of(KeptRole::Vital))),
-                           SealedMemory::adopt(std::move(of(KeptRole::Permit))));
-  if (!adopted) return std::nullopt;
-  return std::move(*adopted);
+  const auto found = inherited_.extract(slot->second);
+  const auto pid = found ? pid_of(found.mapped()[static_cast<std::size_t>(KeptRole::Process)].get()) : std::nullopt;
+  auto adopted = pid ? take_over(name, *pid, found.mapped())
+                     : Result<AdoptedSubsystem>{fail(ErrorCode::NotFound, "nothing of it runs")};
+  if (adopted) return std::move(*adopted);
+  store_.forget(slot->second);
+  return std::nullopt;
 }
 
-Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, int pid, FileDescriptor& handle,
-                                                   FileDescriptor& channel, const MemoryHandle& vital,
-                                                   const MemoryHandle& old_permit) {
-  HIROSCO_TRY_LET(Process process, Process::adopt(pid, std::move(handle)));
+Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, int pid,
+                                                   std::array<FileDescriptor, kept_roles>& kept) {
+  const auto of = [&](KeptRole role) -> FileDescriptor& { return kept[static_cast<std::size_t>(role)]; };
+  HIROSCO_TRY_LET(Process process, Process::adopt(pid, std::move(of(KeptRole::Process))));
+  const MemoryHandle vital = SealedMemory::adopt(std::move(of(KeptRole::Vital)));
+  const MemoryHandle old_permit = SealedMemory::adopt(std::move(of(KeptRole::Permit)));
   HIROSCO_TRY(memory_.verify(vital, sizeof(VitalPage), false));
   HIROSCO_TRY_LET(Mapping vital_page, memory_.map(vital, Access::ReadWrite));
   HIROSCO_TRY(memory_.verify(old_permit, sizeof(PermitPage), true));
@@ -424,8 +427,11 @@ Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, int 
   adopted.powered = page.powered.load(std::memory_order_acquire);
   vital_[name] = vital_page;
   HIROSCO_TRY_LET(adopted.launched,
-                  hold(std::move(process), std::move(channel), std::move(vital_page), std::move(permit.second)));
-  keep(name, adopted.launched, vital, permit.first);
+                  hold(std::move(process), std::move(of(KeptRole::Channel)), std::move(vital_page),
+                       std::move(permit.second)));
+  FileDescriptor& errors = of(KeptRole::Errors);
+  keep(name, adopted.launched, vital, permit.first, errors);
+  errors_.go_on(name, std::move(errors));
   adopted.permit = std::move(permit.first);
   return adopted;
 }
@@ -435,7 +441,16 @@ std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
   if (found == processes_.end()) return ProcessEnd{};
   const auto status = found->second.poll();
   if (!status || !*status) return std::nullopt;
-  const ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
+  ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
+  if ((*status)->kind == ExitStatus::Kind::Unknown) {
+    // Its parent was a supervisor that is gone: the keeper is told, a moment later.
+    const auto how = page_ != nullptr ? page_->end_of(static_cast<std::uint32_t>(found->second.pid())) : std::nullopt;
+    constexpr Duration longest = 300ms;
+    const TimePoint now = SystemClock{}.now();
+    if (!how && page_ != nullptr && now - end_asked_.emplace(process, now).first->second < longest) return std::nullopt;
+    end_asked_.erase(process);
+    if (how) end = {(*how & ended_by_signal) != 0, static_cast<int>(*how & 0xFF)};
+  }
   if (const auto slot = kept_.find(process); slot != kept_.end()) {
     store_.forget(slot->second);
     kept_.erase(slot);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -26,7 +27,9 @@ class SystemLauncher final : public ProcessLauncher {
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& subsystem) override;
   /// From now on the keeper holds what it launches, slot by slot in the order of this mission, and adopt() finds what it held.
-  void keep_with(StoreClient store, const descriptor::Mission& mission);
+  /// `page`: the keeper's, which tells how those ended whose parent was a supervisor before; null: nobody does.
+  void keep_with(StoreClient store, const descriptor::Mission& mission,
+                 std::map<std::size_t, std::array<FileDescriptor, kept_roles>> inherited, const KeeperPage* page);
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
                                                           const std::string& version) override;
@@ -50,11 +53,10 @@ class SystemLauncher final : public ProcessLauncher {
   /// It has started, or goes on.
   [[nodiscard]] Result<LaunchedSubsystem> hold(Process process, FileDescriptor channel, Mapping vital,
                                                Mapping permit);
-  [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, int pid, FileDescriptor& handle,
-                                                   FileDescriptor& channel, const MemoryHandle& vital,
-                                                   const MemoryHandle& old_permit);
+  [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, int pid,
+                                                   std::array<FileDescriptor, kept_roles>& kept);
   void keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
-            const MemoryHandle& permit);
+            const MemoryHandle& permit, const FileDescriptor& errors);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
 
   SealedMemory memory_;
@@ -69,6 +71,9 @@ class SystemLauncher final : public ProcessLauncher {
   std::map<std::string, std::filesystem::path, std::less<>> programs_;
   StoreClient store_{-1};
   std::map<std::string, std::size_t, std::less<>> slots_;
+  std::map<std::size_t, std::array<FileDescriptor, kept_roles>> inherited_;
+  const KeeperPage* page_{nullptr};
+  std::map<std::uint32_t, TimePoint> end_asked_;  ///< of processes that have ended, and nobody has said how
   std::map<std::uint32_t, std::size_t> kept_;  ///< slot of each process
   std::uint32_t next_{1};
 };

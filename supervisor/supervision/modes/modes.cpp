@@ -149,6 +149,7 @@ void Modes::enter(const descriptor::Mode& mode) {
 
 void Modes::void_permissions() {
   ++craft_.mode_epoch;
+  craft_.remember();
   parts_.own.enter_mode(craft_.mode_epoch);
   for (Member& member : craft_.members) member.enter_mode(craft_.mode_epoch);
 }

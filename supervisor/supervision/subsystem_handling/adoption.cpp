@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
@@ -61,15 +62,16 @@ void Adoption::begin(bool stop_asked) {
   for (const auto& [apid, before] : before_)
     if (before.recovering)
       for (const std::uint16_t each : parts_.links.graph().network_of(apid)) stopped_.insert(each);
-  // What was permitted in a change that is not known to have ended is void.
-  ++craft_.mode_epoch;
   waits_ = true;
   waits_until_ = craft_.now + longest_start;
   for (Member& member : craft_.members) take_over(member);
-  parts_.commissioning.start_itself([this](bool) {
-    waits_ = false;
-    finish_what_was_begun();
-  });
+  parts_.commissioning.start_itself([this](bool) { go_on(); });
+}
+
+/// Once: this supervisor is Operational, or cannot be by now (its log stands still), which must not hold up what is to stop.
+void Adoption::go_on() {
+  if (!std::exchange(waits_, false)) return;
+  finish_what_was_begun();
 }
 
 bool Adoption::may_go_on(const Member& member) const {
@@ -81,6 +83,7 @@ bool Adoption::may_go_on(const Member& member) const {
 void Adoption::take_over(Member& member) {
   const auto adopted = parts_.processes.adopt(member, may_go_on(member));
   if (!adopted) return;
+  asked_devices_at_ = craft_.now + devices_answer;
   Page& page = pages_[member.apid()];
   page = {*adopted, craft_.now, craft_.now, false};
   hand_over(member, page);
@@ -117,8 +120,24 @@ void Adoption::finish_what_was_begun() {
       parts_.desk.command(member.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
 }
 
+/// The enable of a device may have run out before anybody could go on telling it: it has stopped and stays so, and its subsystem
+/// follows it.
+void Adoption::ask_devices() {
+  for (Member& member : craft_.members) {
+    if (!member.alive() || !craft_.guard.has_stopped_by_itself(member.apid())) continue;
+    craft_.tell("a device of " + member.descriptor().name + " has stopped while no supervisor was there", member.apid());
+    craft_.guard.fence(member.apid());
+    if (member.state() == State::Operational && !member.recovery.running())
+      parts_.desk.command(member.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+  }
+}
+
 void Adoption::watch(TimePoint now) {
-  if (waits_ && now > waits_until_) waits_ = false;
+  if (asked_devices_at_ && now >= *asked_devices_at_) {
+    asked_devices_at_.reset();
+    ask_devices();
+  }
+  if (now > waits_until_) go_on();
   for (auto& [apid, page] : pages_) {
     Member& member = *craft_.member(apid);
     if (!member.alive() || page.given_up) continue;

@@ -50,6 +50,9 @@ class Adoption final : public Watch, public Remembered {
   /// What this supervisor may take until it is Operational itself; what is said to it waits so long.
   static constexpr Duration longest_start = std::chrono::seconds{2};
 
+  /// From the first word of this guard to a device until its answer is there.
+  static constexpr Duration devices_answer = std::chrono::milliseconds{50};
+
   explicit Adoption(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
   /// In the place of a start. `stop_asked`: somebody asked for a stop when nobody was there to carry it out.
@@ -77,10 +80,13 @@ class Adoption final : public Watch, public Remembered {
   void hand_over(Member& member, Page& page);
   /// Those that a stop was under way for are not let go on.
   [[nodiscard]] bool may_go_on(const Member& member) const;
+  void go_on();
+  void ask_devices();
   void finish_what_was_begun();
 
   Parts parts_;
   Craft& craft_;
+  std::optional<TimePoint> asked_devices_at_;
   bool remembered_{false};
   bool waits_{false};
   TimePoint waits_until_{};
