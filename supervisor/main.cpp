@@ -231,7 +231,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   log_options.number = &page.log_number;
   if (const auto run = page.log_run.load(); goes_on && run != 0)
     log_options.resume =
-        LogResumption{OnboardTime{Duration{run}}, page.log_number.load(), page.log_durable.load()};
+        resumption_of(log_path, {OnboardTime{Duration{run}}, page.log_number.load(), page.log_durable.load()});
   ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};
   written = &log;
   page.log_run.store(log.run().time_since_epoch().count());
