@@ -47,7 +47,11 @@ void InhibitBridge::await_next() {
 }
 
 void InhibitBridge::begin_at(TimePoint now) {
-  if (start_ <= page_.starts.load()) await_next();
+  await_next();
+  open(now);
+}
+
+void InhibitBridge::open(TimePoint now) {
   if (!until_) until_ = now + supervisor_silence_limit;
   for (Line& line : lines_)
     if (auto flow = flows_.open(line.address, FlowSide::Subsystem)) line.flow = std::move(*flow);
@@ -61,7 +65,7 @@ void InhibitBridge::let_go() noexcept {
 void InhibitBridge::run() {
   static_cast<void>(set_fifo_priority(bridge_priority));
   const SystemClock clock;
-  begin_at(clock.now());
+  open(clock.now());
   while (!ending_.load() && step(clock.now())) sleep_until(clock.now() + pace);
   let_go();
 }

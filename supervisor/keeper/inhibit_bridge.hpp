@@ -39,6 +39,7 @@ class InhibitBridge {
 
  private:
   void await_next();
+  void open(TimePoint now);
   void let_go() noexcept;
   void run();
 

@@ -141,6 +141,7 @@ void Adoption::watch(TimePoint now) {
   for (auto& [apid, page] : pages_) {
     Member& member = *craft_.member(apid);
     if (!member.alive() || page.given_up) continue;
+    if (waits_) page.since = now;  // nobody reads what it says
     if (now - page.since > longest_change) {
       // It obeys a page that nobody can write any more.
       craft_.tell(member.descriptor().name + " does not look at its new permit page: it is ended", apid);
