@@ -112,9 +112,9 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
                      safe_all, shutdown, memory}};
   Memory memory;
-  std::array<Watch*, 15> watches{&adoption, &stored,       &processes,        &versions, &ground_link, &restoration,
-                                 &losses,       &housekeeping,     &power,    &links,       &log_watch,
-                                 &telecommands, &own_telecommands, &replies,  &resources};
+  std::array<Watch*, 15> watches{&adoption,    &stored,       &processes,        &versions, &ground_link,
+                                 &restoration, &losses,       &housekeeping,     &power,    &links,
+                                 &log_watch,   &telecommands, &own_telecommands, &replies,  &resources};
 };
 
 }  // namespace hirosco::supervisor

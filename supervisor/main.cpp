@@ -251,11 +251,9 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
     return exit_environment;
   }
-  Guard guard{{.clock = clock,
-               .flows = flows,
-               .first_epoch = *first_epoch,
-               .notes = keeper.notes(),
-               .on_finding = [&] { guard_found->notify(); }}};
+  Guard guard{{.clock = clock, .flows = flows, .first_epoch = *first_epoch, .notes = keeper.notes(), .on_finding = [&] {
+                 guard_found->notify();
+               }}};
   Supervisor supervisor{
       {.mission = mission,
        .platform =
@@ -298,8 +296,7 @@ int serve(const descriptor::Mission& mission, const Options& options) {
   while (!supervisor.finished()) {
     const TimePoint wake = supervisor.step(clock.now());
     page.supervisor.fetch_add(1, std::memory_order_relaxed);
-    const bool still =
-        kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
+    const bool still = kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
     if (still && !keeper_still) supervisor.keeper_stands_still();
     keeper_still = still;
     waker.follow(supervisor, launcher);

@@ -9,12 +9,12 @@
 
 #include "hirosco/pus/requests.hpp"
 #include "simulation/devices/device_arguments.hpp"
+#include "simulation/spacecraft/member.hpp"
 
 namespace hirosco::simulation {
 namespace {
 
 constexpr std::uint16_t ground_source = 0;
-constexpr TimePoint never = TimePoint::max();
 
 /// Hands the records of the supervisor's log on to a database that somebody else keeps.
 class BorrowedDatabase final : public supervisor::Database {
@@ -31,116 +31,6 @@ class BorrowedDatabase final : public supervisor::Database {
 [[nodiscard]] std::uint16_t first_count(std::uint64_t seed) {
   constexpr std::uint64_t multiplier = 0x9E37'79B9'7F4A'7C15;
   return static_cast<std::uint16_t>((seed * multiplier) >> 50);
-}
-
-}  // namespace
-
-/// The craft's time as a subsystem reads it: in a cycle that takes long, all readings but the first are later by that.
-class MemberClock final : public Clock {
- public:
-  explicit MemberClock(const Clock& craft) : craft_{craft} {}
-  void begin(Duration takes) noexcept {
-    takes_ = takes;
-    read_ = false;
-  }
-  void end() noexcept { takes_ = Duration{0}; }
-
- private:
-  [[nodiscard]] TimePoint do_now() const noexcept override { return craft_.now() + passed(); }
-  [[nodiscard]] OnboardTime do_onboard() const noexcept override { return craft_.onboard() + passed(); }
-  [[nodiscard]] Duration passed() const noexcept { return std::exchange(read_, true) ? takes_ : Duration{0}; }
-
-  const Clock& craft_;
-  Duration takes_{0};
-  mutable bool read_{false};
-};
-
-/// One subsystem as an object: what a process would hold.
-struct Spacecraft::Member {
-  Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, Platform platform)
-      : described{&what},
-        author{std::move(make)},
-        clock{platform.clock},
-        vital{std::make_shared<VitalPage>()},
-        permit{std::make_shared<PermitPage>()} {
-    const Platform own{.clock = clock,
-                       .memory = platform.memory,
-                       .flows = platform.flows,
-                       .realtime = platform.realtime,
-                       .explain = std::move(platform.explain),
-                       .links = platform.links};
-    engine.emplace(*author, what.subsystem, own, channels.subsystem_end(), *vital, *permit);
-  }
-
-  const descriptor::MissionSubsystem* described;
-  std::unique_ptr<Subsystem> author;
-  MemberClock clock;
-  ChannelPair channels;
-  std::shared_ptr<VitalPage> vital;
-  std::shared_ptr<PermitPage> permit;
-  std::vector<Mapping> permits;  ///< of supervisors that went on
-  [[nodiscard]] PermitPage& newest_permit() noexcept {
-    return permits.empty() ? *permit : *reinterpret_cast<PermitPage*>(permits.back().octets.data());
-  }
-  std::optional<GenericSubsystem> engine;
-  TimePoint service_wake{};
-  TimePoint cycle_wake{never};
-  bool cycling{false};
-  bool stopped{false};
-  bool spinning{false};
-  bool stuck{false};
-  TimePoint spins_since{};
-  bool realtime_taken{false};
-  int strained_cycles{0};
-  Duration cycle_takes{0};
-  std::optional<supervisor::ProcessEnd> end;
-};
-
-namespace {
-
-/// The supervisor's end of a simulated channel: closing it ends the subsystem, as the end of a process would.
-class ChannelEnd final : public Channel {
- public:
-  /// `kept`: by the keeper, while the supervisor dies.
-  ChannelEnd(ChannelPair& pair, const bool& kept) : pair_{pair}, kept_{kept} {}
-  ~ChannelEnd() override {
-    if (!kept_) pair_.close_supervisor_end();
-  }
-  Result<> send(const Message& message) override { return pair_.supervisor_end().send(message); }
-  Result<Found> receive(MessageBuffer& buffer) override { return pair_.supervisor_end().receive(buffer); }
-
- private:
-  ChannelPair& pair_;
-  const bool& kept_;
-};
-
-}  // namespace
-
-/// A simulated process has had the processor only while it spins.
-class Spacecraft::Grip final : public supervisor::ProcessGrip {
- public:
-  Grip(Spacecraft& craft, std::size_t member) : craft_{craft}, member_{member} {}
-  void take_realtime() noexcept override { craft_.members_[member_]->realtime_taken = true; }
-  // Service loops of simulated processes take no time, so they keep none from others.
-  void take_loops_realtime() noexcept override {}
-  void give_realtime() noexcept override { craft_.members_[member_]->realtime_taken = false; }
-  supervisor::LoopTime loop_time() noexcept override { return {}; }
-  Duration processor_time() noexcept override {
-    const Member& member = *craft_.members_[member_];
-    return member.spinning ? craft_.now() - member.spins_since : Duration{0};
-  }
-  void kill() noexcept override { craft_.kill(static_cast<std::uint32_t>(member_ + 1)); }
-
- private:
-  Spacecraft& craft_;
-  std::size_t member_;
-};
-
-namespace {
-
-template <class Page>
-[[nodiscard]] Mapping mapping_of(const std::shared_ptr<Page>& page) {
-  return {page, {reinterpret_cast<std::byte*>(page.get()), sizeof(Page)}};
 }
 
 }  // namespace
@@ -220,74 +110,6 @@ void Spacecraft::make_supervisor(std::uint32_t first_epoch) {
   supervisor_wake_ = clock_.now();
 }
 
-Spacecraft::~Spacecraft() = default;
-
-void Spacecraft::kill_supervisor() {
-  if (!supervisor_) return;
-  ++supervisor_deaths_;
-  const std::uint32_t highest = guard_->highest_epoch();
-  supervisor_dies_ = true;
-  supervisor_.reset();
-  guard_.reset();
-  supervisor_dies_ = false;
-  supervisor_wake_ = guard_wake_ = never;
-  if (!bridge_) return;
-  next_first_epoch_ = highest + 1;
-  bridge_->begin_at(clock_.now());
-  guard_wake_ = clock_.now();
-  revive_at_ = clock_.now() + *parts_.revives_after;
-}
-
-void Spacecraft::revive_supervisor() {
-  revive_at_.reset();
-  kept_->wants_inhibits.store(kept_->starts.load() + 1);
-  static_cast<void>(bridge_->step(clock_.now()));
-  make_supervisor(next_first_epoch_);
-  supervisor_->adopt(kept_->stops_asked.load() != kept_->stops_taken.load());
-  kept_->stops_taken.store(kept_->stops_asked.load());
-}
-
-struct Spacecraft::LastMoment {
-  struct Page {
-    PermitPage* page;
-    std::uint32_t epoch, stop, mode_epoch, powered;
-    std::uint64_t go, heartbeat;
-  };
-  std::vector<Page> pages;
-  std::vector<std::byte> journal;
-  std::array<std::uint64_t, supervisor::most_inhibits> enabled;
-};
-
-void Spacecraft::supervisor_dies_here() {
-  if (last_moment_) return;
-  auto moment = std::make_unique<LastMoment>();
-  for (const auto& member : members_) {
-    PermitPage& page = member->newest_permit();
-    moment->pages.push_back({&page, page.epoch, page.stop, page.mode_epoch, page.powered.load(), page.go, page.heartbeat});
-  }
-  moment->journal = journal_memory_;
-  for (std::size_t i = 0; i < moment->enabled.size(); ++i) moment->enabled[i] = kept_->inhibits[i].go;
-  last_moment_ = std::move(moment);
-}
-
-void Spacecraft::step_supervisor() {
-  supervisor_wake_ = supervisor_->step(clock_.now());
-  if (!last_moment_) return;
-  const auto moment = std::move(*last_moment_);
-  for (const LastMoment::Page& then : moment->pages) {
-    then.page->epoch = then.epoch;
-    then.page->stop = then.stop;
-    then.page->mode_epoch = then.mode_epoch;
-    then.page->powered = then.powered;
-    then.page->go = then.go;
-    then.page->heartbeat = then.heartbeat;
-  }
-  std::ranges::copy(moment->journal, journal_memory_.begin());
-  for (std::size_t i = 0; i < moment->enabled.size(); ++i) kept_->inhibits[i].go = moment->enabled[i];
-  kill_supervisor();
-  last_moment_.reset();
-}
-
 Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::MissionSubsystem& described) {
   const auto make = parts_.subsystems.find(described.executable);
   std::unique_ptr<Subsystem> author;
@@ -317,39 +139,6 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   launched.process = static_cast<std::uint32_t>(members_.size());
   launched.grip = std::make_shared<Grip>(*this, members_.size() - 1);
   return launched;
-}
-
-std::unique_ptr<Channel> Spacecraft::supervisor_end(Member& member) {
-  std::unique_ptr<Channel> channel = std::make_unique<ChannelEnd>(member.channels, supervisor_dies_);
-  return parts_.wrap_channel ? parts_.wrap_channel(member.described->subsystem.name, std::move(channel))
-                             : std::move(channel);
-}
-
-std::optional<supervisor::AdoptedSubsystem> Spacecraft::adopt(const descriptor::MissionSubsystem& described) {
-  const auto found = std::ranges::find_if(members_, [&](const auto& member) {
-    return member->described->subsystem.id == described.subsystem.id && member->engine.has_value();
-  });
-  if (found == members_.end()) return std::nullopt;
-  Member& member = **found;
-  const PermitPage& before = member.newest_permit();
-  supervisor::AdoptedSubsystem adopted;
-  adopted.epoch = before.epoch.load();
-  adopted.permitted = before.permits(adopted.epoch);
-  adopted.stopped = before.stop.load() != 0;
-  adopted.powered = before.powered.load();
-  auto handle = memory_.create("permit", sizeof(PermitPage));
-  auto page = memory_.map(*handle, Access::ReadWrite);
-  ::new (page->octets.data()) PermitPage;
-  static_cast<void>(memory_.seal_writers(*handle));
-  member.permits.push_back(*page);
-  adopted.permit = std::move(*handle);
-  adopted.launched.vital = mapping_of(member.vital);
-  adopted.launched.permit = std::move(*page);
-  adopted.launched.port = std::make_unique<supervisor::LocalMemberPort>(supervisor_end(member), adopted.launched.vital,
-                                                                        adopted.launched.permit);
-  adopted.launched.process = static_cast<std::uint32_t>(found - members_.begin() + 1);
-  adopted.launched.grip = std::make_shared<Grip>(*this, static_cast<std::size_t>(found - members_.begin()));
-  return adopted;
 }
 
 std::optional<supervisor::ProcessEnd> Spacecraft::ended(std::uint32_t process) { return members_[process - 1]->end; }

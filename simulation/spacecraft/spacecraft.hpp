@@ -91,7 +91,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   /// It ends at this very moment, in the middle of its step: of what it does from here on until that returns nothing reaches pages
   /// or the journal; whoever stands between it and its channels (`wrap_channel`) keeps back what it sends.
   void supervisor_dies_here();
-  [[nodiscard]] bool supervisor_is_dying() const noexcept { return last_moment_.has_value(); }
+  [[nodiscard]] bool supervisor_is_dying() const noexcept { return last_moment_ != nullptr; }
   /// The process stands still, as by SIGSTOP, and goes on; the supervisor by its own name.
   void stop(std::string_view name, bool stopped);
   /// Its next cycle never ends: with one processor for all cycles (adr 0007) nobody else's runs, until it is killed.
@@ -156,9 +156,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   std::optional<supervisor::InhibitBridge> bridge_;
   std::optional<TimePoint> revive_at_;  ///< there is no supervisor now
   std::uint32_t next_first_epoch_{1};
-  /// What a supervisor that dies in the middle of its step leaves behind.
   struct LastMoment;
-  std::optional<std::unique_ptr<LastMoment>> last_moment_;
+  std::unique_ptr<LastMoment> last_moment_;  ///< of a supervisor that dies in the middle of its step; null: none does
   int supervisor_deaths_{0};
   bool supervisor_dies_{false};
   std::optional<supervisor::Guard> guard_;

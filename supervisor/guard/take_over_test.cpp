@@ -26,8 +26,7 @@ struct TakeOver : GuardTest {
     adopted.permitted = life.permit->permits(adopted.epoch);
     adopted.stopped = life.permit->stop.load() != 0;
     adopted.launched.vital = life.vital_memory;
-    adopted.launched.permit =
-        memory.map(memory.create("page", sizeof(PermitPage)).value(), Access::ReadWrite).value();
+    adopted.launched.permit = memory.map(memory.create("page", sizeof(PermitPage)).value(), Access::ReadWrite).value();
     adopted.launched.grip = life.process;
     pages[apid] = new (adopted.launched.permit.octets.data()) PermitPage{};
     for (const auto& described : mission.subsystems)

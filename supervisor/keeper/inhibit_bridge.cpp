@@ -81,10 +81,9 @@ bool InhibitBridge::step(TimePoint now) noexcept {
     if (lines_[i].flow == nullptr) continue;
     const std::uint32_t sequence = inhibit.sequence.fetch_add(1, std::memory_order_acq_rel) + 1;
     std::array<std::byte, enable_frame_octets> frame;
-    const auto written =
-        write_enable_command(frame, {.enabled = static_cast<std::uint8_t>(inhibit.enabled() ? 1 : 0),
-                                     .epoch = inhibit.epoch.load(std::memory_order_acquire),
-                                     .sequence = sequence});
+    const auto written = write_enable_command(frame, {.enabled = static_cast<std::uint8_t>(inhibit.enabled() ? 1 : 0),
+                                                      .epoch = inhibit.epoch.load(std::memory_order_acquire),
+                                                      .sequence = sequence});
     if (written) static_cast<void>(lines_[i].flow->send(*written));
   }
   return true;

@@ -101,7 +101,7 @@ void end_orphans(const std::vector<Process>& devices, const sigset_t& set, const
       if (std::ranges::find(devices, pid, &Process::pid) != devices.end()) return;
       if (::waitpid(pid, nullptr, WNOHANG) != 0) return;  // it has ended and is reaped
       left = true;
-      if (clock.now() > limit) ::kill(pid, SIGKILL);      // ours until it is reaped: nobody else has its number
+      if (clock.now() > limit) ::kill(pid, SIGKILL);  // ours until it is reaped: nobody else has its number
     });
     if (left) static_cast<void>(next_signal(set, 20ms));
   }
@@ -238,7 +238,8 @@ class Flight {
   /// By SIGSTOP: it neither steps nor guards.
   [[nodiscard]] bool stopped() const noexcept {
     siginfo_t info{};
-    return ::waitid(P_PIDFD, static_cast<id_t>(supervisor_->handle().get()), &info, WSTOPPED | WNOHANG | WNOWAIT) == 0 &&
+    return ::waitid(P_PIDFD, static_cast<id_t>(supervisor_->handle().get()), &info, WSTOPPED | WNOHANG | WNOWAIT) ==
+               0 &&
            info.si_pid != 0;
   }
 

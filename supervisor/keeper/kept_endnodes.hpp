@@ -34,7 +34,8 @@ struct KeptEndnode {
 class InhibitNotes {
  public:
   InhibitNotes() = default;
-  InhibitNotes(const descriptor::Mission& mission, KeeperPage& page) : endnodes_{kept_endnodes(mission)}, page_{&page} {}
+  InhibitNotes(const descriptor::Mission& mission, KeeperPage& page)
+      : endnodes_{kept_endnodes(mission)}, page_{&page} {}
   /// Null: nobody would go on telling it.
   [[nodiscard]] KeptInhibit* of(std::uint16_t apid, std::string_view device) const noexcept {
     for (std::size_t i = 0; page_ != nullptr && i < endnodes_.size(); ++i)

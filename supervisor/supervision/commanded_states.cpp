@@ -123,7 +123,10 @@ void CommandedStates::note(OctetWriter& writer) const {
   }
   writer.put(static_cast<std::uint16_t>(open_.size()));
   for (const Open& each : open_) {
-    writer.put(each.apid).put(each.refused).put(static_cast<std::uint16_t>(each.packet.size())).put(Octets{each.packet});
+    writer.put(each.apid)
+        .put(each.refused)
+        .put(static_cast<std::uint16_t>(each.packet.size()))
+        .put(Octets{each.packet});
   }
 }
 

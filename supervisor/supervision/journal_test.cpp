@@ -54,7 +54,8 @@ TEST_F(Journals, ATornCopyIsNeverUsedWhereverItWasTorn) {
       const auto& other = front ? after : before;
       std::copy_n(other.begin(), torn, found.begin());
       const std::string text = text_of(Journal{found}.newest());
-      EXPECT_TRUE(text == "and the one that was whole when it died" || text == "a third, over the first") << torn << text;
+      EXPECT_TRUE(text == "and the one that was whole when it died" || text == "a third, over the first")
+          << torn << text;
     }
   }
 }

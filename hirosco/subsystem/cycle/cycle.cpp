@@ -29,8 +29,7 @@ std::size_t bin_of(Duration span) noexcept {
 
 }  // namespace
 
-CycleLoop::CycleLoop(const Parts& parts)
-    : parts_{parts}, permit_{&parts.permit}, offered_permit_{&parts.permit} {
+CycleLoop::CycleLoop(const Parts& parts) : parts_{parts}, permit_{&parts.permit}, offered_permit_{&parts.permit} {
   std::size_t largest = 0;
   for (const auto& event : parts_.descriptor.events) largest = std::max(largest, pus::octets_of(event));
   event_buffer_.resize(largest);
@@ -128,8 +127,7 @@ void CycleLoop::check_permit() noexcept {
   const std::uint32_t epoch = permit().epoch.load(std::memory_order_acquire);
   const bool stopped = permit().stop.load(std::memory_order_acquire) != 0;
   const bool operational = state_ == State::Operational;
-  if (stopped || (operational && (epoch != entered_epoch_ || !permit().permits(epoch))))
-    inhibit(inhibited_by_stop);
+  if (stopped || (operational && (epoch != entered_epoch_ || !permit().permits(epoch)))) inhibit(inhibited_by_stop);
   if (silent_cycles_ > silence_limit_) inhibit(inhibited_by_supervisor);
   permitted_epoch_ = epoch;
   parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);

@@ -51,8 +51,7 @@ class SystemLauncher final : public ProcessLauncher {
 
  private:
   /// It has started, or goes on.
-  [[nodiscard]] Result<LaunchedSubsystem> hold(Process process, FileDescriptor channel, Mapping vital,
-                                               Mapping permit);
+  [[nodiscard]] Result<LaunchedSubsystem> hold(Process process, FileDescriptor channel, Mapping vital, Mapping permit);
   [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, int pid,
                                                    std::array<FileDescriptor, kept_roles>& kept);
   void keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,

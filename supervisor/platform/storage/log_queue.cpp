@@ -164,7 +164,8 @@ void LogQueue::take_gap(LogBatch& batch) {
   record.source = 0;
   record.peer = 0;
   record.lost = gap_->lost;
-  const char* const why = gap_->died ? "the supervisor died before they were on the disk" : "no room before the database";
+  const char* const why =
+      gap_->died ? "the supervisor died before they were on the disk" : "no room before the database";
   record.note = Note{std::string{why} + ", up to number " + std::to_string(gap_->last)};
   gap_.reset();
 }

@@ -8,7 +8,6 @@
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
-#include "supervisor/supervision/subsystem_handling/adoption.hpp"
 
 namespace hirosco::supervisor {
 
@@ -31,7 +30,7 @@ bool is_damage(ErrorCode code) noexcept { return code == ErrorCode::Malformed ||
 }  // namespace
 
 bool Reception::reads(const Member& member) const {
-  if (parts_.adoption.waits()) return false;
+  if (parts_.succession.waits()) return false;
   if (!craft_.is_ground_link(member)) return true;
   const bool addressees_behind =
       parts_.unanswered.size() >= most_unanswered && craft_.now - answered_ < unanswered_patience;
@@ -71,7 +70,7 @@ void Reception::take(Member& member, const Message& message) {
     if (!parts_.reactions.take_event(from, message.packet)) count_unreadable(from);
     return;
   }
-  if (message.kind == MessageKind::PermitPage) return parts_.adoption.confirmed(from);
+  if (message.kind == MessageKind::PermitPage) return parts_.succession.confirmed(from);
   const auto header = pus::read_primary_header(message.packet);
   // Only the ground link brings what ground sent.
   const bool from_ground = message.kind == MessageKind::GroundTelecommand;

@@ -8,11 +8,11 @@
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
+#include "supervisor/supervision/succession.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 
-class Adoption;
 class Reactions;
 
 /// Reads what the members and the supervisor itself say, and hands it on by its kind. The ground is read no faster than its
@@ -27,7 +27,7 @@ class Reception final : public Hearer {
     Reactions& reactions;
     Unanswered& unanswered;
     Traffic& traffic;
-    Adoption& adoption;
+    Succession& succession;
   };
   explicit Reception(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

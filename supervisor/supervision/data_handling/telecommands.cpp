@@ -281,8 +281,7 @@ void Telecommands::recall(OctetReader& reader) {
 void Telecommands::end_what_was_begun() {
   pus::Verification& verification = parts_.own.verification();
   for (const auto& [apid, request] : never_left_)
-    if (request.source != supervisor_apid)
-      verification.rejected(request, FailureNotice{FailureCode::NotPermittedNow});
+    if (request.source != supervisor_apid) verification.rejected(request, FailureNotice{FailureCode::NotPermittedNow});
   never_left_.clear();
   for (const pus::Request& request : parts_.unanswered.take_settled())
     verification.completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});

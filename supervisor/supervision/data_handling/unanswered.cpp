@@ -37,11 +37,10 @@ bool Unanswered::answers(const pus::TelemetryView& report) {
 }
 
 std::size_t Unanswered::count_of(std::uint16_t source, TimePoint now) const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      entries_, [&](const Entry& entry) {
-        return entry.request.source == source && entry.apid != own_source && !entry.recalled &&
-               now - entry.since < patience;
-      }));
+  return static_cast<std::size_t>(std::ranges::count_if(entries_, [&](const Entry& entry) {
+    return entry.request.source == source && entry.apid != own_source && !entry.recalled &&
+           now - entry.since < patience;
+  }));
 }
 
 void Unanswered::reported(const pus::TelemetryView& report) {

@@ -56,9 +56,11 @@ void Adoption::recall(OctetReader& reader) {
 void Adoption::begin(bool stop_asked) {
   remembered_ = parts_.memory.recall();
   stop_asked_ = stop_asked_ || stop_asked;
-  craft_.tell(remembered_ ? "this supervisor goes on for one that died"
-                          : "this supervisor goes on for one that died, and nothing tells what that knew: what moves is stopped",
-              supervisor_apid);
+  craft_.tell(
+      remembered_
+          ? "this supervisor goes on for one that died"
+          : "this supervisor goes on for one that died, and nothing tells what that knew: what moves is stopped",
+      supervisor_apid);
   for (const auto& [apid, before] : before_)
     if (before.recovering)
       for (const std::uint16_t each : parts_.links.graph().network_of(apid)) stopped_.insert(each);
@@ -125,7 +127,8 @@ void Adoption::finish_what_was_begun() {
 void Adoption::ask_devices() {
   for (Member& member : craft_.members) {
     if (!member.alive() || !craft_.guard.has_stopped_by_itself(member.apid())) continue;
-    craft_.tell("a device of " + member.descriptor().name + " has stopped while no supervisor was there", member.apid());
+    craft_.tell("a device of " + member.descriptor().name + " has stopped while no supervisor was there",
+                member.apid());
     craft_.guard.fence(member.apid());
     if (member.state() == State::Operational && !member.recovery.running())
       parts_.desk.command(member.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);

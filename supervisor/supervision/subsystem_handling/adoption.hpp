@@ -12,6 +12,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/succession.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
@@ -28,7 +29,7 @@ class Telecommands;
 
 /// A supervisor that goes on for one that died (docs/adr/0093): what runs is taken over with the permission that it had, unless
 /// something was under way that was to stop it or would have moved it: that ends stopped. Thread: the supervisor's.
-class Adoption final : public Watch, public Remembered {
+class Adoption final : public Watch, public Remembered, public Succession {
  public:
   struct Parts {
     Craft& craft;
@@ -57,10 +58,8 @@ class Adoption final : public Watch, public Remembered {
 
   /// In the place of a start. `stop_asked`: somebody asked for a stop when nobody was there to carry it out.
   void begin(bool stop_asked);
-  /// What members say waits: this supervisor could not answer yet.
-  [[nodiscard]] bool waits() const noexcept { return waits_; }
-  /// A member says that it looks at its new permit page.
-  void confirmed(std::uint16_t apid) { pages_.erase(apid); }
+  [[nodiscard]] bool waits() const noexcept override { return waits_; }
+  void confirmed(std::uint16_t apid) override { pages_.erase(apid); }
   void watch(TimePoint now) override;
   void note(OctetWriter& writer) const override;
   void recall(OctetReader& reader) override;
