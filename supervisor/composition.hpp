@@ -27,6 +27,7 @@
 #include "supervisor/supervision/status/housekeeping.hpp"
 #include "supervisor/supervision/stored_values.hpp"
 #include "supervisor/supervision/subsystem_handling/descriptors.hpp"
+#include "supervisor/supervision/subsystem_handling/adoption.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
@@ -45,7 +46,10 @@ struct SupervisorParts final : OwnSubsystem::Author {
         stored{craft, own, own_telecommands, outside.values},
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count},
-        descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}} {
+        descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
+        memory{outside.journal,
+               {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &versions}} {
+    if (outside.journal != nullptr) craft.remembers = [this] { memory.note(); };
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
@@ -94,7 +98,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
       traffic,
       ground_route,
       {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &own_telecommands, &links}};
-  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic, subscriptions}};
+  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic, subscriptions, adoption}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
@@ -118,9 +122,13 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Versions versions{{craft, own, processes, reactions, under_way}};
   Descriptors descriptors;
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
-  std::array<Watch*, 17> watches{&stored,        &processes, &versions,     &descriptors,      &ground_link, &restoration,
-                                 &losses,        &housekeeping, &power,     &links,            &log_watch,   &telecommands,
-                                 &own_telecommands, &replies, &resources,   &subscriptions,    &waiting};
+  // what outlives this supervisor
+  Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
+                     safe_all, shutdown, memory}};
+  Memory memory;
+  std::array<Watch*, 18> watches{&adoption,      &stored,        &processes,    &versions,         &descriptors, &ground_link,
+                                 &restoration,   &losses,        &housekeeping, &power,            &links,       &log_watch,
+                                 &telecommands,  &own_telecommands, &replies,   &resources,        &subscriptions, &waiting};
 };
 
 }  // namespace hirosco::supervisor

@@ -24,7 +24,9 @@
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
-#include "supervisor/keeper/keeper.hpp"
+#include "supervisor/keeper/kept.hpp"
+#include "supervisor/keeper/kept_endnodes.hpp"
+#include "supervisor/keeper/kept_store.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/epoch_file.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
@@ -135,6 +137,42 @@ class Waker {
   std::set<int> members_;
 };
 
+/// What the keeper holds for this supervisor and for one after it; where there is none, memory of our own.
+class Kept {
+ public:
+  explicit Kept(const descriptor::Mission& mission) : mission_{mission} {
+    if (auto mapped = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite)) {
+      page_memory_ = std::move(*mapped);
+      page_ = reinterpret_cast<KeeperPage*>(page_memory_.octets().data());
+    }
+    if (auto mapped = MappedMemory::map(keeper_journal_descriptor, journal_octets, MapMode::ReadWrite)) {
+      journal_memory_ = std::move(*mapped);
+      journal_.emplace(journal_memory_.octets());
+    }
+  }
+  [[nodiscard]] KeeperPage& page() noexcept { return *page_; }
+  [[nodiscard]] StoreClient store() const noexcept {
+    return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1};
+  }
+  [[nodiscard]] Journal* journal() noexcept { return journal_ ? &*journal_ : nullptr; }
+  [[nodiscard]] InhibitNotes notes() const { return InhibitNotes{mission_, *page_}; }
+  /// From the keeper, which has told the devices what the guard before had told them.
+  void take_inhibits(const Clock& clock) const {
+    constexpr Duration longest = 100ms;
+    const std::uint32_t start = page_->starts.load();
+    page_->wants_inhibits.store(start, std::memory_order_release);
+    for (const TimePoint limit = clock.now() + longest; page_->left_inhibits.load() < start && clock.now() < limit;)
+      sleep_until(clock.now() + 500us);
+  }
+
+ private:
+  const descriptor::Mission& mission_;
+  MappedMemory page_memory_, journal_memory_;
+  KeeperPage own_;
+  KeeperPage* page_{&own_};
+  std::optional<Journal> journal_;
+};
+
 int serve(const descriptor::Mission& mission, const Options& options, const MakeDeployment& deploy) {
   sigset_t signals;
   sigemptyset(&signals);
@@ -146,6 +184,14 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   ::signal(SIGPIPE, SIG_IGN);
   const FileDescriptor signal_descriptor{::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK)};
 
+  const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
+  Kept keeper{mission};
+  KeeperPage& page = keeper.page();
+  const bool goes_on = page.starts.load() > 1;
+  // First of all: their numbers are free again after that.
+  auto inherited = goes_on ? StoreClient::inherited() : InheritedParts{};
+  // Who has to be there before others make themselves safe waits for no ordinary work. Threads are ordinary all the same.
+  if (goes_on && realtime_permitted()) static_cast<void>(set_fifo_priority(supervisor_priority));
   const SystemClock clock;
   SystemFlowFactory flows;
   const bool realtime = realtime_permitted();
@@ -167,6 +213,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     fmt::print(stderr, "hirosco: no flight without a log: libpq.so.5 is not installed (libpq5)\n");
     return exit_environment;
   }
+  if (!launcher.keep_with(keeper.store(), mission, std::move(inherited), &page)) page.alone.store(1);
   Console console{mission, options.style};
   UnprovokedReactions causes{clock, console};
   const auto begun = launcher.begin(mission);
@@ -176,8 +223,18 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   }
   if (!begun->empty()) console.told(clock.onboard(), *begun);
   ThreadedPacketLog::Options log_options;
-  log_options.on_progress = [&] { log_progress->notify(); };
+  std::atomic<const ThreadedPacketLog*> written{nullptr};
+  log_options.on_progress = [&] {
+    if (const ThreadedPacketLog* of = written.load()) page.log_durable.store(of->durable());
+    log_progress->notify();
+  };
+  log_options.number = &page.log_number;
+  if (const auto run = page.log_run.load(); goes_on && run != 0)
+    log_options.resume =
+        resumption_of(log_path, {OnboardTime{Duration{run}}, page.log_number.load(), page.log_durable.load()});
   ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};
+  written = &log;
+  page.log_run.store(log.run().time_since_epoch().count());
   if (const auto why_not = begin_log(log, clock, log_start_limit)) {
     fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
     return exit_environment;
@@ -194,8 +251,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
     return exit_environment;
   }
-  Guard guard{
-      {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .on_finding = [&] { guard_found->notify(); }}};
+  Guard guard{{.clock = clock, .flows = flows, .first_epoch = *first_epoch, .notes = keeper.notes(), .on_finding = [&] {
+                 guard_found->notify();
+               }}};
   Supervisor supervisor{
       {.mission = mission,
        .platform =
@@ -214,29 +272,29 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
        },
        .observer = causes,
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384),
+       .journal = keeper.journal(),
        .values = &values,
        .readings = &readings}};
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
-  const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
   Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
               kept ? keeper_descriptor : -1};
-  const KeeperPage* keeper_page = nullptr;
-  std::atomic<std::uint64_t> unwatched{0};
-  std::atomic<std::uint64_t>* own_beats = &unwatched;
-  auto page_memory = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite);
-  if (kept && page_memory) {
-    auto* page = reinterpret_cast<KeeperPage*>(page_memory->octets().data());
-    keeper_page = page;
-    own_beats = &page->supervisor;
-  }
   Progress keeper_progress;
   bool keeper_still = false;
   const TimePoint started = clock.now();
   TimePoint next_status = started + status_period;
   bool ends_as_a_whole = false;
-  supervisor.start();
-  const auto guard_thread = GuardShell::start(guard, clock, options.runtime);
+  if (goes_on) {
+    keeper.take_inhibits(clock);
+    supervisor.adopt(page.stops_asked.load() != page.stops_taken.load());
+    page.stops_taken.store(page.stops_asked.load());
+    // Until its thread runs: no device is to miss its enable.
+    static_cast<void>(guard.step(clock.now()));
+  } else {
+    supervisor.start();
+  }
+  const auto guard_thread =
+      GuardShell::start(guard, clock, options.runtime, [&] { page.stops_taken.store(page.stops_asked.load()); });
   if (!guard_thread) {
     fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
                guard_thread.error().value);
@@ -245,9 +303,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   }
   while (!supervisor.finished()) {
     const TimePoint wake = supervisor.step(clock.now());
-    own_beats->fetch_add(1, std::memory_order_relaxed);
-    const bool still = keeper_page != nullptr &&
-                       keeper_progress.stands_still(keeper_page->keeper.load(std::memory_order_relaxed), clock.now());
+    page.supervisor.fetch_add(1, std::memory_order_relaxed);
+    const bool still = kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
     if (still && !keeper_still) supervisor.keeper_stands_still();
     keeper_still = still;
     waker.follow(supervisor, launcher);
@@ -274,12 +331,13 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   // The keeper looks on as long as this takes, too.
   const auto wait_for_ends = [&] {
     for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;) {
-      own_beats->fetch_add(1, std::memory_order_relaxed);
+      page.supervisor.fetch_add(1, std::memory_order_relaxed);
       sleep_until(clock.now() + 10ms);
     }
   };
   wait_for_ends();
   launcher.kill_all();
+  page.finished.store(1);
   static_cast<void>(log.flush(last_wait));
   wait_for_ends();
   if (launcher.any_running()) {

@@ -29,6 +29,16 @@ void Supervisor::start() {
   parts_->commissioning.start([this] { request_shutdown(); });
 }
 
+void Supervisor::adopt(bool stop_asked) {
+  Craft& craft = parts_->craft;
+  craft.now = craft.platform.clock.now();
+  parts_->own.start(craft.mode_epoch);
+  craft.guard.beat();
+  parts_->adoption.begin(stop_asked);
+  parts_->own.enter_mode(craft.mode_epoch);
+  parts_->stored.begin();
+}
+
 TimePoint Supervisor::step(TimePoint now) {
   Craft& craft = parts_->craft;
   craft.now = now;
@@ -52,6 +62,8 @@ TimePoint Supervisor::step(TimePoint now) {
   }
   parts_->shutdown.enforce(now);
   parts_->telemetry.serve_ground();  // all that this step had to say, together
+  if (!parts_->telemetry.ground().waiting()) parts_->unanswered.delivered();
+  parts_->memory.note();
   if (parts_->telemetry.ground().waiting()) wake = std::min(wake, now + ground_pace);
   // Where nothing wakes, it is looked at as often anyway.
   if (craft.platform.wakes && parts_->own.has_work()) wake = std::min(wake, now + own_pace);

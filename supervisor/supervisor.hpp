@@ -14,6 +14,7 @@
 #include "supervisor/platform/launch/launcher.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
 #include "supervisor/platform/storage/value_store.hpp"
+#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/observer.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/subsystem_handling/member.hpp"
@@ -35,6 +36,7 @@ class Supervisor final {
     DatabaseOpener open_database;
     Observer& observer;
     std::uint16_t first_sequence_count{0};  ///< of its own telecommands (decision 27)
+    Journal* journal{nullptr};  ///< what it knows, for one that goes on for it; null: nobody does
     ValueStore* values{nullptr};  ///< of persistent parameters; null: they do not outlive the flight
     DescriptorReadings* readings{nullptr};  ///< of what is read again; null: descriptors stay what they were
   };
@@ -43,6 +45,9 @@ class Supervisor final {
 
   /// Starts the subsystems of the mission and begins commissioning.
   void start();
+  /// Goes on for a supervisor that died, with what still runs, in the place of start(). `stop_asked`: somebody asked for a stop
+  /// meanwhile.
+  void adopt(bool stop_asked);
   /// One step; returns when the next is due at the latest. Messages should wake it earlier.
   TimePoint step(TimePoint now);
   /// Orderly shutdown: every subsystem back to Offline, then this one.

@@ -75,7 +75,8 @@ Flight::Flight(Plan plan) : files_{std::move(plan.files)} {
                                                           .seed = plan.seed,
                                                           .wrap_channel = plan.wrap_channel,
                                                           .values = plan.values,
-                                                          .files = source});
+                                                          .files = source,
+                                                          .revives_after = plan.revives_after});
 }
 
 std::vector<supervisor::LogRecord> Flight::records() {

@@ -58,6 +58,8 @@ struct Plan {
   std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
   /// Of persistent parameters, from flight to flight; null: of this one alone.
   supervisor::ValueStore* values{nullptr};
+  /// Another supervisor goes on so long after one that dies; empty: its death ends the flight.
+  std::optional<Duration> revives_after{};
 };
 
 /// Edit of a mission with a simulated hand: it rests until the test moves it.

@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <new>
 
 #include "hirosco/pus/requests.hpp"
 #include "simulation/devices/device_arguments.hpp"
+#include "simulation/spacecraft/member.hpp"
 
 namespace hirosco::simulation {
 namespace {
 
 constexpr std::uint16_t ground_source = 0;
-constexpr TimePoint never = TimePoint::max();
 
 /// Hands the records of the supervisor's log on to a database that somebody else keeps.
 class BorrowedDatabase final : public supervisor::Database {
@@ -30,112 +31,6 @@ class BorrowedDatabase final : public supervisor::Database {
 [[nodiscard]] std::uint16_t first_count(std::uint64_t seed) {
   constexpr std::uint64_t multiplier = 0x9E37'79B9'7F4A'7C15;
   return static_cast<std::uint16_t>((seed * multiplier) >> 50);
-}
-
-}  // namespace
-
-/// The craft's time as a subsystem reads it: in a cycle that takes long, all readings but the first are later by that.
-class MemberClock final : public Clock {
- public:
-  explicit MemberClock(const Clock& craft) : craft_{craft} {}
-  void begin(Duration takes) noexcept {
-    takes_ = takes;
-    read_ = false;
-  }
-  void end() noexcept { takes_ = Duration{0}; }
-
- private:
-  [[nodiscard]] TimePoint do_now() const noexcept override { return craft_.now() + passed(); }
-  [[nodiscard]] OnboardTime do_onboard() const noexcept override { return craft_.onboard() + passed(); }
-  [[nodiscard]] Duration passed() const noexcept { return std::exchange(read_, true) ? takes_ : Duration{0}; }
-
-  const Clock& craft_;
-  Duration takes_{0};
-  mutable bool read_{false};
-};
-
-/// One subsystem as an object: what a process would hold.
-struct Spacecraft::Member {
-  Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, Platform platform)
-      : described{&what},
-        author{std::move(make)},
-        clock{platform.clock},
-        vital{std::make_shared<VitalPage>()},
-        permit{std::make_shared<PermitPage>()} {
-    const Platform own{.clock = clock,
-                       .memory = platform.memory,
-                       .flows = platform.flows,
-                       .realtime = platform.realtime,
-                       .explain = std::move(platform.explain),
-                       .links = platform.links,
-                       .read_again = [this, changes = descriptor::changes_of(what)](std::string_view text) {
-                         return descriptor::read_again(described->subsystem, text, changes);
-                       }};
-    engine.emplace(*author, what.subsystem, own, channels.subsystem_end(), *vital, *permit);
-  }
-
-  const descriptor::MissionSubsystem* described;
-  std::unique_ptr<Subsystem> author;
-  MemberClock clock;
-  ChannelPair channels;
-  std::shared_ptr<VitalPage> vital;
-  std::shared_ptr<PermitPage> permit;
-  std::optional<GenericSubsystem> engine;
-  TimePoint service_wake{};
-  TimePoint cycle_wake{never};
-  std::vector<TimePoint> loop_wakes;  ///< of its loops of services of its own
-  bool cycling{false};
-  bool stopped{false};
-  bool spinning{false};
-  bool stuck{false};
-  TimePoint spins_since{};
-  bool realtime_taken{false};
-  int strained_cycles{0};
-  Duration cycle_takes{0};
-  std::optional<supervisor::ProcessEnd> end;
-};
-
-namespace {
-
-/// The supervisor's end of a simulated channel: closing it ends the subsystem, as the end of a process would.
-class ChannelEnd final : public Channel {
- public:
-  explicit ChannelEnd(ChannelPair& pair) : pair_{pair} {}
-  ~ChannelEnd() override { pair_.close_supervisor_end(); }
-  Result<> send(const Message& message) override { return pair_.supervisor_end().send(message); }
-  Result<Found> receive(MessageBuffer& buffer) override { return pair_.supervisor_end().receive(buffer); }
-
- private:
-  ChannelPair& pair_;
-};
-
-}  // namespace
-
-/// A simulated process has had the processor only while it spins.
-class Spacecraft::Grip final : public supervisor::ProcessGrip {
- public:
-  Grip(Spacecraft& craft, std::size_t member) : craft_{craft}, member_{member} {}
-  void take_realtime() noexcept override { craft_.members_[member_]->realtime_taken = true; }
-  // Service loops of simulated processes take no time, so they keep none from others.
-  void take_loops_realtime() noexcept override {}
-  void give_realtime() noexcept override { craft_.members_[member_]->realtime_taken = false; }
-  supervisor::LoopTime loop_time() noexcept override { return {}; }
-  Duration processor_time() noexcept override {
-    const Member& member = *craft_.members_[member_];
-    return member.spinning ? craft_.now() - member.spins_since : Duration{0};
-  }
-  void kill() noexcept override { craft_.kill(static_cast<std::uint32_t>(member_ + 1)); }
-
- private:
-  Spacecraft& craft_;
-  std::size_t member_;
-};
-
-namespace {
-
-template <class Page>
-[[nodiscard]] Mapping mapping_of(const std::shared_ptr<Page>& page) {
-  return {page, {reinterpret_cast<std::byte*>(page.get()), sizeof(Page)}};
 }
 
 }  // namespace
@@ -171,13 +66,32 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
                                                   value + "': " + taken.error().text);
     devices_.push_back({&described, std::move(device)});
   }
+  if (parts.revives_after) {
+    constexpr std::size_t octets = std::size_t{256} << 10;
+    journal_memory_.resize(octets);
+    journal_.emplace(journal_memory_);
+    std::vector<FlowAddress> endnodes;
+    for (auto& endnode : supervisor::kept_endnodes(parts.mission)) endnodes.push_back(std::move(endnode.address));
+    bridge_.emplace(*kept_, flows_, std::move(endnodes));
+  }
+  make_supervisor(1);
+  supervisor_->start();
+}
+
+void Spacecraft::make_supervisor(std::uint32_t first_epoch) {
+  const Parts& parts = parts_;
+  kept_->starts.fetch_add(1);
   const Platform platform{.clock = clock_,
                           .memory = memory_,
                           .flows = flows_,
                           .realtime = parts.realtime,
                           .explain = {},
                           .links = local_link_mechanisms()};
-  guard_.emplace(supervisor::Guard::Parts{.clock = clock_, .flows = flows_, .first_epoch = 1, .on_finding = [this] {
+  guard_.emplace(supervisor::Guard::Parts{.clock = clock_,
+                                          .flows = flows_,
+                                          .first_epoch = first_epoch,
+                                          .notes = supervisor::InhibitNotes{parts.mission, *kept_},
+                                          .on_finding = [this] {
                                             if (supervisor_wake_ != never) supervisor_wake_ = clock_.now();
                                           }});
   guard_wake_ = clock_.now();
@@ -190,14 +104,12 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       .open_database = parts.open_database ? parts.open_database : [](supervisor::DatabaseStrategy)
           -> std::unique_ptr<supervisor::Database> { return std::make_unique<supervisor::MemoryDatabase>(); },
       .observer = parts.observer,
-      .first_sequence_count = first_count(parts.seed),
+      .first_sequence_count = first_count(parts.seed + kept_->starts.load() - 1),
+      .journal = journal_ ? &*journal_ : nullptr,
       .values = parts.values != nullptr ? parts.values : &own_values_,
       .readings = &readings_});
   supervisor_wake_ = clock_.now();
-  supervisor_->start();
 }
-
-Spacecraft::~Spacecraft() = default;
 
 Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::MissionSubsystem& described) {
   const auto make = parts_.subsystems.find(described.executable);
@@ -223,11 +135,10 @@ Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::Missi
   for (std::size_t i = 0; i < member.engine->own_loops(); ++i)
     member.loop_wakes.push_back(clock_.now() + member.engine->own_loop(i).period);
   supervisor::LaunchedSubsystem launched;
-  std::unique_ptr<Channel> channel = std::make_unique<ChannelEnd>(member.channels);
-  if (parts_.wrap_channel) channel = parts_.wrap_channel(described.subsystem.name, std::move(channel));
   launched.vital = mapping_of(member.vital);
   launched.permit = mapping_of(member.permit);
-  launched.port = std::make_unique<supervisor::LocalMemberPort>(std::move(channel), launched.vital, launched.permit);
+  launched.port =
+      std::make_unique<supervisor::LocalMemberPort>(supervisor_end(member), launched.vital, launched.permit);
   launched.process = static_cast<std::uint32_t>(members_.size());
   launched.grip = std::make_shared<Grip>(*this, members_.size() - 1);
   return launched;
@@ -299,8 +210,8 @@ bool Spacecraft::run_until(const std::function<bool()>& condition, Duration limi
 /// Goes to the next thing that is due and does it. At one instant the order is fixed: devices, cycles, service loops, loops of
 /// services of their own, guard, supervisor, each in mission order. False when nothing is left before `end`.
 bool Spacecraft::advance(TimePoint end) {
-  if (supervisor_->finished()) return false;
-  TimePoint next = std::min(supervisor_wake_, guard_wake_);
+  if (supervisor_ && supervisor_->finished()) return false;
+  TimePoint next = std::min({supervisor_wake_, guard_wake_, revive_at_.value_or(never)});
   for (const Device& device : devices_) next = std::min(next, device.device->next_wake());
   for (const auto& member : members_) {
     if (!member->engine || member->stopped) continue;
@@ -324,8 +235,14 @@ bool Spacecraft::advance(TimePoint end) {
     for (std::size_t i = 0; i < member->loop_wakes.size() && member->engine && !member->stopped; ++i)
       if (member->loop_wakes[i] <= next)
         member->loop_wakes[i] = member->engine->own_loop_step(i, member->loop_wakes[i]);
-  if (guard_wake_ <= next) guard_wake_ = guard_->step(next);
-  if (supervisor_wake_ <= next) supervisor_wake_ = supervisor_->step(next);
+  if (revive_at_ && *revive_at_ <= next) revive_supervisor();
+  if (guard_wake_ <= next && !guard_) {
+    static_cast<void>(bridge_->step(next));
+    guard_wake_ = next + supervisor::InhibitBridge::pace;
+  } else if (guard_wake_ <= next) {
+    guard_wake_ = guard_->step(next);
+  }
+  if (supervisor_wake_ <= next) step_supervisor();
   return true;
 }
 
@@ -414,7 +331,7 @@ const VitalPage* Spacecraft::vital(std::string_view name) const noexcept {
 
 PermitPage* Spacecraft::permit(std::string_view name) noexcept {
   Member* member = find(name);
-  return member != nullptr ? member->permit.get() : nullptr;
+  return member != nullptr ? &member->newest_permit() : nullptr;
 }
 
 CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view name,

@@ -18,6 +18,8 @@
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "simulation/devices/simulated_device.hpp"
 #include "simulation/spacecraft/simulated_ground.hpp"
+#include "supervisor/keeper/inhibit_bridge.hpp"
+#include "supervisor/keeper/kept_endnodes.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 #include "supervisor/supervisor.hpp"
 
@@ -61,6 +63,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     supervisor::ValueStore* values{nullptr};
     /// What is read again of descriptors.
     descriptor::FileSource files{descriptor::file_system()};
+    /// Where the supervisor dies, another one goes on (docs/adr/0093), after so long; empty: its death ends the flight.
+    std::optional<Duration> revives_after{};
   };
   explicit Spacecraft(const Parts& parts);
   ~Spacecraft() override;
@@ -80,6 +84,16 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   [[nodiscard]] PermitPage* permit(std::string_view name) noexcept;
   /// The process ends without a word, as by kill -9.
   void kill(std::string_view name);
+  /// The supervisor ends without a word, as by kill -9, between two of its steps.
+  void kill_supervisor();
+  /// Nobody goes on for it.
+  void keep_down() noexcept { revive_at_.reset(); }
+  /// Supervisors that have died.
+  [[nodiscard]] int supervisor_deaths() const noexcept { return supervisor_deaths_; }
+  /// It ends at this very moment, in the middle of its step: of what it does from here on until that returns nothing reaches pages
+  /// or the journal; whoever stands between it and its channels (`wrap_channel`) keeps back what it sends.
+  void supervisor_dies_here();
+  [[nodiscard]] bool supervisor_is_dying() const noexcept { return last_moment_ != nullptr; }
   /// The process stands still, as by SIGSTOP, and goes on; the supervisor by its own name.
   void stop(std::string_view name, bool stopped);
   /// Its next cycle never ends: with one processor for all cycles (adr 0007) nobody else's runs, until it is killed.
@@ -107,9 +121,14 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   class Grip;
   // ProcessLauncher
   Result<supervisor::LaunchedSubsystem> launch(const descriptor::MissionSubsystem& described) override;
+  std::optional<supervisor::AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& described) override;
   std::optional<supervisor::ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
 
+  void make_supervisor(std::uint32_t first_epoch);
+  void revive_supervisor();
+  void step_supervisor();
+  [[nodiscard]] std::unique_ptr<Channel> supervisor_end(Member& member);
   bool advance(TimePoint end);
   [[nodiscard]] bool may_cycle(const Member& member) const noexcept;
   void step_device(std::size_t device);
@@ -134,6 +153,17 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   supervisor::MemoryValueDisk forgotten_;
   supervisor::DirectValueStore own_values_{forgotten_, "values"};
   supervisor::DirectReadings readings_{parts_.files};
+  // What the keeper holds.
+  std::unique_ptr<supervisor::KeeperPage> kept_{std::make_unique<supervisor::KeeperPage>()};
+  std::vector<std::byte> journal_memory_;
+  std::optional<supervisor::Journal> journal_;
+  std::optional<supervisor::InhibitBridge> bridge_;
+  std::optional<TimePoint> revive_at_;  ///< there is no supervisor now
+  std::uint32_t next_first_epoch_{1};
+  struct LastMoment;
+  std::unique_ptr<LastMoment> last_moment_;  ///< of a supervisor that dies in the middle of its step; null: none does
+  int supervisor_deaths_{0};
+  bool supervisor_dies_{false};
   std::optional<supervisor::Guard> guard_;
   std::unique_ptr<supervisor::Supervisor> supervisor_;
   TimePoint supervisor_wake_{};

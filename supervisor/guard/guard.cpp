@@ -40,6 +40,8 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
     watched.name = device.name;
     watched.flow = std::move(flow);
     watched.stop_within = device.stop_within;
+    watched.note = parts_.notes.of(described.subsystem.id, device.name);
+    if (watched.note != nullptr) watched.sequence = watched.note->sequence.load(std::memory_order_acquire);
     member.devices.push_back(std::move(watched));
   }
   for (const descriptor::PowerSwitch& power : described.subsystem.power_switches) {
@@ -78,6 +80,39 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->asked_who_runs.reset();
   member->doomed.reset();
   member->killed = false;
+}
+
+bool Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, bool may_go_on) {
+  adopt(apid, adopted.launched);
+  const LockGuard lock{mutex_};
+  GuardedMember* member = find(apid);
+  if (member == nullptr || member->permit == nullptr) return false;
+  member->epoch = adopted.epoch;
+  PermitPage& page = *member->permit;
+  page.epoch.store(adopted.epoch, std::memory_order_release);
+  page.powered.store(adopted.powered, std::memory_order_release);
+  const auto relaxed = std::memory_order_relaxed;
+  const bool moves = member->state() == State::Operational && member->vital->inhibited.load(relaxed) == 0 &&
+                     member->vital->seen_epoch.load(relaxed) == adopted.epoch;
+  member->service_moved = watched_at(parts_.clock.now());
+  page.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
+  if (!adopted.permitted) return false;
+  if (adopted.stopped || !may_go_on || !moves) {
+    member->fence();
+    return false;
+  }
+  page.go.store(permission_word(adopted.epoch), std::memory_order_release);
+  member->released = member->seen_operational = true;
+  member->released_at = watched_at(parts_.clock.now());
+  return true;
+}
+
+bool Guard::has_stopped_by_itself(std::uint16_t apid) const {
+  const LockGuard lock{mutex_};
+  const GuardedMember* member = find(apid);
+  return member != nullptr && member->released && std::ranges::any_of(member->devices, [](const WatchedDevice& device) {
+           return device.heard && device.last.output != DeviceOutput::Active;
+         });
 }
 
 void Guard::forget(std::uint16_t apid) {

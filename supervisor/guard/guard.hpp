@@ -13,6 +13,7 @@
 
 #include "hirosco/utilities/os/mutex.hpp"
 #include "supervisor/guard/guarded_member.hpp"
+#include "supervisor/keeper/kept_endnodes.hpp"
 
 /// What stops actuators, apart from everything else of the supervisor (docs/adr/0018): it holds every permit page and the
 /// second inhibit and the power switch of every device that has one, watches that cycles and service loops move, takes the processor from one
@@ -53,6 +54,7 @@ class Guard {
     const Clock& clock;
     FlowFactory& flows;
     std::uint32_t first_epoch{1};  ///< of every permit page; higher than any that a device may have seen
+    InhibitNotes notes{};  ///< what would go on being told to devices if this guard died
     std::function<void()> on_finding{};  ///< wakes the supervisor's loop. Thread: the guard's
   };
   explicit Guard(Parts parts) : parts_{std::move(parts)} {}
@@ -65,6 +67,12 @@ class Guard {
   [[nodiscard]] bool holds(std::uint16_t apid) const;
   /// It was started: its pages are taken over, nothing is permitted.
   void adopt(std::uint16_t apid, const LaunchedSubsystem& launched);
+  /// It goes on after the guard that held it is gone (docs/adr/0093): under the same epoch, so that nothing that has stopped meanwhile
+  /// can begin to move by this; and permitted only if it was, and is Operational, and `may_go_on`.
+  /// \return it is permitted.
+  bool take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, bool may_go_on);
+  /// It is permitted, and a device of it says that it does not put out what it is told: it stopped while nobody told it that it may.
+  [[nodiscard]] bool has_stopped_by_itself(std::uint16_t apid) const;
   /// It has ended: its devices stay inhibited.
   void forget(std::uint16_t apid);
   void beat() noexcept { beats_.fetch_add(1, std::memory_order_relaxed); }

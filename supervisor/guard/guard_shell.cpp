@@ -52,9 +52,11 @@ void keep_code_in_memory() noexcept {
 }
 
 Result<std::unique_ptr<GuardShell>> GuardShell::start(Guard& guard, const Clock& clock,
-                                                      const std::filesystem::path& folder) {
+                                                      const std::filesystem::path& folder,
+                                                      std::function<void()> on_signal) {
   HIROSCO_TRY_LET(WakeEvent ending, WakeEvent::create());
   std::unique_ptr<GuardShell> shell{new GuardShell{guard, clock, std::move(ending)}};
+  shell->on_signal_ = std::move(on_signal);
   sigset_t set;
   sigemptyset(&set);
   sigaddset(&set, SIGUSR1);
@@ -109,7 +111,9 @@ void GuardShell::run() {
       signalfd_siginfo info;
       while (::read(signals_.get(), &info, sizeof info) > 0) asked = true;
     }
-    if (asked) guard_.stop_all(GuardFinding::Kind::StopAsked);
+    if (!asked) continue;
+    guard_.stop_all(GuardFinding::Kind::StopAsked);
+    if (on_signal_) on_signal_();
   }
 }
 

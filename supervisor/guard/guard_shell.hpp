@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,9 +27,10 @@ class GuardShell {
  public:
   /// Above all cycles (1 to 89), below the kernel's own.
   static constexpr int priority = 90;
-  /// An empty `folder`: no socket. SIGUSR1 must be blocked in the process. SystemFailure: socket, thread.
+  /// An empty `folder`: no socket. `on_signal`: after a stop by signal was carried out. Thread: the guard's. SIGUSR1 must be blocked in the process. SystemFailure: socket, thread.
   [[nodiscard]] static Result<std::unique_ptr<GuardShell>> start(Guard& guard, const Clock& clock,
-                                                                 const std::filesystem::path& folder);
+                                                                 const std::filesystem::path& folder,
+                                                                 std::function<void()> on_signal = {});
   ~GuardShell();
   GuardShell(const GuardShell&) = delete;
   GuardShell& operator=(const GuardShell&) = delete;
@@ -51,6 +53,7 @@ class GuardShell {
   Guard& guard_;
   const Clock& clock_;
   std::filesystem::path socket_path_;
+  std::function<void()> on_signal_;
   FileDescriptor signals_;
   FileDescriptor listener_;
   std::vector<Client> clients_;

@@ -48,6 +48,7 @@ void WatchedDevice::tell(bool enabled, std::uint32_t epoch) noexcept {
   std::array<std::byte, enable_frame_octets> frame;
   const auto written = write_enable_command(
       frame, {.enabled = static_cast<std::uint8_t>(enabled ? 1 : 0), .epoch = epoch, .sequence = ++sequence});
+  if (note != nullptr) note->note(enabled, epoch, sequence);
   // A device that does not hear it stops by itself: that is what it waits for.
   if (written) static_cast<void>(flow->send(*written));
 }
@@ -98,6 +99,9 @@ bool GuardedMember::stands_fenced() const noexcept {
 
 void GuardedMember::fence() noexcept {
   ++fences;
+  for (WatchedDevice& device : devices)
+    // Nobody goes on with it either, should this process end now.
+    if (device.note != nullptr) device.note->go.store(0, std::memory_order_release);
   // Who stands fenced stays so: a further epoch, or a further answer to wait for, would only put off its word that it has stopped.
   if (stands_fenced()) return;
   released = false;

@@ -13,6 +13,7 @@
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "supervisor/guard/power.hpp"
+#include "supervisor/keeper/kept.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 
 /// What the guard holds of one member, and what it reads from it. Thread: under the guard's mutex.
@@ -43,6 +44,7 @@ struct WatchedDevice {
   std::unique_ptr<DataFlow> flow;
   Duration stop_within{};
   std::uint32_t sequence{0};
+  KeptInhibit* note{nullptr};  ///< of what it was told last; null: nobody would go on telling it
   EnableStatus last{};
   bool heard{false};
   std::uint32_t fenced_at_sequence{0};  ///< an answer to a later command knows of the newest stop

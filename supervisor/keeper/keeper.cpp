@@ -18,9 +18,13 @@
 #include <new>
 #include <string_view>
 
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/linux/memfd.hpp"
 #include "hirosco/utilities/os/shared_memory.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+#include "supervisor/keeper/inhibit_bridge.hpp"
+#include "supervisor/keeper/kept_store.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -32,6 +36,10 @@ constexpr Duration device_grace = 1s;
 constexpr Duration one_wish = 1s;
 /// What a subsystem may take to make itself safe and end once the supervisor is gone.
 constexpr Duration orphan_grace = 5s;
+/// How often it looks; signals wake it.
+constexpr Duration look = 100ms;
+/// Above the supervisor's loop and every cycle: what it does when a supervisor has died takes well below a millisecond.
+constexpr int keeper_priority = 91;
 /// More than the supervisor allows itself for an orderly end.
 constexpr Duration supervisor_grace = 15s;
 
@@ -93,7 +101,7 @@ void end_orphans(const std::vector<Process>& devices, const sigset_t& set, const
       if (std::ranges::find(devices, pid, &Process::pid) != devices.end()) return;
       if (::waitpid(pid, nullptr, WNOHANG) != 0) return;  // it has ended and is reaped
       left = true;
-      if (clock.now() > limit) ::kill(pid, SIGKILL);      // ours until it is reaped: nobody else has its number
+      if (clock.now() > limit) ::kill(pid, SIGKILL);  // ours until it is reaped: nobody else has its number
     });
     if (left) static_cast<void>(next_signal(set, 20ms));
   }
@@ -105,32 +113,192 @@ int refused(const char* what, std::int64_t number) {
   return exit_environment;
 }
 
+/// What is shared with the supervisors of this flight.
+struct Shared {
+  FileDescriptor watched, held;  ///< a pipe: its end tells everybody that the keeper is gone
+  FileDescriptor page_memory, journal;
+  MappedMemory mapped;
+  FileDescriptor to_store;
+  std::optional<KeptStore> store;
+  [[nodiscard]] KeeperPage& page() const noexcept { return *reinterpret_cast<KeeperPage*>(mapped.octets().data()); }
+};
+
+/// 0, or the exit code.
+[[nodiscard]] int prepare(Shared& shared) {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return refused("no pipe to watch over the flight", errno);
+  shared.watched.reset(ends[0]);
+  shared.held.reset(ends[1]);
+  const auto memory = [](const char* name, std::size_t octets, FileDescriptor& into) -> Result<> {
+    HIROSCO_TRY_LET(into, memfd::create(name, octets));
+    return ok();
+  };
+  auto made = memory("hirosco-keeper", sizeof(KeeperPage), shared.page_memory);
+  if (made) made = memory("hirosco-journal", journal_octets, shared.journal);
+  if (!made) return refused("no memory to watch over the flight", made.error().value);
+  auto mapped = MappedMemory::map(shared.page_memory.get(), sizeof(KeeperPage), MapMode::ReadWrite);
+  if (!mapped) return refused("no memory to watch over the flight", mapped.error().value);
+  shared.mapped = std::move(*mapped);
+  ::new (shared.mapped.octets().data()) KeeperPage;
+  auto socket = KeptStore::make_socket();
+  if (!socket) return refused("no socket to keep the flight by", socket.error().value);
+  shared.store.emplace(std::move(socket->first));
+  shared.to_store = std::move(socket->second);
+  return 0;
+}
+
+/// A flight with its supervisors, one after the other.
+class Flight {
+ public:
+  Flight(KeeperPlan& plan, Shared& shared, const std::vector<Process>& devices, const sigset_t& signals)
+      : plan_{plan},
+        devices_{devices},
+        shared_{shared},
+        page_{shared.page()},
+        signals_{signals},
+        started_{clock_.now()},
+        bridge_{page_, flows_, std::move(plan.inhibits)} {}
+
+  [[nodiscard]] Result<> start() {
+    page_.starts.fetch_add(1);
+    page_.supervisor.store(0);  // it is watched from its first step on
+    ProcessStart start = plan_.supervisor;
+    start.inherited.insert(start.inherited.end(), {{shared_.watched.get(), keeper_descriptor},
+                                                   {shared_.page_memory.get(), keeper_page_descriptor},
+                                                   {shared_.to_store.get(), keeper_store_descriptor},
+                                                   {shared_.journal.get(), keeper_journal_descriptor}});
+    shared_.store->pass_on(start.inherited);
+    // It is asked for its end before it can listen, too.
+    start.blocked = {SIGTERM, SIGINT, SIGUSR1};
+    HIROSCO_TRY_LET(Process process, Process::spawn(start));
+    supervisor_.emplace(std::move(process));
+    progress_ = Progress{supervisor_patience};
+    began_ = clock_.now();
+    if (asked_) static_cast<void>(supervisor_->send_signal(SIGTERM));
+    return ok();
+  }
+
+  /// Until the last supervisor has ended; the exit code.
+  [[nodiscard]] int fly() {
+    for (;;) {
+      page_.keeper.fetch_add(1, std::memory_order_relaxed);
+      shared_.store->take();
+      reap();
+      if (const auto code = look_after()) return *code;
+      take_signal(next_signal(signals_, revive_at_ ? 1ms : look));
+    }
+  }
+
+ private:
+  /// The exit code, once no supervisor goes on.
+  [[nodiscard]] std::optional<int> look_after() {
+    const TimePoint now = clock_.now();
+    if (revive_at_) {
+      if (now < *revive_at_) return std::nullopt;
+      revive_at_.reset();
+      if (!start()) return exit_internal;
+      return std::nullopt;
+    }
+    const auto end = supervisor_->poll();
+    if (end && *end) return ended(**end, now);
+    const bool still = progress_.stands_still(page_.supervisor.load(std::memory_order_relaxed), now);
+    if ((!still && !stopped()) || killed_) return std::nullopt;
+    killed_ = true;
+    std::fputs("hirosco: the supervisor stands still and is ended\n", stderr);
+    static_cast<void>(supervisor_->send_signal(SIGKILL));
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<int> ended(const ExitStatus& end, TimePoint now) {
+    const bool in_order = page_.finished.load() != 0;
+    const bool began = page_.starts.load() > 1 || page_.supervisor.load() != 0;
+    const int code = end.kind == ExitStatus::Kind::Exited ? end.value : exit_internal;
+    const bool alone = page_.alone.load() != 0;
+    const auto pause = in_order || asked_ || alone || !began ? std::nullopt : revivals_.next(now - began_);
+    if (!pause) return code == 0 && !in_order ? exit_internal : code;
+    bridge_.begin();
+    shared_.store->take();
+    std::fputs("hirosco: the supervisor has died; another one goes on\n", stderr);
+    killed_ = false;
+    revive_at_ = now + *pause;
+    return std::nullopt;
+  }
+
+  /// Subsystems whose supervisor died have us for their parent: how they end nobody else is told.
+  void reap() {
+    if (page_.starts.load() < 2) return;
+    each_child([&](int pid) {
+      const bool ours = std::ranges::find(devices_, pid, &Process::pid) != devices_.end();
+      int status = 0;
+      if (ours || pid == supervisor_->pid() || ::waitpid(pid, &status, WNOHANG) != pid) return;
+      const int how = WIFSIGNALED(status) ? static_cast<int>(ended_by_signal) + WTERMSIG(status) : WEXITSTATUS(status);
+      page_.tell_end(static_cast<std::uint32_t>(pid), static_cast<std::uint32_t>(how));
+    });
+  }
+
+  /// By SIGSTOP: it neither steps nor guards.
+  [[nodiscard]] bool stopped() const noexcept {
+    siginfo_t info{};
+    return ::waitid(P_PIDFD, static_cast<id_t>(supervisor_->handle().get()), &info, WSTOPPED | WNOHANG | WNOWAIT) ==
+               0 &&
+           info.si_pid != 0;
+  }
+
+  void take_signal(int number) {
+    const TimePoint now = clock_.now();
+    if (number == SIGUSR1) stop_all();
+    const bool interrupted = number == SIGINT || number == SIGTERM || number == SIGHUP;
+    const bool over = plan_.run_for && !asked_ && now - started_ >= *plan_.run_for;
+    const bool overdue = asked_ && now - asked_at_ > supervisor_grace;
+    const bool same_wish = asked_ && interrupted && now - asked_at_ < one_wish;
+    if (same_wish || (!interrupted && !over && !overdue)) return;
+    // The first wish is for an orderly end, the second for an end; so is one that is not fulfilled in time.
+    static_cast<void>(supervisor_->send_signal(asked_ ? SIGKILL : SIGTERM));
+    if (!asked_) asked_at_ = now;
+    asked_ = true;
+  }
+
+  /// Its guard stops everything; where there is none now, nothing is enabled any more, and the next one carries it out.
+  void stop_all() {
+    page_.stops_asked.fetch_add(1);
+    bridge_.stop();
+    static_cast<void>(supervisor_->send_signal(SIGUSR1));
+  }
+
+  const SystemClock clock_;
+  KeeperPlan& plan_;
+  const std::vector<Process>& devices_;
+  Shared& shared_;
+  KeeperPage& page_;
+  const sigset_t& signals_;
+  TimePoint started_;
+  SystemFlowFactory flows_;
+  InhibitBridge bridge_;
+  std::optional<Process> supervisor_;
+  TimePoint began_{};
+  Progress progress_{supervisor_patience};
+  Revivals revivals_;
+  std::optional<TimePoint> revive_at_;  ///< there is no supervisor now
+  bool killed_{false};
+  bool asked_{false};
+  TimePoint asked_at_{};
+};
+
 }  // namespace
 
 int keep(KeeperPlan plan) {
   const SystemClock clock;
   const sigset_t set = handled_signals();
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return refused("no pipe to watch over the flight", errno);
-  const FileDescriptor watched{ends[0]};
-  const FileDescriptor held{ends[1]};
-
   ::prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
-  const auto page_memory = memfd::create("hirosco-keeper", sizeof(KeeperPage));
-  auto mapped = page_memory ? MappedMemory::map(page_memory->get(), sizeof(KeeperPage), MapMode::ReadWrite)
-                            : Result<MappedMemory>{fail(ErrorCode::SystemFailure, "memory of the keeper")};
-  if (!mapped) {
-    const Error& why = page_memory ? mapped.error() : page_memory.error();
-    return refused("no memory to watch over the flight", why.value);
-  }
-  auto& page = *::new (mapped->octets().data()) KeeperPage;
+  Shared shared;
+  if (const int code = prepare(shared); code != 0) return code;
 
   std::vector<Process> devices;
   devices.reserve(plan.devices.size());
   for (ProcessStart& start : plan.devices) {
     // Its end tells a device that the keeper is gone, however that came about: nobody else would end it.
-    start.inherited.push_back({watched.get(), STDIN_FILENO});
+    start.inherited.push_back({shared.watched.get(), STDIN_FILENO});
     auto device = Process::spawn(start);
     if (!device) {
       end_devices(devices, set, clock);
@@ -138,46 +306,19 @@ int keep(KeeperPlan plan) {
     }
     devices.push_back(std::move(*device));
   }
-  plan.supervisor.inherited.push_back({watched.get(), keeper_descriptor});
-  plan.supervisor.inherited.push_back({page_memory->get(), keeper_page_descriptor});
-  // It is asked for its end before it can listen, too.
-  plan.supervisor.blocked = {SIGTERM, SIGINT, SIGUSR1};
-  auto supervisor = Process::spawn(plan.supervisor);
-  if (!supervisor) {
-    end_devices(devices, set, clock);
-    return refused(("cannot start " + plan.supervisor.executable).c_str(), supervisor.error().value);
+  static_cast<void>(set_fifo_priority(keeper_priority));
+  int code = 0;
+  {
+    Flight flight{plan, shared, devices, set};
+    if (const auto started = flight.start(); !started)
+      code = refused(("cannot start " + plan.supervisor.executable).c_str(), started.error().value);
+    else code = flight.fly();
   }
-
-  const TimePoint started = clock.now();
-  bool asked = false;
-  TimePoint asked_at{};
-  Progress progress;
-  bool stood_still = false;
-  for (;;) {
-    page.keeper.fetch_add(1, std::memory_order_relaxed);
-    const auto end = supervisor->poll();
-    if (end && *end) {
-      end_orphans(devices, set, clock);
-      end_devices(devices, set, clock);
-      return (*end)->kind == ExitStatus::Kind::Exited ? (*end)->value : exit_internal;
-    }
-    if (!stood_still && progress.stands_still(page.supervisor.load(std::memory_order_relaxed), clock.now())) {
-      stood_still = true;
-      std::fputs("hirosco: the supervisor stands still and is ended; the subsystems make themselves safe\n", stderr);
-      static_cast<void>(supervisor->send_signal(SIGKILL));
-    }
-    const int number = next_signal(set, 100ms);
-    if (number == SIGUSR1) static_cast<void>(supervisor->send_signal(SIGUSR1));  // its guard stops everything
-    const bool interrupted = number == SIGINT || number == SIGTERM || number == SIGHUP;
-    const bool over = plan.run_for && !asked && clock.now() - started >= *plan.run_for;
-    const bool overdue = asked && clock.now() - asked_at > supervisor_grace;
-    const bool same_wish = asked && interrupted && clock.now() - asked_at < one_wish;
-    if (same_wish || (!interrupted && !over && !overdue)) continue;
-    // The first wish is for an orderly end, the second for an end; so is one that is not fulfilled in time.
-    static_cast<void>(supervisor->send_signal(asked ? SIGKILL : SIGTERM));
-    if (!asked) asked_at = clock.now();
-    asked = true;
-  }
+  static_cast<void>(set_ordinary_scheduling());
+  shared.store->clear();
+  end_orphans(devices, set, clock);
+  end_devices(devices, set, clock);
+  return code;
 }
 
 }  // namespace hirosco::supervisor

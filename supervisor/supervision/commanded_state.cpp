@@ -268,4 +268,64 @@ std::vector<std::string> CommandedState::out_of_reach(const descriptor::Subsyste
   return names;
 }
 
+namespace {
+
+void put_octets(OctetWriter& writer, Octets octets) {
+  writer.put(static_cast<std::uint16_t>(octets.size())).put(octets);
+}
+
+[[nodiscard]] std::vector<std::byte> get_octets(OctetReader& reader) {
+  const Octets octets = reader.get(reader.get<std::uint16_t>());
+  return {octets.begin(), octets.end()};
+}
+
+}  // namespace
+
+void CommandedState::note(OctetWriter& writer) const {
+  writer.put(static_cast<std::uint8_t>(state_)).put(configuration_);
+  writer.put(static_cast<std::uint8_t>(protection_was_set_ ? 1 : 0));
+  writer.put(static_cast<std::uint16_t>(parameters_.size()));
+  for (const ParameterValue& each : parameters_) {
+    writer.put(each.id);
+    put_octets(writer, each.value);
+  }
+  writer.put(static_cast<std::uint16_t>(silent_events_.size()));
+  for (const std::uint16_t event : silent_events_) writer.put(event);
+  writer.put(static_cast<std::uint16_t>(structures_.size()));
+  for (const Structure& each : structures_) {
+    writer.put(each.id).put(static_cast<std::uint8_t>(each.interval ? 1 : 0)).put(each.interval.value_or(0));
+    writer.put(static_cast<std::uint8_t>(each.periodic ? (*each.periodic ? 2 : 1) : 0));
+    put_octets(writer, each.created);
+    writer.put(static_cast<std::uint16_t>(each.appended.size()));
+    for (const auto& appended : each.appended) put_octets(writer, appended);
+  }
+}
+
+void CommandedState::recall(OctetReader& reader) {
+  *this = {};
+  const auto state = reader.get<std::uint8_t>();
+  if (state <= static_cast<std::uint8_t>(State::SoftwareDeinit)) state_ = static_cast<State>(state);
+  configuration_ = reader.get<std::uint8_t>();
+  protection_was_set_ = reader.get<std::uint8_t>() != 0;
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto id = reader.get<std::uint32_t>();
+    parameters_.push_back({id, get_octets(reader)});
+  }
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left)
+    silent_events_.insert(reader.get<std::uint16_t>());
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    Structure each;
+    each.id = reader.get<std::uint16_t>();
+    const bool paced = reader.get<std::uint8_t>() != 0;
+    const auto interval = reader.get<std::uint32_t>();
+    if (paced) each.interval = interval;
+    const auto periodic = reader.get<std::uint8_t>();
+    if (periodic != 0) each.periodic = periodic == 2;
+    each.created = get_octets(reader);
+    for (auto more = reader.get<std::uint16_t>(); more > 0 && reader.good(); --more)
+      each.appended.push_back(get_octets(reader));
+    structures_.push_back(std::move(each));
+  }
+}
+
 }  // namespace hirosco::supervisor

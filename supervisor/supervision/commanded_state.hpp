@@ -46,6 +46,10 @@ class CommandedState {
   /// It has reported TM[1,7].
   Kept completed(const pus::TelecommandView& telecommand, const descriptor::Subsystem& subsystem);
 
+  /// All of it, for a supervisor that goes on for this one (docs/adr/0093).
+  void note(OctetWriter& writer) const;
+  void recall(OctetReader& reader);
+
   /// What brings the settings back that can be set in `state`, Pre-Operational or Safe-Operational, and in no state before it on the
   /// way up; in the order in which they are to be sent.
   [[nodiscard]] std::vector<SettingCommand> settings_for(State state, const descriptor::Subsystem& subsystem) const;

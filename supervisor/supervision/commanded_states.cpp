@@ -115,6 +115,37 @@ void CommandedStates::ended(std::uint16_t apid) {
   std::erase_if(open_, [apid](const Open& each) { return each.apid == apid; });
 }
 
+void CommandedStates::note(OctetWriter& writer) const {
+  writer.put(static_cast<std::uint16_t>(members_.size()));
+  for (const auto& [apid, member] : members_) {
+    writer.put(apid);
+    member.commanded.note(writer);
+  }
+  writer.put(static_cast<std::uint16_t>(open_.size()));
+  for (const Open& each : open_) {
+    writer.put(each.apid)
+        .put(each.refused)
+        .put(static_cast<std::uint16_t>(each.packet.size()))
+        .put(Octets{each.packet});
+  }
+}
+
+void CommandedStates::recall(OctetReader& reader) {
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left)
+    members_[reader.get<std::uint16_t>()].commanded.recall(reader);
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    Open each;
+    each.apid = reader.get<std::uint16_t>();
+    each.refused = reader.get<unsigned>();
+    const Octets packet = reader.get(reader.get<std::uint16_t>());
+    const auto telecommand = pus::TelecommandView::parse(packet);
+    if (!reader.good() || !telecommand) continue;
+    each.request = pus::request_of(*telecommand);
+    each.packet.assign(packet.begin(), packet.end());
+    open_.push_back(std::move(each));
+  }
+}
+
 CommandedState CommandedStates::of(std::uint16_t apid) const {
   const auto found = members_.find(apid);
   return found != members_.end() ? found->second.commanded : CommandedState{};

@@ -12,6 +12,7 @@
 #include "supervisor/supervision/commanded_state.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/origin.hpp"
+#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
@@ -21,7 +22,7 @@ namespace hirosco::supervisor {
 /// it is sent or a plan, or a stop, asks for it. Nothing is kept in a mission without a plan that brings anybody back.
 /// Bounded: `most_open` telecommands whose end is awaited, and per member what CommandedState says; what has no room is told,
 /// COMMAND_NOT_KEPT. Thread: the supervisor's.
-class CommandedStates final : public Hearer {
+class CommandedStates final : public Hearer, public Remembered {
  public:
   static constexpr std::size_t most_open = 256;
   /// The partner of a link may see its loss before the supervisor sees the death that it comes from.
@@ -40,6 +41,10 @@ class CommandedStates final : public Hearer {
   void all_stopped();
   /// Its process is gone: it is Offline, and its settings went with it.
   void ended(std::uint16_t apid);
+
+  /// What each was commanded to be, and what is awaited. Who was being brought back is not.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
 
   [[nodiscard]] CommandedState of(std::uint16_t apid) const;
   /// The same for the partner of who is gone: a stale link that it told of just now was the beginning of that.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,12 @@ struct Craft {
   TimePoint now{};
   bool shutting_down{false};
   bool restoring_ground_link{false};
+
+  /// What outlives this supervisor is noted now, not at the end of its step: before something is done that must not be done by halves.
+  void remember() const {
+    if (remembers) remembers();
+  }
+  std::function<void()> remembers{};
 
   /// Commissioning failed, or something that the end is not orderly without: nothing takes that back.
   void fail() noexcept { failed_ = true; }

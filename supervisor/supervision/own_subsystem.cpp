@@ -3,6 +3,8 @@
 #include "supervisor/supervision/own_subsystem.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <span>
 
 namespace hirosco::supervisor {
 
@@ -22,6 +24,13 @@ void OwnSubsystem::start(std::uint32_t mode_epoch) {
   permit_->release();
   permit_->mode_epoch.store(mode_epoch);
   permit_->heartbeat.store(1);
+}
+
+void OwnSubsystem::note(OctetWriter& writer) const { writer.put(std::as_bytes(std::span{&vital_->counters, 1})); }
+
+void OwnSubsystem::recall(OctetReader& reader) {
+  const Octets counters = reader.get(sizeof(pus::CounterBlock));
+  if (reader.good()) std::memcpy(&vital_->counters, counters.data(), counters.size());
 }
 
 TimePoint OwnSubsystem::step(TimePoint now) {

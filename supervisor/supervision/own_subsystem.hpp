@@ -11,12 +11,13 @@
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "supervisor/platform/launch/member_port.hpp"
+#include "supervisor/supervision/journal.hpp"
 
 namespace hirosco::supervisor {
 
 /// The subsystem that the supervisor is itself (paper 4.3): its functions are telecommands like any other, its telemetry
 /// takes the same way through permission, log and route. Thread: the supervisor's, its cycle too.
-class OwnSubsystem final : private Subsystem {
+class OwnSubsystem final : public Remembered, private Subsystem {
  public:
   /// Whoever gives it functions and parameters, and shows these in each of its cycles.
   class Author {
@@ -56,6 +57,9 @@ class OwnSubsystem final : private Subsystem {
     return static_cast<std::uint8_t>(vital_->configuration.load(std::memory_order_relaxed));
   }
   [[nodiscard]] MemberStatistics statistics() const noexcept { return statistics_of(*vital_); }
+  /// The counts of its packets (decision 8b).
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
 
  private:
   using Subsystem::telemetry;  // of the ground link only

@@ -10,13 +10,14 @@
 
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/utilities/time.hpp"
+#include "supervisor/supervision/journal.hpp"
 
 /// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
 /// than its plan says (`procedures/steps/restart.hpp`; `Processes` starts it; hazard SF15; reliability 5: a crash loop stays down until the ground starts it, docs/adr/0068). The ground
 /// link alone never stays down: nobody could bring it up again.
 namespace hirosco::supervisor {
 
-class Restarts {
+class Restarts final : public Remembered {
  public:
   enum class AtLimit { StaysDown, GoesOn };
   /// At most `limit` times within `within`, after a pause that doubles.
@@ -66,6 +67,27 @@ class Restarts {
     return found ? std::optional{found.mapped()} : std::nullopt;
   }
   void cancel() { due_.clear(); }
+  /// The deaths so far: who dies too often stays down, whoever counts. Times are of the monotonic clock, which outlives processes.
+  void note(OctetWriter& writer) const override {
+    writer.put(static_cast<std::uint16_t>(history_.size()));
+    for (const auto& [apid, deaths] : history_) {
+      writer.put(apid).put(static_cast<std::uint16_t>(deaths.size()));
+      for (const TimePoint at : deaths) writer.put(at.time_since_epoch().count());
+    }
+    writer.put(static_cast<std::uint16_t>(due_.size()));
+    for (const auto& [apid, at] : due_) writer.put(apid).put(at.time_since_epoch().count());
+  }
+  void recall(OctetReader& reader) override {
+    const auto time = [&] { return TimePoint{Duration{reader.get<std::int64_t>()}}; };
+    for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+      std::vector<TimePoint>& deaths = history_[reader.get<std::uint16_t>()];
+      for (auto each = reader.get<std::uint16_t>(); each > 0 && reader.good(); --each) deaths.push_back(time());
+    }
+    for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+      const auto apid = reader.get<std::uint16_t>();
+      due_[apid] = time();
+    }
+  }
 
  private:
   std::map<std::uint16_t, std::vector<TimePoint>> history_;

@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """How a flight begins and ends: one at a time, in order when asked, and without orphans when it is not."""
+import contextlib
 import os
 import pathlib
 import resource
@@ -71,9 +72,25 @@ class Keeper(unittest.TestCase):
     def test_a_killed_keeper_leaves_no_orphans(self):
         self.no_orphans("hirosco")
 
-    def test_a_killed_supervisor_leaves_no_orphans(self):
-        rokviss = self.no_orphans("hirosco-supervisor")
-        self.assertNotEqual(rokviss.process.returncode, 0, "the end was not an orderly one")
+    def test_a_crash_loop_of_supervisors_leaves_no_orphans(self):
+        before = flight.segments()
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            deaths, last = 0, None
+            end = time.monotonic() + 60.0
+            while rokviss.process.poll() is None:
+                self.assertLess(time.monotonic(), end, "it ends")
+                pid = next((pid for pid, name in rokviss.processes().items() if name == "hirosco-supervisor"), None)
+                if pid is None or pid == last:
+                    continue
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
+                    deaths, last = deaths + 1, pid
+            flight.measure(f"a flight ended after {deaths} supervisors that were killed at once")
+            self.assertGreater(deaths, 3)
+            self.assertEqual(rokviss.wait_until_gone(ORPHANS_GONE_S), {})
+            self.assertEqual(rokviss.process.returncode, 4, "the end was not an orderly one")
+        self.assertEqual(flight.segments(), before)
 
     def no_orphans(self, name):
         before = flight.segments()

@@ -87,11 +87,12 @@ class Hostile(unittest.TestCase):
             craft.wait_commissioned()
             self.push(craft)
             self.assert_nothing_was_changed(craft, self.turn(craft))
-            stopped = craft.kill("hirosco-supervisor", signal.SIGSTOP)
-            craft.wait_at_rest("robot", stopped)
+            craft.process.send_signal(signal.SIGSTOP)         # or another supervisor would go on
+            killed = craft.kill("hirosco-supervisor")
+            craft.wait_at_rest("robot", killed)
+            craft.process.kill()
             self.assertEqual(craft.wait_until_gone(ORPHANS_GONE_S), {})
-            flight.measure(f"everything of the flight gone {time.monotonic() - stopped:.1f} s after its supervisor stopped")
-            self.assertEqual(craft.process.wait(5.0), 4)
+            flight.measure(f"everything of the flight gone {time.monotonic() - killed:.1f} s after its supervisor was killed")
             with flight.Flight(mission, folder=craft.folder) as again:
                 again.wait_commissioned()
                 self.push(again)

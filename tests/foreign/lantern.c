@@ -205,6 +205,21 @@ static void telecommand(const uint8_t* packet, size_t size, uint32_t mode_epoch,
   }
 }
 
+/// Of a supervisor that goes on for one that died: sealed against shrinking, growing and other writers.
+static int another_permit_page(int memory) {
+  struct stat status;
+  int seals = fcntl(memory, 1034);
+  if (fstat(memory, &status) != 0 || status.st_size != 56 || seals < 0 || (seals & 0x16) != 0x16) return 0;
+  void* at = mmap(NULL, 56, PROT_READ, MAP_SHARED, memory, 0);
+  if (at == MAP_FAILED) return 0;
+  const volatile uint8_t* page = at;
+  if (load32(page) != 0x48495243 || load32(page + 4) != 4) return munmap(at, 56), 0;
+  munmap((void*)(uintptr_t)permit_, 56);
+  permit_ = page;
+  heartbeat_ = load64(page + 32);
+  return 1;
+}
+
 static void receive(void) {
   for (int left = 64; left > 0 && waiting_count_ < 512 && !lost_; --left) {
     uint8_t octets[4104];
@@ -222,6 +237,7 @@ static void receive(void) {
     int good = !lost_ && size >= 8 && octets[0] == 1 && octets[1] == 1 && count <= 1 && !(head.msg_flags & (MSG_TRUNC | MSG_CTRUNC));
     static int told;
     if (size >= 8 && octets[1] != 1 && !told++) fprintf(stderr, "lantern: the supervisor's control channel is of version %d, this program's of version 1\n", octets[1]);
+    if (!lost_ && size == 8 && octets[0] == 4 && octets[1] == 1 && count == 1 && another_permit_page(given[0])) put(4, NULL, 0);
     if (good) telecommand(octets + 8, (size_t)size - 8, u32(octets + 4), count ? given[0] : -1);
     while (count > 0) close(given[--count]);
   }

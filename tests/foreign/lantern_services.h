@@ -76,7 +76,7 @@ static void put(uint8_t kind, const uint8_t* octets, size_t size) {
   memset(waiting_[at].message, 0, 8);
   waiting_[at].message[0] = kind;
   waiting_[at].message[1] = 1;
-  memcpy(waiting_[at].message + 8, octets, size);
+  if (size > 0) memcpy(waiting_[at].message + 8, octets, size);
   waiting_[at].octets = 8 + size;
   flush();
 }

@@ -120,6 +120,8 @@ class Services:
                 if len(octets) >= 8 and octets[1] != 1 and not self.told_version:
                     self.told_version = True
                     say(f"the supervisor's control channel is of version {octets[1]}, this program's of version 1")
+                if len(octets) == 8 and octets[:2] == b"\x04\x01" and len(given) == 1 and self.another_permit_page(given[0]):
+                    self.put(struct.pack(">BBHI", 4, 1, 0, 0))
                 if len(octets) < 8 or octets[1] != 1 or octets[0] != 1 or flags & (socket.MSG_TRUNC | socket.MSG_CTRUNC) or len(given) > 1:
                     continue
                 self.telecommand(octets[8:], struct.unpack_from(">I", octets, 4)[0], given[0] if given else None)

@@ -199,7 +199,8 @@ TEST(InterfacePages, Packets) {
   EXPECT_EQ(number_of(table("octets: envelope")[1].at(4)), envelope::version);
   expect_numbers("message kinds", {{of(MessageKind::Packet), "Packet"},
                                    {of(MessageKind::GroundTelecommand), "GroundTelecommand"},
-                                   {of(MessageKind::Event), "Event"}});
+                                   {of(MessageKind::Event), "Event"},
+                                   {of(MessageKind::PermitPage), "PermitPage"}});
   std::map<std::uint64_t, std::string> types;
   for (const auto& row : EnumTexts<Type>::table) types[of(row.value)] = row.text;
   expect_numbers("types", types);

@@ -105,6 +105,33 @@ def latched(judged):
         expect(craft.inhibited() == 0, f"inhibited is {craft.inhibited()} after Operational was entered anew")
 
 
+@duty("permit.another")
+def another(judged):
+    with judged.craft() as craft:
+        craft.wait_alive()
+        expect(craft.another_permit_page(craft.epoch(), False), "another permit page is not said to be in force in Offline")
+        flown = Flown(judged, craft).operational()
+        before = craft.permit
+        expect(not craft.another_permit_page(craft.epoch() + 1, True, seals=6), "a page that others may write is taken")
+        expect(not craft.another_permit_page(craft.epoch() + 1, True, version=9), "a page of another version is taken")
+        expect(craft.inhibited() == 0, "what is no permit page changed something")
+        expect(craft.another_permit_page(craft.epoch(), True), "another permit page is not said to be in force")
+        before.set64(16, 0)
+        craft.wait(limit_s(flown) + 0.1)
+        expect(craft.inhibited() == 0, f"inhibited is {craft.inhibited()}: what was permitted goes on under the same epoch, whatever the page before says")
+        begin = time.monotonic()
+        craft.forbid()
+        expect(craft.until(lambda: craft.inhibited() & STOP, limit_s(flown) + 0.2), "the new page is not looked at")
+        expect_safe(judged, flown, begin, "a fence on another permit page")
+    for words, raised, permitted in (("that permits nothing", 0, False), ("of another epoch", 1, True)):
+        with judged.craft() as craft:
+            flown = Flown(judged, craft).operational()
+            begin = time.monotonic()
+            expect(craft.another_permit_page(craft.epoch() + raised, permitted), "another permit page is not said to be in force")
+            expect(craft.until(lambda: craft.inhibited() & STOP, limit_s(flown) + 0.2), f"not inhibited by a page {words}")
+            expect_safe(judged, flown, begin, f"a page {words}")
+
+
 @duty("permit.heartbeat")
 def heartbeat(judged):
     with judged.craft() as craft:

@@ -13,6 +13,7 @@
 #include "simulation/devices/device_arguments.hpp"
 #include "subsystems/communication/tcp_server.hpp"
 #include "supervisor/keeper/keeper.hpp"
+#include "supervisor/keeper/kept_endnodes.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/readiness.hpp"
@@ -216,7 +217,8 @@ int run(const RunOptions& options) {
   if (!options.mode.empty())
     plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--mode", options.mode});
   if (flight.named()) plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--log", flight.log.string()});
-  constexpr int first_lock = supervisor::keeper_page_descriptor + 1;
+  for (auto& endnode : supervisor::kept_endnodes(*mission)) plan.inhibits.push_back(std::move(endnode.address));
+  constexpr int first_lock = supervisor::keeper_journal_descriptor + 1;
   plan.supervisor.inherited = {{locks->folder.get(), first_lock}, {locks->registry.get(), first_lock + 1}};
   if (locks->log) plan.supervisor.inherited.push_back({locks->log.get(), first_lock + 2});
   if (options.json) plan.supervisor.arguments.emplace_back("--json");

@@ -20,6 +20,7 @@ enum class MessageKind : std::uint8_t {
   Packet = 1,       ///< a space packet: to a subsystem a telecommand (or telemetry for the ground link), from it any
   GroundTelecommand = 2,  ///< from the communication subsystem only: a telecommand that came from ground
   Event = 3,  ///< from a subsystem: it raised an event (pus/event_message.hpp), reported to ground or not
+  PermitPage = 4,  ///< to a subsystem: `memory` is its permit page from now on; from it, empty: it is in force
 };
 
 /// One message of the control channel between a subsystem and the supervisor: one space packet and, where the packet is

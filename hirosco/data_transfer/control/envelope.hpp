@@ -28,7 +28,8 @@ inline void write(OctetWriter& writer, const Message& message) noexcept {
   if (!reader.good()) return fail(ErrorCode::Malformed, "message is too short");
   if (theirs != version)
     return fail(ErrorCode::Mismatch, "another version of the control channel; build both from one hirosco", theirs);
-  if (kind < static_cast<std::uint8_t>(MessageKind::Packet) || kind > static_cast<std::uint8_t>(MessageKind::Event))
+  if (kind < static_cast<std::uint8_t>(MessageKind::Packet) ||
+      kind > static_cast<std::uint8_t>(MessageKind::PermitPage))
     return fail(ErrorCode::Malformed, "kind of message", kind);
   message.kind = static_cast<MessageKind>(kind);
   return message;

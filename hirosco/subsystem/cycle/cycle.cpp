@@ -29,7 +29,7 @@ std::size_t bin_of(Duration span) noexcept {
 
 }  // namespace
 
-CycleLoop::CycleLoop(const Parts& parts) : parts_{parts} {
+CycleLoop::CycleLoop(const Parts& parts) : parts_{parts}, permit_{&parts.permit}, offered_permit_{&parts.permit} {
   std::size_t largest = 0;
   for (const auto& event : parts_.descriptor.events) largest = std::max(largest, pus::octets_of(event));
   event_buffer_.resize(largest);
@@ -56,7 +56,7 @@ void CycleLoop::prepare(CyclePlan plan) {
   inhibited_ = 0;
   awaits_fall_back_ = false;
   taken_over_ = nullptr;
-  heartbeat_ = parts_.permit.heartbeat.load(std::memory_order_acquire);
+  heartbeat_ = permit().heartbeat.load(std::memory_order_acquire);
   silent_cycles_ = 0;
   begin_counting(*plan_.configuration);
   link_statistics_.store({});
@@ -77,10 +77,19 @@ void CycleLoop::release() {
   plan_ = {};
 }
 
+void CycleLoop::take_permit() noexcept {
+  const PermitPage* offered = offered_permit_.load(std::memory_order_acquire);
+  if (offered == permit_.load(std::memory_order_relaxed)) return;
+  // Only what moves on it from now on is a sign of life.
+  heartbeat_ = offered->heartbeat.load(std::memory_order_acquire);
+  permit_.store(offered, std::memory_order_release);
+}
+
 TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const RealtimeScope forbidden;
   const TimePoint started = parts_.clock.now();
   const CyclePace::Start start = pace_.start(planned, started);
+  take_permit();
   listen_to_supervisor(start.counts);
   check_permit();
   take_commands(start.planned);
@@ -109,11 +118,10 @@ bool CycleLoop::controlling() const noexcept {
 }
 
 void CycleLoop::check_permit() noexcept {
-  const std::uint32_t epoch = parts_.permit.epoch.load(std::memory_order_acquire);
-  const bool stopped = parts_.permit.stop.load(std::memory_order_acquire) != 0;
+  const std::uint32_t epoch = permit().epoch.load(std::memory_order_acquire);
+  const bool stopped = permit().stop.load(std::memory_order_acquire) != 0;
   const bool operational = state_ == State::Operational;
-  if (stopped || (operational && (epoch != entered_epoch_ || !parts_.permit.permits(epoch))))
-    inhibit(inhibited_by_stop);
+  if (stopped || (operational && (epoch != entered_epoch_ || !permit().permits(epoch)))) inhibit(inhibited_by_stop);
   if (silent_cycles_ > silence_limit_) inhibit(inhibited_by_supervisor);
   permitted_epoch_ = epoch;
   parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);
@@ -122,7 +130,7 @@ void CycleLoop::check_permit() noexcept {
 /// Once a cycle, and in the cycle: a service loop that is stuck or starved must not keep the actuators going when nobody is
 /// left to stop them. The state follows in the service loop: `watch_supervisor()` of `service_loop/generic_subsystem.cpp`.
 void CycleLoop::listen_to_supervisor(bool counts) noexcept {
-  const std::uint64_t heartbeat = parts_.permit.heartbeat.load(std::memory_order_acquire);
+  const std::uint64_t heartbeat = permit().heartbeat.load(std::memory_order_acquire);
   if (std::exchange(heartbeat_, heartbeat) != heartbeat) {
     silent_cycles_ = 0;
     return;
@@ -193,7 +201,7 @@ void CycleLoop::enter(State state) noexcept {
   state_ = state;
   first_ = true;
   if (state == State::Operational) {
-    entered_epoch_ = parts_.permit.epoch.load(std::memory_order_acquire);
+    entered_epoch_ = permit().epoch.load(std::memory_order_acquire);
     inhibited_ = 0;
     check_permit();
   }

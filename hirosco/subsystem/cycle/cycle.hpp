@@ -76,7 +76,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
     WriteQueue& writes;
     Handover& handover;
     VitalPage& vital;
-    const PermitPage& permit;
+    const PermitPage& permit;  ///< to begin with
     bool realtime;
     const ResourceMeter& resources;
   };
@@ -106,6 +106,16 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] bool writes_itself(std::size_t parameter) const noexcept {
     return parameter < own_writes_octets_ && own_writes_[parameter].load(std::memory_order_relaxed) != 0;
   }
+
+  /// Another permit page, of a supervisor that goes on for one that died (docs/adr/0093): the next cycle looks at it. What the
+  /// page before permitted holds on only where this one permits it, under the same epoch. Thread: service.
+  void offer_permit(const PermitPage& page) noexcept { offered_permit_.store(&page, std::memory_order_release); }
+  /// Whether the cycle looks at what was offered: what it looked at before may be given back.  Realtime: wait-free. Thread: service.
+  [[nodiscard]] bool looks_at_offered_permit() const noexcept {
+    return permit_.load(std::memory_order_acquire) == offered_permit_.load(std::memory_order_relaxed);
+  }
+  /// Takes what was offered. Thread: the cycle's, or the service loop's while the cycle rests.  Realtime: wait-free.
+  void take_permit() noexcept;
 
   // --- the cycle --------------------------------------------------------------------------------------------------
   /// One cycle that was due at `planned`, or was started by a sample before that; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
@@ -157,7 +167,11 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   MutableOctets reserve(std::size_t octets) noexcept override;
   void commit(std::uint16_t structure, std::size_t octets) noexcept override;
 
+  [[nodiscard]] const PermitPage& permit() const noexcept { return *permit_.load(std::memory_order_relaxed); }
+
   Parts parts_;
+  std::atomic<const PermitPage*> permit_;  ///< that the cycle looks at
+  std::atomic<const PermitPage*> offered_permit_;
   CyclePlan plan_;
   std::atomic<const descriptor::Configuration*> in_force_{nullptr};
   const Reconfiguration* taken_over_{nullptr};  ///< in this cycle

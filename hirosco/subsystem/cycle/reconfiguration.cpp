@@ -70,8 +70,8 @@ const char* CycleLoop::why_not(const Reconfiguration& wanted) const noexcept {
   if (plan_.configuration != wanted.from) return "another configuration is in force";
   if (!controlling()) return "neither Safe-Operational nor Operational";
   if (self_test_.running()) return "a self test runs";
-  const bool permitted = parts_.permit.stop.load(std::memory_order_acquire) == 0 &&
-                         parts_.permit.permits(parts_.permit.epoch.load(std::memory_order_acquire));
+  const bool permitted = permit().stop.load(std::memory_order_acquire) == 0 &&
+                         permit().permits(permit().epoch.load(std::memory_order_acquire));
   if (state_ == State::Operational && (!permitted || inhibited_ != 0)) return "the actuators are inhibited";
   return nullptr;
 }

@@ -56,7 +56,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       platform_{platform},
       channel_{channel},
       vital_{vital},
-      permit_{permit},
+      permit_{&permit},
       dictionary_{make_dictionary(descriptor_, dictionary_problem_)},
       writes_{32, 2048},
       resources_{descriptor_.resources},
@@ -111,6 +111,7 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
   take_cycle_reports();
   take_loop_reports();
   receive_messages();
+  confirm_permit_page();
   watch_supervisor(now);
   release_late();
   advance(now);
@@ -143,7 +144,32 @@ void GenericSubsystem::receive_messages() {
     }
     if (found->flow == Flow::None) return;
     if (found->message.kind == MessageKind::Packet) dispatch(found->message);
+    else if (found->message.kind == MessageKind::PermitPage) take_permit_page(found->message.memory);
   }
+}
+
+/// The supervisor died, and another one goes on in its place: it cannot write the page of the one before (hazard SF13). What is no
+/// permit page is not taken, nor is one before the cycle looks at the last: then it comes again.
+void GenericSubsystem::take_permit_page(const MemoryHandle& memory) {
+  if (!cycle_.looks_at_offered_permit() || !platform_.memory.verify(memory, sizeof(PermitPage), true)) return;
+  auto mapped = platform_.memory.map(memory, Access::ReadOnly);
+  if (!mapped) return;
+  const auto* page = reinterpret_cast<const PermitPage*>(mapped->octets.data());
+  if (page->magic != page_magic || page->version != page_version) return;
+  permit_before_ = std::exchange(permit_memory_, std::move(*mapped));
+  permit_ = page;
+  last_heartbeat_ = page->heartbeat.load(std::memory_order_acquire);
+  cycle_.offer_permit(*page);
+  permit_owed_ = true;
+  confirm_permit_page();
+}
+
+void GenericSubsystem::confirm_permit_page() {
+  if (!permit_owed_) return;
+  if (cycle_rests()) cycle_.take_permit();
+  if (!cycle_.looks_at_offered_permit()) return;
+  permit_before_ = {};
+  permit_owed_ = !channel_.send({.kind = MessageKind::PermitPage});
 }
 
 void GenericSubsystem::dispatch(const Message& message) {
@@ -162,7 +188,7 @@ void GenericSubsystem::dispatch(const Message& message) {
   const pus::Request request = pus::request_of(*telecommand);
   if (telecommand->apid() != descriptor_.id)
     return verification_.routing_failed(request, pus::FailureNotice{pus::FailureCode::UnknownApid});
-  if (message.mode_epoch != 0 && message.mode_epoch != permit_.mode_epoch.load(std::memory_order_acquire))
+  if (message.mode_epoch != 0 && message.mode_epoch != permit_->mode_epoch.load(std::memory_order_acquire))
     return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
   const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
   if (found == services_.end() || !descriptor_.offers(telecommand->service(), configuration_))
@@ -183,7 +209,7 @@ pus::FailureNotice GenericSubsystem::wrong_state() const {
 }
 
 void GenericSubsystem::watch_supervisor(TimePoint now) {
-  const std::uint64_t heartbeat = permit_.heartbeat.load(std::memory_order_acquire);
+  const std::uint64_t heartbeat = permit_->heartbeat.load(std::memory_order_acquire);
   // While the whole computer stood nobody was silent: of what passes between two looks only so much counts.
   supervisor_silent_for_ += std::min(now - std::exchange(watched_supervisor_at_, now), most_silence_a_look);
   if (std::exchange(last_heartbeat_, heartbeat) != heartbeat) supervisor_silent_for_ = Duration{0};

@@ -218,6 +218,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void take_loop_reports();
   /// False while one of them stands still within a step: then the supervisor's guard sees the service loop stand still.
   [[nodiscard]] bool loops_move(TimePoint now);
+  void take_permit_page(const MemoryHandle& memory);
+  void confirm_permit_page();
   void take_cycle_reports();
   void take_cycle_report(const CycleReport& report, Octets payload);
   void watch_supervisor(TimePoint now);
@@ -274,7 +276,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Platform platform_;
   Channel& channel_;
   VitalPage& vital_;
-  const PermitPage& permit_;
+  const PermitPage* permit_;
+  /// Of a permit page that came by the channel, and of the one before as long as the cycle may look at it.
+  Mapping permit_memory_, permit_before_;
+  bool permit_owed_{false};  ///< the supervisor has not been told yet that it is in force
 
   /// Of the descriptor: no Software-Init succeeds. Before the dictionary, whose making may fill it.
   std::string dictionary_problem_;

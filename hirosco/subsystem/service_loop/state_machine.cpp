@@ -41,7 +41,7 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_state(State ta
     if (!required_links_attached()) return std::unexpected{pus::FailureNotice{pus::FailureCode::LinkAbsent}};
   }
   if (target == State::ErrorOperational && configuration_ == nullptr) return std::unexpected{wrong_state()};
-  if (target == State::Operational && !permit_.permits(permit_.epoch.load(std::memory_order_acquire)))
+  if (target == State::Operational && !permit_->permits(permit_->epoch.load(std::memory_order_acquire)))
     return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
   if (target == State::Operational)
     if (const auto missing = self_tests_.keeps_from_operational(*configuration_, cycle_.self_test_passed()))
@@ -131,7 +131,7 @@ Result<Step> GenericSubsystem::enter_transient(State next) {
 
 /// The supervisor's side switches, as it reads the state on the vital page (adr 0079).
 bool GenericSubsystem::powered(Power wanted) const noexcept {
-  return descriptor_.power_switches.empty() || permit_.powered.load(std::memory_order_acquire) == wanted;
+  return descriptor_.power_switches.empty() || permit_->powered.load(std::memory_order_acquire) == wanted;
 }
 
 bool GenericSubsystem::power_takes_too_long() const noexcept {

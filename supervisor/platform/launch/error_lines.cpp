@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -78,7 +79,7 @@ ErrorLines::~ErrorLines() {
   if (thread_.joinable()) thread_.join();
 }
 
-Result<FileDescriptor> ErrorLines::open(const std::string& speaker) {
+Result<FileDescriptor> ErrorLines::open(const std::string& speaker, FileDescriptor* reader) {
   if (!wake_read_) return fail(ErrorCode::ResourceExhausted, "a pipe for the standard error of subsystems");
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return fail(ErrorCode::SystemFailure, "a pipe for a standard error", errno);
@@ -86,14 +87,26 @@ Result<FileDescriptor> ErrorLines::open(const std::string& speaker) {
   FileDescriptor writing{ends[1]};
   // Only our end: a subsystem that writes faster than we read waits.
   static_cast<void>(::fcntl(reading.get(), F_SETFL, O_NONBLOCK));
+  if (reader != nullptr)
+    if (auto second = reading.duplicate()) *reader = std::move(*second);
+  follow(speaker, std::move(reading));
+  return writing;
+}
+
+void ErrorLines::go_on(const std::string& speaker, FileDescriptor reader) {
+  struct stat found{};
+  if (!wake_read_ || ::fstat(reader.get(), &found) != 0 || !S_ISFIFO(found.st_mode)) return;
+  follow(speaker, std::move(reader));
+}
+
+void ErrorLines::follow(const std::string& speaker, FileDescriptor reader) {
   {
     const std::lock_guard guard{mutex_};
-    fresh_.push_back({speaker, std::move(reading), {}});
+    fresh_.push_back({speaker, std::move(reader), {}});
   }
   if (!thread_.joinable()) thread_ = std::thread{[this] { work(); }};
   const char any = 0;
   static_cast<void>(!::write(wake_write_.get(), &any, 1));
-  return writing;
 }
 
 void ErrorLines::say(const std::string& speaker, std::string_view line, LineLimit& limit) {

@@ -62,7 +62,10 @@ class ErrorLines {
   ErrorLines& operator=(const ErrorLines&) = delete;
 
   /// The end that a new process gets as its standard error.
-  [[nodiscard]] Result<FileDescriptor> open(const std::string& speaker);
+  /// `reader`: another descriptor of the end that is read here, for who goes on reading it.
+  [[nodiscard]] Result<FileDescriptor> open(const std::string& speaker, FileDescriptor* reader = nullptr);
+  /// Goes on reading what somebody else had opened. What is no pipe is not read.
+  void go_on(const std::string& speaker, FileDescriptor reader);
 
  private:
   struct Stream {
@@ -70,6 +73,7 @@ class ErrorLines {
     FileDescriptor end;
     LineCutter cutter;
   };
+  void follow(const std::string& speaker, FileDescriptor reader);
   void work();
   void read_from(Stream& stream, LineLimit& limit);
   void say(const std::string& speaker, std::string_view line, LineLimit& limit);

@@ -55,6 +55,16 @@ struct LaunchedSubsystem {
   std::string_view not_isolated{};  ///< why this one is in no sandbox, where others are; empty: it is, or none is
 };
 
+/// A subsystem that goes on though the supervisor that had started it is gone (docs/adr/0093).
+struct AdoptedSubsystem {
+  LaunchedSubsystem launched;  ///< its permit page is a new one, which permits nothing yet
+  MemoryHandle permit;  ///< that page: the subsystem is to be handed it over its channel
+  std::uint32_t epoch{0};  ///< of the page that it looks at so far
+  bool permitted{false};  ///< by that page, under that epoch
+  bool stopped{false};  ///< by that page
+  std::uint32_t powered{0};  ///< Power, as that page says
+};
+
 /// Why an executable is not started.
 struct StartRefusal {
   Error why;  ///< for who asked
@@ -72,6 +82,10 @@ class ProcessLauncher {
  public:
   virtual ~ProcessLauncher() = default;
   [[nodiscard]] virtual Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) = 0;
+  /// What a supervisor before this one had started and still runs. Empty: nothing does.
+  [[nodiscard]] virtual std::optional<AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& /*subsystem*/) {
+    return std::nullopt;
+  }
   /// It would not launch() it now, by the mission's manifest (docs/adr/0089); empty: it would, as far as that goes.
   [[nodiscard]] virtual std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& /*subsystem*/) {
     return std::nullopt;

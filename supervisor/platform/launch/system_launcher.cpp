@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/system_launcher.hpp"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sched.h>
 #include <signal.h>
-#include <time.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include <cerrno>
 #include <charconv>
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -38,158 +37,34 @@ constexpr int text_number = 7;
   return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
 }
 
-/// How the cycle's thread is called (hirosco/subsystem/process/run.cpp).
-constexpr std::string_view cycle_name = "cycle";
-
-/// What the system tells of one thread in /proc/PID/task/TID/stat.
-struct ThreadStatus {
-  std::string_view name;
-  bool runs{false};  ///< or could
-  bool realtime{false};
-  Duration had{};
-};
-
-[[nodiscard]] std::optional<ThreadStatus> read_status(std::string_view line) noexcept {
-  // "TID (NAME) STATE ..."; the name may hold anything.
-  const auto begin = line.find('('), end = line.rfind(')');
-  if (begin == std::string_view::npos || end == std::string_view::npos || end < begin || line.size() < end + 4)
-    return std::nullopt;
-  ThreadStatus status;
-  status.name = line.substr(begin + 1, end - begin - 1);
-  status.runs = line[end + 2] == 'R';
-  line.remove_prefix(end + 3);
-  std::int64_t ticks = 0;
-  constexpr int user = 14, system = 15, priority = 40;
-  for (int field = 4; field <= priority && !line.empty(); ++field) {
-    line.remove_prefix(1);
-    std::int64_t number = 0;
-    const auto read = std::from_chars(line.data(), line.data() + line.size(), number);
-    line.remove_prefix(static_cast<std::size_t>(read.ptr - line.data()));
-    if (field == user || field == system) ticks += number;
-    if (field == priority) status.realtime = number > 0;
-  }
-  static const std::int64_t ticks_per_s = ::sysconf(_SC_CLK_TCK);
-  status.had = Duration{std::chrono::seconds{1}} * ticks / ticks_per_s;
-  return status;
-}
-
-/// Works on a process by its handles, so never on another one that got its number later. Takes nothing from the heap.
-class LinuxGrip final : public ProcessGrip {
+/// The supervisor's end of a channel. The keeper has a duplicate, so that closing it alone would not end what is at the other end;
+/// a supervisor that is killed closes nothing.
+class OwnedEnd final : public Channel {
  public:
-  explicit LinuxGrip(Process process) : process_{std::move(process)} {
-    if (::clock_getcpuclockid(process_.pid(), &clock_) != 0) clock_ = CLOCK_MONOTONIC_COARSE;
-    tasks_.reset(
-        ::open(("/proc/" + std::to_string(process_.pid()) + "/task").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  }
-  void take_realtime() noexcept override {
-    // Or the others would not have the processor until its grace is over.
-    if (!take(Cycle::LosesToo)) kill();
-  }
-  void take_loops_realtime() noexcept override { static_cast<void>(take(Cycle::Keeps)); }
-  void give_realtime() noexcept override {
-    for (std::size_t i = 0; i < taken_count_; ++i) {
-      const Thread& thread = taken_[i];
-      const int now = ::sched_getscheduler(thread.id);
-      // It may have ended since, or have been given priority anew.
-      if (!status_of(thread.id) || now < 0 || (now & ~SCHED_RESET_ON_FORK) != SCHED_OTHER) continue;
-      sched_param parameters{};
-      parameters.sched_priority = thread.priority;
-      static_cast<void>(::sched_setscheduler(thread.id, thread.policy, &parameters));
-    }
-    taken_count_ = 0;
-  }
-  LoopTime loop_time() noexcept override {
-    LoopTime time;
-    each_thread([&](int thread) {
-      const auto status = status_of(thread);
-      const bool service = thread == process_.pid();
-      if (!status || (!service && status->cycle)) return;
-      if (service) time.service = status->had;
-      if (service) time.waits = status->runs;
-      if (status->realtime) time.realtime += status->had;
-    });
-    return time;
-  }
-  Duration processor_time() noexcept override {
-    timespec time{};
-    if (clock_ == CLOCK_MONOTONIC_COARSE || ::clock_gettime(clock_, &time) != 0) return {};
-    return std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
-  }
-  void kill() noexcept override { static_cast<void>(process_.send_signal(SIGKILL)); }
+  explicit OwnedEnd(FileDescriptor socket) noexcept : channel_{std::move(socket)} {}
+  ~OwnedEnd() override { ::shutdown(channel_.wait_descriptor(), SHUT_RDWR); }
+  Result<> send(const Message& message) override { return channel_.send(message); }
+  std::size_t send_all(std::span<const Message> messages) override { return channel_.send_all(messages); }
+  Result<Found> receive(MessageBuffer& buffer) override { return channel_.receive(buffer); }
+  [[nodiscard]] int wait_descriptor() const noexcept override { return channel_.wait_descriptor(); }
 
  private:
-  enum class Cycle { LosesToo, Keeps };
-  struct Thread {
-    int id{0};
-    int policy{0};
-    int priority{0};
-  };
-  struct Status {
-    bool cycle{false};
-    bool runs{false};
-    bool realtime{false};
-    Duration had{};
-  };
-  [[nodiscard]] bool runs() noexcept { return process_.send_signal(0).has_value(); }
-
-  void each_thread(auto&& with) noexcept {
-    if (::lseek(tasks_.get(), 0, SEEK_SET) != 0) return;
-    alignas(dirent64) std::array<char, 2048> entries;
-    for (;;) {
-      const auto octets = ::getdents64(tasks_.get(), entries.data(), entries.size());
-      if (octets <= 0) return;
-      for (std::ptrdiff_t at = 0; at < octets;) {
-        const auto* entry = reinterpret_cast<const dirent64*>(entries.data() + at);
-        at += entry->d_reclen;
-        int thread = 0;
-        const std::string_view name{entry->d_name};
-        std::from_chars(name.data(), name.data() + name.size(), thread);
-        if (thread > 0) with(thread);
-      }
-    }
-  }
-
-  [[nodiscard]] std::optional<Status> status_of(int thread) noexcept {
-    std::array<char, 32> path{};
-    const auto end = std::to_chars(path.data(), path.data() + 16, thread).ptr;
-    std::ranges::copy(std::string_view{"/stat"}, end);
-    const FileDescriptor file{::openat(tasks_.get(), path.data(), O_RDONLY | O_CLOEXEC)};
-    std::array<char, 512> text;
-    const auto octets = file ? ::read(file.get(), text.data(), text.size()) : 0;
-    if (octets <= 0) return std::nullopt;
-    const auto status = read_status({text.data(), static_cast<std::size_t>(octets)});
-    if (!status) return std::nullopt;
-    return Status{status->name == cycle_name, status->runs, status->realtime, status->had};
-  }
-
-  /// False: the system refused it.
-  [[nodiscard]] bool take(Cycle cycle) noexcept {
-    if (!runs()) return true;
-    bool taken = true;
-    each_thread([&](int thread) {
-      if (cycle == Cycle::Keeps && thread != process_.pid()) {
-        const auto status = status_of(thread);
-        if (!status || status->cycle) return;
-      }
-      const int policy = std::max(::sched_getscheduler(thread), 0);
-      sched_param before{};
-      static_cast<void>(::sched_getparam(thread, &before));
-      const sched_param ordinary{};
-      // What the thread has of this flag an ordinary user may not take away.
-      const int kept = policy & SCHED_RESET_ON_FORK;
-      if (::sched_setscheduler(thread, SCHED_OTHER | kept, &ordinary) != 0) taken = taken && errno == ESRCH;
-      else if (before.sched_priority > 0 && taken_count_ < taken_.size())
-        taken_[taken_count_++] = {thread, policy, before.sched_priority};
-    });
-    return taken;
-  }
-
-  Process process_;
-  FileDescriptor tasks_;
-  clockid_t clock_{};
-  std::array<Thread, 32> taken_{};  ///< who had more than that has it back with its next configuration only
-  std::size_t taken_count_{0};
+  SocketChannel channel_;
 };
+
+/// Of the process behind a handle; empty: there is none, or it has ended.
+[[nodiscard]] std::optional<int> pid_of(int handle) {
+  if (handle < 0) return std::nullopt;
+  const FileDescriptor file{::open(("/proc/self/fdinfo/" + std::to_string(handle)).c_str(), O_RDONLY | O_CLOEXEC)};
+  std::array<char, 512> text;
+  const auto octets = file ? ::read(file.get(), text.data(), text.size()) : 0;
+  const std::string_view lines{text.data(), static_cast<std::size_t>(std::max<ssize_t>(octets, 0))};
+  constexpr std::string_view word = "\nPid:\t";
+  const auto at = lines.find(word);
+  int pid = 0;
+  if (at != std::string_view::npos) std::from_chars(lines.data() + at + word.size(), lines.data() + lines.size(), pid);
+  return pid > 0 ? std::optional{pid} : std::nullopt;
+}
 
 /// A page in memory of its own, constructed in place.
 template <class Page>
@@ -234,13 +109,6 @@ template <class Page>
 }
 
 }  // namespace
-
-Result<std::shared_ptr<ProcessGrip>> grip_of(const Process& process) {
-  FileDescriptor handle{::fcntl(process.handle().get(), F_DUPFD_CLOEXEC, 0)};
-  if (!handle) return fail(ErrorCode::SystemFailure, "hold of a process", errno);
-  HIROSCO_TRY_LET(Process second, Process::adopt(process.pid(), std::move(handle)));
-  return std::make_shared<LinuxGrip>(std::move(second));
-}
 
 std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::Mission& mission) {
   if (!mission.manifest) return std::string{};
@@ -339,14 +207,23 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     start.sandbox = &*sandbox;
   }
   // What it writes to its standard error is shown with its name, within limits.
-  const auto errors = errors_.open(subsystem.subsystem.name);
+  FileDescriptor errors_read;
+  const auto errors = errors_.open(subsystem.subsystem.name, &errors_read);
   if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
   auto spawned = Process::spawn(start);
   if (!spawned) {
     program.clear();  // it may be elsewhere by now
     return fail(spawned.error());
   }
-  Process process = std::move(*spawned);
+  HIROSCO_TRY_LET(LaunchedSubsystem launched,
+                  hold(std::move(*spawned), std::move(ends.first), std::move(vital.second), std::move(permit.second)));
+  keep(subsystem.subsystem.name, launched, vital.first, permit.first, errors_read);
+  if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
+  if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
+  return launched;
+}
+
+Result<LaunchedSubsystem> SystemLauncher::hold(Process process, FileDescriptor channel, Mapping vital, Mapping permit) {
   auto grip = grip_of(process);
   if (!grip) {
     // One that nobody could end is not let go at all.
@@ -354,13 +231,11 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     return fail(grip.error());
   }
   LaunchedSubsystem launched;
-  launched.vital = std::move(vital.second);
-  launched.permit = std::move(permit.second);
-  launched.port = std::make_unique<LocalMemberPort>(std::make_unique<SocketChannel>(std::move(ends.first)),
-                                                    launched.vital, launched.permit);
+  launched.vital = std::move(vital);
+  launched.permit = std::move(permit);
+  launched.port = std::make_unique<LocalMemberPort>(std::make_unique<OwnedEnd>(std::move(channel)), launched.vital,
+                                                    launched.permit);
   launched.process = next_++;
-  if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
-  if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
   launched.grip = std::move(*grip);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
   if (!memory_use_[0]) memory_use_[0] = open_statm("self");
@@ -369,12 +244,87 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   return launched;
 }
 
+bool SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mission, InheritedParts inherited,
+                               const KeeperPage* page) {
+  store_ = store;
+  inherited_ = std::move(inherited);
+  page_ = page;
+  for (const auto& subsystem : mission.subsystems) slots_.emplace(subsystem.subsystem.name, slots_.size());
+  return true;
+}
+
+/// What cannot be kept ends with this process, as everything did that has no keeper.
+void SystemLauncher::keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
+                          const MemoryHandle& permit, const FileDescriptor& errors) {
+  const auto slot = slots_.find(name);
+  const auto process = processes_.find(launched.process);
+  if (slot == slots_.end() || process == processes_.end()) return;
+  const int handle = process->second.handle().get();
+  if (store_.keep(slot->second, {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
+                                 SealedMemory::descriptor(permit), handle, errors ? errors.get() : handle}))
+    kept_[launched.process] = slot->second;
+}
+
+std::optional<AdoptedSubsystem> SystemLauncher::adopt(const descriptor::MissionSubsystem& subsystem) {
+  const std::string& name = subsystem.subsystem.name;
+  const auto slot = slots_.find(name);
+  if (slot == slots_.end()) return std::nullopt;
+  const auto found = inherited_.extract(slot->second);
+  const auto pid = found ? pid_of(found.mapped()[static_cast<std::size_t>(KeptRole::Process)].get()) : std::nullopt;
+  auto adopted = pid ? take_over(name, *pid, found.mapped())
+                     : Result<AdoptedSubsystem>{fail(ErrorCode::NotFound, "nothing of it runs")};
+  if (adopted) return std::move(*adopted);
+  store_.forget(slot->second);
+  return std::nullopt;
+}
+
+Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, int pid,
+                                                   std::array<FileDescriptor, kept_roles>& kept) {
+  const auto of = [&](KeptRole role) -> FileDescriptor& { return kept[static_cast<std::size_t>(role)]; };
+  HIROSCO_TRY_LET(Process process, Process::adopt(pid, std::move(of(KeptRole::Process))));
+  const MemoryHandle vital = SealedMemory::adopt(std::move(of(KeptRole::Vital)));
+  const MemoryHandle old_permit = SealedMemory::adopt(std::move(of(KeptRole::Permit)));
+  HIROSCO_TRY(memory_.verify(vital, sizeof(VitalPage), false));
+  HIROSCO_TRY_LET(Mapping vital_page, memory_.map(vital, Access::ReadWrite));
+  HIROSCO_TRY(memory_.verify(old_permit, sizeof(PermitPage), true));
+  HIROSCO_TRY_LET(const Mapping before, memory_.map(old_permit, Access::ReadOnly));
+  HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
+  HIROSCO_TRY(memory_.seal_writers(permit.first));
+  const auto& page = *reinterpret_cast<const PermitPage*>(before.octets.data());
+  AdoptedSubsystem adopted;
+  adopted.epoch = page.epoch.load(std::memory_order_acquire);
+  adopted.permitted = page.permits(adopted.epoch);
+  adopted.stopped = page.stop.load(std::memory_order_acquire) != 0;
+  adopted.powered = page.powered.load(std::memory_order_acquire);
+  vital_[name] = vital_page;
+  HIROSCO_TRY_LET(adopted.launched, hold(std::move(process), std::move(of(KeptRole::Channel)), std::move(vital_page),
+                                         std::move(permit.second)));
+  FileDescriptor& errors = of(KeptRole::Errors);
+  keep(name, adopted.launched, vital, permit.first, errors);
+  errors_.go_on(name, std::move(errors));
+  adopted.permit = std::move(permit.first);
+  return adopted;
+}
+
 std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
   const auto found = processes_.find(process);
   if (found == processes_.end()) return ProcessEnd{};
   const auto status = found->second.poll();
   if (!status || !*status) return std::nullopt;
-  const ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
+  ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
+  if ((*status)->kind == ExitStatus::Kind::Unknown) {
+    // Its parent was a supervisor that is gone: the keeper is told, a moment later.
+    const auto how = page_ != nullptr ? page_->end_of(static_cast<std::uint32_t>(found->second.pid())) : std::nullopt;
+    constexpr Duration longest = 300ms;
+    const TimePoint now = SystemClock{}.now();
+    if (!how && page_ != nullptr && now - end_asked_.emplace(process, now).first->second < longest) return std::nullopt;
+    end_asked_.erase(process);
+    if (how) end = {(*how & ended_by_signal) != 0, static_cast<int>(*how & 0xFF)};
+  }
+  if (const auto slot = kept_.find(process); slot != kept_.end()) {
+    store_.forget(slot->second);
+    kept_.erase(slot);
+  }
   processes_.erase(found);
   memory_use_.erase(process);
   meters_.erase(process);

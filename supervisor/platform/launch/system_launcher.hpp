@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
+#include "supervisor/keeper/kept_store.hpp"
 #include "supervisor/platform/launch/error_lines.hpp"
 #include "supervisor/platform/launch/flight_launcher.hpp"
 #include "supervisor/platform/launch/held_programs.hpp"
@@ -25,6 +27,9 @@ class SystemLauncher final : public FlightLauncher {
   /// Holds to the mission's manifest where it has one.
   [[nodiscard]] std::expected<std::string, std::string> begin(const descriptor::Mission& mission) override;
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] std::optional<AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] bool keep_with(StoreClient store, const descriptor::Mission& mission, InheritedParts inherited,
+                               const KeeperPage* page) override;
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
                                                           const std::string& version) override;
@@ -44,6 +49,12 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] int wait_descriptor(std::uint32_t process) override;
 
  private:
+  /// It has started, or goes on.
+  [[nodiscard]] Result<LaunchedSubsystem> hold(Process process, FileDescriptor channel, Mapping vital, Mapping permit);
+  [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, int pid,
+                                                   std::array<FileDescriptor, kept_roles>& kept);
+  void keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
+            const MemoryHandle& permit, const FileDescriptor& errors);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
 
   SealedMemory memory_;
@@ -56,6 +67,12 @@ class SystemLauncher final : public FlightLauncher {
   std::map<std::string, std::string, std::less<>> versions_;  ///< by subsystem, where it is not the mission's own
   /// Without one: where each executable was found: a disk is not searched again in flight, where it might hang.
   std::map<std::string, std::filesystem::path, std::less<>> programs_;
+  StoreClient store_{-1};
+  std::map<std::string, std::size_t, std::less<>> slots_;
+  InheritedParts inherited_;
+  const KeeperPage* page_{nullptr};
+  std::map<std::uint32_t, TimePoint> end_asked_;  ///< of processes that have ended, and nobody has said how
+  std::map<std::uint32_t, std::size_t> kept_;  ///< slot of each process
   std::uint32_t next_{1};
 };
 

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/storage/begin_log.hpp"
 
+#include <algorithm>
+
 #include "hirosco/utilities/os/thread.hpp"
+#include "supervisor/platform/storage/log_pieces.hpp"
 
 namespace hirosco::supervisor {
 
@@ -17,6 +20,22 @@ std::optional<std::string> begin_log(ThreadedPacketLog& log, const Clock& clock,
   }
   const StoreTrouble trouble = log.trouble();
   return trouble.present ? trouble.text : "the disk of the log does not answer";
+}
+
+LogResumption resumption_of(const std::filesystem::path& log, LogResumption noted) {
+  const auto pieces = pieces_of(log);
+  constexpr std::size_t newest = 2;
+  for (std::size_t i = pieces.size(); i > 0 && pieces.size() - i < newest; --i) {
+    auto opened = open_database(pieces[i - 1].strategy, pieces[i - 1].path, DatabaseAccess::Read);
+    if (!opened) continue;
+    const auto page = (*opened)->read({.since = noted.durable, .run = noted.run, .last = 1});
+    if (!page || page->records.empty()) continue;
+    const LogRecord& record = page->records.back();
+    const std::uint64_t reached = record.number + (record.lost > 0 ? record.lost - 1 : 0);
+    noted.durable = std::max(noted.durable, reached);
+  }
+  noted.last = std::max(noted.last, noted.durable);
+  return noted;
 }
 
 }  // namespace hirosco::supervisor

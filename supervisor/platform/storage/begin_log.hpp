@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -12,5 +13,9 @@ namespace hirosco::supervisor {
 /// Nothing flies whose telecommands nobody could find again: the first record must reach the disk within `limit`, whatever
 /// the store meets and heals meanwhile. Empty when it did, else why not.  Realtime: blocks.
 [[nodiscard]] std::optional<std::string> begin_log(ThreadedPacketLog& log, const Clock& clock, Duration limit);
+
+/// A log whose program died, from what that had noted last: more may have reached the disk since. Looks at the two newest pieces.
+/// Realtime: blocks.
+[[nodiscard]] LogResumption resumption_of(const std::filesystem::path& log, LogResumption noted);
 
 }  // namespace hirosco::supervisor

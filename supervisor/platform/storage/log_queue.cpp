@@ -76,6 +76,20 @@ LogQueue::LogQueue(const Limits& limits, OnboardTime run)
       telemetry_{limits.telemetry_records, limits.telemetry_octets},
       vital_{limits.vital_records, limits.vital_octets} {}
 
+void LogQueue::resume(const LogResumption& from, OnboardTime stored, TimePoint monotonic) {
+  run_ = from.run;
+  last_number_ = from.last;
+  if (from.last <= from.durable) return;
+  const std::uint64_t missing = from.last - from.durable;
+  lost_ = missing;
+  gap_ = Gap{.first = from.durable + 1,
+             .last = from.last,
+             .lost = static_cast<std::uint32_t>(std::min<std::uint64_t>(missing, UINT32_MAX)),
+             .died = true,
+             .stored = stored,
+             .monotonic = monotonic};
+}
+
 std::uint64_t LogQueue::push(const LogEntry& entry, OnboardTime stored, TimePoint monotonic) {
   const std::uint64_t number = ++last_number_;
   if (!make_room(entry)) {
@@ -111,7 +125,8 @@ bool LogQueue::make_room(const LogEntry& entry) {
 }
 
 void LogQueue::miss(std::uint64_t number, OnboardTime stored, TimePoint monotonic) {
-  if (!gap_) gap_ = Gap{.first = number, .last = number, .lost = 0, .stored = stored, .monotonic = monotonic};
+  if (!gap_)
+    gap_ = Gap{.first = number, .last = number, .lost = 0, .died = false, .stored = stored, .monotonic = monotonic};
   // A refused record may be followed by the loss of an older one.
   if (number < gap_->first) {
     gap_->first = number;
@@ -149,7 +164,9 @@ void LogQueue::take_gap(LogBatch& batch) {
   record.source = 0;
   record.peer = 0;
   record.lost = gap_->lost;
-  record.note = Note{"no room before the database, up to number " + std::to_string(gap_->last)};
+  const char* const why =
+      gap_->died ? "the supervisor died before they were on the disk" : "no room before the database";
+  record.note = Note{std::string{why} + ", up to number " + std::to_string(gap_->last)};
   gap_.reset();
 }
 

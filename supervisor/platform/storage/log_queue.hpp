@@ -47,6 +47,13 @@ class LogBatch {
 /// The bounded queue before a database: one ring for what may be lost, one for what may not, both preallocated.
 /// Numbers are given in order of arrival and leave in that order; what is lost leaves as a Gap record.
 /// Realtime: push and take are bounded and do not allocate (a batch once warmed up). Thread: one at a time.
+/// Where a log stood whose program died.
+struct LogResumption {
+  OnboardTime run{};
+  std::uint64_t last{0};  ///< number of the newest record
+  std::uint64_t durable{0};  ///< up to here they are on the disk
+};
+
 class LogQueue {
  public:
   struct Limits {
@@ -58,6 +65,8 @@ class LogQueue {
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
 
   LogQueue(const Limits& limits, OnboardTime run);
+  /// Numbers go on from there; what was not on the disk is missing. Before the first record.
+  void resume(const LogResumption& from, OnboardTime stored, TimePoint monotonic);
   /// The number, or 0 when there is no room.
   std::uint64_t push(const LogEntry& entry, OnboardTime stored, TimePoint monotonic);
   /// Moves up to `count` records with numbers up to `up_to` into the batch, as far as it has room.
@@ -111,6 +120,7 @@ class LogQueue {
     std::uint64_t first{};
     std::uint64_t last{};
     std::uint32_t lost{};
+    bool died{false};  ///< the program that had them
     OnboardTime stored{};
     TimePoint monotonic{};
   };

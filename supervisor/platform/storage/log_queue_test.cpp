@@ -268,5 +268,25 @@ TEST(LogQueue, LosesNothingUnsaidUnderRandomUse) {
   }
 }
 
+TEST(LogQueue, GoesOnWithRunAndNumbersOfOneThatDiedAndSaysExactlyWhatIsMissing) {
+  LogQueue queue{{}, OnboardTime{50s}};
+  queue.resume({.run = OnboardTime{5s}, .last = 20, .durable = 17}, OnboardTime{51s}, TimePoint{1s});
+  EXPECT_EQ(push(queue, queued_telemetry()), 21U);
+  const auto all = take_all(queue);
+  ASSERT_THAT(numbers(all), ElementsAre(18, 21));
+  EXPECT_EQ(all[0].kind, LogKind::Gap);
+  EXPECT_EQ(all[0].lost, 3U);
+  EXPECT_EQ(all[0].run, OnboardTime{5s});
+  EXPECT_EQ(all[1].run, OnboardTime{5s});
+  EXPECT_THAT(std::string{all[0].note.view()}, ::testing::EndsWith("up to number 20"));
+}
+
+TEST(LogQueue, OfOneThatDiedWithEverythingOnTheDiskNothingIsMissing) {
+  LogQueue queue{{}, OnboardTime{50s}};
+  queue.resume({.run = OnboardTime{5s}, .last = 20, .durable = 20}, OnboardTime{51s}, TimePoint{1s});
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(push(queue, queued_telecommand()), 21U);
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -102,8 +102,10 @@ class ThreadedPacketLog::Writer {
         options_{std::move(options)},
         queue_{options_.limits, clock.onboard()},
         database_{std::move(database)},
-        batch_{options_.batch_records},
-        run_{queue_.run()} {}
+        batch_{options_.batch_records} {
+    if (options_.resume) queue_.resume(*options_.resume, clock.onboard(), clock.now());
+    run_ = queue_.run();
+  }
 
   static void start(const std::shared_ptr<Writer>& writer) {
     writer->thread_ = std::thread{[writer] { writer->work(); }};
@@ -117,6 +119,7 @@ class ThreadedPacketLog::Writer {
       const bool was_empty = queue_.empty();
       const bool was_urgent = urgent();
       number = queue_.push(entry, clock_.onboard(), clock_.now());  // under the lock: times follow the numbers
+      if (options_.number != nullptr) options_.number->store(queue_.last_number(), std::memory_order_release);
       high_water_ = std::max<std::uint64_t>(high_water_, queue_.waiting());
       wake = was_empty || (!was_urgent && urgent());
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -104,6 +105,10 @@ class ThreadedPacketLog final : public PacketLog {
     Duration flush_limit{2s};
     /// Called by the writer thread whenever `durable` or `failure` has changed; short, never blocking (a WakeEvent).
     std::function<void()> on_progress{};
+    /// Goes on with the records of a log whose program died: with their run and their numbers. Those that it did not get to the disk
+    /// stand in a gap.
+    std::optional<LogResumption> resume{};
+    std::atomic<std::uint64_t>* number{nullptr};  ///< of the newest record, for who resumes this one; null: nobody does
   };
   /// `clock` is the real monotonic one and must outlive the log.
   ThreadedPacketLog(const Clock& clock, std::unique_ptr<Database> database, Options options);

@@ -12,6 +12,7 @@
 
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
+#include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
@@ -53,6 +54,30 @@ TEST(ThreadedPacketLog, AStalledDiskBlocksNobodyAndTelecommandsSurvive) {
   const auto records = all_of(*memory);
   expect_complete(records, 2201);
   EXPECT_EQ(std::ranges::count(records, LogKind::TelecommandReceived, &LogRecord::kind), 201);
+}
+
+TEST(ThreadedPacketLog, GoesOnWithTheLogOfOneThatDied) {
+  const TestFolder folder;
+  const SystemClock clock;
+  const auto path = folder.path() / "log.db";
+  std::atomic<std::uint64_t> number{0};
+  OnboardTime run{};
+  {
+    ThreadedPacketLog log{clock, std::move(*open_database(DatabaseStrategy::Sqlite, path)), {.number = &number}};
+    for (int i = 0; i < 10; ++i) ASSERT_NE(log.append(telecommand()), 0U);
+    ASSERT_TRUE(log.flush(long_enough));
+    run = log.run();
+  }
+  EXPECT_EQ(number.load(), 10U);
+  // It had noted less than what reached the disk, and given out more numbers.
+  const auto from = resumption_of(path, {.run = run, .last = 13, .durable = 4});
+  EXPECT_EQ(from.durable, 10U);
+  ThreadedPacketLog next{clock, std::move(*open_database(DatabaseStrategy::Sqlite, path)), {.resume = from}};
+  EXPECT_EQ(next.append(telecommand()), 14U);
+  ASSERT_TRUE(next.flush(long_enough));
+  const auto page = (*open_database(DatabaseStrategy::Sqlite, path, DatabaseAccess::Read))->read({.run = run});
+  ASSERT_TRUE(page);
+  expect_complete(page->records, 14);
 }
 
 TEST(ThreadedPacketLog, SwitchingUnderLoadLosesAndDoublesNothing) {

@@ -31,6 +31,7 @@ bool is_damage(ErrorCode code) noexcept { return code == ErrorCode::Malformed ||
 }  // namespace
 
 bool Reception::reads(const Member& member) const {
+  if (parts_.succession.waits()) return false;
   if (!craft_.is_ground_link(member)) return true;
   const bool addressees_behind =
       parts_.unanswered.size() >= most_unanswered && craft_.now - answered_ < unanswered_patience;
@@ -71,6 +72,7 @@ void Reception::take(Member& member, const Message& message) {
     parts_.subscriptions.hear_event(from, message.packet);
     return;
   }
+  if (message.kind == MessageKind::PermitPage) return parts_.succession.confirmed(from);
   const auto header = pus::read_primary_header(message.packet);
   // Only the ground link brings what ground sent.
   const bool from_ground = message.kind == MessageKind::GroundTelecommand;
@@ -79,9 +81,12 @@ void Reception::take(Member& member, const Message& message) {
   } else if (!header->telecommand) {
     // Before an answer, what was said before it: the copy of the telecommand that it answers.
     read_own();
+    if (const auto report = pus::TelemetryView::parse(message.packet); report && parts_.unanswered.contradicts(*report))
+      return craft_.tell(member.descriptor().name + " tells the end of a telecommand that was told as unknown", from);
     if (!parts_.telemetry.take(from, message.packet)) count_unreadable(from);
   } else if (from_ground) {
     parts_.telecommands.take({.packet = message.packet, .origin = Origin::ground(message.link)});
+    craft_.remember();
     read_own();  // what it said about that: its own backlog must not overflow in a flood
   } else {
     parts_.telecommands.take({.packet = message.packet, .origin = Origin::subsystem(from)});
@@ -103,6 +108,7 @@ void Reception::read_own() {
 
 void Reception::hear(std::uint16_t, const pus::TelemetryView& report) {
   const std::size_t under_way = parts_.unanswered.size();
+  parts_.unanswered.counted(report.apid(), report.sequence_count(), craft_.now);
   parts_.unanswered.reported(report);
   if (parts_.unanswered.size() < under_way) answered_ = craft_.now;
 }

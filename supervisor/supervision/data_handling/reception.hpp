@@ -8,6 +8,7 @@
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
+#include "supervisor/supervision/succession.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
@@ -28,6 +29,7 @@ class Reception final : public Hearer {
     Unanswered& unanswered;
     Traffic& traffic;
     Subscriptions& subscriptions;
+    Succession& succession;
   };
   explicit Reception(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 

@@ -258,6 +258,8 @@ void Telecommands::forward_durable() {
 
 void Telecommands::watch(TimePoint now) {
   while (const auto late = waiting_.take_late(now)) refuse(*late, FailureCode::QueueFull);
+  for (const pus::Request& request : parts_.unanswered.take_doubtful(now))
+    parts_.own.verification().completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});
 }
 
 void Telecommands::refuse_waiting() {
@@ -267,6 +269,37 @@ void Telecommands::refuse_waiting() {
 void Telecommands::outcome_unknown(std::uint16_t apid) {
   for (const pus::Request& request : parts_.unanswered.take(apid))
     parts_.own.verification().completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});
+}
+
+void Telecommands::note(OctetWriter& writer) const {
+  parts_.unanswered.note(writer);
+  const auto& waiting = waiting_.all();
+  writer.put(static_cast<std::uint16_t>(waiting.size()));
+  for (const WaitingForDisk::Telecommand& each : waiting)
+    writer.put(each.apid).put(each.request.id).put(each.request.source).put(each.request.ack);
+}
+
+void Telecommands::recall(OctetReader& reader) {
+  parts_.unanswered.recall(reader);
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto apid = reader.get<std::uint16_t>();
+    const auto id = reader.get<std::uint32_t>();
+    const auto source = reader.get<std::uint16_t>();
+    never_left_.push_back({apid, {id, source, reader.get<std::uint8_t>()}});
+  }
+}
+
+/// What had not left is void: it was permitted by somebody else, in a situation that has passed.
+void Telecommands::end_what_was_begun() {
+  pus::Verification& verification = parts_.own.verification();
+  for (const auto& [apid, request] : never_left_)
+    if (request.source != supervisor_apid) verification.rejected(request, FailureNotice{FailureCode::NotPermittedNow});
+  never_left_.clear();
+  for (const pus::Request& request : parts_.unanswered.take_settled())
+    verification.completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});
+  outcome_unknown(supervisor_apid);
+  for (const Member& member : craft_.members)
+    if (!member.alive()) outcome_unknown(member.apid());
 }
 
 void Telecommands::refuse(const WaitingForDisk::Telecommand& waited, FailureCode why) {
@@ -308,16 +341,21 @@ void Telecommands::forward(const Outgoing& outgoing) {
     return reject({.packet = packet, .origin = origin}, request,
                   channel == nullptr ? is_down() : FailureNotice{FailureCode::QueueFull});
   }
-  if (const auto telecommand = pus::TelecommandView::parse(packet); !to_itself && telecommand) {
+  if (const auto telecommand = pus::TelecommandView::parse(packet)) {
     parts_.unanswered.forwarded(apid, *telecommand, craft_.now);
+    if (to_itself) return log_forwarded(outgoing);
     parts_.commanded.forwarded(apid, *telecommand, origin);
     parts_.stored.forwarded(apid, *telecommand);
   }
+  log_forwarded(outgoing);
+}
+
+void Telecommands::log_forwarded(const Outgoing& outgoing) {
   static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandForwarded,
                                        .source = supervisor_apid,
-                                       .peer = apid,
-                                       .packet = packet,
-                                       .note = essential ? "essential" : ""}));
+                                       .peer = outgoing.apid,
+                                       .packet = outgoing.packet,
+                                       .note = outgoing.essential ? "essential" : ""}));
 }
 
 void Telecommands::reject(const Incoming& incoming, const pus::Request& request, const FailureNotice& notice) {

@@ -16,6 +16,7 @@
 #include "supervisor/supervision/data_handling/traffic.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
 #include "supervisor/supervision/data_handling/waiting_for_disk.hpp"
+#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
@@ -34,7 +35,7 @@ struct Incoming {
 
 /// Permits or refuses, logs and forwards every telecommand (paper 4.3). One that is not essential leaves when it is on the
 /// disk and not before (decision 24). Thread: the supervisor's.
-class Telecommands final : public Watch, public Accounts {
+class Telecommands final : public Watch, public Accounts, public Remembered {
  public:
   struct Parts {
     Craft& craft;
@@ -58,6 +59,12 @@ class Telecommands final : public Watch, public Accounts {
   void outcome_unknown(std::uint16_t apid) override;
   /// Since when the oldest waits for the disk; empty when none does.
   [[nodiscard]] std::optional<TimePoint> waiting_since() const { return waiting_.since(); }
+
+  /// What waits for the disk and what is not answered yet.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
+  /// Of a supervisor that goes on for another: what that had begun and nobody ends any more is reported.
+  void end_what_was_begun();
 
   /// An essential function of the supervisor that is carried out where it is received, by no cycle and no queue. Whoever
   /// carries it out reports on it.
@@ -97,6 +104,7 @@ class Telecommands final : public Watch, public Accounts {
   void refuse(const WaitingForDisk::Telecommand& waited, pus::FailureCode why);
   void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
   void forward(const Outgoing& outgoing);
+  void log_forwarded(const Outgoing& outgoing);
   void start(const WaitingForDisk::Telecommand& waited);
 
   Parts parts_;
@@ -105,6 +113,7 @@ class Telecommands final : public Watch, public Accounts {
   std::map<std::uint8_t, std::function<void(const pus::Request&, Octets)>> questions_;
   std::function<Result<>(std::uint16_t)> start_;
   WaitingForDisk waiting_;
+  std::vector<std::pair<std::uint16_t, pus::Request>> never_left_;  ///< from the supervisor before
   TimePoint report_window_{};
   int reports_in_window_{0};
   struct Window {

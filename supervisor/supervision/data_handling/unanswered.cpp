@@ -3,12 +3,16 @@
 #include "supervisor/supervision/data_handling/unanswered.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "hirosco/utilities/octets.hpp"
 
 namespace hirosco::supervisor {
 
 namespace {
+/// Of the supervisor's own telecommands.
+constexpr std::uint16_t own_source = 1;
+
 [[nodiscard]] constexpr bool is_end(std::uint8_t subtype) noexcept {
   const bool failed_progress = subtype == 6;  // the execution may go on
   return (subtype % 2 == 0 && !failed_progress) || subtype == 7;
@@ -33,8 +37,10 @@ bool Unanswered::answers(const pus::TelemetryView& report) {
 }
 
 std::size_t Unanswered::count_of(std::uint16_t source, TimePoint now) const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      entries_, [&](const Entry& entry) { return entry.request.source == source && now - entry.since < patience; }));
+  return static_cast<std::size_t>(std::ranges::count_if(entries_, [&](const Entry& entry) {
+    return entry.request.source == source && entry.apid != own_source && !entry.recalled &&
+           now - entry.since < patience;
+  }));
 }
 
 void Unanswered::reported(const pus::TelemetryView& report) {
@@ -49,7 +55,82 @@ void Unanswered::reported(const pus::TelemetryView& report) {
     return entry.apid == report.apid() && entry.request.id == id && entry.request.source == report.destination();
   });
   if (found == entries_.end()) return;
-  if (final || (found->request.ack & pus::ack_completion) == 0) entries_.erase(found);
+  if (!final && (found->request.ack & pus::ack_completion) != 0) return;
+  settled_.push_back(*found);
+  entries_.erase(found);
+}
+
+void Unanswered::note(OctetWriter& writer) const {
+  const auto waited_for = [](const Entry& entry) { return entry.request.source != own_source; };
+  const auto put = [&](const auto& entries) {
+    writer.put(static_cast<std::uint16_t>(std::ranges::count_if(entries, waited_for)));
+    for (const Entry& entry : entries)
+      if (waited_for(entry))
+        writer.put(entry.apid).put(entry.request.id).put(entry.request.source).put(entry.request.ack);
+  };
+  put(entries_);
+  put(settled_);
+  writer.put(static_cast<std::uint16_t>(senders_.size()));
+  for (const auto& [apid, sender] : senders_) writer.put(apid).put(sender.count);
+}
+
+void Unanswered::recall(OctetReader& reader) {
+  const auto get = [&](auto& entries) {
+    for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+      Entry entry;
+      entry.recalled = true;
+      entry.apid = reader.get<std::uint16_t>();
+      entry.request.id = reader.get<std::uint32_t>();
+      entry.request.source = reader.get<std::uint16_t>();
+      entry.request.ack = reader.get<std::uint8_t>();
+      if (reader.good()) entries.push_back(entry);
+    }
+  };
+  get(entries_);
+  get(settled_);
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto apid = reader.get<std::uint16_t>();
+    senders_[apid] = {reader.get<std::uint16_t>(), true, std::nullopt};
+  }
+}
+
+std::vector<pus::Request> Unanswered::take_settled() {
+  std::vector<pus::Request> taken;
+  for (const Entry& entry : settled_) taken.push_back(entry.request);
+  settled_.clear();
+  return taken;
+}
+
+void Unanswered::counted(std::uint16_t apid, std::uint16_t count, TimePoint now) {
+  constexpr std::uint16_t modulo = 16'384;
+  Sender& sender = senders_[apid];
+  const bool next = count == (sender.count + 1) % modulo;
+  if (std::exchange(sender.recalled, false) && !next) sender.lost_at = now;
+  sender.count = count;
+}
+
+std::vector<pus::Request> Unanswered::take_doubtful(TimePoint now) {
+  std::vector<pus::Request> taken;
+  for (auto& [apid, sender] : senders_) {
+    if (!sender.lost_at || now - *sender.lost_at < doubt) continue;
+    sender.lost_at.reset();
+    std::erase_if(entries_, [&](const Entry& entry) {
+      if (entry.apid != apid || !entry.recalled) return false;
+      taken.push_back(entry.request);
+      if (told_.size() == most_told) told_.pop_front();
+      told_.push_back(entry);
+      return true;
+    });
+  }
+  return taken;
+}
+
+bool Unanswered::contradicts(const pus::TelemetryView& report) const {
+  if (told_.empty() || report.service() != 1 || !is_end(report.subtype())) return false;
+  const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
+  return std::ranges::any_of(told_, [&](const Entry& entry) {
+    return entry.apid == report.apid() && entry.request.id == id && entry.request.source == report.destination();
+  });
 }
 
 std::vector<pus::Request> Unanswered::take(std::uint16_t apid) {

@@ -4,10 +4,13 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/service/service.hpp"
+#include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// Telecommands that were handed to a subsystem and whose final report has not passed yet: when their addressee dies,
@@ -33,6 +36,25 @@ class Unanswered {
   void reported(const pus::TelemetryView& report);
   /// All that `apid` was given and did not end; they are forgotten.
   [[nodiscard]] std::vector<pus::Request> take(std::uint16_t apid);
+  /// What was told of those that have ended so far has left for the ground.
+  void delivered() noexcept { settled_.clear(); }
+
+  // --- beyond this supervisor (docs/adr/0093) -----------------------------------------------------------------------
+  /// All that wait, those whose end was heard and has not left yet, and the newest count of each sender's packets. Not the
+  /// supervisor's own requests: nobody waits for them any more.
+  void note(OctetWriter& writer) const;
+  void recall(OctetReader& reader);
+  /// Of those recalled: whose end was heard by a supervisor that died before it could be told. They are forgotten.
+  [[nodiscard]] std::vector<pus::Request> take_settled();
+  /// Packet `count` of this sender came by. Where some before it have not, its ends may be among them.
+  void counted(std::uint16_t apid, std::uint16_t count, TimePoint now);
+  /// Those recalled whose end may have been lost, when it has not come in `doubt`: they are forgotten, and what their addressee says of
+  /// their end later is a contradiction.
+  static constexpr Duration doubt = std::chrono::seconds{1};
+  [[nodiscard]] std::vector<pus::Request> take_doubtful(TimePoint now);
+  /// A report of the end of a telecommand whose end was told already.
+  [[nodiscard]] bool contradicts(const pus::TelemetryView& report) const;
+
   [[nodiscard]] bool full() const noexcept { return entries_.size() >= most; }
   [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
 
@@ -42,7 +64,17 @@ class Unanswered {
     pus::Request request;
     TimePoint since{};
     std::uint16_t reports{0};  ///< that answered it
+    bool recalled{false};  ///< it left from the supervisor before
   };
+  struct Sender {
+    std::uint16_t count{0};  ///< of its newest packet
+    bool recalled{false};  ///< by the supervisor before
+    std::optional<TimePoint> lost_at{};
+  };
+  static constexpr std::size_t most_told = 256;
+  std::vector<Entry> settled_;
+  std::map<std::uint16_t, Sender> senders_;
+  std::deque<Entry> told_;  ///< as unknown, though their addressee lives
   std::deque<Entry> entries_;  ///< in the order of forwarding; the oldest end first as a rule
 };
 

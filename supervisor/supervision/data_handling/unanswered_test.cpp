@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <vector>
 
 #include "supervisor/supervision/testing/small_mission.hpp"
 
@@ -74,6 +75,87 @@ TEST_F(UnansweredTest, WhoAsksForNoReportOfTheEndWaitsForNone) {
   EXPECT_EQ(unanswered.size(), 1u);
   report(arm, 1, id);
   EXPECT_EQ(unanswered.size(), 0u);
+}
+
+// --- beyond this supervisor (docs/adr/0093) ------------------------------------------------------------------------------
+
+struct UnansweredBeyond : UnansweredTest {
+  /// What a supervisor that goes on knows of it.
+  Unanswered next() {
+    std::vector<std::byte> octets(4096);
+    OctetWriter writer{octets};
+    unanswered.note(writer);
+    EXPECT_TRUE(writer.good());
+    Unanswered recalled;
+    OctetReader reader{writer.written()};
+    recalled.recall(reader);
+    EXPECT_TRUE(reader.exhausted());
+    return recalled;
+  }
+  static pus::TelemetryView end_of(std::uint32_t id, std::array<std::byte, 64>& buffer) {
+    std::array<std::byte, 4> data{};
+    OctetWriter{data}.put(id);
+    return pus::TelemetryView::parse(
+               *pus::write_telemetry(buffer, {.apid = arm, .service = 1, .subtype = 7, .destination = 7}, data))
+        .value();
+  }
+};
+
+TEST_F(UnansweredBeyond, WhatIsUnderWayIsKnownAndEndsByItsReport) {
+  const auto id = forward(arm, 1);
+  unanswered.counted(arm, 100, TimePoint{});
+  Unanswered later = next();
+  EXPECT_EQ(later.size(), 1u);
+  later.counted(arm, 101, TimePoint{10s});
+  EXPECT_TRUE(later.take_doubtful(TimePoint{60s}).empty()) << "no packet is missing";
+  later.reported(end_of(id, buffer));
+  EXPECT_EQ(later.size(), 0u);
+}
+
+TEST_F(UnansweredBeyond, AnEndThatWasHeardAndNotToldIsTaken) {
+  const auto id = forward(arm, 1);
+  report(arm, 7, id);
+  const auto settled = next().take_settled();
+  ASSERT_EQ(settled.size(), 1u);
+  EXPECT_EQ(settled[0].id, id);
+}
+
+TEST_F(UnansweredBeyond, AnEndThatWasToldIsNot) {
+  report(arm, 7, forward(arm, 1));
+  unanswered.delivered();
+  EXPECT_TRUE(next().take_settled().empty());
+}
+
+TEST_F(UnansweredBeyond, WhereAPacketIsMissingTheEndIsUnknownAfterItsTimeAndALaterOneContradictsIt) {
+  const auto id = forward(arm, 1);
+  const auto of_another = forward(hand, 2);
+  unanswered.counted(arm, 100, TimePoint{});
+  unanswered.counted(hand, 7, TimePoint{});
+  Unanswered later = next();
+  later.counted(arm, 103, TimePoint{10s});
+  later.counted(hand, 8, TimePoint{10s});
+  EXPECT_TRUE(later.take_doubtful(TimePoint{10s} + Unanswered::doubt - 1ms).empty()) << "it may come yet";
+  const auto taken = later.take_doubtful(TimePoint{10s} + Unanswered::doubt);
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].id, id);
+  EXPECT_TRUE(later.contradicts(end_of(id, buffer)));
+  EXPECT_FALSE(later.contradicts(end_of(of_another, buffer)));
+}
+
+TEST_F(UnansweredBeyond, CountsWrapAndALaterGapIsNoMatterOfThoseBefore) {
+  static_cast<void>(forward(arm, 1));
+  unanswered.counted(arm, 16'383, TimePoint{});
+  Unanswered later = next();
+  later.counted(arm, 0, TimePoint{10s});
+  later.counted(arm, 5, TimePoint{11s});
+  EXPECT_TRUE(later.take_doubtful(TimePoint{60s}).empty());
+}
+
+TEST_F(UnansweredBeyond, TheSupervisorsOwnRequestsAreNotKnownAnyMore) {
+  const auto packet = pus::write_telecommand(
+      buffer, {.apid = arm, .sequence_count = 1, .ack = pus::ack_all, .service = 17, .subtype = 1, .source = 1}, {});
+  unanswered.forwarded(arm, pus::TelecommandView::parse(*packet).value(), TimePoint{});
+  EXPECT_EQ(next().size(), 0u);
 }
 
 }  // namespace

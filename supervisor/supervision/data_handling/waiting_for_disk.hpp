@@ -49,6 +49,7 @@ class WaitingForDisk {
   /// The oldest, whatever it waits for.
   [[nodiscard]] std::optional<Telecommand> take();
 
+  [[nodiscard]] const std::deque<Telecommand>& all() const noexcept { return waiting_; }
   /// Since when the oldest waits; empty when none does.
   [[nodiscard]] std::optional<TimePoint> since() const;
   /// How many of this member's wait; 0: of the ground.

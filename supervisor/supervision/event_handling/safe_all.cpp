@@ -12,6 +12,7 @@ void SafeAll::provide() {
 
 void SafeAll::carry_out(const pus::Request& request) {
   pending_.push_back({craft_.guard.stop_all(), request});
+  craft_.remember();
   own_.verification().accepted(request);
   own_.verification().started(request);
   after_stop("SAFE_ALL");
@@ -20,6 +21,30 @@ void SafeAll::carry_out(const pus::Request& request) {
 void SafeAll::asked() {
   pending_.push_back({craft_.guard.stop_all(), std::nullopt});
   after_stop("stop by signal or local socket");
+}
+
+void SafeAll::again() {
+  if (before_.empty()) before_.emplace_back();
+  for (const auto& request : std::exchange(before_, {})) pending_.push_back({craft_.guard.stop_all(), request});
+  after_stop("a stop that the supervisor before had not ended");
+}
+
+void SafeAll::note(OctetWriter& writer) const {
+  writer.put(static_cast<std::uint16_t>(pending_.size()));
+  for (const Pending& pending : pending_) {
+    const pus::Request request = pending.request.value_or(pus::Request{});
+    writer.put(static_cast<std::uint8_t>(pending.request ? 1 : 0)).put(request.id).put(request.source).put(request.ack);
+  }
+}
+
+void SafeAll::recall(OctetReader& reader) {
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const bool asked = reader.get<std::uint8_t>() != 0;
+    const auto id = reader.get<std::uint32_t>();
+    const auto source = reader.get<std::uint16_t>();
+    const pus::Request request{id, source, reader.get<std::uint8_t>()};
+    before_.push_back(asked ? std::optional{request} : std::nullopt);
+  }
 }
 
 void SafeAll::after_stop(std::string_view why) {

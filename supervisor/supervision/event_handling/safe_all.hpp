@@ -10,6 +10,7 @@
 
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
@@ -17,7 +18,7 @@ namespace hirosco::supervisor {
 
 /// SAFE_ALL, however it was asked for: the guard stops everything, the states follow, and what became of it is told by who
 /// was to stop. Thread: the supervisor's; the stop itself is the guard's.
-class SafeAll {
+class SafeAll final : public Remembered {
  public:
   SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, std::vector<Undertaking*> under_way)
       : craft_{craft}, own_{own}, desk_{desk}, under_way_{std::move(under_way)} {}
@@ -29,6 +30,12 @@ class SafeAll {
   void asked();
   /// Everything was stopped already: nothing starts it again, and the states follow.
   void after_stop(std::string_view why);
+  /// One was under way when the supervisor before died, or was asked for when there was none.
+  void again();
+  [[nodiscard]] bool under_way() const noexcept { return !pending_.empty() || !before_.empty(); }
+  /// Who waits for the end of a stop.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
   /// Tells what became of the stops that are under way.
   void follow();
 
@@ -44,6 +51,7 @@ class SafeAll {
   CommandDesk& desk_;
   std::vector<Undertaking*> under_way_;
   std::vector<Pending> pending_;
+  std::vector<std::optional<pus::Request>> before_;  ///< of stops that the supervisor before had begun
 };
 
 }  // namespace hirosco::supervisor

@@ -23,6 +23,17 @@ void Commissioning::start(std::function<void()> failed) {
                  }});
 }
 
+void Commissioning::start_itself(std::function<void(bool)> done) {
+  const descriptor::Subsystem& own = craft_.mission.supervisor;
+  WayThere way;
+  way.add(own, own.configurations.front(), {State::Offline}, State::Operational);
+  itself_.start({.stages = way.stages(), .finished = [this, done = std::move(done)](const ProcedureEnd& end) {
+                   if (!end.success) craft_.tell("supervisor cannot start: " + end.text(), supervisor_apid);
+                   if (!end.success) craft_.fail();
+                   done(end.success);
+                 }});
+}
+
 void Commissioning::commission(const descriptor::Mode& start_mode) {
   WayThere way;
   for (const auto& step : start_mode.commission) {

@@ -14,10 +14,13 @@ namespace hirosco::supervisor {
 /// that an operator would use (decision 5). Thread: the supervisor's.
 class Commissioning final : public Undertaking {
  public:
-  explicit Commissioning(const Means& means) : craft_{means.craft}, runner_{means} {}
+  explicit Commissioning(const Means& means) : craft_{means.craft}, runner_{means}, itself_{means} {}
 
   /// `failed` is called when the supervisor itself cannot be commissioned.
   void start(std::function<void()> failed);
+  /// Of a supervisor that goes on for another: itself alone. `done` is told whether it is Operational.
+  void start_itself(std::function<void(bool)> done);
+  void succeeded_before() noexcept { succeeded_ = true; }
   bool cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override { static_cast<void>(cancel(why)); }
   /// The shutdown takes over.
@@ -33,6 +36,7 @@ class Commissioning final : public Undertaking {
 
   Craft& craft_;
   ProcedureRunner runner_;
+  ProcedureRunner itself_;  ///< which nothing ends
   bool succeeded_{false};
 };
 

@@ -66,6 +66,7 @@ void Modes::change(const descriptor::Mode& mode, ModePlan plan, const Call& call
   void_permissions();
   call_ = call;
   moved_ = std::move(plan.moved);
+  craft_.remember();
   runner_.start({.stages = std::move(plan.stages),
                  .finished = [this, &mode](const ProcedureEnd& end) { ended(mode, end.text()); },
                  .begins =
@@ -100,6 +101,26 @@ void Modes::all_stopped(std::string_view why) {
   if (runner_.running()) fall_back(why, StatesFollow::Elsewhere);
 }
 
+void Modes::note(OctetWriter& writer) const {
+  writer.put(static_cast<std::uint8_t>(craft_.changing_to != nullptr ? craft_.changing_to->id : 0));
+  writer.put(static_cast<std::uint16_t>(moved_.size()));
+  for (const std::uint16_t apid : moved_) writer.put(apid);
+}
+
+void Modes::recall(OctetReader& reader) {
+  craft_.changing_to = find_mode(craft_, reader.get<std::uint8_t>());
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left)
+    if (const auto apid = reader.get<std::uint16_t>(); craft_.member(apid) != nullptr) moved_.push_back(apid);
+}
+
+bool Modes::was_moving(std::uint16_t apid) const noexcept {
+  return craft_.changing_to != nullptr && std::ranges::find(moved_, apid) != moved_.end();
+}
+
+void Modes::end_change(std::string_view why) {
+  if (craft_.changing_to != nullptr && !runner_.running()) fall_back(why, StatesFollow::Here);
+}
+
 /// Neither the old mode nor the new one holds now: whom the change had in hand is stopped, in the world first, and the mode is
 /// the one in which a craft is put right.
 void Modes::fall_back(std::string_view why, StatesFollow states) {
@@ -128,6 +149,7 @@ void Modes::enter(const descriptor::Mode& mode) {
 
 void Modes::void_permissions() {
   ++craft_.mode_epoch;
+  craft_.remember();
   parts_.own.enter_mode(craft_.mode_epoch);
   for (Member& member : craft_.members) member.enter_mode(craft_.mode_epoch);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/modes/mode_plan.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
@@ -21,7 +22,7 @@ class Commissioning;
 /// initial mode in force. ENTER_MODE alone changes what is permitted. What was permitted in a mode before is void behind it, by
 /// its epoch on every member's page.
 /// Thread: the supervisor's.
-class Modes final : public Undertaking {
+class Modes final : public Undertaking, public Remembered {
  public:
   struct Parts {
     const Means& means;
@@ -41,6 +42,13 @@ class Modes final : public Undertaking {
   /// The change ends.
   void all_stopped(std::string_view why) override;
   [[nodiscard]] bool running() const noexcept { return runner_.running(); }
+  /// What the change that is under way is to, and whom it moves.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
+  /// It is one of those whom the change moved in the middle of which the supervisor before died.
+  [[nodiscard]] bool was_moving(std::uint16_t apid) const noexcept;
+  /// That change ends as every one that is cancelled. Does nothing where there was none.
+  void end_change(std::string_view why);
 
  private:
   enum class StatesFollow : std::uint8_t { Here, Elsewhere };

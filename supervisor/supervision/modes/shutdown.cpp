@@ -26,6 +26,7 @@ void Shutdown::command(const pus::Request& asked) {
 void Shutdown::request() {
   if (craft_.shutting_down) return;
   craft_.shutting_down = true;
+  craft_.remember();
   deadline_ = craft_.now + limit;
   craft_.tell("shutdown");
   parts_.under_way.drop();

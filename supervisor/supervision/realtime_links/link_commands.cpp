@@ -3,6 +3,7 @@
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
 
 #include <array>
+#include <utility>
 
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
 
@@ -129,6 +130,35 @@ void LinkCommands::forget(std::uint16_t apid) {
     if (is(link.from) || is(link.to)) renewals_.drop(link.id);
   }
   handling_.forget(apid);
+}
+
+void LinkCommands::note(OctetWriter& writer) const {
+  writer.put(handling_.epoch()).put(static_cast<std::uint16_t>(craft_.mission.links.size()));
+  for (const auto& link : craft_.mission.links) writer.put(link.id).put(graph_.standing(link.id));
+  const auto between = handling_.under_way();
+  writer.put(static_cast<std::uint16_t>(between.size()));
+  for (const std::uint8_t link : between) writer.put(link);
+  writer.put(static_cast<std::uint16_t>(configurations_.size()));
+  for (const auto& [end, configuration] : configurations_) writer.put(end.first).put(end.second).put(configuration);
+}
+
+void LinkCommands::recall(OctetReader& reader) {
+  handling_.go_on_from(reader.get<std::uint32_t>());
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto link = reader.get<std::uint8_t>();
+    graph_.stand(link, reader.get<std::uint8_t>());
+  }
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left)
+    broken_.push_back(reader.get<std::uint8_t>());
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto link = reader.get<std::uint8_t>();
+    const auto apid = reader.get<std::uint16_t>();
+    configurations_[{link, apid}] = reader.get<std::uint8_t>();
+  }
+}
+
+void LinkCommands::end_what_was_begun() {
+  for (const std::uint8_t link : std::exchange(broken_, {})) handling_.break_off(link);
 }
 
 bool LinkCommands::has_left(std::uint16_t apid, std::uint8_t link) const {

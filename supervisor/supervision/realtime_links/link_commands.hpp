@@ -12,6 +12,7 @@
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/realtime_links/link_handshakes.hpp"
 #include "supervisor/supervision/realtime_links/link_renewals.hpp"
@@ -21,7 +22,7 @@ namespace hirosco::supervisor {
 
 /// The real-time links of the mission in a flight: LINK and UNLINK, the handshakes, those that are negotiated anew, and a look at the links
 /// that are up. Thread: the supervisor's.
-class LinkCommands final : public Watch, public Hearer, private LinkOperator {
+class LinkCommands final : public Watch, public Hearer, public Remembered, private LinkOperator {
  public:
   LinkCommands(Craft& craft, OwnSubsystem& own, CommandDesk& desk, LinkGraph& graph)
       : craft_{craft},
@@ -41,6 +42,11 @@ class LinkCommands final : public Watch, public Hearer, private LinkOperator {
   void forget(std::uint16_t apid);
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
   void watch(TimePoint now) override;
+  /// Handshakes and releases that the supervisor before had begun end.
+  void end_what_was_begun();
+  /// Which links are up, who holds them, and which are in between.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
 
  private:
   void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) override;
@@ -65,6 +71,7 @@ class LinkCommands final : public Watch, public Hearer, private LinkOperator {
   std::set<std::uint8_t> renewed_;  ///< up again without anybody's command: LINK has nothing to do
   /// In force at an end when its link came up, by link and APID.
   std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint8_t> configurations_;
+  std::vector<std::uint8_t> broken_;  ///< in between when the supervisor before died
 };
 
 }  // namespace hirosco::supervisor

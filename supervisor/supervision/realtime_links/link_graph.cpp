@@ -39,6 +39,21 @@ void LinkGraph::let_go(std::uint8_t link, std::uint16_t apid) {
   if (edge->to == apid) edge->to_holds = false;
 }
 
+std::uint8_t LinkGraph::standing(std::uint8_t link) const noexcept {
+  const auto found = std::ranges::find(edges_, link, &Edge::link);
+  if (found == edges_.end()) return 0;
+  return static_cast<std::uint8_t>((found->up ? stands_up : 0) | (found->from_holds ? from_holds : 0) |
+                                   (found->to_holds ? to_holds : 0));
+}
+
+void LinkGraph::stand(std::uint8_t link, std::uint8_t standing) noexcept {
+  Edge* edge = find(link);
+  if (edge == nullptr) return;
+  edge->up = (standing & stands_up) != 0;
+  edge->from_holds = (standing & Standing::from_holds) != 0;
+  edge->to_holds = (standing & Standing::to_holds) != 0;
+}
+
 void LinkGraph::forget(std::uint8_t link) {
   if (Edge* edge = find(link)) edge->up = edge->from_holds = edge->to_holds = false;
 }

@@ -21,6 +21,10 @@ class LinkGraph {
   void set_up(std::uint8_t link, bool up);
   /// One end says that it has.
   void let_go(std::uint8_t link, std::uint16_t apid);
+  /// Who holds it and whether it is up, as it was told or found before: bits of `Standing`.
+  enum Standing : std::uint8_t { stands_up = 1, from_holds = 2, to_holds = 4 };
+  [[nodiscard]] std::uint8_t standing(std::uint8_t link) const noexcept;
+  void stand(std::uint8_t link, std::uint8_t standing) noexcept;
   /// Nobody holds it any more.
   void forget(std::uint8_t link);
   /// Who is gone holds nothing, nor can anybody be held by it.

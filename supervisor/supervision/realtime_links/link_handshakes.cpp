@@ -254,6 +254,24 @@ void LinkHandshakes::give_up(std::uint8_t link, const std::string& why, std::uin
   if (failed.done) failed.done(false);
 }
 
+std::vector<std::uint8_t> LinkHandshakes::under_way() const {
+  std::vector<std::uint8_t> links;
+  for (const auto& [link, handshake] : handshakes_) links.push_back(link);
+  for (const auto& [link, release] : releases_)
+    if (!handshakes_.contains(link)) links.push_back(link);
+  return links;
+}
+
+void LinkHandshakes::break_off(std::uint8_t link) {
+  const auto* described = mission_.find_link(link);
+  if (described == nullptr) return;
+  const auto standing = graph_.standing(link);
+  // An end that may have attached holds it until it says otherwise.
+  if (standing == 0) graph_.stand(link, LinkGraph::from_holds | LinkGraph::to_holds);
+  if (!release(link, {})) return;
+  operator_.link_changed(*described, false, "the supervisor died in the middle of it");
+}
+
 std::optional<LinkGlance> LinkHandshakes::glance(std::uint8_t link) const noexcept {
   const auto found = views_.find(link);
   return found != views_.end() ? found->second->glance() : std::nullopt;

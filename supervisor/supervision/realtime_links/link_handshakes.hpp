@@ -43,6 +43,13 @@ class LinkHandshakes {
       : mission_{mission}, memory_{memory}, mechanisms_{mechanisms}, operator_{supervisor}, graph_{graph} {}
 
   [[nodiscard]] const LinkGraph& graph() const noexcept { return graph_; }
+  /// Of the newest handshake; those of a supervisor that goes on are newer.
+  [[nodiscard]] std::uint32_t epoch() const noexcept { return epoch_; }
+  void go_on_from(std::uint32_t epoch) noexcept { epoch_ = epoch; }
+  /// Links of which a handshake or a release is under way.
+  [[nodiscard]] std::vector<std::uint8_t> under_way() const;
+  /// The supervisor before died in the middle of one: both ends are told to let go.
+  void break_off(std::uint8_t link);
   /// Begins the handshake. False: unknown link, already up, being released, or a handshake of it is under way.
   [[nodiscard]] bool establish(std::uint8_t link, TimePoint now, Done done);
   /// Takes a link down at whichever end holds it, and ends when none does. False: nobody holds it, it is being taken down

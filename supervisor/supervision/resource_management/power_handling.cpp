@@ -56,6 +56,7 @@ void PowerHandling::watch(TimePoint) {
 void PowerHandling::set_budget(double budget_w) {
   constexpr double least_margin = 0.1;
   ledger_.set_budget(budget_w);
+  set_w_ = budget_w;
   observe();
   const double limit_w = ledger_.budget_mw() * 1e-3, reserved_w = ledger_.reserved_mw() * 1e-3;
   craft_.tell(fmt::format("power budget {} W, {} W are reserved", limit_w, reserved_w), supervisor_apid);
@@ -65,6 +66,18 @@ void PowerHandling::set_budget(double budget_w) {
   for (Member& subject : craft_.members)
     if (ledger_.held_mw(subject.apid()) != 0 && !craft_.is_ground_link(subject))
       reactions_.react(subject, "POWER_LOW", Severity::Medium);
+}
+
+void PowerHandling::note(OctetWriter& writer) const {
+  writer.put(static_cast<std::uint8_t>(set_w_ ? 1 : 0)).put(set_w_.value_or(0.0));
+}
+
+void PowerHandling::recall(OctetReader& reader) {
+  const bool set = reader.get<std::uint8_t>() != 0;
+  const auto budget_w = reader.get<double>();
+  if (!set) return;
+  ledger_.set_budget(budget_w);
+  set_w_ = budget_w;
 }
 
 /// The last of the mission first, each with its network, until the rest fits; the ground link never.

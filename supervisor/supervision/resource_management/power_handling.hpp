@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
@@ -15,7 +17,7 @@ class Reactions;
 
 /// Keeps the ledger of electrical power true, and acts when the budget falls (paper 4.3 resource management).
 /// Thread: the supervisor's.
-class PowerHandling final : public Watch, public Hearer {
+class PowerHandling final : public Watch, public Hearer, public Remembered {
  public:
   PowerHandling(Craft& craft, OwnSubsystem& own, Reactions& reactions)
       : craft_{craft}, own_{own}, reactions_{reactions}, ledger_{craft.mission.power_budget_w} {}
@@ -30,6 +32,9 @@ class PowerHandling final : public Watch, public Hearer {
   /// A failure of any stage, or completion: what was reserved for the telecommand is over.
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
   void watch(TimePoint now) override;
+  /// The budget, where a telecommand has set it.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
 
  private:
   void set_budget(double budget_w);
@@ -39,6 +44,7 @@ class PowerHandling final : public Watch, public Hearer {
   OwnSubsystem& own_;
   Reactions& reactions_;
   PowerLedger ledger_;
+  std::optional<double> set_w_;
 };
 
 }  // namespace hirosco::supervisor

@@ -92,6 +92,26 @@ Result<> Processes::launch(Member& member) {
   return ok();
 }
 
+std::optional<MemoryHandle> Processes::adopt(Member& member, bool may_go_on) {
+  const std::string& name = member.descriptor().name;
+  auto adopted = craft_.launcher.adopt(member.described());
+  if (!adopted) return std::nullopt;
+  if (!craft_.guard.holds(member.apid()))
+    if (const auto held = craft_.guard.add(member.described(), craft_.is_ground_link(member)); !held) {
+      craft_.tell("cannot hold the second inhibit of " + name + "'s devices: " + held.error().text + "; it is ended",
+                  member.apid());
+      craft_.launcher.kill(adopted->launched.process);
+      return std::nullopt;
+    }
+  static_cast<void>(parts_.resources.claim(member));  // it has it already
+  const bool permitted = craft_.guard.take_over(member.apid(), *adopted, may_go_on);
+  member.started(std::move(adopted->launched));
+  member.enter_mode(craft_.mode_epoch);
+  const bool operational = member.state() == State::Operational;
+  craft_.tell("goes on with " + name + (permitted || !operational ? "" : ", stopped"), member.apid());
+  return std::move(adopted->permit);
+}
+
 Result<> Processes::start(std::uint16_t apid) {
   Member* subject = craft_.member(apid);
   if (subject == nullptr) return fail(ErrorCode::NotFound, "no such subsystem", apid);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/restarts.hpp"
@@ -46,6 +48,11 @@ class Processes final : public Watch {
   void start_all();
   /// One that is down: by the ground, however often it died. Otherwise why it could not be started.
   Result<> start(std::uint16_t apid);
+  /// One that runs since the supervisor before; empty: it does not, or cannot be held.
+  /// \return its new permit page, which it has to be handed.
+  [[nodiscard]] std::optional<MemoryHandle> adopt(Member& member, bool may_go_on);
+  /// It ran when the supervisor before died, and does no longer.
+  void found_dead(Member& member) { died(member, {}); }
   /// One in Offline: its channel is closed, so that it ends by itself, and nobody reacts to that.
   void let_go(Member& member);
   void take_guard_findings();

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "hirosco/descriptor/read/read.hpp"
@@ -106,6 +108,56 @@ void Versions::died(std::uint16_t apid) {
   go_back(found->second);
   end_process(subject, found->second);
   craft_.launcher.use(subject.described(), found->second.wanted);
+}
+
+void Versions::note(OctetWriter& writer) const {
+  const auto put = [&](const std::string& text) {
+    writer.put(static_cast<std::uint8_t>(text.size())).put(std::as_bytes(std::span{text}));
+  };
+  for (const auto* versions : {&in_force_, &earlier_}) {
+    writer.put(static_cast<std::uint16_t>(versions->size()));
+    for (const auto& [apid, version] : *versions) {
+      writer.put(apid);
+      put(version);
+    }
+  }
+  const auto is_new = [](const auto& entry) {
+    return entry.second.phase == Phase::OnTrial || entry.second.phase == Phase::GoingDown;
+  };
+  writer.put(static_cast<std::uint16_t>(std::ranges::count_if(changes_, is_new)));
+  for (const auto& entry : changes_) {
+    if (!is_new(entry)) continue;
+    writer.put(entry.first);
+    put(entry.second.wanted);
+    put(entry.second.before);
+  }
+}
+
+void Versions::recall(OctetReader& reader) {
+  const auto get = [&] {
+    const Octets text = reader.get(reader.get<std::uint8_t>());
+    return std::string{reinterpret_cast<const char*>(text.data()), text.size()};
+  };
+  for (auto* versions : {&in_force_, &earlier_})
+    for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+      const auto apid = reader.get<std::uint16_t>();
+      (*versions)[apid] = get();
+    }
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto apid = reader.get<std::uint16_t>();
+    Change change;
+    change.phase = Phase::OnTrial;
+    change.wanted = get();
+    change.before = get();
+    change.deadline = craft_.now;
+    if (craft_.member(apid) != nullptr) changes_.emplace(apid, std::move(change));
+  }
+  for (const Member& member : craft_.members) {
+    const auto change = changes_.find(member.apid());
+    const auto found = in_force_.find(member.apid());
+    if (change != changes_.end()) craft_.launcher.use(member.described(), change->second.wanted);
+    else if (found != in_force_.end()) craft_.launcher.use(member.described(), found->second);
+  }
 }
 
 void Versions::watch(TimePoint now) {

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
@@ -20,7 +21,7 @@ class UnderWay;
 
 /// Puts another version of a subsystem's executable in its place while the others cycle (docs/adr/0089): in Offline, on trial, and
 /// back to the one before by itself unless it is confirmed in time.  Thread: the supervisor's.
-class Versions final : public Watch {
+class Versions final : public Watch, public Remembered {
  public:
   struct Parts {
     Craft& craft;
@@ -45,6 +46,9 @@ class Versions final : public Watch {
   /// Its process has ended by itself: before anybody starts it again.
   void died(std::uint16_t apid);
   void watch(TimePoint now) override;
+  /// Which are in force, and those on trial: these go back in the next supervisor, which nobody has told how they did.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
 
  private:
   enum class Phase : std::uint8_t {

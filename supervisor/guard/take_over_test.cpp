@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/guard/testing/guard_rig.hpp"
+
+/// A guard goes on for one that died with its supervisor (docs/adr/0093).
+namespace hirosco::supervisor {
+namespace {
+
+using testing::arm;
+using testing::camera;
+using testing::GuardTest;
+using testing::hand;
+using testing::Life;
+using namespace std::chrono_literals;
+
+struct TakeOver : GuardTest {
+  KeeperPage kept;
+  Guard next{{.clock = clock, .flows = flows, .first_epoch = 5000, .notes = {mission, kept}, .on_finding = {}}};
+  std::map<std::uint16_t, PermitPage*> pages;
+
+  /// The guard before has let go of its flows; this one finds ARM as it is.
+  bool take_over(std::uint16_t apid, bool may_go_on = true) {
+    const Life& life = lives[apid];
+    AdoptedSubsystem adopted;
+    adopted.epoch = life.permit->epoch.load();
+    adopted.permitted = life.permit->permits(adopted.epoch);
+    adopted.stopped = life.permit->stop.load() != 0;
+    adopted.launched.vital = life.vital_memory;
+    adopted.launched.permit = memory.map(memory.create("page", sizeof(PermitPage)).value(), Access::ReadWrite).value();
+    adopted.launched.grip = life.process;
+    pages[apid] = new (adopted.launched.permit.octets.data()) PermitPage{};
+    for (const auto& described : mission.subsystems)
+      if (described.subsystem.id == apid && !next.holds(apid)) EXPECT_TRUE(next.add(described, apid == camera));
+    return next.take_over(apid, adopted, may_go_on);
+  }
+  [[nodiscard]] bool permits(std::uint16_t apid) { return pages[apid]->permits(pages[apid]->epoch.load()); }
+  void operational(std::uint16_t apid) {
+    cycling(apid);
+    ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+    run(20ms);
+    lives[apid].vital->seen_epoch = lives[apid].permit->epoch.load();
+  }
+};
+
+TEST_F(TakeOver, WhoWasPermittedGoesOnUnderTheEpochThatItHad) {
+  operational(hand);
+  const auto epoch = lives[hand].permit->epoch.load();
+  EXPECT_TRUE(take_over(hand));
+  EXPECT_TRUE(permits(hand));
+  EXPECT_EQ(pages[hand]->epoch.load(), epoch);
+  static_cast<void>(next.step(clock.now()));
+  EXPECT_TRUE(permits(hand));
+  lives[hand].vital->state = static_cast<std::uint32_t>(State::SafeOperational);
+  static_cast<void>(next.step(clock.now()));
+  EXPECT_FALSE(permits(hand)) << "for the stay in Operational that it was given for";
+}
+
+TEST_F(TakeOver, NobodyWhoWasNotPermittedIsAndNobodyGetsAnEpochBelowTheOneItHad) {
+  cycling(hand);
+  EXPECT_FALSE(take_over(hand));
+  EXPECT_FALSE(permits(hand));
+  EXPECT_GE(pages[hand]->epoch.load(), lives[hand].permit->epoch.load());
+}
+
+TEST_F(TakeOver, WhatStandsAgainstItStopsItUnderAHigherEpoch) {
+  const auto refuse = [&](const char* what, auto change, bool may_go_on = true) {
+    lives.erase(hand);
+    start(hand);
+    operational(hand);
+    change();
+    const auto epoch = lives[hand].permit->epoch.load();
+    EXPECT_FALSE(take_over(hand, may_go_on)) << what;
+    EXPECT_FALSE(permits(hand)) << what;
+    EXPECT_GT(pages[hand]->epoch.load(), epoch) << what;
+    EXPECT_EQ(pages[hand]->stop.load(), 1u) << what;
+    next.forget(hand);
+  };
+  refuse("it may not", [] {}, false);
+  refuse("another state", [&] { lives[hand].vital->state = static_cast<std::uint32_t>(State::ErrorOperational); });
+  refuse("inhibited", [&] { lives[hand].vital->inhibited = inhibited_by_link; });
+  refuse("it looks at another epoch", [&] { lives[hand].vital->seen_epoch = 17; });
+}
+
+TEST_F(TakeOver, AStopOfTheGuardBeforeHolds) {
+  operational(hand);
+  guard.fence(hand);
+  EXPECT_FALSE(take_over(hand));
+  EXPECT_FALSE(permits(hand));
+  EXPECT_EQ(pages[hand]->stop.load(), 1u);
+}
+
+TEST_F(TakeOver, AFenceOfItReachesWhoGoesOn) {
+  operational(hand);
+  ASSERT_TRUE(take_over(hand));
+  next.fence(hand);
+  EXPECT_FALSE(permits(hand));
+  EXPECT_TRUE(next.fenced(hand));
+}
+
+/// What the guard notes for whoever would go on telling a device in its place.
+struct Notes : GuardTest {
+  KeeperPage kept;
+  std::unique_ptr<DataFlow> device;
+  descriptor::Mission noted = [this] {
+    auto made = mission;
+    made.subsystems[0].subsystem.devices[0].enable->address = "noted-enable";
+    return made;
+  }();
+  Guard notes{{.clock = clock, .flows = flows, .first_epoch = 1000, .notes = {noted, kept}, .on_finding = {}}};
+
+  void SetUp() override {
+    GuardTest::SetUp();
+    ASSERT_TRUE(notes.add(noted.subsystems[0], false));
+    LaunchedSubsystem launched;
+    launched.vital = lives[arm].vital_memory;
+    launched.permit = lives[arm].permit_memory;
+    launched.grip = lives[arm].process;
+    notes.adopt(arm, launched);
+    cycling(arm);
+  }
+};
+
+TEST_F(Notes, SayWhatADeviceWasToldLast) {
+  static_cast<void>(notes.step(clock.now()));
+  EXPECT_FALSE(kept.inhibits[0].enabled());
+  ASSERT_TRUE(notes.release(arm, notes.fences(arm)));
+  static_cast<void>(notes.step(clock.now()));
+  EXPECT_TRUE(kept.inhibits[0].enabled());
+  EXPECT_EQ(kept.inhibits[0].epoch.load(), lives[arm].permit->epoch.load());
+}
+
+TEST_F(Notes, AreVoidWithTheFenceAndNotWithTheNextStep) {
+  ASSERT_TRUE(notes.release(arm, notes.fences(arm)));
+  static_cast<void>(notes.step(clock.now()));
+  notes.fence(arm);
+  EXPECT_FALSE(kept.inhibits[0].enabled());
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor

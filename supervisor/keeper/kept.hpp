@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "hirosco/subsystem/pages/pages.hpp"
+#include "hirosco/utilities/time.hpp"
+
+/// What the keeper holds so that it outlives the supervisor, and where a supervisor finds it (docs/adr/0093).
+namespace hirosco::supervisor {
+
+/// The supervisor finds the reading end of a pipe here; it is closed when the keeper is gone.
+inline constexpr int keeper_descriptor = 6;
+/// KeeperPage.
+inline constexpr int keeper_page_descriptor = 7;
+/// Socket on which the supervisor hands over what is to be kept.
+inline constexpr int keeper_store_descriptor = 8;
+/// Memory of the journal (supervision/journal.hpp), of `journal_octets`.
+inline constexpr int keeper_journal_descriptor = 9;
+/// From here on, what the supervisor before had handed over: slot by slot, a descriptor for each role.
+inline constexpr int first_kept_descriptor = 16;
+
+/// What is kept of one subsystem; its slot is its place in the mission.
+enum class KeptRole : std::uint8_t { Channel, Vital, Permit, Process, Errors };
+inline constexpr std::size_t kept_roles = 5;
+inline constexpr std::size_t most_kept = 96;
+[[nodiscard]] constexpr int kept_descriptor(std::size_t slot, KeptRole role) noexcept {
+  return first_kept_descriptor + static_cast<int>(slot * kept_roles) + static_cast<int>(role);
+}
+
+inline constexpr std::size_t journal_octets = std::size_t{2} << 20;
+
+/// The second inhibit of one device as the guard told it last: the keeper goes on telling it while there is no guard.
+/// Damage enables nothing: it has to be the permission word of its epoch.
+struct KeptInhibit {
+  std::atomic<std::uint32_t> epoch{0};
+  std::atomic<std::uint32_t> sequence{0};  ///< of the newest command
+  std::atomic<std::uint64_t> go{0};  ///< permission_word(epoch): enabled
+
+  /// Realtime: wait-free.
+  void note(bool enabled, std::uint32_t of_epoch, std::uint32_t of_sequence) noexcept {
+    const std::uint64_t word = enabled ? permission_word(of_epoch) : 0;
+    if (go.load(std::memory_order_relaxed) != word) go.store(0, std::memory_order_release);
+    epoch.store(of_epoch, std::memory_order_release);
+    sequence.store(of_sequence, std::memory_order_release);
+    go.store(word, std::memory_order_release);
+  }
+  [[nodiscard]] bool enabled() const noexcept {
+    return go.load(std::memory_order_acquire) == permission_word(epoch.load(std::memory_order_acquire));
+  }
+};
+inline constexpr std::size_t most_inhibits = 64;
+
+/// How a process ended whose parent, a supervisor, was gone: the keeper is told, as nobody else is.
+struct KeptEnd {
+  std::atomic<std::uint32_t> pid{0};
+  std::atomic<std::uint32_t> how{0};  ///< exit code, or 0x100 and the signal
+};
+inline constexpr std::uint32_t ended_by_signal = 0x100;
+inline constexpr std::size_t most_ends = 64;
+
+/// Memory in which keeper and supervisor see each other move: one that is alive and stands still is as lost as one that
+/// has died (hazard SF18).
+struct KeeperPage {
+  std::atomic<std::uint64_t> keeper{0};
+  std::atomic<std::uint64_t> supervisor{0};
+  std::atomic<std::uint32_t> finished{0};  ///< 1: the supervisor ends by itself, and the flight with it
+  std::atomic<std::uint32_t> alone{0};  ///< 1: nothing that the supervisor has started outlives it, so nobody goes on for it
+  std::atomic<std::uint32_t> starts{0};  ///< supervisors that were started
+  std::atomic<std::uint32_t> wants_inhibits{0};  ///< the start that takes the second inhibits over
+  std::atomic<std::uint32_t> left_inhibits{0};  ///< the start for which the keeper has let go of them
+  std::atomic<std::int64_t> log_run{0};  ///< of the records of this flight's log, as on-board time in ns; 0: none yet
+  std::atomic<std::uint64_t> log_number{0};  ///< of the newest record
+  std::atomic<std::uint64_t> log_durable{0};  ///< up to here they are on the disk
+  std::atomic<std::uint64_t> stops_asked{0};  ///< SIGUSR1 that came to the keeper
+  std::atomic<std::uint64_t> stops_taken{0};  ///< those that a guard has carried out
+  std::array<KeptInhibit, most_inhibits> inhibits;  ///< in the order of kept_endnodes()
+  std::atomic<std::uint32_t> ends_told{0};
+  std::array<KeptEnd, most_ends> ends;  ///< the newest
+
+  void tell_end(std::uint32_t pid, std::uint32_t how) noexcept {
+    KeptEnd& place = ends[ends_told.load(std::memory_order_relaxed) % most_ends];
+    place.pid.store(0, std::memory_order_release);
+    place.how.store(how, std::memory_order_release);
+    place.pid.store(pid, std::memory_order_release);
+    ends_told.fetch_add(1, std::memory_order_release);
+  }
+  /// Empty: it was not told.
+  [[nodiscard]] std::optional<std::uint32_t> end_of(std::uint32_t pid) const noexcept {
+    for (const KeptEnd& end : ends)
+      if (end.pid.load(std::memory_order_acquire) == pid) return end.how.load(std::memory_order_acquire);
+    return std::nullopt;
+  }
+};
+
+/// How long the keeper may stand still once it has moved.
+inline constexpr Duration keeper_patience = std::chrono::seconds{3};
+/// The supervisor: less than its own guard grants it before all is fenced, so that another one can go on with what moves.
+inline constexpr Duration supervisor_patience = std::chrono::milliseconds{800};
+
+/// Looks at one counter of the page from time to time.
+class Progress {
+ public:
+  /// Of the time between two looks no more counts: while the whole computer was stopped neither could move.
+  static constexpr Duration most_unwatched = std::chrono::milliseconds{400};
+  explicit Progress(Duration patience = keeper_patience) : patience_{patience} {}
+  /// True while it has moved and then stood still for longer than the patience. A counter that is damaged has moved once.
+  [[nodiscard]] bool stands_still(std::uint64_t count, TimePoint now) noexcept {
+    if (has_looked_) still_ += std::min(now - looked_, most_unwatched);
+    looked_ = now;
+    has_looked_ = true;
+    if (count != seen_) {
+      seen_ = count;
+      begun_ = true;
+      still_ = Duration{0};
+    }
+    return begun_ && still_ > patience_;
+  }
+
+ private:
+  Duration patience_;
+  std::uint64_t seen_{0};
+  bool begun_{false};
+  Duration still_{};
+  TimePoint looked_{};
+  bool has_looked_{false};
+};
+
+/// When another supervisor is started after one that has ended: at once, and after a pause that doubles where none lives long.
+class Revivals {
+ public:
+  /// One that lived for so long does not count.
+  static constexpr Duration long_enough = std::chrono::seconds{2};
+  static constexpr std::uint32_t most = 5;
+  static constexpr std::uint32_t at_once = 2;
+  static constexpr Duration pause = std::chrono::milliseconds{100};
+  /// Empty: so many have died young that the flight ends.
+  [[nodiscard]] std::optional<Duration> next(Duration lived) noexcept {
+    if (lived >= long_enough) in_a_row_ = 0;
+    if (in_a_row_ == most) return std::nullopt;
+    const std::uint32_t before = in_a_row_++;
+    return before < at_once ? Duration{0} : pause * (1U << (before - at_once));
+  }
+
+ private:
+  std::uint32_t in_a_row_{0};
+};
+
+}  // namespace hirosco::supervisor

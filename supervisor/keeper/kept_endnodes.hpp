@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
+#include "supervisor/keeper/kept.hpp"
+
+namespace hirosco::supervisor {
+
+/// The second inhibit of one device of the mission.
+struct KeptEndnode {
+  std::uint16_t apid{0};
+  std::string device;
+  FlowAddress address;
+};
+
+/// All of them, in one order for keeper and supervisor; those beyond `most_inhibits` are not kept: they end with the supervisor.
+[[nodiscard]] inline std::vector<KeptEndnode> kept_endnodes(const descriptor::Mission& mission) {
+  std::vector<KeptEndnode> found;
+  for (const auto& subsystem : mission.subsystems)
+    for (const auto& device : subsystem.subsystem.devices)
+      if (device.enable && found.size() < most_inhibits)
+        found.push_back({subsystem.subsystem.id, device.name, {device.enable->transfer, device.enable->address}});
+  return found;
+}
+
+/// Where the guard notes what it tells this device.
+class InhibitNotes {
+ public:
+  InhibitNotes() = default;
+  InhibitNotes(const descriptor::Mission& mission, KeeperPage& page)
+      : endnodes_{kept_endnodes(mission)}, page_{&page} {}
+  /// Null: nobody would go on telling it.
+  [[nodiscard]] KeptInhibit* of(std::uint16_t apid, std::string_view device) const noexcept {
+    for (std::size_t i = 0; page_ != nullptr && i < endnodes_.size(); ++i)
+      if (endnodes_[i].apid == apid && endnodes_[i].device == device) return &page_->inhibits[i];
+    return nullptr;
+  }
+
+ private:
+  std::vector<KeptEndnode> endnodes_;
+  KeeperPage* page_{nullptr};
+};
+
+}  // namespace hirosco::supervisor

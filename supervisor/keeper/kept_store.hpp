@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/process.hpp"
+#include "hirosco/utilities/result.hpp"
+#include "supervisor/keeper/kept.hpp"
+
+/// Descriptors of the subsystems, handed over by the supervisor and kept beyond it: the next one inherits them (docs/adr/0093).
+namespace hirosco::supervisor {
+
+/// What a supervisor before had handed over, by slot.
+using InheritedParts = std::map<std::size_t, std::array<FileDescriptor, kept_roles>>;
+
+/// The keeper's side. Holds what came, by slot; bounded.  Thread: one.
+class KeptStore {
+ public:
+  /// Both ends: the store's and the supervisor's. SystemFailure: no socket.
+  [[nodiscard]] static Result<std::pair<FileDescriptor, FileDescriptor>> make_socket();
+  explicit KeptStore(FileDescriptor socket) noexcept : socket_{std::move(socket)} {}
+
+  /// Takes what has come. What is no message of ours is closed. Does not wait.
+  void take() noexcept;
+  /// For a supervisor that is started: what it finds where.
+  void pass_on(std::vector<ProcessStart::Inherited>& inherited) const;
+  /// Nobody goes on: who still runs finds its channel closed.
+  void clear() noexcept { slots_ = {}; }
+  [[nodiscard]] bool holds(std::size_t slot) const noexcept { return slots_[slot].front().valid(); }
+
+ private:
+  using Slot = std::array<FileDescriptor, kept_roles>;
+  FileDescriptor socket_;
+  std::array<Slot, most_kept> slots_;
+};
+
+/// The supervisor's side: hands over, and takes back what the one before had handed over.  Thread: one.
+class StoreClient {
+ public:
+  /// -1: there is no keeper, nothing is kept.
+  explicit StoreClient(int socket) noexcept : socket_{socket} {}
+  /// Unavailable: the keeper is gone or takes nothing; OutOfRange: there is no such slot.
+  [[nodiscard]] Result<> keep(std::size_t slot, const std::array<int, kept_roles>& descriptors) noexcept;
+  /// It has ended.
+  void forget(std::size_t slot) noexcept;
+  /// What the supervisor before had handed over, by slot. To be called once, before this process opens anything: the numbers are
+  /// free again after that.
+  [[nodiscard]] static InheritedParts inherited();
+
+ private:
+  int socket_;
+};
+
+}  // namespace hirosco::supervisor

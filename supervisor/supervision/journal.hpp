@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "hirosco/utilities/octets.hpp"
+
+/// What a supervisor has to know to go on for one that died (docs/adr/0093), in memory that somebody else keeps.
+namespace hirosco::supervisor {
+
+/// Two copies, of which the older is written over: whatever is torn by a death, the other one is whole. A copy has a magic word, the
+/// version of what it holds, a sequence number, its length and a checksum over all that; what does not fit them is none.
+/// Thread: one.
+class Journal {
+ public:
+  /// Of what the parts note: another build's is not read.
+  static constexpr std::uint32_t version = 1;
+
+  /// The memory outlives this; half of it is the most that one copy holds, with its head.
+  explicit Journal(MutableOctets memory) noexcept : memory_{memory} {}
+
+  /// The newest whole copy. Empty: there is none.
+  [[nodiscard]] Octets newest() const noexcept;
+  /// False: it is longer than a copy may be, and nothing was written.  Realtime: bounded, no allocation.
+  bool write(Octets content) noexcept;
+  [[nodiscard]] std::size_t most_octets() const noexcept;
+
+ private:
+  struct Head;
+  [[nodiscard]] MutableOctets copy(std::size_t which) const noexcept;
+  /// Its sequence number; 0: it is none.
+  [[nodiscard]] std::uint64_t sequence_of(std::size_t which) const noexcept;
+
+  MutableOctets memory_;
+};
+
+/// A part that notes what it knows, and is told it again in the next supervisor, before anything else is asked of it.
+class Remembered {
+ public:
+  virtual ~Remembered() = default;
+  /// What does not fit is not remembered at all.  Realtime: bounded.
+  virtual void note(OctetWriter& writer) const = 0;
+  /// What cannot be read leaves the part as it was made; `reader` tells it.
+  virtual void recall(OctetReader& reader) = 0;
+};
+
+/// Puts the parts' notes together, each with its number and length, and takes them apart again. Thread: one.
+class Memory {
+ public:
+  /// `journal` null: nothing is remembered.
+  Memory(Journal* journal, std::vector<Remembered*> parts) : journal_{journal}, parts_{std::move(parts)} {}
+
+  /// Notes what has changed since the last time. False: there is no room for all of it.
+  bool note();
+  /// True: there was something, all of it was read, and each part has been told.
+  [[nodiscard]] bool recall();
+
+ private:
+  Journal* journal_;
+  std::vector<Remembered*> parts_;
+  std::vector<std::byte> buffer_, written_, part_;
+};
+
+}  // namespace hirosco::supervisor

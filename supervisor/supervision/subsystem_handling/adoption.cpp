@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/subsystem_handling/adoption.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "supervisor/supervision/data_handling/own_telecommands.hpp"
+#include "supervisor/supervision/event_handling/reactions.hpp"
+#include "supervisor/supervision/event_handling/safe_all.hpp"
+#include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/modes/modes.hpp"
+#include "supervisor/supervision/modes/shutdown.hpp"
+#include "supervisor/supervision/realtime_links/link_commands.hpp"
+#include "supervisor/supervision/subsystem_handling/processes.hpp"
+
+namespace hirosco::supervisor {
+
+using descriptor::Severity;
+
+void Adoption::note(OctetWriter& writer) const {
+  writer.put(craft_.mode->id).put(craft_.mode_epoch);
+  const auto flag = [&](bool set) { writer.put(static_cast<std::uint8_t>(set ? 1 : 0)); };
+  flag(parts_.commissioning.running());
+  flag(parts_.commissioning.succeeded());
+  flag(craft_.shutting_down);
+  flag(craft_.failed());
+  flag(parts_.safe_all.under_way());
+  writer.put(static_cast<std::uint16_t>(craft_.members.size()));
+  for (const Member& member : craft_.members) {
+    writer.put(member.apid());
+    flag(member.alive());
+    flag(member.recovery.running());
+  }
+}
+
+void Adoption::recall(OctetReader& reader) {
+  const auto id = reader.get<std::uint8_t>();
+  const auto mode = std::ranges::find(craft_.mission.modes, id, &descriptor::Mode::id);
+  if (mode != craft_.mission.modes.end()) craft_.mode = &*mode;
+  craft_.mode_epoch = reader.get<std::uint32_t>();
+  const auto flag = [&] { return reader.get<std::uint8_t>() != 0; };
+  commissioning_ = flag();
+  if (flag()) parts_.commissioning.succeeded_before();
+  shutting_down_ = flag();
+  if (flag()) craft_.fail();
+  stop_asked_ = flag();
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto apid = reader.get<std::uint16_t>();
+    const bool alive = flag();
+    before_[apid] = {alive, flag()};
+  }
+}
+
+void Adoption::begin(bool stop_asked) {
+  remembered_ = parts_.memory.recall();
+  stop_asked_ = stop_asked_ || stop_asked;
+  craft_.tell(
+      remembered_
+          ? "this supervisor goes on for one that died"
+          : "this supervisor goes on for one that died, and nothing tells what that knew: what moves is stopped",
+      supervisor_apid);
+  for (const auto& [apid, before] : before_)
+    if (before.recovering)
+      for (const std::uint16_t each : parts_.links.graph().network_of(apid)) stopped_.insert(each);
+  waits_ = true;
+  waits_until_ = craft_.now + longest_start;
+  for (Member& member : craft_.members) take_over(member);
+  parts_.commissioning.start_itself([this](bool) { go_on(); });
+}
+
+/// Once: this supervisor is Operational, or cannot be by now (its log stands still), which must not hold up what is to stop.
+void Adoption::go_on() {
+  if (!std::exchange(waits_, false)) return;
+  finish_what_was_begun();
+}
+
+bool Adoption::may_go_on(const Member& member) const {
+  if (craft_.is_ground_link(member)) return true;
+  return remembered_ && !stop_asked_ && !commissioning_ && !shutting_down_ && !stopped_.contains(member.apid()) &&
+         !parts_.modes.was_moving(member.apid());
+}
+
+void Adoption::take_over(Member& member) {
+  const auto adopted = parts_.processes.adopt(member, may_go_on(member));
+  if (!adopted) return;
+  asked_devices_at_ = craft_.now + devices_answer;
+  Page& page = pages_[member.apid()];
+  page = {*adopted, craft_.now, craft_.now, false};
+  hand_over(member, page);
+}
+
+void Adoption::hand_over(Member& member, Page& page) {
+  page.again = craft_.now + asked_again_after;
+  static_cast<void>(member.channel()->send({.kind = MessageKind::PermitPage, .memory = page.memory}));
+}
+
+/// The states of those that were not let go on follow, and what had been begun ends.
+void Adoption::finish_what_was_begun() {
+  parts_.telecommands.end_what_was_begun();
+  parts_.links.end_what_was_begun();
+  if (shutting_down_) return parts_.shutdown.request();
+  for (Member& member : craft_.members) {
+    const auto before = before_.find(member.apid());
+    const bool lived = before != before_.end() && before->second.alive;
+    if (!member.alive() && lived) parts_.processes.found_dead(member);
+  }
+  if (commissioning_) {
+    craft_.tell("commissioning stopped: the supervisor died", supervisor_apid);
+    craft_.fail();
+  }
+  parts_.modes.end_change("the supervisor died");
+  for (Member& member : craft_.members)
+    if (const auto before = before_.find(member.apid());
+        member.alive() && before != before_.end() && before->second.recovering)
+      parts_.reactions.react(member, "RECOVERY_FAILED", Severity::High);
+  if (stop_asked_) return parts_.safe_all.again();
+  for (Member& member : craft_.members)
+    if (member.alive() && !craft_.is_ground_link(member) && member.state() == State::Operational &&
+        craft_.guard.fenced(member.apid()) && !member.recovery.running())
+      parts_.desk.command(member.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+}
+
+/// The enable of a device may have run out before anybody could go on telling it: it has stopped and stays so, and its subsystem
+/// follows it.
+void Adoption::ask_devices() {
+  for (Member& member : craft_.members) {
+    if (!member.alive() || !craft_.guard.has_stopped_by_itself(member.apid())) continue;
+    craft_.tell("a device of " + member.descriptor().name + " has stopped while no supervisor was there",
+                member.apid());
+    craft_.guard.fence(member.apid());
+    if (member.state() == State::Operational && !member.recovery.running())
+      parts_.desk.command(member.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+  }
+}
+
+void Adoption::watch(TimePoint now) {
+  if (asked_devices_at_ && now >= *asked_devices_at_) {
+    asked_devices_at_.reset();
+    ask_devices();
+  }
+  if (now > waits_until_) go_on();
+  for (auto& [apid, page] : pages_) {
+    Member& member = *craft_.member(apid);
+    if (!member.alive() || page.given_up) continue;
+    if (waits_) page.since = now;  // nobody reads what it says
+    if (now - page.since > longest_change) {
+      // It obeys a page that nobody can write any more.
+      craft_.tell(member.descriptor().name + " does not look at its new permit page: it is ended", apid);
+      craft_.guard.fence(apid);
+      craft_.launcher.kill(member.process());
+      page.given_up = true;
+    } else if (now >= page.again) {
+      hand_over(member, page);
+    }
+  }
+  std::erase_if(pages_, [&](const auto& entry) { return !craft_.member(entry.first)->alive(); });
+}
+
+}  // namespace hirosco::supervisor

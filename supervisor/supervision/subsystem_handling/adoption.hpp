@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/journal.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/succession.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
+
+namespace hirosco::supervisor {
+
+class Commissioning;
+class LinkCommands;
+class Modes;
+class OwnTelecommands;
+class Processes;
+class Reactions;
+class SafeAll;
+class Shutdown;
+class Telecommands;
+
+/// A supervisor that goes on for one that died (docs/adr/0093): what runs is taken over with the permission that it had, unless
+/// something was under way that was to stop it or would have moved it: that ends stopped. Thread: the supervisor's.
+class Adoption final : public Watch, public Remembered, public Succession {
+ public:
+  struct Parts {
+    Craft& craft;
+    OwnSubsystem& own;
+    Processes& processes;
+    OwnTelecommands& desk;
+    Telecommands& telecommands;
+    LinkCommands& links;
+    Modes& modes;
+    Commissioning& commissioning;
+    Reactions& reactions;
+    SafeAll& safe_all;
+    Shutdown& shutdown;
+    Memory& memory;
+  };
+  /// What a member may take to look at its new permit page: less than it goes on without a supervisor.
+  static constexpr Duration longest_change = std::chrono::seconds{1};
+  static constexpr Duration asked_again_after = std::chrono::milliseconds{100};
+  /// What this supervisor may take until it is Operational itself; what is said to it waits so long.
+  static constexpr Duration longest_start = std::chrono::seconds{2};
+
+  /// From the first word of this guard to a device until its answer is there.
+  static constexpr Duration devices_answer = std::chrono::milliseconds{50};
+
+  explicit Adoption(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
+
+  /// In the place of a start. `stop_asked`: somebody asked for a stop when nobody was there to carry it out.
+  void begin(bool stop_asked);
+  [[nodiscard]] bool waits() const noexcept override { return waits_; }
+  void confirmed(std::uint16_t apid) override { pages_.erase(apid); }
+  void watch(TimePoint now) override;
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
+
+ private:
+  struct Before {
+    bool alive{false};
+    bool recovering{false};
+  };
+  struct Page {
+    MemoryHandle memory;
+    TimePoint since{};
+    TimePoint again{};
+    bool given_up{false};
+  };
+  void take_over(Member& member);
+  void hand_over(Member& member, Page& page);
+  /// Those that a stop was under way for are not let go on.
+  [[nodiscard]] bool may_go_on(const Member& member) const;
+  void go_on();
+  void ask_devices();
+  void finish_what_was_begun();
+
+  Parts parts_;
+  Craft& craft_;
+  std::optional<TimePoint> asked_devices_at_;
+  bool remembered_{false};
+  bool waits_{false};
+  TimePoint waits_until_{};
+  // Of the supervisor before.
+  std::map<std::uint16_t, Before> before_;
+  std::set<std::uint16_t> stopped_;  ///< with the networks of those that were being recovered
+  bool commissioning_{false};
+  bool shutting_down_{false};
+  bool stop_asked_{false};
+  std::map<std::uint16_t, Page> pages_;  ///< that are not confirmed
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""kill -9 of the supervisor, N times (`--kills N`), while the robot pushes on the rail and a client commands without a pause
+(docs/adr/0093). Each time another one goes on with both machines as they are. Every sixth kill falls between TM[1,1] and TM[1,7] of a
+SAFE_ALL. In the end what the client sent and received is compared with each other and with the log."""
+import os
+import random
+import signal
+import struct
+import sys
+import threading
+import time
+import unittest
+
+import flight
+import honest
+
+KILLS = int(sys.argv.pop(sys.argv.index("--kills") + 1)) if "--kills" in sys.argv else 6
+if "--kills" in sys.argv:
+    sys.argv.remove("--kills")
+SEED = 20261124
+ADOPTED_S = 1.0
+# A supervisor that lives for 2 s is no part of a crash loop (supervisor/keeper/kept.hpp).
+LIVES_S = 2.2
+POS_SCALE = flight.MANIPULATOR << 16 | 10 << 8 | 8
+TELEPRESENCE = 3
+
+
+class Client:
+    """Asks both machines in turn: a ping, which waits for nothing, and the value of a parameter, which waits for the log."""
+
+    def __init__(self, ground, port=honest.TELECOMMAND_PORT):
+        import socket
+        self.ground, self.sent, self.ending = ground, [], False
+        self.mutex = threading.Lock()
+        self.socket = socket.create_connection(("127.0.0.1", port))
+        self.thread = threading.Thread(target=self.run, daemon=True)
+        self.thread.start()
+
+    def run(self):
+        while not self.ending:
+            apid = (flight.MANIPULATOR, flight.JOYSTICK)[len(self.sent) // 2 % 2]
+            if len(self.sent) % 2 or apid == flight.JOYSTICK:
+                self.send(honest.telecommand(apid, self.ground.next()))
+            else:
+                self.send(honest.telecommand(apid, self.ground.next(), 20, struct.pack(">BI", 1, POS_SCALE)))
+            time.sleep(0.005)
+
+    def send(self, packet):
+        with self.mutex:
+            self.sent.append((packet, time.monotonic()))
+            self.socket.sendall(packet)
+        return packet
+
+
+class SupervisorKills(unittest.TestCase):
+    def push(self, craft):
+        craft.fault("joystick", "hand", "cartesian", 0.0226, 0, 0.5)
+        end = time.monotonic() + 15.0
+        while craft.truth("robot")["force"] < 20.0:
+            self.assertLess(time.monotonic(), end, "the robot pushes")
+
+    def test_nothing_is_lost_and_the_robot_stays_coupled(self):
+        draw = random.Random(SEED)
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            self.push(rokviss)
+            ground = honest.Honest()
+            client = Client(ground)
+            took = []
+            for kill in range(1, KILLS + 1):
+                time.sleep(LIVES_S + draw.uniform(0.0, 0.3))
+                begin = rokviss.count()
+                stopped = kill % 6 == 0
+                if stopped:
+                    packet = client.send(honest.safe_all(ground.next()))
+                    self.assertTrue(ground.wait(lambda: ground.reports.get(packet[:4]), 2.0), "it is accepted")
+                killed = rokviss.kill("hirosco-supervisor")
+                told = rokviss.wait_told("goes on with MANIPULATOR", 5.0, begin)
+                took.append(told.received - killed)
+                self.assertLess(took[-1], ADOPTED_S, f"kill {kill}")
+                if stopped:
+                    rokviss.wait_at_rest("robot", time.monotonic())
+                    self.assertIsNotNone(ground.verdict(packet, 5.0), "SAFE_ALL has an end")
+                    time.sleep(1.0)
+                    self.assertEqual(rokviss.tc("supervisor", "SET_MODE", TELEPRESENCE)[0], 0, f"kill {kill}: up again")
+                    self.push(rokviss)
+                    continue
+                self.assertNotIn("stopped", told.told, f"kill {kill}")
+                truth = rokviss.truth("robot")
+                self.assertGreater(truth["force"], 15.0, f"kill {kill}: the robot pushes on")
+            time.sleep(LIVES_S)
+            client.ending = True
+            client.thread.join()
+            sent = list(client.sent)
+            for packet, _ in sent[-200:]:
+                ground.verdict(packet, 5.0)
+            self.compare(rokviss, ground, sent)
+            took.sort()
+            flight.measure(f"{KILLS} kills of the supervisor, {len(sent)} telecommands, another one went on after "
+                           f"{took[len(took) // 2]:.3f} s, {took[-1]:.3f} s at most")
+
+    def compare(self, rokviss, ground, sent):
+        silent, several, accepted_only = [], [], []
+        for packet, at in sent:
+            subtypes = [subtype for subtype, _ in ground.reports.get(packet[:4], [])]
+            ends = [subtype for subtype in subtypes if subtype in honest.ENDS]
+            if not subtypes:
+                silent.append((packet[:4].hex(), at))
+            elif not ends:
+                accepted_only.append((packet[:4].hex(), subtypes))
+            if len(ends) > 1:
+                several.append((packet[:4].hex(), subtypes))
+        unknown = sum(any(subtype == 8 for subtype, _ in ground.reports.get(packet[:4], [])) for packet, _ in sent)
+        flight.measure(f"ended as unknown: {unknown}, without any report: {len(silent)}")
+        self.is_continuous(rokviss)
+        self.assertEqual(several, [], "one end each")
+        self.assertEqual(accepted_only, [], "what was accepted has an end")
+        self.assertLessEqual(len(silent), KILLS // 50, f"between reading and noting: {silent[:5]}")
+
+    def is_continuous(self, rokviss):
+        """Each number of the log once, in a record or in a gap that says so."""
+        expected, missing = None, 0
+        for record in rokviss.log():
+            number = record["number"]
+            if expected is not None:
+                self.assertEqual(number, expected, record)
+            expected = number + 1
+            if record["kind"] == "gap":
+                missing += int(record["text"].rsplit("number ", 1)[1].split('"')[0]) - number + 1
+                expected = int(record["text"].rsplit("number ", 1)[1].split('"')[0]) + 1
+        flight.measure(f"numbers of the log that stand in gaps: {missing}")
+
+
+if __name__ == "__main__":
+    flight.main()

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "simulation/scenarios/flight.hpp"
+#include "tests/integration/flight.hpp"
+
+/// The supervisor dies, before or after each single message that it sends or takes, and another one goes on (docs/adr/0093): rokviss,
+/// with its links and its devices.
+namespace hirosco::testing {
+namespace {
+
+using simulation::CommandOutcome;
+
+/// Counts the moments at which a supervisor may die, and lets it die in one of them.
+struct Deaths {
+  bool armed{false};
+  int at{0};  ///< the moment in which it dies, from 1; 0: in none
+  int passed{0};
+  std::function<void()> dies;
+  std::function<bool()> dying;
+  /// False: it is dead already.
+  [[nodiscard]] bool moment() {
+    if (dying && dying()) return false;
+    if (!armed || ++passed != at) return true;
+    dies();
+    return false;
+  }
+};
+
+class MortalChannel final : public Channel {
+ public:
+  MortalChannel(std::unique_ptr<Channel> channel, Deaths& deaths) : channel_{std::move(channel)}, deaths_{deaths} {}
+  Result<> send(const Message& message) override {
+    if (!deaths_.moment()) return ok();
+    auto sent = channel_->send(message);
+    static_cast<void>(deaths_.moment());
+    return sent;
+  }
+  Result<Found> receive(MessageBuffer& buffer) override {
+    if (deaths_.dying && deaths_.dying()) return Found{};
+    auto found = channel_->receive(buffer);
+    const bool lives = !found || found->flow == Flow::None || deaths_.moment();
+    if (!lives) return Found{};
+    return found;
+  }
+
+ private:
+  std::unique_ptr<Channel> channel_;
+  Deaths& deaths_;
+};
+
+/// How each telecommand of the ground ended, by its request id.
+struct Verdicts {
+  struct Verdict {
+    int accepted{0};
+    int final{0};
+  };
+  std::map<std::uint32_t, Verdict> of;
+  void hear(const pus::TelemetryView& report) {
+    if (report.service() != 1) return;
+    OctetReader reader{report.source_data()};
+    Verdict& verdict = of[reader.get<std::uint32_t>()];
+    if (report.subtype() == 1) ++verdict.accepted;
+    if (report.subtype() == 2 || report.subtype() == 4 || report.subtype() == 7 || report.subtype() == 8 ||
+        report.subtype() == 10)
+      ++verdict.final;
+  }
+};
+
+struct MortalFlight {
+  explicit MortalFlight(int dies_at)
+      : flight{{.edit = simulation::hand_rests,
+                .wrap_channel = [this](std::string_view, std::unique_ptr<Channel> channel) -> std::unique_ptr<Channel> {
+                  return std::make_unique<MortalChannel>(std::move(channel), deaths);
+                },
+                .revives_after = 300ms}} {
+    deaths.at = dies_at;
+    deaths.dies = [this] { flight.craft().supervisor_dies_here(); };
+    deaths.dying = [this] { return flight.craft().supervisor_is_dying(); };
+  }
+  [[nodiscard]] bool may_move(const char* name) {
+    const auto* page = flight.craft().permit(name);
+    return page != nullptr && page->permits(page->epoch.load());
+  }
+  /// A telecommand without arguments, or with one of one octet.
+  void send(std::uint16_t count, std::string_view function, std::optional<std::uint8_t> argument = {}) {
+    auto asked = call_data(function, {});
+    if (argument) {
+      asked.back() = std::byte{1};
+      asked.insert(asked.end(), {std::byte{1}, std::byte{*argument}});
+    }
+    flight.craft().ground().send(function_packet(1, count, asked));
+  }
+  [[nodiscard]] std::string text() { return "dies at " + std::to_string(deaths.at) + "\n" + flight.story().text(); }
+
+  Deaths deaths;
+  Verdicts verdicts;
+  Flight flight;
+};
+
+const std::array<const char*, 2> movers{"MANIPULATOR", "JOYSTICK"};
+
+/// Flies `what` again and again, with a death one moment later each time, until none comes any more; the number of flights.
+int at_every_moment(const std::function<void(MortalFlight&)>& begin, const std::function<void(MortalFlight&)>& judge,
+                    int every = 1) {
+  int flights = 0;
+  for (int at = 1;; at += every) {
+    MortalFlight mortal{at};
+    Flight& flight = mortal.flight;
+    flight.story().on_telemetry = [&](const pus::TelemetryView& report) { mortal.verdicts.hear(report); };
+    if (!flight.commission()) {
+      ADD_FAILURE() << "not commissioned\n" << mortal.text();
+      return flights;
+    }
+    flight.craft().run(100ms);
+    mortal.deaths.armed = true;
+    begin(mortal);
+    flight.craft().run(5s);
+    ++flights;
+    const bool died = flight.craft().supervisor_deaths() > 0;
+    mortal.deaths.armed = false;
+    judge(mortal);
+    if (::testing::Test::HasFailure()) return flights;
+    if (!died) return flights;
+  }
+}
+
+/// And again: the mode that holds is brought up whole.
+void flies_again(MortalFlight& mortal) {
+  Flight& flight = mortal.flight;
+  for (const char* name : movers)
+    if (!flight.craft().alive(name)) static_cast<void>(flight.set_state(name, State::Offline));
+  flight.craft().run(200ms);
+  EXPECT_TRUE(flight.set_mode("telepresence").completed) << mortal.text();
+  flight.craft().run(200ms);
+  for (const char* name : movers) EXPECT_TRUE(mortal.may_move(name)) << name << "\n" << mortal.text();
+}
+
+TEST(SupervisorDeath, InSteadyFlightNobodyIsStoppedAndNoLinkBreaks) {
+  MortalFlight mortal{0};
+  Flight& flight = mortal.flight;
+  ASSERT_TRUE(flight.commission());
+  flight.craft().run(500ms);
+  std::map<std::string, std::uint32_t> epochs;
+  for (const char* name : movers) epochs[name] = flight.craft().permit(name)->epoch.load();
+  bool rested = false;
+  flight.craft().on_cycle([&](std::string_view name, TimePoint) {
+    if (name == "MANIPULATOR" && flight.inhibited("MANIPULATOR") != 0) rested = true;
+    if (name == "JOYSTICK" && flight.inhibited("JOYSTICK") != 0) rested = true;
+  });
+  for (int time = 1; time <= 3; ++time) {
+    const auto cycles = flight.cycles("MANIPULATOR");
+    flight.craft().kill_supervisor();
+    flight.craft().run(4s);
+    EXPECT_EQ(flight.cycles("MANIPULATOR") - cycles, 8000U) << "2 kHz, all the time";
+    EXPECT_FALSE(rested) << flight.story().text();
+    EXPECT_EQ(flight.craft().supervisor().own_state(), State::Operational);
+    EXPECT_EQ(flight.craft().supervisor().mode().name, "telepresence");
+    EXPECT_EQ(flight.craft().supervisor().links().up_count(), 2U);
+    for (const char* name : movers) {
+      EXPECT_EQ(flight.state(name), State::Operational);
+      EXPECT_TRUE(mortal.may_move(name));
+      EXPECT_EQ(flight.craft().permit(name)->epoch.load(), epochs[name]) << "by the permission that it had";
+    }
+  }
+  EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed) << flight.story().text();
+  for (const char* name : movers) EXPECT_FALSE(mortal.may_move(name));
+  flies_again(mortal);
+}
+
+TEST(SupervisorDeath, WithNobodyToGoOnTheCraftIsSafeAfterItsTime) {
+  MortalFlight mortal{0};
+  Flight& flight = mortal.flight;
+  ASSERT_TRUE(flight.commission());
+  flight.craft().kill_supervisor();
+  flight.craft().keep_down();
+  flight.craft().run(1900ms);
+  EXPECT_EQ(flight.inhibited("MANIPULATOR"), 0U);
+  flight.craft().run(200ms);
+  for (const char* name : movers) EXPECT_NE(flight.inhibited(name), 0U) << name;
+}
+
+TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe) {
+  std::map<std::string, int> ends;
+  const int flights = at_every_moment(
+      [](MortalFlight& mortal) { mortal.send(3000, "SET_MODE", mortal.flight.mission().find_mode("standalone")->id); },
+      [&](MortalFlight& mortal) {
+        Flight& flight = mortal.flight;
+        const std::string now = flight.craft().supervisor().mode().name;
+        const bool known = now == "telepresence" || now == "standalone" || now == flight.mission().initial_mode;
+        EXPECT_TRUE(known) << now;
+        ++ends[now];
+        if (now == flight.mission().initial_mode)
+          for (const char* name : movers) EXPECT_FALSE(mortal.may_move(name)) << name << "\n" << mortal.text();
+        for (const auto& [id, verdict] : mortal.verdicts.of) {
+          EXPECT_LE(verdict.final, 1) << std::hex << id << "\n" << mortal.text();
+          if (verdict.accepted > 0) EXPECT_EQ(verdict.final, 1) << std::hex << id << "\n" << mortal.text();
+        }
+        flies_again(mortal);
+      });
+  EXPECT_GT(flights, 20);
+  EXPECT_GT(ends["standalone"], 0);
+  for (const auto& [mode, count] : ends) std::printf("ended in %s: %d\n", mode.c_str(), count);
+}
+
+TEST(SupervisorDeath, AtEveryMomentOfAStopEverybodyHasStopped) {
+  const int flights = at_every_moment([](MortalFlight& mortal) { mortal.send(3000, "SAFE_ALL"); },
+                                      [&](MortalFlight& mortal) {
+                                        const auto asked = mortal.verdicts.of;
+                                        bool taken = false;
+                                        for (const auto& [id, verdict] : asked) taken = taken || verdict.accepted > 0;
+                                        for (const char* name : movers) {
+                                          EXPECT_FALSE(taken && mortal.may_move(name)) << mortal.text();
+                                          if (!mortal.may_move(name))
+                                            EXPECT_NE(mortal.flight.state(name), State::Operational) << mortal.text();
+                                        }
+                                        flies_again(mortal);
+                                      });
+  EXPECT_GT(flights, 10);
+}
+
+TEST(SupervisorDeath, AtEveryMomentOfARecoveryBothMachinesComeToRest) {
+  const int flights = at_every_moment(
+      [](MortalFlight& mortal) { static_cast<void>(mortal.flight.craft().device("joystick")->fault("unplug")); },
+      [&](MortalFlight& mortal) {
+        for (const char* name : movers) EXPECT_FALSE(mortal.may_move(name)) << name << "\n" << mortal.text();
+        static_cast<void>(mortal.flight.craft().device("joystick")->fault("plug"));
+        flies_again(mortal);
+      });
+  EXPECT_GT(flights, 10);
+}
+
+}  // namespace
+}  // namespace hirosco::testing
