@@ -12,24 +12,13 @@ namespace {
 
 /// How far from length 1 an axis, and from a rotation a matrix, may be.
 constexpr double unit_tolerance = 1e-9;
-/// An eigenvalue may be as far below 0 as numbers with five digits bring it.
-constexpr double definite_tolerance = 1e-5;
+/// An eigenvalue may be as far below 0 as numbers with six digits bring it.
+constexpr double definite_tolerance = 1e-6;
 
 [[nodiscard]] bool is_pose(const Pose& pose) {
   return pose.position.allFinite() && pose.rotation.allFinite() &&
          (pose.rotation * pose.rotation.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() <= unit_tolerance &&
          pose.rotation.determinant() > 0;
-}
-
-[[nodiscard]] bool is_body(const Inertia& inertia) {
-  if (!std::isfinite(inertia.mass) || inertia.mass < 0 || !inertia.centre.allFinite() ||
-      !inertia.about_centre.allFinite())
-    return false;
-  const double size = inertia.about_centre.cwiseAbs().maxCoeff();
-  if ((inertia.about_centre - inertia.about_centre.transpose()).cwiseAbs().maxCoeff() > definite_tolerance * size)
-    return false;
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver{inertia.about_centre, Eigen::EigenvaluesOnly};
-  return solver.eigenvalues().minCoeff() >= -definite_tolerance * size;
 }
 
 [[nodiscard]] bool is_limit(std::optional<double> limit) { return !limit || std::isfinite(*limit); }
@@ -91,6 +80,15 @@ void narrow(JointLimits& limits, const JointLimits& other, const Mimic& mimic) {
 }
 
 }  // namespace
+
+bool is_body(const Inertia& inertia) noexcept {
+  if (!std::isfinite(inertia.mass) || inertia.mass < 0 || !inertia.centre.allFinite() || !inertia.about_centre.allFinite())
+    return false;
+  const double size = inertia.about_centre.cwiseAbs().maxCoeff();
+  if ((inertia.about_centre - inertia.about_centre.transpose()).cwiseAbs().maxCoeff() > definite_tolerance * size) return false;
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver{inertia.about_centre, Eigen::EigenvaluesOnly};
+  return solver.eigenvalues().minCoeff() >= -definite_tolerance * size;
+}
 
 Result<Model> Model::make(const ModelDescription& description) {
   const auto& joints = description.joints;

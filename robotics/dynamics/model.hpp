@@ -67,6 +67,9 @@ struct ModelDescription {
   std::vector<FrameDescription> frames;
 };
 
+/// Whether a body may have this: mass at least 0, moments positive semi-definite but for rounding.  Realtime: bounded.
+[[nodiscard]] bool is_body(const Inertia& inertia) noexcept;
+
 /// A frame of a model. Of that model only.
 struct FrameId {
   std::size_t index{0};

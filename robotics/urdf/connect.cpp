@@ -143,10 +143,25 @@ void check_motion(const Robot& robot, Findings& findings) {
       link = robot.joints[above[link]].parent;
     }
   }
+  if (!findings.good()) return;
   for (const Joint& joint : robot.joints)
     if (moves(joint) && carried[joint.child] == 0)
       findings.error(joint.at, "U0310", "joint " + in_quotes(joint.name) + " moves nothing that has mass: how it accelerates is not defined",
                      "give link " + in_quotes(robot.links[joint.child].name) + " an <inertial>, or make the joint fixed");
+}
+
+/// Whatever is fixed to each other moves as one body, and that must have the inertia of one.
+void check_bodies(const Robot& robot, Findings& findings) {
+  const ModelDescription description = describe(robot);
+  const auto check = [&](const Inertia& body, const Link& link) {
+    if (is_body(body)) return;
+    findings.error(link.at, "U0306", "the inertia of link " + in_quotes(link.name) + ", with what is fixed to it, is not positive semi-definite: turning about some axis would take energy out of nothing",
+                   "its principal moments must all be at least 0; check signs and units (kg m2)");
+  };
+  check(description.base, robot.links[robot.root]);
+  auto described = description.joints.begin();
+  for (const Joint& joint : robot.joints)
+    if (moves(joint)) check((described++)->moved, robot.links[joint.child]);
 }
 
 }  // namespace
@@ -161,6 +176,7 @@ void connect(Robot& robot, std::vector<NamedJoint>& joints, Findings& findings) 
   robot.joints.reserve(joints.size());
   for (const NamedJoint& named : joints) robot.joints.push_back(named.joint);
   if (connected) check_motion(robot, findings);
+  if (connected && findings.good()) check_bodies(robot, findings);
 }
 
 }  // namespace hirosco::robotics::urdf

@@ -17,7 +17,7 @@ namespace hirosco::robotics::urdf {
 inline constexpr std::size_t max_findings = 200;
 
 /// No robot has larger numbers; what is smaller leaves room for sums and products of all of them.
-inline constexpr double largest_number = 1e12;
+inline constexpr double largest_number = 1e20;
 inline constexpr double smallest_multiplier = 1e-9;
 
 /// 'text', shortened, so that a message is one line.

@@ -80,7 +80,7 @@ const std::vector<Rows>& rows() {
       {"child", {"link"}, {}, {}, {}},
       {"axis", {"xyz"}, {}, {}, {}},
       {"limit", {"lower", "upper", "velocity", "effort"}, {}, {"command_effort", "current", "gear_velocity"}, {}},
-      {"dynamics", {"damping", "friction"}, {}, {}, {}},
+      {"dynamics", {"damping", "friction"}, {}, {"D", "K", "mu_coulomb", "mu_viscous"}, {}},
       {"mimic", {"joint", "multiplier", "offset"}, {}, {}, {}},
   };
   return all;
@@ -124,7 +124,7 @@ class RobotReader {
       findings_.warning(seen.first, "U0501",
                         what + " is passed over" + (seen.second > 1 ? ", " + std::to_string(seen.second) + " times" : std::string{}),
                         "it is an extension of somebody else's; nothing in it has an effect here");
-    if (robot.links.empty() && findings_.good())
+    if (robot.links.empty())
       findings_.error(place(root.at), "U0204", "the robot has no link",
                       root.find("xmlns:xacro") != nullptr ? "it was made by xacro from a file that only defines macros: expand the one that uses them"
                                                           : "add at least two links and a joint");
@@ -204,7 +204,7 @@ class RobotReader {
     if (is_xacro(attribute->value)) return std::nullopt;  // said already
     const auto read = number(attribute->value);
     if (!read)
-      findings_.error(place(attribute->value_at), "U0106", "'" + std::string{name} + "' of <" + element.name + "> is " + in_quotes(attribute->value) + ", which is no number of at most 1e12",
+      findings_.error(place(attribute->value_at), "U0106", "'" + std::string{name} + "' of <" + element.name + "> is " + in_quotes(attribute->value) + ", which is no number of at most 1e20",
                       "write a decimal number without a unit, like 0.25 or 1e-3");
     return read;
   }
@@ -214,7 +214,7 @@ class RobotReader {
     if (attribute == nullptr || is_xacro(attribute->value)) return otherwise;
     const auto read = three(attribute->value);
     if (!read)
-      findings_.error(place(attribute->value_at), "U0106", "'" + std::string{name} + "' of <" + element.name + "> is " + in_quotes(attribute->value) + ", not three numbers of at most 1e12",
+      findings_.error(place(attribute->value_at), "U0106", "'" + std::string{name} + "' of <" + element.name + "> is " + in_quotes(attribute->value) + ", not three numbers of at most 1e20",
                       "write three decimal numbers with spaces between them, like 0 0 0.25");
     return read.value_or(otherwise);
   }
@@ -267,8 +267,8 @@ class RobotReader {
     if (!std::isfinite(size)) return;
     const Vector3 principal = Eigen::SelfAdjointEigenSolver<Matrix3>{about, Eigen::EigenvaluesOnly}.eigenvalues();
     if (principal.minCoeff() < -definite_tolerance * size)
-      findings_.error(at, "U0306", "the inertia of link " + in_quotes(link) + " is not positive semi-definite: turning about some axis would take energy out of nothing",
-                      "its principal moments must all be at least 0; check signs and units (kg m2)");
+      findings_.warning(at, "U0508", "the inertia of link " + in_quotes(link) + " is not positive semi-definite: no body has it",
+                        "it is taken as it is where the body that it is part of has an inertia all the same; check signs and units (kg m2)");
     else if (principal.maxCoeff() > principal.sum() / 2 * (1 + 1e-3))
       findings_.warning(at, "U0504", "no body has the inertia of link " + in_quotes(link) + ": one principal moment is larger than the sum of the others",
                         "it is taken as it is; a wrong frame or a typing error makes this");

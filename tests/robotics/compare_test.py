@@ -21,21 +21,15 @@ import robots
 LIMIT = 1e-9
 # A mass matrix this badly conditioned leaves fewer digits in any acceleration: then the residual is what is judged.
 WORST_CONDITION = 1e6
-# What we refuse, and why; everything else must be taken.
-REFUSED = {"U0204": "no link", "U0309": "joints"}
-
-
-def judge_model(path, described, free):
-    """Pinocchio's, with every mimic joint as one that moves by itself."""
-    if free:
-        return pinocchio.buildModelFromUrdf(str(path), pinocchio.JointModelFreeFlyer())
-    return pinocchio.buildModelFromUrdf(str(path))
+# No link, and no joint or more than there is room for; everything else must be taken.
+REFUSED = {"U0204", "U0309"}
 
 
 class Judge:
     def __init__(self, path, described, tip):
         self.described = described
-        self.model = judge_model(path, described, True)
+        # Every mimic joint as one that moves by itself.
+        self.model = pinocchio.buildModelFromUrdf(str(path), pinocchio.JointModelFreeFlyer())
         self.data = self.model.createData()
         self.tip = self.model.getFrameId(tip, pinocchio.FrameType.BODY)
         count = len(described.own)
@@ -206,11 +200,11 @@ def main():
         said = refused(given.probe, path, described.ends[-1] if described.ends else "none")
         if said:
             codes = set(re.findall(r"^U\d{4}", said, re.M))
-            large = len(described.own) > MOST or not described.own
-            if not large or not codes or not codes <= set(REFUSED) | {"U0104"}:
+            large = len(described.own) > robots.MOST_JOINTS or not described.own
+            if not large or not codes & REFUSED:
                 problems.append(f"{path.name} is refused: {said.strip()}")
             left += 1
-            print(f"{path.stem:32s} refused: {said.strip().splitlines()[0]}")
+            print(f"{path.stem:32s} refused: {next((row for row in said.splitlines() if row[:5] in REFUSED), said)}")
             continue
         taken += 1
         problems += compare(given.probe, path, given.states, number)
@@ -221,6 +215,5 @@ def main():
     return 1 if problems else 0
 
 
-MOST = robots.MOST_JOINTS
 if __name__ == "__main__":
     sys.exit(main())

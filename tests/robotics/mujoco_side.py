@@ -4,6 +4,8 @@
 
 MuJoCo welds the root link to the world unless it is given a free joint; it knows no mimic joints in URDF and refuses inertias that no body
 has. Robots with either are left out by name."""
+import re
+
 import mujoco
 import numpy
 
@@ -23,6 +25,8 @@ class Found:
 
 def load(path):
     text = robots.without_shapes(path)
+    # A link of this name would be MuJoCo's own world, which has no joint.
+    text = re.sub(r'(["\'])world\1', '"world_link"', text)
     at = text.index(">", text.index("<robot")) + 1
     spec = mujoco.MjSpec.from_string(text[:at] + COMPILER + text[at:])
     spec.worldbody.first_body().add_freejoint()
