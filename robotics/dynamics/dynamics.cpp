@@ -196,7 +196,12 @@ void Dynamics::mass_matrix(MassMatrix& matrix) noexcept {
   const auto bodies = model_->bodies();
   compose();
   matrix.setZero(coordinate_count(), coordinate_count());
-  if (base_ == Base::Free) matrix.topLeftCorner<6, 6>() = bodies_[0].composite.matrix();
+  if (base_ == Base::Free) {
+    matrix.topLeftCorner<6, 6>() = bodies_[0].composite.matrix();
+    // Rounding must not make its halves differ.
+    const Matrix3 about = matrix.topLeftCorner<3, 3>();
+    matrix.topLeftCorner<3, 3>() = (about + about.transpose()) / 2;
+  }
   for (std::size_t i = bodies.size() - 1; i > 0; --i) {
     const int own = first_joint_ + bodies[i].coordinate;
     const Vector6 momentum = bodies_[i].composite * bodies_[i].axis;

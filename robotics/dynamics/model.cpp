@@ -59,10 +59,17 @@ Result<> check(const JointDescription& joint, const ModelDescription& all, std::
   return order.size() == joints.size() ? order : std::vector<std::size_t>{};
 }
 
-/// Where the frame of the body stands in the joint's: turned such that z is the axis.
+/// Where the frame of the body stands in the joint's: turned such that z is the axis. Exact for axes that are those of the frame.
 [[nodiscard]] Matrix3 along(const Vector3& axis) {
   if (axis == Vector3::UnitZ()) return Matrix3::Identity();
-  return Quaternion::FromTwoVectors(Vector3::UnitZ(), axis).normalized().toRotationMatrix();
+  Eigen::Index across = 0;
+  axis.cwiseAbs().minCoeff(&across);
+  const Vector3 other = Vector3::Unit(across);
+  Matrix3 turned;
+  turned.col(0) = (other - other.dot(axis) * axis).normalized();
+  turned.col(1) = axis.cross(turned.col(0));
+  turned.col(2) = axis;
+  return turned;
 }
 
 /// The mimicked joint must stay where the mimic joint is within its limits, too.

@@ -76,8 +76,8 @@ TARGETS = {"arguments": (
          (URDF, "if (*to < 0)", "if (*to < -1)"),
      "an inertia may be that of no body":
          (URDF_TREE, "if (is_body(body)) return;", "if (body.mass >= 0) return;"),
-     "joints may mimic each other in a circle":
-         (URDF_TREE, "== JointType::Fixed || steps > joints.size())", "== JointType::Fixed)"),
+     "a mimic joint follows the first joint, whomever it names":
+         (URDF_TREE, "whole.joint = found->second;", "whole.joint = 0;"),
      "a second link of a name is taken":
          (URDF_TREE, "if (!is_new)", "if (!is_new && list.size() > 9)")})}
 
