@@ -6,8 +6,7 @@
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
-#include <pinocchio/multibody/data.hpp>
-#include <pinocchio/multibody/model.hpp>
+#include <pinocchio/multibody.hpp>
 #include <random>
 #include <vector>
 
@@ -49,17 +48,21 @@ double in_turns(const char* what, One one, Other other) {
     ours.round();
     theirs.round();
   }
-  std::printf("  %-36s %7.3f us   Pinocchio %7.3f us   ratio %.2f\n", what, ours.best(), theirs.best(), ours.best() / theirs.best());
+  std::printf("  %-36s %7.3f us   Pinocchio %7.3f us   ratio %.2f\n", what, ours.best(), theirs.best(),
+              ours.best() / theirs.best());
   return ours.best() / theirs.best();
 }
 
-[[nodiscard]] pinocchio::Inertia inertia_of(const Inertia& body) { return {body.mass, body.centre, pinocchio::Symmetric3(body.about_centre)}; }
+[[nodiscard]] pinocchio::Inertia inertia_of(const Inertia& body) {
+  return {body.mass, body.centre, pinocchio::Symmetric3(body.about_centre)};
+}
 
 /// The same robot; the kinds of joints that are quickest there.
 [[nodiscard]] pinocchio::Model theirs_of(const ModelDescription& description, Base base) {
   pinocchio::Model model;
   pinocchio::JointIndex root = 0;
-  if (base == Base::Free) root = model.addJoint(0, pinocchio::JointModelFreeFlyer(), pinocchio::SE3::Identity(), "root");
+  if (base == Base::Free)
+    root = model.addJoint(0, pinocchio::JointModelFreeFlyer(), pinocchio::SE3::Identity(), "root");
   model.appendBodyToJoint(root, inertia_of(description.base), pinocchio::SE3::Identity());
   std::vector<pinocchio::JointIndex> index;
   for (const auto& joint : description.joints) {
@@ -67,9 +70,12 @@ double in_turns(const char* what, One one, Other other) {
     const pinocchio::SE3 placement{joint.placement.rotation, joint.placement.position};
     const bool along_z = joint.axis == Vector3::UnitZ();
     if (joint.kind == JointKind::Revolute)
-      index.push_back(along_z ? model.addJoint(parent, pinocchio::JointModelRZ(), placement, joint.name)
-                              : model.addJoint(parent, pinocchio::JointModelRevoluteUnaligned(joint.axis), placement, joint.name));
-    else index.push_back(model.addJoint(parent, pinocchio::JointModelPrismaticUnaligned(joint.axis), placement, joint.name));
+      index.push_back(
+          along_z ? model.addJoint(parent, pinocchio::JointModelRZ(), placement, joint.name)
+                  : model.addJoint(parent, pinocchio::JointModelRevoluteUnaligned(joint.axis), placement, joint.name));
+    else
+      index.push_back(
+          model.addJoint(parent, pinocchio::JointModelPrismaticUnaligned(joint.axis), placement, joint.name));
     model.appendBodyToJoint(index.back(), inertia_of(joint.moved), pinocchio::SE3::Identity());
   }
   return model;
@@ -117,18 +123,36 @@ double compare(const ModelDescription& description, Base base) {
     dynamics.update(ours[i]);
     if (!dynamics.forward(forces[i], acceleration)) return 1e9;
     const Eigen::VectorXd theirs = pinocchio::aba(their_model, data, q[i], v[i], tau[i]);
-    apart = std::max(apart, (acceleration.tail(joints) - theirs.tail(joints)).cwiseAbs().maxCoeff() / theirs.cwiseAbs().maxCoeff());
+    apart = std::max(
+        apart, (acceleration.tail(joints) - theirs.tail(joints)).cwiseAbs().maxCoeff() / theirs.cwiseAbs().maxCoeff());
   }
-  std::printf("%d joints, base %s; accelerations differ by %.1e at most\n", joints, base == Base::Free ? "free" : "fixed", apart);
+  std::printf("%d joints, base %s; accelerations differ by %.1e at most\n", joints,
+              base == Base::Free ? "free" : "fixed", apart);
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
   const double ratio = in_turns(
-      "forward dynamics", [&](int i) { dynamics.update(ours[at(i)]); sink += dynamics.forward(forces[at(i)], acceleration) ? acceleration[0] : 0; },
+      "forward dynamics",
+      [&](int i) {
+        dynamics.update(ours[at(i)]);
+        sink += dynamics.forward(forces[at(i)], acceleration) ? acceleration[0] : 0;
+      },
       [&](int i) { sink += pinocchio::aba(their_model, data, q[at(i)], v[at(i)], tau[at(i)])[0]; });
-  in_turns("inverse dynamics", [&](int i) { dynamics.update(ours[at(i)]); dynamics.inverse(forces[at(i)], acceleration); sink += acceleration[0]; },
-           [&](int i) { sink += pinocchio::rnea(their_model, data, q[at(i)], v[at(i)], tau[at(i)])[0]; });
+  in_turns(
+      "inverse dynamics",
+      [&](int i) {
+        dynamics.update(ours[at(i)]);
+        dynamics.inverse(forces[at(i)], acceleration);
+        sink += acceleration[0];
+      },
+      [&](int i) { sink += pinocchio::rnea(their_model, data, q[at(i)], v[at(i)], tau[at(i)])[0]; });
   MassMatrix mass;
-  in_turns("mass matrix", [&](int i) { dynamics.update(ours[at(i)]); dynamics.mass_matrix(mass); sink += mass(0, 0); },
-           [&](int i) { sink += pinocchio::crba(their_model, data, q[at(i)])(0, 0); });
+  in_turns(
+      "mass matrix",
+      [&](int i) {
+        dynamics.update(ours[at(i)]);
+        dynamics.mass_matrix(mass);
+        sink += mass(0, 0);
+      },
+      [&](int i) { sink += pinocchio::crba(their_model, data, q[at(i)])(0, 0); });
   std::printf("  (%g)\n", sink);
   return apart < 1e-9 ? ratio : 1e9;
 }
@@ -141,7 +165,8 @@ int main(int argc, char** argv) {
     const auto reading = urdf::read(argv[i], hirosco::descriptor::file_system());
     if (!reading.value) return 2;
     std::printf("%s\n", reading.value->name.c_str());
-    for (const Base base : {Base::Fixed, Base::Free}) worst = std::max(worst, compare(urdf::describe(*reading.value), base));
+    for (const Base base : {Base::Fixed, Base::Free})
+      worst = std::max(worst, compare(urdf::describe(*reading.value), base));
   }
   std::printf("largest ratio of forward dynamics: %.2f (at most 1.50)\n", worst);
   return worst <= 1.5 ? 0 : 1;

@@ -134,15 +134,15 @@ Result<> Dynamics::forward(const Coordinates& force, Coordinates& acceleration) 
   root.acceleration = felt;
   if (base_ == Base::Free) {
     const Eigen::LLT<Matrix6> factors{root.articulated};
-    if (factors.info() != Eigen::Success) return fail(ErrorCode::OutOfRange, "the robot has no inertia against a motion of its base");
+    if (factors.info() != Eigen::Success)
+      return fail(ErrorCode::OutOfRange, "the robot has no inertia against a motion of its base");
     root.acceleration = factors.solve(force.head<6>() - root.articulated_force);
     acceleration.head<6>() = root.acceleration - felt;
   }
   for (std::size_t i = 1; i < bodies.size(); ++i) {
     Moving& moving = bodies_[i];
     moving.acceleration = bodies_[bodies[i].parent].acceleration + moving.drift;
-    const double qdd =
-        (moving.joint_force - moving.effective.dot(moving.acceleration)) * moving.inverse_effective;
+    const double qdd = (moving.joint_force - moving.effective.dot(moving.acceleration)) * moving.inverse_effective;
     acceleration[first_joint_ + bodies[i].coordinate] = qdd;
     moving.acceleration += moving.axis * qdd;
   }
@@ -261,7 +261,8 @@ Result<> Dynamics::generalised_jacobian(FrameId frame, Jacobian& jacobian) noexc
   const auto bodies = model_->bodies();
   compose();
   const Eigen::LLT<Matrix6> factors{bodies_[0].composite.matrix()};
-  if (factors.info() != Eigen::Success) return fail(ErrorCode::OutOfRange, "the robot has no inertia against a rotation");
+  if (factors.info() != Eigen::Success)
+    return fail(ErrorCode::OutOfRange, "the robot has no inertia against a rotation");
   // What each joint does to the momentum the base takes up.
   const Matrix6 of_base = jacobian.leftCols<6>();
   for (std::size_t i = 1; i < bodies.size(); ++i) {

@@ -17,7 +17,8 @@ namespace hirosco::robotics {
 /// These have room for the largest robot in themselves: none of them ever uses the heap.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_joints, 1>;
 using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_coordinates, 1>;
-using MassMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_coordinates, max_coordinates>;
+using MassMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_coordinates, max_coordinates>;
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, max_coordinates>;
 
 enum class Base : std::uint8_t {
@@ -29,14 +30,14 @@ enum class Base : std::uint8_t {
 struct State {
   Vector3 base_position{Vector3::Zero()};                  ///< of the base's origin, inertial
   Quaternion base_orientation{Quaternion::Identity()};     ///< inertial from base, of length 1
-  Vector6 base_twist{Vector6::Zero()};                     ///< [ω; v] of the base's origin in its own axes; not looked at when fixed
-  JointVector q;                                           ///< rad or m
+  Vector6 base_twist{Vector6::Zero()};  ///< [ω; v] of the base's origin in its own axes; not looked at when fixed
+  JointVector q;  ///< rad or m
   JointVector qd;
 };
 
 struct Momentum {
-  Vector3 linear;                    ///< kg m/s, inertial axes
-  Vector3 angular;                   ///< kg m2/s, inertial axes, about the centre of mass of all
+  Vector3 linear;  ///< kg m/s, inertial axes
+  Vector3 angular;  ///< kg m2/s, inertial axes, about the centre of mass of all
 };
 
 /// The equations of motion of one robot and all that follows from them. update() takes a state, everything else is of that
@@ -72,8 +73,8 @@ class Dynamics {
   /// Composite rigid bodies. Symmetric, both halves filled.
   void mass_matrix(MassMatrix& matrix) noexcept;
 
-  [[nodiscard]] Pose frame_pose(FrameId frame) const noexcept;                 ///< inertial
-  [[nodiscard]] Vector6 frame_twist(FrameId frame) const noexcept;             ///< [ω; v] of its origin, inertial axes
+  [[nodiscard]] Pose frame_pose(FrameId frame) const noexcept;  ///< inertial
+  [[nodiscard]] Vector6 frame_twist(FrameId frame) const noexcept;  ///< [ω; v] of its origin, inertial axes
   /// From velocities to frame_twist().
   void jacobian(FrameId frame, Jacobian& jacobian) const noexcept;
   /// What of the acceleration of frame_twist() comes from velocities alone: the derivative of the Jacobian times the velocities.
@@ -82,24 +83,24 @@ class Dynamics {
   /// its Jacobian. OutOfRange: the robot as a whole has no inertia against a rotation.
   [[nodiscard]] Result<> generalised_jacobian(FrameId frame, Jacobian& jacobian) noexcept;
 
-  [[nodiscard]] Vector3 centre_of_mass() const noexcept;                       ///< of all bodies with the base, inertial
+  [[nodiscard]] Vector3 centre_of_mass() const noexcept;  ///< of all bodies with the base, inertial
   [[nodiscard]] Momentum momentum() const noexcept;
-  [[nodiscard]] double kinetic_energy() const noexcept;                        ///< J
-  [[nodiscard]] double potential_energy() const noexcept;                      ///< J, 0 with the centre of mass at the inertial origin
+  [[nodiscard]] double kinetic_energy() const noexcept;  ///< J
+  [[nodiscard]] double potential_energy() const noexcept;  ///< J, 0 with the centre of mass at the inertial origin
 
  private:
   /// Of one body, in the base's axes at its origin.
   struct Moving {
-    Pose pose;                       ///< of its frame
-    Vector6 axis;                    ///< twist at a joint velocity of 1, of a mimic joint at 1 of the joint that it follows
+    Pose pose;  ///< of its frame
+    Vector6 axis;  ///< twist at a joint velocity of 1, of a mimic joint at 1 of the joint that it follows
     Vector6 twist;
-    Vector6 drift;                   ///< acceleration from velocities, against that of the parent
+    Vector6 drift;  ///< acceleration from velocities, against that of the parent
     Vector6 momentum;
     OriginInertia inertia;
-    OriginInertia composite;         ///< with all that it carries
+    OriginInertia composite;  ///< with all that it carries
     Matrix6 articulated;
     Vector6 articulated_force;
-    Vector6 effective;               ///< articulated inertia times axis
+    Vector6 effective;  ///< articulated inertia times axis
     double inverse_effective{0};
     double joint_force{0};
     Vector6 acceleration;
@@ -113,7 +114,7 @@ class Dynamics {
 
   const Model* model_;
   Base base_;
-  int first_joint_;                  ///< among the coordinates
+  int first_joint_;  ///< among the coordinates
   Vector3 gravity_{Vector3::Zero()};
   Vector3 base_position_{Vector3::Zero()};
   Matrix3 base_rotation_{Matrix3::Identity()};

@@ -56,7 +56,8 @@ TEST(FixedBase, ADoublePendulumHasTheMassMatrixAndForcesOfItsLagrangian) {
   EXPECT_NEAR(mass(1, 0), mass(0, 1), 0);
   EXPECT_NEAR(mass(1, 1), m2 * l2 * l2, 1e-12);
   const double h = m2 * l1 * l2 * s;
-  const double bias1 = -h * (2 * w1 * w2 + w2 * w2) + (m1 + m2) * g * l1 * std::sin(q1) + m2 * g * l2 * std::sin(q1 + q2);
+  const double bias1 =
+      -h * (2 * w1 * w2 + w2 * w2) + (m1 + m2) * g * l1 * std::sin(q1) + m2 * g * l2 * std::sin(q1 + q2);
   const double bias2 = h * w1 * w1 + m2 * g * l2 * std::sin(q1 + q2);
   Coordinates bias;
   dynamics.bias(bias);
@@ -176,7 +177,8 @@ TEST_P(AnyTree, JacobianAndDriftAreTheFirstAndSecondDerivativeOfWhereATipIs) {
     const double angle = w.norm() * t;
     const Vector3 axis = w.normalized();
     const Matrix3 cross = cross_matrix(axis);
-    const Vector3 way = t * v + (1 - std::cos(angle)) / w.norm() * cross * v + (t - std::sin(angle) / w.norm()) * cross * cross * v;
+    const Vector3 way =
+        t * v + (1 - std::cos(angle)) / w.norm() * cross * v + (t - std::sin(angle) / w.norm()) * cross * cross * v;
     moved.base_position += state.base_orientation * way;
     moved.base_orientation = state.base_orientation * Quaternion{Eigen::AngleAxisd{angle, axis}};
     return moved;
@@ -201,7 +203,8 @@ TEST_P(AnyTree, JacobianAndDriftAreTheFirstAndSecondDerivativeOfWhereATipIs) {
 
 INSTANTIATE_TEST_SUITE_P(All, AnyTree,
                          ::testing::Combine(::testing::Values(Base::Fixed, Base::Free),
-                                            ::testing::Values(testing::Mimicry::None, testing::Mimicry::EveryThird), ::testing::Values(1, 7, 16)));
+                                            ::testing::Values(testing::Mimicry::None, testing::Mimicry::EveryThird),
+                                            ::testing::Values(1, 7, 16)));
 
 }  // namespace
 }  // namespace hirosco::robotics

@@ -8,7 +8,8 @@ namespace hirosco::robotics {
 
 Integrator::Integrator(Dynamics& dynamics) noexcept : dynamics_{&dynamics} {}
 
-Result<> Integrator::acceleration(const State& state, double t_s, const Force& force, Coordinates& acceleration) noexcept {
+Result<> Integrator::acceleration(const State& state, double t_s, const Force& force,
+                                  Coordinates& acceleration) noexcept {
   const auto joints = dynamics_->model().joints();
   const int first = dynamics_->coordinate_count() - dynamics_->model().joint_count();
   dynamics_->update(state);
@@ -64,7 +65,8 @@ Result<> Integrator::step(State& state, double t_s, double h_s, const Force& for
     HIROSCO_TRY(slope(at, t_s + h_s * nodes[i], force, slopes));
     add(to, h_s * weights[i], slopes);
   }
-  if (!to.position.allFinite() || !to.orientation.allFinite() || !to.twist.allFinite() || !to.q.allFinite() || !to.qd.allFinite())
+  if (!to.position.allFinite() || !to.orientation.allFinite() || !to.twist.allFinite() || !to.q.allFinite() ||
+      !to.qd.allFinite())
     return fail(ErrorCode::OutOfRange, "the motion has become no number");
   state.base_position = to.position;
   // A fixed base stays where it is to the last bit.

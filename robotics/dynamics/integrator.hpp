@@ -21,7 +21,8 @@ class Integrator {
   };
 
   /// The accelerations now. OutOfRange as Dynamics::forward().
-  [[nodiscard]] Result<> acceleration(const State& state, double t_s, const Force& force, Coordinates& acceleration) noexcept;
+  [[nodiscard]] Result<> acceleration(const State& state, double t_s, const Force& force,
+                                      Coordinates& acceleration) noexcept;
   /// One step from t to t + h. OutOfRange: as above, or the result is no number; `state` is then worth nothing.
   [[nodiscard]] Result<> step(State& state, double t_s, double h_s, const Force& force) noexcept;
 

@@ -28,7 +28,8 @@ class RisingForce final : public Integrator::Force {
   return testing::make(description);
 }
 
-[[nodiscard]] State after(Integrator& integrator, State state, double end_s, int steps, const Integrator::Force& force) {
+[[nodiscard]] State after(Integrator& integrator, State state, double end_s, int steps,
+                          const Integrator::Force& force) {
   const double h = end_s / steps;
   for (int i = 0; i < steps; ++i) EXPECT_TRUE(integrator.step(state, i * h, h, force));
   return state;
@@ -48,7 +49,9 @@ TEST(RungeKutta, HasTheFourthOrderAgainstADecayThatDampingMakes) {
   const auto model = slider(2, 3);
   Dynamics dynamics{model, Base::Fixed};
   Integrator integrator{dynamics};
-  const auto error = [&](int steps) { return std::abs(after(integrator, testing::state({0}, {1}), 1, steps, NoForce{}).qd[0] - std::exp(-1.5)); };
+  const auto error = [&](int steps) {
+    return std::abs(after(integrator, testing::state({0}, {1}), 1, steps, NoForce{}).qd[0] - std::exp(-1.5));
+  };
   const double ratio = error(10) / error(20);
   EXPECT_GT(ratio, 14);
   EXPECT_LT(ratio, 18);

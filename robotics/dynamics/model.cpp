@@ -89,10 +89,12 @@ void narrow(JointLimits& limits, const JointLimits& other, const Mimic& mimic) {
 }  // namespace
 
 bool is_body(const Inertia& inertia) noexcept {
-  if (!std::isfinite(inertia.mass) || inertia.mass < 0 || !inertia.centre.allFinite() || !inertia.about_centre.allFinite())
+  if (!std::isfinite(inertia.mass) || inertia.mass < 0 || !inertia.centre.allFinite() ||
+      !inertia.about_centre.allFinite())
     return false;
   const double size = inertia.about_centre.cwiseAbs().maxCoeff();
-  if ((inertia.about_centre - inertia.about_centre.transpose()).cwiseAbs().maxCoeff() > definite_tolerance * size) return false;
+  if ((inertia.about_centre - inertia.about_centre.transpose()).cwiseAbs().maxCoeff() > definite_tolerance * size)
+    return false;
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver{inertia.about_centre, Eigen::EigenvaluesOnly};
   return solver.eigenvalues().minCoeff() >= -definite_tolerance * size;
 }
@@ -105,8 +107,10 @@ Result<Model> Model::make(const ModelDescription& description) {
   if (own > max_joints) return fail(ErrorCode::ResourceExhausted, "more than 16 joints", own);
   if (joints.size() > max_moved_bodies)
     return fail(ErrorCode::ResourceExhausted, "more than 32 moved bodies", static_cast<std::int64_t>(joints.size()));
-  if (!is_body(description.base)) return fail(ErrorCode::InvalidArgument, "the inertia of the base is not that of a body", -1);
-  for (std::size_t i = 0; i < joints.size(); ++i) HIROSCO_TRY(check(joints[i], description, static_cast<std::int64_t>(i)));
+  if (!is_body(description.base))
+    return fail(ErrorCode::InvalidArgument, "the inertia of the base is not that of a body", -1);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    HIROSCO_TRY(check(joints[i], description, static_cast<std::int64_t>(i)));
   const auto order = ordered(joints);
   if (order.empty()) return fail(ErrorCode::InvalidArgument, "joints carry each other in a circle");
 
@@ -143,7 +147,8 @@ Result<Model> Model::make(const ModelDescription& description) {
   }
   for (const FrameDescription& frame : description.frames) {
     if (frame.joint && *frame.joint >= joints.size())
-      return fail(ErrorCode::InvalidArgument, "a frame is on a joint that does not exist", static_cast<std::int64_t>(*frame.joint));
+      return fail(ErrorCode::InvalidArgument, "a frame is on a joint that does not exist",
+                  static_cast<std::int64_t>(*frame.joint));
     if (!is_pose(frame.placement)) return fail(ErrorCode::InvalidArgument, "the placement of a frame is no pose");
     const std::size_t body = frame.joint ? body_of[*frame.joint] : 0;
     model.frames_.push_back({frame.name, body, Pose{turned[body].transpose()} * frame.placement});

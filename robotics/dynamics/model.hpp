@@ -63,7 +63,7 @@ struct FrameDescription {
 /// A robot as a tree of bodies. The base is what carries all; its frame is the robot's own.
 struct ModelDescription {
   Inertia base;                              ///< in the base's frame
-  std::vector<JointDescription> joints;      ///< in any order; coordinates are numbered in this one, mimic joints left out
+  std::vector<JointDescription> joints;  ///< in any order; coordinates are numbered in this one, mimic joints left out
   std::vector<FrameDescription> frames;
 };
 
@@ -88,18 +88,18 @@ class Model {
   struct Body {
     std::size_t parent{0};
     JointKind kind{JointKind::Revolute};
-    int coordinate{0};                       ///< of the joint, from 0
-    double multiplier{1};                    ///< of a mimic joint, else 1
+    int coordinate{0};  ///< of the joint, from 0
+    double multiplier{1};  ///< of a mimic joint, else 1
     double offset{0};
-    Pose placement;                          ///< at q = 0 in the parent's frame
-    Inertia inertia;                         ///< in its own frame
+    Pose placement;  ///< at q = 0 in the parent's frame
+    Inertia inertia;  ///< in its own frame
   };
   struct Joint {
     std::string name;
     JointKind kind{JointKind::Revolute};
-    double damping{0};                       ///< with that of the joints that mimic it
+    double damping{0};  ///< with that of the joints that mimic it
     double friction{0};
-    JointLimits limits;                      ///< such that those of the joints that mimic it hold, too
+    JointLimits limits;  ///< such that those of the joints that mimic it hold, too
   };
   struct Frame {
     std::string name;

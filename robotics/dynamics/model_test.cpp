@@ -64,7 +64,8 @@ TEST(Model, RefusesCirclesAndNoJoints) {
 
 TEST(Model, HasRoomForSixteenJointsAndAsManyThatMimicThem) {
   ModelDescription description;
-  for (std::size_t i = 0; i < max_joints; ++i) description.joints.push_back(joint(JointKind::Revolute, Vector3::UnitZ(), {1, 0, 0}, ball(1, {1, 0, 0})));
+  for (std::size_t i = 0; i < max_joints; ++i)
+    description.joints.push_back(joint(JointKind::Revolute, Vector3::UnitZ(), {1, 0, 0}, ball(1, {1, 0, 0})));
   EXPECT_TRUE(Model::make(description));
   auto more = description;
   more.joints.push_back(more.joints[0]);

@@ -28,7 +28,9 @@ void ask_all(Dynamics& dynamics, Integrator& integrator, State& state) {
   dynamics.jacobian({0}, jacobian);
   EXPECT_TRUE(dynamics.generalised_jacobian({0}, jacobian));
   EXPECT_TRUE(dynamics.model().find_frame("tip"));
-  EXPECT_TRUE((dynamics.frame_pose({0}).position + dynamics.frame_twist({0}).tail<3>() + dynamics.frame_drift({0}).tail<3>()).allFinite());
+  EXPECT_TRUE(
+      (dynamics.frame_pose({0}).position + dynamics.frame_twist({0}).tail<3>() + dynamics.frame_drift({0}).tail<3>())
+          .allFinite());
   EXPECT_TRUE((dynamics.momentum().angular + dynamics.centre_of_mass()).allFinite());
   EXPECT_GT(dynamics.kinetic_energy() + dynamics.potential_energy(), -1e9);
   EXPECT_TRUE(integrator.step(state, 0, 1e-3, Constant{}));

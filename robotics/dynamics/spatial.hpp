@@ -57,9 +57,9 @@ struct Pose {
 
 /// A rigid body's mass and how it is distributed, in a frame of the body.
 struct Inertia {
-  double mass{0};                            ///< kg
-  Vector3 centre{Vector3::Zero()};           ///< of mass, m
-  Matrix3 about_centre{Matrix3::Zero()};     ///< kg m2, symmetric
+  double mass{0};  ///< kg
+  Vector3 centre{Vector3::Zero()};  ///< of mass, m
+  Matrix3 about_centre{Matrix3::Zero()};  ///< kg m2, symmetric
 };
 
 /// Both bodies as one.
@@ -70,8 +70,8 @@ struct Inertia {
   if (sum.mass <= 0) return sum;
   sum.centre = (one.mass * one.centre + other.mass * other.centre) / sum.mass;
   const Vector3 apart = one.centre - other.centre;
-  sum.about_centre += one.mass * other.mass / sum.mass *
-                      (apart.squaredNorm() * Matrix3::Identity() - apart * apart.transpose());
+  sum.about_centre +=
+      one.mass * other.mass / sum.mass * (apart.squaredNorm() * Matrix3::Identity() - apart * apart.transpose());
   return sum;
 }
 
@@ -83,8 +83,8 @@ struct Inertia {
 /// The same about the origin of the frame, which is what adds up and what maps twists to momenta.
 struct OriginInertia {
   double mass{0};
-  Vector3 first_moment{Vector3::Zero()};     ///< mass times centre, kg m
-  Matrix3 about_origin{Matrix3::Zero()};     ///< kg m2, symmetric
+  Vector3 first_moment{Vector3::Zero()};  ///< mass times centre, kg m
+  Matrix3 about_origin{Matrix3::Zero()};  ///< kg m2, symmetric
 
   OriginInertia() = default;
   explicit OriginInertia(const Inertia& inertia) noexcept

@@ -20,20 +20,27 @@ template <class List, class Name>
     if (text.empty()) continue;  // said already
     const auto [found, is_new] = names.try_emplace(text, i);
     if (!is_new)
-      findings.error(at, "U0201", std::string{"a second "} + what + " " + in_quotes(text) + "; the first is in line " + std::to_string(name(list[found->second]).second.line), "rename one");
+      findings.error(at, "U0201",
+                     std::string{"a second "} + what + " " + in_quotes(text) + "; the first is in line " +
+                         std::to_string(name(list[found->second]).second.line),
+                     "rename one");
   }
   return names;
 }
 
 /// Which joint each link is the child of. False: some name was wrong.
-[[nodiscard]] bool find_links(const Names& names, const Robot& robot, std::vector<NamedJoint>& joints, std::vector<const NamedJoint*>& above, Findings& findings) {
+[[nodiscard]] bool find_links(const Names& names, const Robot& robot, std::vector<NamedJoint>& joints,
+                              std::vector<const NamedJoint*>& above, Findings& findings) {
   bool good = true;
   for (NamedJoint& named : joints) {
     const auto find = [&](const std::string& link, Location at, std::size_t& index) {
       if (link.empty()) return false;
       const auto found = names.find(link);
       if (found == names.end()) {
-        findings.error(at, "U0202", "joint " + in_quotes(named.joint.name) + " names link " + in_quotes(link) + ", which is not there", "add the link, or name another");
+        findings.error(
+            at, "U0202",
+            "joint " + in_quotes(named.joint.name) + " names link " + in_quotes(link) + ", which is not there",
+            "add the link, or name another");
         return false;
       }
       index = found->second;
@@ -45,7 +52,9 @@ template <class List, class Name>
     if (!child) continue;
     const NamedJoint*& first = above[named.joint.child];
     if (first != nullptr) {
-      findings.error(named.child_at, "U0203", "link " + in_quotes(robot.links[named.joint.child].name) + " is the child of two joints, " + in_quotes(first->joint.name) + " and " + in_quotes(named.joint.name),
+      findings.error(named.child_at, "U0203",
+                     "link " + in_quotes(robot.links[named.joint.child].name) + " is the child of two joints, " +
+                         in_quotes(first->joint.name) + " and " + in_quotes(named.joint.name),
                      "a robot is a tree: closed chains are not supported");
       good = false;
     } else first = &named;
@@ -54,30 +63,40 @@ template <class List, class Name>
 }
 
 /// One root, and all hang on it.
-[[nodiscard]] bool find_root(Robot& robot, const std::vector<NamedJoint>& joints, const std::vector<const NamedJoint*>& above, Findings& findings) {
+[[nodiscard]] bool find_root(Robot& robot, const std::vector<NamedJoint>& joints,
+                             const std::vector<const NamedJoint*>& above, Findings& findings) {
   std::vector<std::size_t> roots;
   for (std::size_t i = 0; i < above.size(); ++i)
     if (above[i] == nullptr) roots.push_back(i);
   if (roots.empty()) {
-    findings.error(robot.links.front().at, "U0205", "every link is the child of a joint: they carry each other in a circle", "one link is the base, which no joint has as its child");
+    findings.error(robot.links.front().at, "U0205",
+                   "every link is the child of a joint: they carry each other in a circle",
+                   "one link is the base, which no joint has as its child");
     return false;
   }
   if (roots.size() > 1) {
     std::string names;
-    for (std::size_t i = 0; i < std::min<std::size_t>(roots.size(), 5); ++i) names += (i == 0 ? "" : ", ") + in_quotes(robot.links[roots[i]].name);
-    findings.error(robot.links[roots[1]].at, "U0204", std::to_string(roots.size()) + " links are the child of no joint: " + names + (roots.size() > 5 ? ", ..." : ""), "connect them by fixed joints, or remove what does not belong to the robot");
+    for (std::size_t i = 0; i < std::min<std::size_t>(roots.size(), 5); ++i)
+      names += (i == 0 ? "" : ", ") + in_quotes(robot.links[roots[i]].name);
+    findings.error(
+        robot.links[roots[1]].at, "U0204",
+        std::to_string(roots.size()) + " links are the child of no joint: " + names + (roots.size() > 5 ? ", ..." : ""),
+        "connect them by fixed joints, or remove what does not belong to the robot");
     return false;
   }
   robot.root = roots.front();
   std::vector<std::vector<std::size_t>> below(above.size());
   for (const NamedJoint& named : joints) below[named.joint.parent].push_back(named.joint.child);
   std::vector<std::size_t> reached{robot.root};
-  for (std::size_t i = 0; i < reached.size(); ++i) reached.insert(reached.end(), below[reached[i]].begin(), below[reached[i]].end());
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    reached.insert(reached.end(), below[reached[i]].begin(), below[reached[i]].end());
   if (reached.size() == above.size()) return true;
   std::vector<bool> hangs(above.size(), false);
   for (const std::size_t link : reached) hangs[link] = true;
   const auto lost = static_cast<std::size_t>(std::ranges::find(hangs, false) - hangs.begin());
-  findings.error(robot.links[lost].at, "U0205", "link " + in_quotes(robot.links[lost].name) + " and those that carry it carry each other in a circle", "each link hangs on one that is nearer to " + in_quotes(robot.links[robot.root].name));
+  findings.error(robot.links[lost].at, "U0205",
+                 "link " + in_quotes(robot.links[lost].name) + " and those that carry it carry each other in a circle",
+                 "each link hangs on one that is nearer to " + in_quotes(robot.links[robot.root].name));
   return false;
 }
 
@@ -94,7 +113,11 @@ void find_mimicked(std::vector<NamedJoint>& joints, const Names& names, Findings
       if (found == names.end() || joints[found->second].joint.type == JointType::Fixed || steps > joints.size()) {
         const bool there = found != names.end();
         const bool circle = there && steps > joints.size();
-        findings.error(named.mimic_at, "U0308", "joint " + in_quotes(named.joint.name) + (circle ? " mimics itself, over others" : " mimics " + in_quotes(followed->mimicked) + (there ? ", which is fixed" : ", which is not there")),
+        findings.error(named.mimic_at, "U0308",
+                       "joint " + in_quotes(named.joint.name) +
+                           (circle ? " mimics itself, over others"
+                                   : " mimics " + in_quotes(followed->mimicked) +
+                                         (there ? ", which is fixed" : ", which is not there")),
                        "name a joint that moves by itself");
         break;
       }
@@ -103,7 +126,10 @@ void find_mimicked(std::vector<NamedJoint>& joints, const Names& names, Findings
       if (!followed->joint.mimic) {
         const double factor = std::abs(whole.multiplier);
         if (factor < smallest_multiplier || factor > largest_number || std::abs(whole.offset) > largest_number)
-          findings.error(named.mimic_at, "U0308", "joint " + in_quotes(named.joint.name) + " hardly moves with the one that it mimics, or beyond all bounds", "check multiplier and offset along the chain");
+          findings.error(named.mimic_at, "U0308",
+                         "joint " + in_quotes(named.joint.name) +
+                             " hardly moves with the one that it mimics, or beyond all bounds",
+                         "check multiplier and offset along the chain");
         named.joint.mimic = whole;
         // Names lead on from here in one step for those that come later.
         named.mimicked = followed->joint.name;
@@ -122,10 +148,15 @@ void check_motion(const Robot& robot, Findings& findings) {
   const auto own = std::ranges::count_if(robot.joints, [](const Joint& joint) { return moves(joint) && !joint.mimic; });
   const auto all = std::ranges::count_if(robot.joints, moves);
   const Location at = robot.links[robot.root].at;
-  if (own == 0) findings.error(at, "U0309", "no joint moves", "a robot has 1 to " + std::to_string(max_joints) + " joints that move by themselves");
+  if (own == 0)
+    findings.error(at, "U0309", "no joint moves",
+                   "a robot has 1 to " + std::to_string(max_joints) + " joints that move by themselves");
   if (own > max_joints || all > max_moved_bodies) {
-    findings.error(at, "U0309", std::to_string(own) + " joints move by themselves and " + std::to_string(all - own) + " by mimicking them",
-                   "at most " + std::to_string(max_joints) + " by themselves and " + std::to_string(max_moved_bodies) + " in all: make those fixed that are not needed");
+    findings.error(
+        at, "U0309",
+        std::to_string(own) + " joints move by themselves and " + std::to_string(all - own) + " by mimicking them",
+        "at most " + std::to_string(max_joints) + " by themselves and " + std::to_string(max_moved_bodies) +
+            " in all: make those fixed that are not needed");
     return;
   }
   std::vector<double> carried(robot.links.size(), 0);
@@ -135,7 +166,9 @@ void check_motion(const Robot& robot, Findings& findings) {
     const auto& inertia = robot.links[i].inertia;
     const bool has_mass = inertia && (inertia->mass > 0 || inertia->about_centre.diagonal().maxCoeff() > 0);
     if (!has_mass && robot.links[i].has_shape)
-      findings.warning(robot.links[i].at, "U0503", "link " + in_quotes(robot.links[i].name) + " has a shape, but no mass", "it is taken as massless; give it an <inertial>");
+      findings.warning(robot.links[i].at, "U0503",
+                       "link " + in_quotes(robot.links[i].name) + " has a shape, but no mass",
+                       "it is taken as massless; give it an <inertial>");
     if (!has_mass) continue;
     for (std::size_t link = i; carried[link] == 0;) {
       carried[link] = 1;
@@ -146,8 +179,10 @@ void check_motion(const Robot& robot, Findings& findings) {
   if (!findings.good()) return;
   for (const Joint& joint : robot.joints)
     if (moves(joint) && carried[joint.child] == 0)
-      findings.error(joint.at, "U0310", "joint " + in_quotes(joint.name) + " moves nothing that has mass: how it accelerates is not defined",
-                     "give link " + in_quotes(robot.links[joint.child].name) + " an <inertial>, or make the joint fixed");
+      findings.error(
+          joint.at, "U0310",
+          "joint " + in_quotes(joint.name) + " moves nothing that has mass: how it accelerates is not defined",
+          "give link " + in_quotes(robot.links[joint.child].name) + " an <inertial>, or make the joint fixed");
 }
 
 /// Whatever is fixed to each other moves as one body, and that must have the inertia of one.
@@ -155,7 +190,10 @@ void check_bodies(const Robot& robot, Findings& findings) {
   const ModelDescription description = describe(robot);
   const auto check = [&](const Inertia& body, const Link& link) {
     if (is_body(body)) return;
-    findings.error(link.at, "U0306", "the inertia of link " + in_quotes(link.name) + ", with what is fixed to it, is not positive semi-definite: turning about some axis would take energy out of nothing",
+    findings.error(link.at, "U0306",
+                   "the inertia of link " + in_quotes(link.name) +
+                       ", with what is fixed to it, is not positive semi-definite: turning about some axis would take "
+                       "energy out of nothing",
                    "its principal moments must all be at least 0; check signs and units (kg m2)");
   };
   check(description.base, robot.links[robot.root]);
@@ -167,8 +205,13 @@ void check_bodies(const Robot& robot, Findings& findings) {
 }  // namespace
 
 void connect(Robot& robot, std::vector<NamedJoint>& joints, Findings& findings) {
-  const auto links = by_name(robot.links, [](const Link& link) { return std::pair<std::string_view, Location>{link.name, link.at}; }, "link", findings);
-  const auto names = by_name(joints, [](const NamedJoint& named) { return std::pair<std::string_view, Location>{named.joint.name, named.joint.at}; }, "joint", findings);
+  const auto links = by_name(
+      robot.links, [](const Link& link) { return std::pair<std::string_view, Location>{link.name, link.at}; }, "link",
+      findings);
+  const auto names = by_name(
+      joints,
+      [](const NamedJoint& named) { return std::pair<std::string_view, Location>{named.joint.name, named.joint.at}; },
+      "joint", findings);
   if (robot.links.empty()) return;
   std::vector<const NamedJoint*> above(robot.links.size(), nullptr);
   const bool connected = find_links(links, robot, joints, above, findings) && find_root(robot, joints, above, findings);

@@ -16,7 +16,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* body = R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)";
+constexpr const char* body =
+    R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)";
 
 /// Two links and a joint; each part can be another.
 struct Parts {
@@ -28,8 +29,8 @@ struct Parts {
   std::string more{};
 };
 [[nodiscard]] std::string text_of(const Parts& parts) {
-  return "<robot " + parts.robot + "><link name=\"a\"/>\n<link name=\"b\">" + parts.inside + "</link>\n<joint " + parts.joint + ">" + parts.connection + "\n" + parts.rest +
-         "</joint>\n" + parts.more + "</robot>";
+  return "<robot " + parts.robot + "><link name=\"a\"/>\n<link name=\"b\">" + parts.inside + "</link>\n<joint " +
+         parts.joint + ">" + parts.connection + "\n" + parts.rest + "</joint>\n" + parts.more + "</robot>";
 }
 
 struct Case {
@@ -40,11 +41,13 @@ struct Case {
 
 [[nodiscard]] std::vector<Case> errors() {
   const std::string link = R"(<link name="c"/>)";
-  const std::string moving = std::string{R"(<link name="c">)"} + body + R"(</link><joint name="k" type="continuous"><parent link="b"/><child link="c"/>)";
+  const std::string moving = std::string{R"(<link name="c">)"} + body +
+                             R"(</link><joint name="k" type="continuous"><parent link="b"/><child link="c"/>)";
   std::string many;
   for (int i = 0; i < 16; ++i) {
     const std::string n = std::to_string(i);
-    many += "<link name=\"l" + n + "\">" + body + "</link><joint name=\"j" + n + R"(" type="continuous"><parent link="b"/><child link="l)" + n + "\"/></joint>";
+    many += "<link name=\"l" + n + "\">" + body + "</link><joint name=\"j" + n +
+            R"(" type="continuous"><parent link="b"/><child link="l)" + n + "\"/></joint>";
   }
   return {
       {"U0002", 5, {.more = "<link>"}},
@@ -62,16 +65,25 @@ struct Case {
       {"U0106", 4, {.rest = R"(<axis xyz="0 0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/>)"}},
       {"U0106", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="1e21" effort="1"/>)"}},
       {"U0107", 5, {.robot = R"(name="A" xmlns:xacro="x")", .more = "<xacro:include filename=\"a\"/>"}},
-      {"U0107", 2, {.inside = R"(<inertial><mass value="${m}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)"}},
+      {"U0107",
+       2,
+       {.inside =
+            R"(<inertial><mass value="${m}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)"}},
       {"U0108", 5, {.more = "words"}},
       {"U0109", 3, {.joint = R"(name="" type="continuous")"}},
       {"U0110", 2, {.inside = std::string{body} + "<gravity>0</gravity>"}},
       {"U0201", 5, {.more = R"(<link name="b"/>)"}},
-      {"U0201", 5, {.more = std::string{R"(<link name="c">)"} + body + R"(</link><joint name="j" type="continuous"><parent link="b"/><child link="c"/></joint>)"}},
+      {"U0201",
+       5,
+       {.more = std::string{R"(<link name="c">)"} + body +
+                R"(</link><joint name="j" type="continuous"><parent link="b"/><child link="c"/></joint>)"}},
       {"U0202", 3, {.connection = R"(<parent link="nobody"/><child link="b"/>)"}},
       {"U0203", 5, {.more = R"(<joint name="k" type="fixed"><parent link="a"/><child link="b"/></joint>)"}},
       {"U0204", 5, {.more = link}},
-      {"U0205", 5, {.more = R"(<link name="c"/><link name="d"/><joint name="k" type="fixed"><parent link="c"/><child link="d"/></joint>
+      {"U0205",
+       5,
+       {.more =
+            R"(<link name="c"/><link name="d"/><joint name="k" type="fixed"><parent link="c"/><child link="d"/></joint>
 <joint name="l" type="fixed"><parent link="d"/><child link="c"/></joint>)"}},
       {"U0205", 1, {.more = R"(<joint name="k" type="fixed"><parent link="b"/><child link="a"/></joint>)"}},
       {"U0301", 3, {.joint = R"(name="j" type="floating")"}},
@@ -80,8 +92,14 @@ struct Case {
       {"U0303", 3, {.rest = ""}},
       {"U0304", 4, {.rest = R"(<limit lower="1" upper="-1" velocity="1" effort="1"/>)"}},
       {"U0304", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="-1" effort="1"/>)"}},
-      {"U0305", 2, {.inside = R"(<inertial><mass value="-1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)"}},
-      {"U0306", 2, {.inside = R"(<inertial><mass value="1"/><inertia ixx="1" ixy="2" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)"}},
+      {"U0305",
+       2,
+       {.inside =
+            R"(<inertial><mass value="-1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)"}},
+      {"U0306",
+       2,
+       {.inside =
+            R"(<inertial><mass value="1"/><inertia ixx="1" ixy="2" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)"}},
       {"U0307", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1"/><dynamics damping="-1"/>)"}},
       {"U0308", 5, {.more = moving + R"(<mimic joint="nobody"/></joint>)"}},
       {"U0308", 5, {.more = moving + R"(<mimic joint="k"/></joint>)"}},
@@ -96,13 +114,27 @@ struct Case {
   return {
       {"U0501", 2, {.inside = std::string{body} + "<contact/>"}},
       {"U0502", 4, {.rest = R"(<axis xyz="0 0 2"/><limit lower="-1" upper="1" velocity="1" effort="1"/>)"}},
-      {"U0503", 5, {.more = R"(<link name="c"><visual/></link><joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint>)"}},
-      {"U0504", 2, {.inside = R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="3"/></inertial>)"}},
+      {"U0503",
+       5,
+       {.more =
+            R"(<link name="c"><visual/></link><joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint>)"}},
+      {"U0504",
+       2,
+       {.inside =
+            R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="3"/></inertial>)"}},
       {"U0505", 4, {.joint = R"(name="j" type="continuous")"}},
-      {"U0506", 2, {.inside = R"(<inertial><mass value="0"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)"}},
-      {"U0508", 5, {.more = R"(<link name="c"><inertial><mass value="1e-6"/><inertia ixx="1e-9" ixy="2e-9" ixz="0" iyy="1e-9" iyz="0" izz="1e-9"/></inertial></link>
+      {"U0506",
+       2,
+       {.inside =
+            R"(<inertial><mass value="0"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)"}},
+      {"U0508",
+       5,
+       {.more =
+            R"(<link name="c"><inertial><mass value="1e-6"/><inertia ixx="1e-9" ixy="2e-9" ixz="0" iyy="1e-9" iyz="0" izz="1e-9"/></inertial></link>
 <joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint>)"}},
-      {"U0501", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1"/><dynamics damping="1" K="7000"/>)"}},
+      {"U0501",
+       4,
+       {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1"/><dynamics damping="1" K="7000"/>)"}},
       {"U0507", 4, {.rest = R"(<limit upper="1" velocity="1" effort="1"/>)"}},
   };
 }
@@ -136,11 +168,15 @@ TEST(UrdfErrors, WarningsKeepNoRobotFromBeingTaken) {
 }
 
 TEST(UrdfErrors, AllAreToldAtOnceInTheOrderOfTheFile) {
-  const auto reading = read("a.urdf", text_of({.inside = R"(<inertial><mass value="heavy"/><inertia ixx="1" ixy="0" ixz="0" iyy="-1" iyz="0" izz="1"/></inertial>)",
-                                               .joint = R"(name="j" type="prismatic" colour="red")",
-                                               .connection = R"(<parent link="a"/><child link="c"/>)",
-                                               .rest = R"(<axis xyz="0 0 0"/>)",
-                                               .more = "<link name=\"a\"/>"}));
+  const auto reading = read(
+      "a.urdf",
+      text_of(
+          {.inside =
+               R"(<inertial><mass value="heavy"/><inertia ixx="1" ixy="0" ixz="0" iyy="-1" iyz="0" izz="1"/></inertial>)",
+           .joint = R"(name="j" type="prismatic" colour="red")",
+           .connection = R"(<parent link="a"/><child link="c"/>)",
+           .rest = R"(<axis xyz="0 0 0"/>)",
+           .more = "<link name=\"a\"/>"}));
   std::vector<std::string> codes;
   for (const auto& problem : reading.problems) codes.push_back(problem.code);
   EXPECT_THAT(codes, ::testing::ElementsAre("U0106", "U0303", "U0103", "U0202", "U0302", "U0201"));

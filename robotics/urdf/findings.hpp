@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +24,11 @@ inline constexpr double smallest_multiplier = 1e-9;
 /// 'text', shortened, so that a message is one line.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
+/// One finite decimal number of at most `largest_number`, white space around it.
+[[nodiscard]] std::optional<double> number(std::string_view text);
+/// Three of them.
+[[nodiscard]] std::optional<Vector3> three(std::string_view text);
+
 class Findings {
  public:
   explicit Findings(std::filesystem::path file) : file_{std::move(file)} {}
@@ -39,8 +45,7 @@ class Findings {
  private:
   void add(std::vector<Diagnostic>& to, descriptor::Grade grade, Location at, const char* code, std::string message,
            std::string hint) {
-    if (to.size() < max_findings)
-      to.push_back({file_, at, code, std::move(message), std::move(hint), 1, grade});
+    if (to.size() < max_findings) to.push_back({file_, at, code, std::move(message), std::move(hint), 1, grade});
   }
   std::filesystem::path file_;
   std::vector<Diagnostic> problems_;

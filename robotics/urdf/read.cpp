@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <map>
@@ -24,31 +23,6 @@ constexpr double definite_tolerance = 1e-6;
 constexpr double unit_tolerance = 1e-6;
 
 [[nodiscard]] Location place(xml::Position at) { return {at.line, at.column}; }
-[[nodiscard]] bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-[[nodiscard]] std::optional<double> number(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !(std::abs(value) <= largest_number)) return std::nullopt;
-  return value;
-}
-
-[[nodiscard]] std::optional<Vector3> three(std::string_view text) {
-  Vector3 values;
-  for (int i = 0; i < 3; ++i) {
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    const std::size_t end = std::min(text.find_first_of(" \t\r\n"), text.size());
-    const auto value = number(text.substr(0, end));
-    if (!value) return std::nullopt;
-    values[i] = *value;
-    text.remove_prefix(end);
-  }
-  return std::ranges::all_of(text, is_space) ? std::optional{values} : std::nullopt;
-}
-
 [[nodiscard]] Matrix3 rotation(const Vector3& rpy) {
   using Eigen::AngleAxisd;
   return (AngleAxisd{rpy.z(), Vector3::UnitZ()} * AngleAxisd{rpy.y(), Vector3::UnitY()} *
@@ -67,14 +41,24 @@ struct Rows {
 
 const std::vector<Rows>& rows() {
   static const std::vector<Rows> all{
-      {"robot", {"name", "version"}, {"link", "joint", "material"}, {}, {"gazebo", "transmission", "ros2_control", "sensor", "mujoco"}},
-      {"link", {"name"}, {"inertial", "visual", "collision", "gravity", "kinematic"}, {"type"},
+      {"robot",
+       {"name", "version"},
+       {"link", "joint", "material"},
+       {},
+       {"gazebo", "transmission", "ros2_control", "sensor", "mujoco"}},
+      {"link",
+       {"name"},
+       {"inertial", "visual", "collision", "gravity", "kinematic"},
+       {"type"},
        {"contact", "self_filter", "collision_checking", "origin", "surface", "sensor"}},
       {"inertial", {}, {"origin", "mass", "inertia"}, {}, {}},
       {"origin", {"xyz", "rpy"}, {}, {}, {}},
       {"mass", {"value"}, {}, {}, {}},
       {"inertia", {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}, {}, {}, {}},
-      {"joint", {"name", "type"}, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"}, {"dont_collapse"},
+      {"joint",
+       {"name", "type"},
+       {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"},
+       {"dont_collapse"},
        {"safety_controller", "calibration"}},
       {"parent", {"link"}, {}, {}, {}},
       {"child", {"link"}, {}, {}, {}},
@@ -100,7 +84,8 @@ const std::vector<Rows>& rows() {
 [[nodiscard]] bool is_xacro(std::string_view value) {
   return value.find("${") != std::string_view::npos || value.find("$(") != std::string_view::npos;
 }
-constexpr const char* xacro_hint = "this file is a template: expand it first with `xacro FILE > FILE.urdf`, and read that";
+constexpr const char* xacro_hint =
+    "this file is a template: expand it first with `xacro FILE > FILE.urdf`, and read that";
 
 class RobotReader {
  public:
@@ -110,7 +95,8 @@ class RobotReader {
     Robot robot;
     if (root.name != "robot") {
       findings_.error(place(root.at), "U0101", "the root element is " + in_quotes(root.name) + ", not 'robot'",
-                      root.name == "mujoco" || root.name == "sdf" ? "only URDF is read: convert the file" : "a URDF file begins with <robot name=\"...\">");
+                      root.name == "mujoco" || root.name == "sdf" ? "only URDF is read: convert the file"
+                                                                  : "a URDF file begins with <robot name=\"...\">");
       return robot;
     }
     look_at(root);
@@ -121,13 +107,15 @@ class RobotReader {
       if (child.name == "joint") joints.push_back(joint(child));
     }
     for (const auto& [what, seen] : passed_)
-      findings_.warning(seen.first, "U0501",
-                        what + " is passed over" + (seen.second > 1 ? ", " + std::to_string(seen.second) + " times" : std::string{}),
-                        "it is an extension of somebody else's; nothing in it has an effect here");
+      findings_.warning(
+          seen.first, "U0501",
+          what + " is passed over" + (seen.second > 1 ? ", " + std::to_string(seen.second) + " times" : std::string{}),
+          "it is an extension of somebody else's; nothing in it has an effect here");
     if (robot.links.empty())
       findings_.error(place(root.at), "U0204", "the robot has no link",
-                      root.find("xmlns:xacro") != nullptr ? "it was made by xacro from a file that only defines macros: expand the one that uses them"
-                                                          : "add at least two links and a joint");
+                      root.find("xmlns:xacro") != nullptr
+                          ? "it was made by xacro from a file that only defines macros: expand the one that uses them"
+                          : "add at least two links and a joint");
     else connect(robot, joints, findings_);
     return robot;
   }
@@ -138,14 +126,16 @@ class RobotReader {
     const auto row = std::ranges::find(rows(), element.name, &Rows::element);
     for (const xml::Attribute& attribute : element.attributes) {
       if (is_xacro(attribute.value)) {
-        findings_.error(place(attribute.value_at), "U0107", "the value of '" + attribute.name + "' is an expression of xacro", xacro_hint);
+        findings_.error(place(attribute.value_at), "U0107",
+                        "the value of '" + attribute.name + "' is an expression of xacro", xacro_hint);
         continue;
       }
       if (attribute.name.starts_with("xmlns") || has(row->attributes, attribute.name)) continue;
       if (has(row->passed_attributes, attribute.name) || attribute.name.find(':') != std::string::npos)
         pass("the attribute '" + attribute.name + "' of <" + element.name + ">", place(attribute.at));
       else
-        findings_.error(place(attribute.at), "U0103", "<" + element.name + "> has no attribute " + in_quotes(attribute.name),
+        findings_.error(place(attribute.at), "U0103",
+                        "<" + element.name + "> has no attribute " + in_quotes(attribute.name),
                         "it has: " + listed(row->attributes, "none"));
     }
     std::set<std::string_view> seen;
@@ -157,18 +147,20 @@ class RobotReader {
         const bool many = element.name == "robot" || child.name == "visual" || child.name == "collision";
         if (!many && !seen.insert(child.name).second)
           findings_.error(at, "U0105", "a second <" + child.name + "> in this <" + element.name + ">", "keep one");
-        else if (child.name != "visual" && child.name != "collision" && child.name != "material" && element.name != "robot" &&
-                 child.name != "gravity" && child.name != "kinematic")
+        else if (child.name != "visual" && child.name != "collision" && child.name != "material" &&
+                 element.name != "robot" && child.name != "gravity" && child.name != "kinematic")
           look_at(child);
       } else if (has(row->passed_children, child.name) || child.name.find(':') != std::string::npos) {
         pass("<" + child.name + "> in <" + element.name + ">", at);
       } else {
-        findings_.error(at, "U0102", "<" + element.name + "> has no element " + in_quotes(child.name),
-                        "it has: " + listed(row->children, "none") + "; what is not known may change how the robot moves");
+        findings_.error(
+            at, "U0102", "<" + element.name + "> has no element " + in_quotes(child.name),
+            "it has: " + listed(row->children, "none") + "; what is not known may change how the robot moves");
       }
     }
     if (element.text_at.line > 0)
-      findings_.error(place(element.text_at), "U0108", "text in <" + element.name + ">", "URDF has attributes only: remove it");
+      findings_.error(place(element.text_at), "U0108", "text in <" + element.name + ">",
+                      "URDF has attributes only: remove it");
   }
 
   void pass(const std::string& what, Location at) {
@@ -184,11 +176,13 @@ class RobotReader {
   std::optional<std::string> text(const Element& element, std::string_view name) {
     const xml::Attribute* attribute = element.find(name);
     if (attribute == nullptr) {
-      findings_.error(place(element.at), "U0104", "<" + element.name + "> lacks the attribute '" + std::string{name} + "'", "add it");
+      findings_.error(place(element.at), "U0104",
+                      "<" + element.name + "> lacks the attribute '" + std::string{name} + "'", "add it");
       return std::nullopt;
     }
     if (attribute->value.empty()) {
-      findings_.error(place(attribute->at), "U0109", "'" + std::string{name} + "' of <" + element.name + "> is empty", "give it a name");
+      findings_.error(place(attribute->at), "U0109", "'" + std::string{name} + "' of <" + element.name + "> is empty",
+                      "give it a name");
       return std::nullopt;
     }
     return attribute->value;
@@ -204,7 +198,9 @@ class RobotReader {
     if (is_xacro(attribute->value)) return std::nullopt;  // said already
     const auto read = number(attribute->value);
     if (!read)
-      findings_.error(place(attribute->value_at), "U0106", "'" + std::string{name} + "' of <" + element.name + "> is " + in_quotes(attribute->value) + ", which is no number of at most 1e20",
+      findings_.error(place(attribute->value_at), "U0106",
+                      "'" + std::string{name} + "' of <" + element.name + "> is " + in_quotes(attribute->value) +
+                          ", which is no number of at most 1e20",
                       "write a decimal number without a unit, like 0.25 or 1e-3");
     return read;
   }
@@ -214,7 +210,9 @@ class RobotReader {
     if (attribute == nullptr || is_xacro(attribute->value)) return otherwise;
     const auto read = three(attribute->value);
     if (!read)
-      findings_.error(place(attribute->value_at), "U0106", "'" + std::string{name} + "' of <" + element.name + "> is " + in_quotes(attribute->value) + ", not three numbers of at most 1e20",
+      findings_.error(place(attribute->value_at), "U0106",
+                      "'" + std::string{name} + "' of <" + element.name + "> is " + in_quotes(attribute->value) +
+                          ", not three numbers of at most 1e20",
                       "write three decimal numbers with spaces between them, like 0 0 0.25");
     return read.value_or(otherwise);
   }
@@ -233,8 +231,10 @@ class RobotReader {
     link.has_shape = child(element, "visual") != nullptr || child(element, "collision") != nullptr;
     for (const auto& [word, usual, other] : {std::tuple{"gravity", "1", "true"}, std::tuple{"kinematic", "0", "false"}})
       if (const Element* found = child(element, word); found != nullptr && found->text != usual && found->text != other)
-        findings_.error(place(found->at), "U0110", "<" + found->name + "> is " + in_quotes(found->text) + ": this link would not move as a body does",
-                        "gravity is set from outside for the whole robot: remove it");
+        findings_.error(
+            place(found->at), "U0110",
+            "<" + found->name + "> is " + in_quotes(found->text) + ": this link would not move as a body does",
+            "gravity is set from outside for the whole robot: remove it");
     if (const Element* inertial = child(element, "inertial")) link.inertia = inertia(*inertial, link.name);
     return link;
   }
@@ -246,13 +246,16 @@ class RobotReader {
     const Element* matrix = child(element, "inertia");
     for (const auto& [found, name] : {std::pair{mass, "mass"}, std::pair{matrix, "inertia"}})
       if (found == nullptr)
-        findings_.error(place(element.at), "U0104", std::string{"<inertial> lacks <"} + name + ">", "add it; a body has mass and inertia, or no <inertial> at all");
+        findings_.error(place(element.at), "U0104", std::string{"<inertial> lacks <"} + name + ">",
+                        "add it; a body has mass and inertia, or no <inertial> at all");
     if (mass == nullptr || matrix == nullptr) return std::nullopt;
     inertia.mass = value(*mass, "value", Need::Must).value_or(0);
     if (inertia.mass < 0)
-      findings_.error(place(mass->at), "U0305", "the mass of link " + in_quotes(link) + " is negative", "a mass is at least 0");
+      findings_.error(place(mass->at), "U0305", "the mass of link " + in_quotes(link) + " is negative",
+                      "a mass is at least 0");
     const auto entry = [&](std::string_view name) { return value(*matrix, name, Need::Must).value_or(0); };
-    const double ixx = entry("ixx"), ixy = entry("ixy"), ixz = entry("ixz"), iyy = entry("iyy"), iyz = entry("iyz"), izz = entry("izz");
+    const double ixx = entry("ixx"), ixy = entry("ixy"), ixz = entry("ixz"), iyy = entry("iyy"), iyz = entry("iyz"),
+                 izz = entry("izz");
     Matrix3 about;
     about << ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz;
     inertia.centre = pose.position;
@@ -267,13 +270,18 @@ class RobotReader {
     if (!std::isfinite(size)) return;
     const Vector3 principal = Eigen::SelfAdjointEigenSolver<Matrix3>{about, Eigen::EigenvaluesOnly}.eigenvalues();
     if (principal.minCoeff() < -definite_tolerance * size)
-      findings_.warning(at, "U0508", "the inertia of link " + in_quotes(link) + " is not positive semi-definite: no body has it",
-                        "it is taken as it is where the body that it is part of has an inertia all the same; check signs and units (kg m2)");
+      findings_.warning(at, "U0508",
+                        "the inertia of link " + in_quotes(link) + " is not positive semi-definite: no body has it",
+                        "it is taken as it is where the body that it is part of has an inertia all the same; check "
+                        "signs and units (kg m2)");
     else if (principal.maxCoeff() > principal.sum() / 2 * (1 + 1e-3))
-      findings_.warning(at, "U0504", "no body has the inertia of link " + in_quotes(link) + ": one principal moment is larger than the sum of the others",
+      findings_.warning(at, "U0504",
+                        "no body has the inertia of link " + in_quotes(link) +
+                            ": one principal moment is larger than the sum of the others",
                         "it is taken as it is; a wrong frame or a typing error makes this");
     if (mass == 0 && size > 0)
-      findings_.warning(at, "U0506", "link " + in_quotes(link) + " has inertia, but no mass", "it is taken as it is; say what it weighs");
+      findings_.warning(at, "U0506", "link " + in_quotes(link) + " has inertia, but no mass",
+                        "it is taken as it is; say what it weighs");
   }
 
   NamedJoint joint(const Element& element) {
@@ -284,10 +292,12 @@ class RobotReader {
     if (auto name = text(element, "name")) joint.name = *name;
     joint.type = type(element);
     joint.origin = origin(element);
-    for (const auto& [name, link, at] : {std::tuple{"parent", &named.parent, &named.parent_at}, std::tuple{"child", &named.child, &named.child_at}}) {
+    for (const auto& [name, link, at] :
+         {std::tuple{"parent", &named.parent, &named.parent_at}, std::tuple{"child", &named.child, &named.child_at}}) {
       const Element* found = child(element, name);
       if (found == nullptr)
-        findings_.error(joint.at, "U0104", "joint " + in_quotes(joint.name) + " lacks <" + name + ">", std::string{"add <"} + name + " link=\"...\"/>");
+        findings_.error(joint.at, "U0104", "joint " + in_quotes(joint.name) + " lacks <" + name + ">",
+                        std::string{"add <"} + name + " link=\"...\"/>");
       else if (auto value = text(*found, "link")) {
         *link = *value;
         *at = place(found->at);
@@ -295,7 +305,9 @@ class RobotReader {
     }
     if (joint.type == JointType::Fixed) {
       if (const Element* mimic = child(element, "mimic"))
-        findings_.warning(place(mimic->at), "U0505", "joint " + in_quotes(joint.name) + " is fixed, so its <mimic> has no effect", "remove it, or make the joint one that moves");
+        findings_.warning(place(mimic->at), "U0505",
+                          "joint " + in_quotes(joint.name) + " is fixed, so its <mimic> has no effect",
+                          "remove it, or make the joint one that moves");
       return named;
     }
     axis(element, joint);
@@ -304,30 +316,40 @@ class RobotReader {
       for (const auto& [name, to] : {std::pair{"damping", &joint.damping}, std::pair{"friction", &joint.friction}}) {
         *to = value(*dynamics, name, Need::May).value_or(0);
         if (*to < 0)
-          findings_.error(place(dynamics->at), "U0307", std::string{"the "} + name + " of joint " + in_quotes(joint.name) + " is negative: it would drive the joint", "it is at least 0");
+          findings_.error(place(dynamics->at), "U0307",
+                          std::string{"the "} + name + " of joint " + in_quotes(joint.name) +
+                              " is negative: it would drive the joint",
+                          "it is at least 0");
       }
     }
     if (const Element* mimic = child(element, "mimic")) {
       named.mimic_at = place(mimic->at);
       named.mimicked = text(*mimic, "joint").value_or("");
-      joint.mimic = Mimic{0, value(*mimic, "multiplier", Need::May).value_or(1), value(*mimic, "offset", Need::May).value_or(0)};
+      joint.mimic =
+          Mimic{0, value(*mimic, "multiplier", Need::May).value_or(1), value(*mimic, "offset", Need::May).value_or(0)};
       if (std::abs(joint.mimic->multiplier) < smallest_multiplier)
-        findings_.error(named.mimic_at, "U0308", "the multiplier of joint " + in_quotes(joint.name) + " is 0 or next to it", "a joint that never moves is a fixed one");
+        findings_.error(named.mimic_at, "U0308",
+                        "the multiplier of joint " + in_quotes(joint.name) + " is 0 or next to it",
+                        "a joint that never moves is a fixed one");
     }
     return named;
   }
 
   JointType type(const Element& element) {
-    static constexpr std::array<std::pair<std::string_view, JointType>, 4> types{
-        {{"revolute", JointType::Revolute}, {"continuous", JointType::Continuous}, {"prismatic", JointType::Prismatic}, {"fixed", JointType::Fixed}}};
+    static constexpr std::array<std::pair<std::string_view, JointType>, 4> types{{{"revolute", JointType::Revolute},
+                                                                                  {"continuous", JointType::Continuous},
+                                                                                  {"prismatic", JointType::Prismatic},
+                                                                                  {"fixed", JointType::Fixed}}};
     const auto word = text(element, "type");
     if (!word) return JointType::Fixed;
     const auto found = std::ranges::find(types, *word, &std::pair<std::string_view, JointType>::first);
     if (found != types.end()) return found->second;
     const bool known = *word == "floating" || *word == "planar" || *word == "spherical";
     findings_.error(place(element.find("type")->value_at), "U0301",
-                    known ? "a joint that is " + in_quotes(*word) + " has several coordinates, which is not supported" : "there is no joint type " + in_quotes(*word),
-                    known && *word == "floating" ? "take the link out that it floats from: a base may float as a whole" : "revolute, continuous, prismatic or fixed");
+                    known ? "a joint that is " + in_quotes(*word) + " has several coordinates, which is not supported"
+                          : "there is no joint type " + in_quotes(*word),
+                    known && *word == "floating" ? "take the link out that it floats from: a base may float as a whole"
+                                                 : "revolute, continuous, prismatic or fixed");
     return JointType::Fixed;
   }
 
@@ -337,11 +359,13 @@ class RobotReader {
     const Vector3 given = vector(*found, "xyz", Vector3::UnitX());
     const double length = given.norm();
     if (!(length > 0) || !std::isfinite(length)) {
-      findings_.error(place(found->at), "U0302", "the axis of joint " + in_quotes(joint.name) + " has no direction", "write a vector of length 1, like 0 0 1");
+      findings_.error(place(found->at), "U0302", "the axis of joint " + in_quotes(joint.name) + " has no direction",
+                      "write a vector of length 1, like 0 0 1");
       return;
     }
     if (std::abs(length - 1) > unit_tolerance)
-      findings_.warning(place(found->at), "U0502", "the axis of joint " + in_quotes(joint.name) + " is not of length 1", "its direction is taken");
+      findings_.warning(place(found->at), "U0502", "the axis of joint " + in_quotes(joint.name) + " is not of length 1",
+                        "its direction is taken");
     joint.axis = given / length;
   }
 
@@ -350,7 +374,9 @@ class RobotReader {
     const bool turns_on = joint.type == JointType::Continuous;
     if (found == nullptr) {
       if (!turns_on)
-        findings_.error(joint.at, "U0303", "joint " + in_quotes(joint.name) + " has no <limit>", "add <limit lower=\"\" upper=\"\" velocity=\"\" effort=\"\"/>, or make it continuous if it turns on and on");
+        findings_.error(joint.at, "U0303", "joint " + in_quotes(joint.name) + " has no <limit>",
+                        "add <limit lower=\"\" upper=\"\" velocity=\"\" effort=\"\"/>, or make it continuous if it "
+                        "turns on and on");
       return;
     }
     JointLimits& limits = joint.limits;
@@ -358,19 +384,30 @@ class RobotReader {
     limits.effort = value(*found, "effort", Need::Must);
     for (const auto& [limit, name] : {std::pair{limits.velocity, "velocity"}, std::pair{limits.effort, "effort"}})
       if (limit && *limit < 0)
-        findings_.error(place(found->at), "U0304", std::string{"the limit of "} + name + " of joint " + in_quotes(joint.name) + " is negative", "it is at least 0, and holds both ways");
+        findings_.error(place(found->at), "U0304",
+                        std::string{"the limit of "} + name + " of joint " + in_quotes(joint.name) + " is negative",
+                        "it is at least 0, and holds both ways");
     const auto lower = value(*found, "lower", Need::May), upper = value(*found, "upper", Need::May);
     if (turns_on) {
       if (lower || upper)
-        findings_.warning(place(found->at), "U0505", "joint " + in_quotes(joint.name) + " is continuous, so lower and upper have no effect", "remove them, or make it revolute");
+        findings_.warning(place(found->at), "U0505",
+                          "joint " + in_quotes(joint.name) + " is continuous, so lower and upper have no effect",
+                          "remove them, or make it revolute");
       return;
     }
     if (!lower || !upper)
-      findings_.warning(place(found->at), "U0507", "joint " + in_quotes(joint.name) + " has no " + (lower ? "upper" : upper ? "lower" : "lower and upper") + " limit: URDF takes 0", "write it");
+      findings_.warning(place(found->at), "U0507",
+                        "joint " + in_quotes(joint.name) + " has no " +
+                            (lower   ? "upper"
+                             : upper ? "lower"
+                                     : "lower and upper") +
+                            " limit: URDF takes 0",
+                        "write it");
     limits.lower = lower.value_or(0);
     limits.upper = upper.value_or(0);
     if (*limits.lower > *limits.upper)
-      findings_.error(place(found->at), "U0304", "the lower limit of joint " + in_quotes(joint.name) + " is above the upper one", "exchange them");
+      findings_.error(place(found->at), "U0304",
+                      "the lower limit of joint " + in_quotes(joint.name) + " is above the upper one", "exchange them");
   }
 
   Findings& findings_;
@@ -388,15 +425,6 @@ class RobotReader {
 
 }  // namespace
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t most = 64;
-  std::string result{text.substr(0, most)};
-  for (char& c : result)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
-  while (text.size() > most && !result.empty() && (static_cast<unsigned char>(result.back()) & 0x80) != 0) result.pop_back();
-  return "'" + result + (text.size() > most ? "...'" : "'");
-}
-
 descriptor::Reading<Robot> Findings::with(Robot robot) && {
   for (auto* list : {&problems_, &warnings_})
     std::ranges::stable_sort(*list, [](const Diagnostic& one, const Diagnostic& other) {
@@ -413,7 +441,8 @@ descriptor::Reading<Robot> read(const std::filesystem::path& file, std::string_v
   Findings findings{file};
   const auto tree = xml::read_tree(text);
   if (!tree) {
-    findings.error(place(tree.error().at), code_of(tree.error().refusal), tree.error().reason, "only plain XML in UTF-8 of at most 4 MiB is read");
+    findings.error(place(tree.error().at), code_of(tree.error().refusal), tree.error().reason,
+                   "only plain XML in UTF-8 of at most 4 MiB is read");
     return std::move(findings).with({});
   }
   Robot robot = RobotReader{findings}.read(*tree);
@@ -424,7 +453,8 @@ descriptor::Reading<Robot> read(const std::filesystem::path& file, const descrip
   if (const auto text = source(file)) return read(file, *text);
   else {
     Findings findings{file};
-    findings.error({}, "U0001", std::string{"the file cannot be read: "} + text.error().text, "name a regular, readable file of at most 4 MiB");
+    findings.error({}, "U0001", std::string{"the file cannot be read: "} + text.error().text,
+                   "name a regular, readable file of at most 4 MiB");
     return std::move(findings).with({});
   }
 }

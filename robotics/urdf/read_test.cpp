@@ -9,8 +9,8 @@ namespace hirosco::robotics::urdf {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 constexpr const char* gripper = R"(<?xml version="1.0"?>
 <robot name="GRIPPER" xmlns:xacro="http://wiki.ros.org/xacro">
@@ -75,8 +75,11 @@ TEST(UrdfReader, FollowsChainsOfMimicJointsToTheOneThatMovesByItself) {
   std::string text = R"(<robot name="A"><link name="l0"/>)";
   const auto joint = [&](int i, const char* mimic) {
     const std::string n = std::to_string(i);
-    text += "<link name=\"l" + n + R"("><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>)" +
-            "<joint name=\"j" + n + "\" type=\"continuous\"><parent link=\"l0\"/><child link=\"l" + n + "\"/>" + mimic + "</joint>";
+    text +=
+        "<link name=\"l" + n +
+        R"("><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>)" +
+        "<joint name=\"j" + n + "\" type=\"continuous\"><parent link=\"l0\"/><child link=\"l" + n + "\"/>" + mimic +
+        "</joint>";
   };
   joint(1, R"(<mimic joint="j2" multiplier="2" offset="0.5"/>)");
   joint(2, R"(<mimic joint="j3" multiplier="-3" offset="0.25"/>)");
@@ -107,7 +110,9 @@ TEST(UrdfReader, NamesWhatItPassesOverOnceForEachKindAndHowOften) {
 }
 
 TEST(UrdfReader, SaysWhyAFileCannotBeRead) {
-  const auto reading = read("nowhere.urdf", [](const std::filesystem::path&) -> Result<std::string> { return fail(ErrorCode::NotFound, "is a folder"); });
+  const auto reading = read("nowhere.urdf", [](const std::filesystem::path&) -> Result<std::string> {
+    return fail(ErrorCode::NotFound, "is a folder");
+  });
   ASSERT_EQ(reading.problems.size(), 1U);
   EXPECT_EQ(reading.problems[0].code, "U0001");
   EXPECT_THAT(reading.problems[0].message, HasSubstr("is a folder"));

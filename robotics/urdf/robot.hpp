@@ -39,15 +39,15 @@ struct Joint {
   JointLimits limits;
   double damping{0};
   double friction{0};
-  std::optional<Mimic> mimic;        ///< of a joint in `Robot::joints` that moves by itself, also where the file has a chain
+  std::optional<Mimic> mimic;  ///< of a joint in `Robot::joints` that moves by itself, also where the file has a chain
 };
 
 /// One tree: every link but the root is the child of one joint.
 struct Robot {
   std::string name;
-  std::vector<Link> links;           ///< in file order
-  std::vector<Joint> joints;         ///< in file order
-  std::size_t root{0};               ///< link
+  std::vector<Link> links;  ///< in file order
+  std::vector<Joint> joints;  ///< in file order
+  std::size_t root{0};  ///< link
 };
 
 /// Reads and checks a URDF file: plain URDF 1.0 with revolute, continuous, prismatic and fixed joints. All problems are told at once,

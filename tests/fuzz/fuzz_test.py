@@ -69,7 +69,7 @@ TARGETS = {"arguments": (
      "what another handshake agreed on is taken":
          (DATAGRAMS, "if (said != agreed_)", "if (said.link != agreed_.link)")}),
     "urdf": (
-    [URDF, URDF_TREE, "robotics/urdf/describe.cpp", "robotics/dynamics/model.cpp", "robotics/dynamics/dynamics.cpp", "hirosco/xml/reader.cpp"],
+    [URDF, URDF_TREE, "robotics/urdf/describe.cpp", "robotics/urdf/words.cpp", "robotics/dynamics/model.cpp", "robotics/dynamics/dynamics.cpp", "hirosco/xml/reader.cpp"],
     {"the lower limit may be above the upper one":
          (URDF, "if (*limits.lower > *limits.upper)", "if (*limits.lower > *limits.upper + 1)"),
      "damping may drive a joint":

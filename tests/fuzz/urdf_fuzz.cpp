@@ -25,11 +25,35 @@ void expect(bool holds, const char* what) {
 
 /// One octet for each part of a file; what has none stands for itself.
 [[nodiscard]] std::string spelled(std::string_view octets) {
-  static constexpr std::string_view words[] = {
-      "<link name=\"", "<inertial><mass value=\"", "\"/><inertia ixx=\"", "\" ixy=\"", "\" ixz=\"0\" iyy=\"", "\" iyz=\"0\" izz=\"", "\"/></inertial>", "</link>",
-      "<joint name=\"", "\" type=\"revolute\">", "\" type=\"continuous\">", "\" type=\"prismatic\">", "\" type=\"fixed\">", "<parent link=\"", "<child link=\"", "<axis xyz=\"",
-      "<origin xyz=\"", "\" rpy=\"", "<limit velocity=\"1\" effort=\"1\" lower=\"", "\" upper=\"", "<mimic joint=\"", "\" multiplier=\"", "\" offset=\"", "<dynamics damping=\"",
-      "\"/>", "\">", "</joint>", "<visual/>", "\" friction=\""};
+  static constexpr std::string_view words[] = {"<link name=\"",
+                                               "<inertial><mass value=\"",
+                                               "\"/><inertia ixx=\"",
+                                               "\" ixy=\"",
+                                               "\" ixz=\"0\" iyy=\"",
+                                               "\" iyz=\"0\" izz=\"",
+                                               "\"/></inertial>",
+                                               "</link>",
+                                               "<joint name=\"",
+                                               "\" type=\"revolute\">",
+                                               "\" type=\"continuous\">",
+                                               "\" type=\"prismatic\">",
+                                               "\" type=\"fixed\">",
+                                               "<parent link=\"",
+                                               "<child link=\"",
+                                               "<axis xyz=\"",
+                                               "<origin xyz=\"",
+                                               "\" rpy=\"",
+                                               "<limit velocity=\"1\" effort=\"1\" lower=\"",
+                                               "\" upper=\"",
+                                               "<mimic joint=\"",
+                                               "\" multiplier=\"",
+                                               "\" offset=\"",
+                                               "<dynamics damping=\"",
+                                               "\"/>",
+                                               "\">",
+                                               "</joint>",
+                                               "<visual/>",
+                                               "\" friction=\""};
   std::string text = "<robot name=\"r\">";
   for (const char c : octets) {
     const auto octet = static_cast<unsigned char>(c);
@@ -43,7 +67,8 @@ void check_refused(const descriptor::Reading<urdf::Robot>& reading) {
   expect(!reading.problems.empty(), "what is refused has a problem");
   for (const auto& problem : reading.problems) {
     expect(problem.at.line > 0 && problem.at.column > 0, "a problem has a place");
-    expect(problem.code.size() == 5 && !problem.message.empty() && !problem.hint.empty(), "a problem says what and what to do");
+    expect(problem.code.size() == 5 && !problem.message.empty() && !problem.hint.empty(),
+           "a problem says what and what to do");
   }
 }
 
@@ -55,7 +80,8 @@ void check_taken(const urdf::Robot& robot) {
     expect(joint.parent < robot.links.size() && children.insert(joint.child).second, "a link has one joint above it");
     expect(!joint.limits.lower || *joint.limits.lower <= *joint.limits.upper, "limits are in order");
     expect(joint.damping >= 0 && joint.friction >= 0, "nothing drives a joint");
-    expect(!joint.mimic || (joint.mimic->joint < robot.joints.size() && !robot.joints[joint.mimic->joint].mimic), "who is mimicked moves by itself");
+    expect(!joint.mimic || (joint.mimic->joint < robot.joints.size() && !robot.joints[joint.mimic->joint].mimic),
+           "who is mimicked moves by itself");
   }
   expect(children.size() + 1 == robot.links.size() && !children.contains(robot.root), "one tree");
   const auto model = Model::make(urdf::describe(robot));

@@ -8,9 +8,12 @@
 Every robot of example-robot-data with at most 16 joints is compared; every other one must be refused by a named reason. Ends with a
 table of the largest relative errors."""
 import argparse
+import os
+import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 import numpy
 import pinocchio
@@ -192,6 +195,8 @@ def main():
     parser.add_argument("--states", type=int, default=50)
     parser.add_argument("--only", default="")
     given = parser.parse_args()
+    given.probe = str(pathlib.Path(given.probe).resolve())
+    os.chdir(tempfile.mkdtemp())  # MuJoCo writes a log where it is
     problems, taken, left = [], 0, 0
     for number, path in enumerate(robots.files()):
         if given.only not in path.as_posix():

@@ -25,8 +25,9 @@ void say(const char* name, const Eigen::Ref<const Eigen::MatrixXd>& values) {
 void say_model(const Model& model) {
   for (const auto& joint : model.joints()) {
     const auto& limits = joint.limits;
-    fmt::print("joint {} {} {} {} {} {} {}\n", joint.name, joint.damping, joint.friction, limits.lower.value_or(-INFINITY), limits.upper.value_or(INFINITY),
-               limits.velocity.value_or(INFINITY), limits.effort.value_or(INFINITY));
+    fmt::print("joint {} {} {} {} {} {} {}\n", joint.name, joint.damping, joint.friction,
+               limits.lower.value_or(-INFINITY), limits.upper.value_or(INFINITY), limits.velocity.value_or(INFINITY),
+               limits.effort.value_or(INFINITY));
   }
   fmt::print("mass {}\nread\n", model.mass());
 }
@@ -93,7 +94,8 @@ void answer(const Model& model, FrameId tip, std::istream& in) {
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const auto reading = urdf::read(argv[1], descriptor::file_system());
-  for (const auto& problem : reading.problems) fmt::print(stderr, "{} {}:{} {}\n", problem.code, problem.at.line, problem.at.column, problem.message);
+  for (const auto& problem : reading.problems)
+    fmt::print(stderr, "{} {}:{} {}\n", problem.code, problem.at.line, problem.at.column, problem.message);
   if (!reading.value) return 1;
   const auto model = Model::make(urdf::describe(*reading.value));
   if (!model) {

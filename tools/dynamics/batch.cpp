@@ -25,8 +25,9 @@ using Json = nlohmann::json;
 /// A quaternion that is rounded to a few digits is one all the same.
 constexpr double unit_tolerance = 1e-3;
 
-constexpr std::array words{"fixed_base", "gravity_m_s2", "base_position_m", "base_orientation_wxyz", "base_twist", "q", "qd",
-                           "torque", "torque_table", "step_s", "end_s", "output_s"};
+constexpr std::array words{"fixed_base", "gravity_m_s2", "base_position_m", "base_orientation_wxyz", "base_twist",
+                           "q",          "qd",           "torque",          "torque_table",          "step_s",
+                           "end_s",      "output_s"};
 
 /// Reads members of one object; remembers the first thing that is wrong.
 class Members {
@@ -100,7 +101,8 @@ class Members {
 [[nodiscard]] Json parse(std::string_view line, std::string& problem) {
   std::set<std::string> seen;
   const auto once = [&](int depth, Json::parse_event_t event, Json& key) {
-    if (event == Json::parse_event_t::key && depth == 1 && !seen.insert(key.get<std::string>()).second && problem.empty())
+    if (event == Json::parse_event_t::key && depth == 1 && !seen.insert(key.get<std::string>()).second &&
+        problem.empty())
       problem = fmt::format("'{}' stands twice", key.get<std::string>());
     return true;
   };
@@ -118,7 +120,8 @@ class Members {
 
 void read_torque(Members& members, int joints, Motion& motion) {
   if (members.has("torque") == members.has("torque_table")) {
-    members.wrong("{}", members.has("torque") ? "both 'torque' and 'torque_table' are given" : "'torque' or 'torque_table' is missing");
+    members.wrong("{}", members.has("torque") ? "both 'torque' and 'torque_table' are given"
+                                              : "'torque' or 'torque_table' is missing");
     return;
   }
   if (members.has("torque")) {
@@ -126,7 +129,8 @@ void read_torque(Members& members, int joints, Motion& motion) {
     return;
   }
   for (const auto& row : members.table("torque_table", 1 + joints)) {
-    if (!motion.torque.empty() && !(row[0] > motion.torque.back().t_s)) members.wrong("times in 'torque_table' do not ascend");
+    if (!motion.torque.empty() && !(row[0] > motion.torque.back().t_s))
+      members.wrong("times in 'torque_table' do not ascend");
     motion.torque.push_back({row[0], vector_of(row, 1)});
   }
 }
@@ -178,8 +182,8 @@ template <class Matrix>
 }
 
 /// Empty: it was told.
-[[nodiscard]] std::string tell(double t_s, const State& state, const Coordinates& acceleration, robotics::Dynamics& dynamics,
-                               robotics::FrameId tip, const Batch::Sink& sink) {
+[[nodiscard]] std::string tell(double t_s, const State& state, const Coordinates& acceleration,
+                               robotics::Dynamics& dynamics, robotics::FrameId tip, const Batch::Sink& sink) {
   dynamics.update(state);
   const auto momentum = dynamics.momentum();
   const double energy = dynamics.kinetic_energy() + dynamics.potential_energy();
@@ -189,46 +193,58 @@ template <class Matrix>
   dynamics.jacobian(tip, jacobian);
   if (const auto made = dynamics.generalised_jacobian(tip, generalised); !made) return made.error().text;
   const auto& turned = state.base_orientation;
-  const bool finite = std::isfinite(energy) && momentum.angular.allFinite() && mass.allFinite() && jacobian.allFinite() && generalised.allFinite() &&
-                      acceleration.allFinite() && state.base_position.allFinite() && state.q.allFinite() && state.qd.allFinite();
+  const bool finite = std::isfinite(energy) && momentum.angular.allFinite() && mass.allFinite() &&
+                      jacobian.allFinite() && generalised.allFinite() && acceleration.allFinite() &&
+                      state.base_position.allFinite() && state.q.allFinite() && state.qd.allFinite();
   if (!finite) return "a result is no number";
-  sink(fmt::format("{{\"t\":{},\"base_position_m\":{},\"base_orientation_wxyz\":{},\"base_twist\":{},\"q\":{},\"qd\":{},\"qdd\":{},"
-                   "\"momentum_linear\":{},\"momentum_angular_com\":{},\"energy_j\":{},\"mass_matrix\":{},\"jacobian\":{},"
-                   "\"generalised_jacobian\":{}}}",
-                   t_s, list(state.base_position), list(Eigen::Vector4d{turned.w(), turned.x(), turned.y(), turned.z()}),
-                   list(state.base_twist), list(state.q), list(state.qd), list(acceleration.tail(state.q.size()).eval()),
-                   list(momentum.linear), list(momentum.angular), energy, rows(mass), rows(jacobian), rows(generalised)));
+  sink(fmt::format(
+      "{{\"t\":{},\"base_position_m\":{},\"base_orientation_wxyz\":{},\"base_twist\":{},\"q\":{},\"qd\":{},\"qdd\":{},"
+      "\"momentum_linear\":{},\"momentum_angular_com\":{},\"energy_j\":{},\"mass_matrix\":{},\"jacobian\":{},"
+      "\"generalised_jacobian\":{}}}",
+      t_s, list(state.base_position), list(Eigen::Vector4d{turned.w(), turned.x(), turned.y(), turned.z()}),
+      list(state.base_twist), list(state.q), list(state.qd), list(acceleration.tail(state.q.size()).eval()),
+      list(momentum.linear), list(momentum.angular), energy, rows(mass), rows(jacobian), rows(generalised)));
   return {};
 }
 
 }  // namespace
 
 const char* const batch_help =
-    "Reads one JSON object a line from standard input and writes one for each of its output times to standard output.\n\n"
+    "Reads one JSON object a line from standard input and writes one for each of its output times to standard "
+    "output.\n\n"
     "In, all of it needed:\n"
     "  fixed_base                true or false (false: the base floats)\n"
     "  gravity_m_s2[3]           inertial axes\n"
     "  base_position_m[3]        of the root link's origin, inertial\n"
     "  base_orientation_wxyz[4]  inertial from root link\n"
     "  base_twist[6]             [w; v] of the root link's origin in its own frame; 0 of a fixed base\n"
-    "  q[], qd[]                 rad or m, rad/s or m/s; joints in URDF order: those that move by themselves, in the order of\n"
+    "  q[], qd[]                 rad or m, rad/s or m/s; joints in URDF order: those that move by themselves, in the "
+    "order of\n"
     "                            the file, without fixed ones and without mimic joints, which follow theirs\n"
     "  torque[]                  N m or N, constant; or\n"
-    "  torque_table[[t, ...]]    rows of a time and the torques then; times ascend. Torques go in straight lines from row to row,\n"
+    "  torque_table[[t, ...]]    rows of a time and the torques then; times ascend. Torques go in straight lines from "
+    "row to row,\n"
     "                            and stay those of the first row before and of the last row after them\n"
     "  step_s, end_s             of the integration, which begins at 0\n"
     "  output_s[]                ascending, from 0 to end_s\n\n"
     "Out: t, base_position_m, base_orientation_wxyz, base_twist, q, qd, qdd, momentum_linear[3] (inertial axes),\n"
-    "momentum_angular_com[3] (inertial axes, about the system's centre of mass), energy_j (kinetic, and potential that is 0 with\n"
-    "the centre of mass at the inertial origin), mass_matrix (of a free base: first its six coordinates [w; v] as in base_twist),\n"
-    "jacobian (rows [w; v] of the tip's origin in inertial axes, columns as the mass matrix), generalised_jacobian (columns are the\n"
-    "joints; what a free robot without momentum does with its tip, of a fixed base the Jacobian). The system is all links, a fixed\n"
+    "momentum_angular_com[3] (inertial axes, about the system's centre of mass), energy_j (kinetic, and potential that "
+    "is 0 with\n"
+    "the centre of mass at the inertial origin), mass_matrix (of a free base: first its six coordinates [w; v] as in "
+    "base_twist),\n"
+    "jacobian (rows [w; v] of the tip's origin in inertial axes, columns as the mass matrix), generalised_jacobian "
+    "(columns are the\n"
+    "joints; what a free robot without momentum does with its tip, of a fixed base the Jacobian). The system is all "
+    "links, a fixed\n"
     "root link, too: it counts in centre of mass and energy.\n\n"
-    "Integrated by classical Runge-Kutta of fourth order with steps of step_s from 0 on. An output time between two steps is\n"
-    "reached by one shorter step of the same method from the last one; the steps themselves go on as if it had not been asked for,\n"
+    "Integrated by classical Runge-Kutta of fourth order with steps of step_s from 0 on. An output time between two "
+    "steps is\n"
+    "reached by one shorter step of the same method from the last one; the steps themselves go on as if it had not "
+    "been asked for,\n"
     "so no output depends on others. A bend of a torque_table that is not at a step costs order in that step.\n"
     "<dynamics damping> of the URDF file is applied. Its friction is ignored.\n\n"
-    "A bad line is answered with {\"error\", \"line\"}, the rest is gone on with, and the exit code is 1; so is a line whose motion\n"
+    "A bad line is answered with {\"error\", \"line\"}, the rest is gone on with, and the exit code is 1; so is a line "
+    "whose motion\n"
     "becomes no number, after what could be told. Empty lines are passed over.";
 
 std::expected<Motion, std::string> read_motion(std::string_view line, int joints) {
@@ -252,7 +268,8 @@ std::expected<Motion, std::string> read_motion(std::string_view line, int joints
   motion.output_s = members.numbers("output_s", -1);
   if (!members.problem.empty()) return std::unexpected(members.problem);
   const robotics::Quaternion orientation{turned[0], turned[1], turned[2], turned[3]};
-  if (!(std::abs(orientation.norm() - 1) <= unit_tolerance)) members.wrong("'base_orientation_wxyz' is not of length 1");
+  if (!(std::abs(orientation.norm() - 1) <= unit_tolerance))
+    members.wrong("'base_orientation_wxyz' is not of length 1");
   motion.state.base_orientation = orientation.normalized();
   check(members, motion);
   if (!members.problem.empty()) return std::unexpected(members.problem);
@@ -286,7 +303,8 @@ std::string Batch::run(const Motion& motion, const Sink& sink) {
       State then = state;
       if (*output > now)
         if (const auto moved = integrator.step(then, now, *output - now, torque); !moved) return moved.error().text;
-      if (const auto known = integrator.acceleration(then, *output, torque, acceleration); !known) return known.error().text;
+      if (const auto known = integrator.acceleration(then, *output, torque, acceleration); !known)
+        return known.error().text;
       if (auto problem = tell(*output, then, acceleration, dynamics, tip_, sink); !problem.empty()) return problem;
     }
     if (output == motion.output_s.end()) return {};

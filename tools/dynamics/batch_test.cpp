@@ -173,7 +173,8 @@ TEST(DynamicsCommand, RefusesWhatIsNoJsonObject) {
     ASSERT_EQ(lines.size(), 1U);
     EXPECT_TRUE(lines[0].contains("error"));
   }
-  EXPECT_THAT(answers_to(std::string{"{\"q\":[],\"q\":[]}"}).lines[0]["error"].get<std::string>(), HasSubstr("stands twice"));
+  EXPECT_THAT(answers_to(std::string{"{\"q\":[],\"q\":[]}"}).lines[0]["error"].get<std::string>(),
+              HasSubstr("stands twice"));
   EXPECT_TRUE(answers_to(std::string{"  \r"}).good);
   EXPECT_TRUE(answers_to(std::string{}).lines.empty());
 }

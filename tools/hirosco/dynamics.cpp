@@ -25,7 +25,8 @@ constexpr std::size_t max_line_octets = 256U * 1024 * 1024;
   const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   for (const auto* list : {&reading.problems, &reading.warnings})
     for (const auto& problem : *list) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
-  if (!reading.value) fmt::print(stderr, "hirosco dynamics: {} is not taken; codes are explained in docs/urdf-errors.md\n", file);
+  if (!reading.value)
+    fmt::print(stderr, "hirosco dynamics: {} is not taken; codes are explained in docs/urdf-errors.md\n", file);
   return std::move(reading.value);
 }
 
@@ -33,9 +34,11 @@ constexpr std::size_t max_line_octets = 256U * 1024 * 1024;
 [[nodiscard]] std::string tip_of(const robotics::urdf::Robot& robot, const std::string& named) {
   const auto ends = robotics::urdf::tips(robot);
   if (named.empty() && ends.size() == 1) return ends.front();
-  if (!named.empty() && std::ranges::find(robot.links, named, &robotics::urdf::Link::name) != robot.links.end()) return named;
+  if (!named.empty() && std::ranges::find(robot.links, named, &robotics::urdf::Link::name) != robot.links.end())
+    return named;
   fmt::print(stderr, "hirosco dynamics: {}; links at the ends are: {}\n",
-             named.empty() ? fmt::format("{} ends in {} links: name one with --tip", robot.name, ends.size()) : fmt::format("{} has no link {}", robot.name, named),
+             named.empty() ? fmt::format("{} ends in {} links: name one with --tip", robot.name, ends.size())
+                           : fmt::format("{} has no link {}", robot.name, named),
              fmt::join(ends, ", "));
   return {};
 }

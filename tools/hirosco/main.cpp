@@ -116,7 +116,8 @@ int read_and_do(int argc, char** argv) {
   auto* dynamics_command = app.add_subcommand(
       "dynamics", "The equations of motion of a robot from a URDF file: JSON lines in, JSON lines out");
   dynamics_command->add_option("model", dynamics_options.model, "URDF file")->required();
-  dynamics_command->add_option("--tip", dynamics_options.tip, "Link whose Jacobians are told; by default the only one at an end");
+  dynamics_command->add_option("--tip", dynamics_options.tip,
+                               "Link whose Jacobians are told; by default the only one at an end");
   dynamics_command->footer(batch_help);
 
   ManifestOptions manifest_options;

@@ -14,8 +14,8 @@ namespace hirosco::robotics::testing {
   return {mass, centre, moment * Matrix3::Identity()};
 }
 
-[[nodiscard]] inline JointDescription joint(JointKind kind, const Vector3& axis, const Vector3& at, const Inertia& moved,
-                                            std::optional<std::size_t> parent = {}) {
+[[nodiscard]] inline JointDescription joint(JointKind kind, const Vector3& axis, const Vector3& at,
+                                            const Inertia& moved, std::optional<std::size_t> parent = {}) {
   JointDescription result;
   result.name = "J";
   result.kind = kind;
@@ -49,8 +49,10 @@ enum class Mimicry : std::uint8_t { None, EveryThird };
   ModelDescription description;
   description.base = body();
   for (int i = 0; i < joints; ++i) {
-    auto next = joint(i % 4 == 3 ? JointKind::Prismatic : JointKind::Revolute, vector().normalized(), 0.4 * vector(), body());
-    next.placement.rotation = Quaternion{Eigen::Vector4d{any(random), any(random), any(random), any(random)}.normalized()}.toRotationMatrix();
+    auto next =
+        joint(i % 4 == 3 ? JointKind::Prismatic : JointKind::Revolute, vector().normalized(), 0.4 * vector(), body());
+    next.placement.rotation =
+        Quaternion{Eigen::Vector4d{any(random), any(random), any(random), any(random)}.normalized()}.toRotationMatrix();
     if (i > 0) next.parent = static_cast<std::size_t>(i % 5 == 4 ? i / 2 : i - 1);
     if (mimicry == Mimicry::EveryThird && i % 3 == 2) next.mimic = Mimic{0, -0.5, 0.2};
     next.damping = 0.3;
