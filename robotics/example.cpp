@@ -35,5 +35,6 @@ int main() {
   dynamics.update(state);
   robotics::Coordinates torque = robotics::Coordinates::Zero(1), acceleration;
   if (!dynamics.forward(torque, acceleration)) return 1;
-  std::printf("falls with %.2f rad/s2, is held by %.2f N m\n", acceleration[0], (dynamics.bias(torque), torque[0]));
+  dynamics.bias(torque);
+  std::printf("falls with %.2f rad/s2, is held by %.2f N m\n", acceleration[0], torque[0]);
 }
