@@ -341,7 +341,8 @@ class RobotReader {
                                                                                   {"prismatic", JointType::Prismatic},
                                                                                   {"fixed", JointType::Fixed}}};
     const auto word = text(element, "type");
-    if (!word) return JointType::Fixed;
+    // Whatever it is meant to be, it moves: nothing more is said of it for that.
+    if (!word) return JointType::Continuous;
     const auto found = std::ranges::find(types, *word, &std::pair<std::string_view, JointType>::first);
     if (found != types.end()) return found->second;
     const bool known = *word == "floating" || *word == "planar" || *word == "spherical";
@@ -350,7 +351,7 @@ class RobotReader {
                           : "there is no joint type " + in_quotes(*word),
                     known && *word == "floating" ? "take the link out that it floats from: a base may float as a whole"
                                                  : "revolute, continuous, prismatic or fixed");
-    return JointType::Fixed;
+    return JointType::Continuous;
   }
 
   void axis(const Element& element, Joint& joint) {
