@@ -27,6 +27,7 @@ endfunction()
 hirosco_headers_of(HIROSCO_AUTHOR_HEADERS
   hirosco/descriptor/read/read.hpp hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp hirosco/subsystem/author/module.hpp hirosco/subsystem/process/run.hpp
   hirosco/subsystem/author/subsystem.hpp hirosco/subsystem/testing/rig.hpp hirosco/resource/counted.hpp hirosco/resource/pool_allocator.hpp hirosco/resource/pool_resource.hpp
+  robotics/dynamics/integrator.hpp robotics/motion/inverse_kinematics.hpp robotics/motion/point_to_point.hpp robotics/urdf/robot.hpp
   simulation/devices/device_shell.hpp simulation/devices/module.hpp simulation/devices/simulated_device.hpp)
 
 # hirosco_install_libraries(targets...): hirosco_NAME becomes hirosco::NAME of the package.
@@ -41,7 +42,7 @@ endfunction()
 
 function(hirosco_install)
   hirosco_install_libraries(hirosco_options hirosco_utilities hirosco_resource hirosco_xml hirosco_parameter
-    hirosco_data_transfer hirosco_descriptor hirosco_pus hirosco_subsystem hirosco_subsystem_main hirosco_subsystem_testing
+    hirosco_data_transfer hirosco_descriptor hirosco_pus hirosco_dynamics hirosco_motion hirosco_urdf hirosco_subsystem hirosco_subsystem_main hirosco_subsystem_testing
     hirosco_simulated_device hirosco_simulation_device_shell hirosco_device_main hirosco_realtime_hook)
   foreach(header IN LISTS HIROSCO_AUTHOR_HEADERS)
     get_filename_component(folder ${header} DIRECTORY)
@@ -64,6 +65,6 @@ function(hirosco_install)
   install(DIRECTORY hirosco/descriptor/ DESTINATION ${share}/schemas FILES_MATCHING PATTERN *.xsd PATTERN testdata EXCLUDE)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/${share}/page DESTINATION ${share} OPTIONAL)
   install(DIRECTORY docs/guide DESTINATION share/doc/hirosco)
-  install(FILES docs/descriptor-errors.md docs/failure-codes.md docs/interfaces.md CHANGELOG.md DESTINATION share/doc/hirosco)
+  install(FILES docs/descriptor-errors.md docs/urdf-errors.md docs/failure-codes.md docs/interfaces.md CHANGELOG.md DESTINATION share/doc/hirosco)
   install(DIRECTORY LICENSES DESTINATION share/doc/hirosco)
 endfunction()

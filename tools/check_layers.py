@@ -4,7 +4,7 @@
 """Who may include whom (CONTRIBUTING.md). Prints what breaks the rules; `planted` breaks each rule once, to be caught."""
 import pathlib, re, sys
 libraries = ["utilities", "resource", "xml", "parameter", "data_transfer", "descriptor", "pus", "subsystem"]  # lowest first
-may = {"hirosco": ["hirosco"], "subsystems": ["hirosco"], "supervisor": ["hirosco", "supervisor"],
+may = {"hirosco": ["hirosco"], "robotics": ["hirosco", "robotics"], "subsystems": ["hirosco", "robotics"], "supervisor": ["hirosco", "supervisor"],
        "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything; nobody but missions and tests a mission
 shells = ("hirosco/utilities/os/", "hirosco/data_transfer/device/datagram_flow", "hirosco/data_transfer/device/shared_memory_flow",
           "hirosco/data_transfer/control/socket_channel", "hirosco/data_transfer/control/stream_channel", "hirosco/data_transfer/link/internet_address", "hirosco/data_transfer/link/udp_link",
@@ -35,16 +35,19 @@ def wrong(path, to):
         if level(to) > level(path): return "a higher folder of the ground station"
     if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
     if target == "missions" and top not in ("missions", "tests"): return "a mission"
-    if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return False  # assemble and fly all parts
+    if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return target == "robotics" and "the on-board model of a robot"  # assemble and fly all parts
     same = path.split("/")[:2] == to.split("/")[:2]
     if top in may and target not in may[top] and not same: return "another part"
+    if top == "robotics" and path.startswith("robotics/dynamics/") and to.startswith(("robotics/urdf/", "robotics/motion/")): return "a higher folder of robotics"
+    if top == "simulation" and target == "robotics": return "the on-board model of a robot"
     if top == target == "hirosco" and rank(to) > rank(path): return "a higher rank"
     if path.startswith("hirosco/subsystem/") and to.startswith("hirosco/subsystem/") and not path.endswith("_test.cpp"):
         if height(to) > height(path): return "a higher folder of the generic subsystem"
     if top == "ground" and to.startswith("hirosco/subsystem"): return "the generic subsystem"
     if top in may and to.startswith(("simulation/spacecraft", "simulation/scenarios")) and not same: return "the simulated spacecraft"
     return "/detail/" in to and not path.startswith(to.split("/detail/")[0] + "/") and "a private header"
-planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "subsystems/a/a.cpp subsystems/b/b.hpp", "ground/a.cpp supervisor/b.hpp",
+planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "simulation/devices/a/a.cpp robotics/dynamics/b.hpp", "simulation/spacecraft/a.cpp robotics/urdf/b.hpp",
+           "robotics/dynamics/a.cpp robotics/urdf/b.hpp", "hirosco/pus/a.cpp robotics/urdf/b.hpp", "robotics/urdf/a.cpp subsystems/b/b.hpp", "subsystems/a/a.cpp subsystems/b/b.hpp", "ground/a.cpp supervisor/b.hpp",
            "ground/a.cpp hirosco/subsystem/b.hpp", "hirosco/pus/a.cpp sys/mman.h", "supervisor/a.cpp unistd.h",
            "hirosco/pus/a.cpp hirosco/parameter/detail/b.hpp", "simulation/world/a.cpp simulation/spacecraft/b.hpp",
            "subsystems/a/a.cpp supervisor/b.hpp", "hirosco/pus/a.cpp supervisor/b.hpp",

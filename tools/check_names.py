@@ -14,7 +14,7 @@ import pathlib, re, sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 HOMES = ("missions", "subsystems", "simulation/devices")
-FRAMEWORK = ("hirosco", "supervisor", "simulation", "ground", "tools", "cmake")
+FRAMEWORK = ("hirosco", "robotics", "supervisor", "simulation", "ground", "tools", "cmake")
 TEXTS = (".cpp", ".hpp", ".py", ".js", ".mjs", ".json", ".html", ".css", ".svg", ".urdf", ".xml", ".xsd", ".cmake", ".txt", ".in", "")
 OUTSIDE = {"node_modules", "__pycache__", "build", "dist"}
 # What may name somebody all the same, and why.

@@ -6,7 +6,7 @@ breaks it, and breaks each rule once itself, to be caught."""
 import collections, pathlib, re, sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PARTS = ("hirosco", "supervisor", "subsystems", "simulation", "missions", "ground", "tools", "tests", "bench")
+PARTS = ("hirosco", "robotics", "supervisor", "subsystems", "simulation", "missions", "ground", "tools", "tests", "bench")
 LONGEST_FILE, LONGEST_CLASS = 500, 300
 OTHERS = {"supervisor/supervisor.hpp": 90}
 CODE = (".cpp", ".hpp", ".py", ".js", ".mjs")

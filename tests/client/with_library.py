@@ -21,7 +21,7 @@ def works(python, needed):
     return subprocess.run([python, "-c", needed], capture_output=True, check=False).returncode == 0
 
 
-def interpreter(folder, needed=NEEDED, requirements=REQUIREMENTS):
+def interpreter(folder, needed=NEEDED, requirements=REQUIREMENTS, seconds=120):
     """(path of an interpreter that has the library, "") or (None, why there is none)."""
     if works(sys.executable, needed):
         return sys.executable, ""
@@ -33,7 +33,7 @@ def interpreter(folder, needed=NEEDED, requirements=REQUIREMENTS):
              [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", str(requirements)])
     for step in steps:
         try:
-            done = subprocess.run(step, capture_output=True, text=True, timeout=120, check=False)
+            done = subprocess.run(step, capture_output=True, text=True, timeout=seconds, check=False)
         except (OSError, subprocess.TimeoutExpired) as error:
             return None, str(error)
         if done.returncode != 0:

@@ -17,6 +17,10 @@ FRAMES = "hirosco/data_transfer/control/stream_frame.cpp"
 DATAGRAMS = "hirosco/data_transfer/link/link_datagram.cpp"
 DICTIONARY = "hirosco/parameter/dictionary.cpp"
 PARAMETERS = "hirosco/pus/st20_parameter/parameter_service.cpp"
+URDF = "robotics/urdf/read.cpp"
+URDF_TREE = "robotics/urdf/connect.cpp"
+# What a target needs of the system besides the C++ library.
+SYSTEM = {"urdf": ["-isystem", "/usr/include/eigen3", "-lexpat"]}
 # The files of a target, and its plants: what stands in a file, and what does in its place.
 TARGETS = {"arguments": (
     [ARGUMENTS, "hirosco/pus/st08_function/function_service.cpp", "hirosco/pus/st01_verification/verification.cpp",
@@ -63,7 +67,19 @@ TARGETS = {"arguments": (
      "a status that no producer has is handed on":
          (DATAGRAMS, "status > worst", "status > worst + 1"),
      "what another handshake agreed on is taken":
-         (DATAGRAMS, "if (said != agreed_)", "if (said.link != agreed_.link)")})}
+         (DATAGRAMS, "if (said != agreed_)", "if (said.link != agreed_.link)")}),
+    "urdf": (
+    [URDF, URDF_TREE, "robotics/urdf/describe.cpp", "robotics/urdf/words.cpp", "robotics/dynamics/model.cpp", "robotics/dynamics/dynamics.cpp", "hirosco/xml/reader.cpp"],
+    {"the lower limit may be above the upper one":
+         (URDF, "if (*limits.lower > *limits.upper)", "if (*limits.lower > *limits.upper + 1)"),
+     "damping may drive a joint":
+         (URDF, "if (*to < 0)", "if (*to < -1)"),
+     "an inertia may be that of no body":
+         (URDF_TREE, "if (is_body(body)) return;", "if (body.mass >= 0) return;"),
+     "a mimic joint follows the first joint, whomever it names":
+         (URDF_TREE, "whole.joint = found->second;", "whole.joint = 0;"),
+     "a second link of a name is taken":
+         (URDF_TREE, "if (!is_new)", "if (!is_new && list.size() > 9)")})}
 
 
 def compiler():
@@ -76,9 +92,9 @@ def compiler():
     return None
 
 
-def built(name, sources, program):
+def built(name, sources, program, system):
     """Sources are compiled anew; the library's headers may have changed since."""
-    done = subprocess.run([name, *FLAGS, *map(str, sources), "-o", str(program)], capture_output=True, text=True, check=False)
+    done = subprocess.run([name, *FLAGS, *map(str, sources), *system, "-o", str(program)], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         sys.exit(f"cannot be built:\n{done.stderr[-4000:]}")
     return program
@@ -103,6 +119,7 @@ def main():
     if name is None:
         return subprocess.run([ROOT / "tools/skip_reason", "no-libfuzzer"], check=False).returncode
     files, plants = TARGETS[given.target]
+    system = SYSTEM.get(given.target, [])
     harness = HERE / f"{given.target}_fuzz.cpp"
     folder = given.build / "fuzz" / given.target
     corpus = folder / "corpus"
@@ -111,7 +128,7 @@ def main():
     lines = [line for line in (HERE / f"{given.target}_corpus.txt").read_text().splitlines() if not line.startswith("#")]
     for number, line in enumerate(lines):
         (corpus / f"seed{number}").write_bytes(bytes.fromhex(line))
-    problem = fuzz(built(name, [harness, *(ROOT / file for file in files)], folder / "target"), corpus, given.runs)
+    problem = fuzz(built(name, [harness, *(ROOT / file for file in files)], folder / "target", system), corpus, given.runs)
     print(f"{given.runs} runs of {given.target}: {problem or 'nothing found'}")
     missed = 0
     for says, (file, good, bad) in plants.items():
@@ -121,7 +138,7 @@ def main():
         planted = folder / (re.sub(r"\W", "_", file) + ".cpp")
         planted.write_text(text.replace(good, bad))
         sources = [harness, planted, *(ROOT / other for other in files if other != file)]
-        found = fuzz(built(name, sources, folder / "planted"), corpus, MOST_RUNS_OF_A_PLANT)
+        found = fuzz(built(name, sources, folder / "planted", system), corpus, MOST_RUNS_OF_A_PLANT)
         print(f"{'found' if found else 'NOT FOUND'}: {says}", flush=True)
         missed += found is None
     return 1 if problem or missed else 0

@@ -44,6 +44,13 @@ struct CheckOptions {
 };
 int check(const CheckOptions& options);
 
+struct DynamicsOptions {
+  std::string model;                 ///< URDF file
+  std::string tip;                   ///< link; empty = the only one at an end
+};
+/// Moves a robot as lines on standard input say (adr 0101).
+int dynamics(const DynamicsOptions& options);
+
 struct ManifestOptions {
   std::string mission;
   bool write{false};                 ///< into the file that the mission names, else to standard output

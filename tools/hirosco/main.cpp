@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "hirosco/utilities/version.hpp"
+#include "tools/dynamics/batch.hpp"
 #include "tools/hirosco/command_line.hpp"
 #include "tools/hirosco/commands.hpp"
 
@@ -112,6 +113,14 @@ int read_and_do(int argc, char** argv) {
   permissions_command->add_option("--mode", permissions_options.mode, "Only this mode");
   permissions_command->add_flag("--csv", permissions_options.csv,
                                 "A line for each request; ten places, one for each state");
+
+  DynamicsOptions dynamics_options;
+  auto* dynamics_command = app.add_subcommand(
+      "dynamics", "The equations of motion of a robot from a URDF file: JSON lines in, JSON lines out");
+  dynamics_command->add_option("model", dynamics_options.model, "URDF file")->required();
+  dynamics_command->add_option("--tip", dynamics_options.tip,
+                               "Link whose Jacobians are told; by default the only one at an end");
+  dynamics_command->footer(batch_help);
 
   ManifestOptions manifest_options;
   auto* manifest_command =
@@ -221,6 +230,7 @@ int read_and_do(int argc, char** argv) {
   if (*report_command) return mission_program("report", judged_mission, {});
   if (*tc_command) return telecommand(tc_options);
   if (*mode_command) return mode(mode_options);
+  if (*dynamics_command) return dynamics(dynamics_options);
   if (*manifest_command) return manifest(manifest_options);
   if (*permissions_command) return permissions(permissions_options);
   if (*status_command) return status(status_options);
