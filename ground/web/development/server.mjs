@@ -82,8 +82,8 @@ for (const message of until(now + past_s)) take(message);
 now += past_s;
 
 const types = {'.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.json': 'application/json',
-  '.urdf': 'application/xml', '.txt': 'text/plain; charset=utf-8'};
-const policy = "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; " +
+  '.urdf': 'application/xml', '.woff2': 'font/woff2', '.txt': 'text/plain; charset=utf-8'};
+const policy = "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; font-src 'self'; img-src 'self' blob: data:; connect-src 'self'; " +
   "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 function answer(response, code, body) {
@@ -148,6 +148,8 @@ const server = createServer(async (request, response) => {
     '/api/commands': () => request.method === 'POST' ? command(body) : {commands},
     '/api/commands/preview': () => ({octets: '180ae796001929080100014d4f56455f544f0000000000000000',
       permitted: body.function !== 'MOVE_TO', code: body.function === 'MOVE_TO' ? 15 : null, reason: body.function === 'MOVE_TO' ? 'setpoint owned by a link' : null}),
+    '/api/modes/preview': () => ({mode: body.mode, against: [], steps: (flight.mission.modes.find((one) => one.name === body.mode)?.commission ?? [])
+        .flatMap((one, i) => [['configured as', one.configuration], ['to', one.state]].map(([word, what]) => ({stage: i + 1, subsystem: one.subsystem, what: `${word} ${what}`})))}),
     '/api/timeline': () => timeline(query),
     '/api/log': () => {
       const lines = archive.filter((one) => one.type === 'event').reverse().map((one, i) => ({number: archive.length - i, t: one.t, apid: one.apid,

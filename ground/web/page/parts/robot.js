@@ -1,27 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {fault} from '../commanding.js';
 import {age_text, number_text} from '../format.js';
 import {html} from '../html.js';
-import {mission_folder, mission_has, mission_json} from '../mission_files.js';
+import {mission_folder} from '../mission_files.js';
 import {target_line} from './hand.js';
+import {drawing_code, scene_of_mission} from './scene_file.js';
 import {fallen_text, inhibited_text} from '../stop.js';
 import {columns, fast, freshness, mission, operator, replay, slow, status_of, values} from '../store.js';
-
-/// scene.json of the mission; null when there is none, undefined while it is not known.
-export const scene_of_mission = signal(undefined);
-const drawing_code = () => import('./robot_drawing.js');
-// A page that opens with the robot in it asks for the code before it knows what to draw.
-const opens_with_robot = !/^#\/(?!overview)/.test(location.hash);
-mission_has('scene.json').then((there) => {
-  if (!there) return null;
-  if (opens_with_robot) drawing_code().catch(() => {});
-  return mission_json('scene.json');
-})
-    .then((description) => { scene_of_mission.value = description; })
-    .catch(() => { scene_of_mission.value = null; });
 
 const gamepad_period_ms = 60;
 const dead_zone = 0.08;

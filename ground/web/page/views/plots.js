@@ -114,7 +114,7 @@ function Picker({on_pick}) {
 
 export function Plots({query, paused, set_paused}) {
   const asked = parsed(query);
-  const state = asked.groups.length ? asked : {...asked, groups: first_plots()};
+  const state = asked.groups.length ? asked : {...asked, groups: first_plots().map((plot) => plot.names)};
   const [zoom, set_zoom] = useState(null);
   const go = (change) => { location.hash = address({...state, ...change}); };
   const range = zoom ?? (paused !== null ? [paused - state.window_s, paused] : null);
