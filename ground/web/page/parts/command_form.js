@@ -4,13 +4,13 @@
 // A telecommand from its descriptor: one field for each argument, judged while it is typed, the octets and the supervisor's
 // answer to "permitted now?" before sending, the chain of verdicts after.
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {signal} from '@preact/signals';
 import {preview, send, send_and_say} from '../commanding.js';
 import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, mission, mode_of, operator, outcome_of, replay, slow, status_of, subsystem_of, values} from '../store.js';
 import {arguments_text} from './arguments.js';
 import {scene_of_mission} from './scene_file.js';
+import {fill_form, kept_texts, typed} from './typed.js';
 
 const integer_ranges = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 4294967295], INT8: [-128, 127], INT16: [-32768, 32767],
   INT32: [-2147483648, 2147483647], UINT64: [0n, 2n ** 64n - 1n], INT64: [-(2n ** 63n), 2n ** 63n - 1n]};
@@ -164,17 +164,11 @@ function usePreview(subsystem, action, sent_values) {
   return answer;
 }
 
-/// What was typed into a form stays when the view is left: "SUBSYSTEM.FUNCTION" -> {argument: text}.
-const kept_texts = signal({});
-/// The form in front: {subsystem, action, values}, for those who show what it would do.
-export const typed = signal(null);
-export function fill_form(subsystem, action, texts) {
-  const key = `${subsystem}.${action}`;
-  kept_texts.value = {...kept_texts.value, [key]: {...kept_texts.value[key], ...texts}};
+/// The parameters that the arguments of a motion lead, as scene.json has them of its robots: {argument: parameter}.
+function led_by(subsystem, action) {
+  const robot = scene_of_mission.value?.robots?.find((one) => one.subsystem === subsystem && one.goal?.function === action);
+  return Object.fromEntries(Object.entries(robot?.goal.joints ?? {}).map(([joint, argument]) => [argument, robot.joints[joint]]));
 }
-
-/// The arguments that lead parameters, as scene.json has them of its robots: {argument: parameter}.
-const led_by = (subsystem, action) => scene_of_mission.value?.robots?.map((robot) => robot.goal).find((goal) => goal?.subsystem === subsystem && goal?.function === action)?.arguments ?? {};
 
 /// What was sent last, to be sent again with one click: its words go back into the form, or at once where it has none.
 function Recent({subsystem}) {
