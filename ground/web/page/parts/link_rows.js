@@ -50,7 +50,7 @@ function Row({link}) {
   return html`<div class=${`link_row ${is_known() ? '' : 'stale'}`}><div class="row"><b title=${link.provides}>${link.provides ?? link.name ?? `link ${link.id}`}</b>
       <span class=${up ? '' : 'down'}>${up ? duration_text(now.latency_mean_ns ?? NaN) : is_wanted(link) ? 'down' : 'idle'}</span></div>
     <svg class="budget" viewBox="0 0 100 4" preserveAspectRatio="none" aria-hidden="true"><rect class="all" width="100" height="4" /><rect class="used" width=${100 * part} height="4" /></svg>
-    <div class="row"><small>${link.from} → ${link.to}</small><small>${up ? `${rate_text(rate_hz)}, lost ${number_text(now.lost)}` : ''}</small></div></div>`;
+    <div class="row second"><small>${link.from} → ${link.to}</small><small>${up ? `${rate_text(rate_hz)}, lost ${number_text(now.lost)}` : ''}</small></div></div>`;
 }
 
 export const links_hint = () => {

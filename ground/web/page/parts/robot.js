@@ -121,7 +121,7 @@ export function Robot() {
     ${description ? html`<${Verdict} description=${description} />
       <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="inhibited" />inhibited</span>` : html`<span><i />measured</span>${
         typed.value?.values || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}<span><i class="touched" />touched</span>${
-        description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span>drag the handle or the fingertip</span>` : null}</div>` : null}
+        description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">drag the handle or the fingertip</span>` : null}</div>` : null}
   </div>`;
 }
 

@@ -377,7 +377,9 @@ export class RobotView {
       }
     }
     this.tags.lay(this.size.x, this.size.y, this.taken ?? [], telling);
-    if (telling) this.on_words?.();
+    clearTimeout(this.words_timer);
+    // The last words are told also when nothing moves any more.
+    if (!telling) this.words_timer = setTimeout(() => this.draw_soon(), words_ms);
   }
 
   is_in_inset(event) {
@@ -417,6 +419,7 @@ export class RobotView {
     cancelAnimationFrame(this.waiting);
     clearTimeout(this.pause);
     clearTimeout(this.still_timer);
+    clearTimeout(this.words_timer);
     this.closed = true;
     this.observer.disconnect();
     this.controls.dispose();
