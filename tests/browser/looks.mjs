@@ -37,13 +37,24 @@ export function cut_texts() {
 /// Pieces of text of which one lies on another.
 export function overlapping_texts() {
   const boxes = [];
+  /// What of a box the boxes around it let be seen.
+  const shown = (whole, parent) => {
+    let {left, top, right, bottom} = whole;
+    for (let above = parent; above && above !== document.body; above = above.parentElement) {
+      if (!/(hidden|clip|auto|scroll)/.test(getComputedStyle(above).overflowX)) continue;
+      const limit = above.getBoundingClientRect();
+      [left, top, right, bottom] = [Math.max(left, limit.left), Math.max(top, limit.top), Math.min(right, limit.right), Math.min(bottom, limit.bottom)];
+    }
+    return {left, top, right, bottom, width: right - left, height: bottom - top};
+  };
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const text = node.textContent.trim(), parent = node.parentElement;
     if (!text || !parent.checkVisibility({opacityProperty: true, visibilityProperty: true}) || parent.closest('.unseen, option, .toasts, [aria-hidden=true]')) continue;
     const range = document.createRange();
     range.selectNodeContents(node);
-    for (const box of range.getClientRects()) {
+    for (const whole of range.getClientRects()) {
+      const box = shown(whole, parent);
       if (box.width < 2 || box.height < 2) continue;
       // What is scrolled away, or lies under a menu, is not seen.
       const seen = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);

@@ -24,14 +24,14 @@ let browser;
 before(async () => { browser = await open_browser(); });
 after(() => browser.close());
 
-for (const state of ['synthetic', 'synthetic:stopped']) {
-  describe(`the page of a flight that is ${state === 'synthetic' ? 'well' : 'stopped'}`, () => {
+for (const state of ['synthetic:well', 'synthetic:stopped']) {
+  describe(`the page of a flight that is ${state === 'synthetic:well' ? 'well' : 'stopped'}`, () => {
     let served, page;
     before(async () => {
       served = await serve(state);
       ({page} = await open_page(browser.context, served.url));
       await page.waitForSelector('[data-test=subsystem-MANIPULATOR]');
-      if (state !== 'synthetic') await page.waitForSelector('[data-test=stop-banner]');
+      if (state !== 'synthetic:well') await page.waitForSelector('[data-test=stop-banner]');
     });
     after(() => served.end());
 
@@ -62,7 +62,7 @@ for (const state of ['synthetic', 'synthetic:stopped']) {
       const wrong = await in_every_view(async () => [...await typefaces(page)].filter(([, {own}]) => !own).map(([name, {letters}]) => `${letters} letters of ${name}`));
       assert.deepEqual([...new Set(wrong)], []);
     });
-    if (state === 'synthetic') {
+    if (state === 'synthetic:well') {
       it('is grey where all is well', async () => {
         await go(page, 'overview');
         await holds(page, () => document.querySelectorAll('.card').length > 0);

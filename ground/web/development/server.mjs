@@ -4,7 +4,7 @@
 // node development/server.mjs RECORDING|synthetic|hostile[:STATE] [PAGE [PORT]]: the page without a spacecraft. Answers as ground/api/README.md says,
 // from a recorded flight that it plays in a loop (development/record.mjs makes one) or from a made-up one; takes telecommands and completes
 // them. For work on the page's looks and tests of the page alone, with the token "development"; nothing here is part of what flies.
-// STATE is what is to be seen: stopped, stale (silent from 5 s on), observer, fresh (nothing yet), foreign (a mission without a page folder).
+// STATE is what is to be seen: well (nothing fails), stopped, stale (silent from 5 s on), observer, fresh (nothing yet), foreign (a mission without a page folder).
 // Port 0 takes a free one; the URL is the first line of what it prints.
 import {createReadStream, existsSync, readdirSync, readFileSync, statSync} from 'node:fs';
 import {createServer} from 'node:http';
@@ -15,7 +15,7 @@ import {WebSocketServer} from 'ws';
 const [asked, page = join(dirname(fileURLToPath(import.meta.url)), '../dist'), port = '8090'] = process.argv.slice(2);
 const [recording, state = 'normal'] = (asked ?? '').split(':');
 if (!recording) {
-  console.error('usage: node development/server.mjs RECORDING|synthetic|hostile[:stopped|stale|observer|fresh|foreign] [PAGE [PORT]]');
+  console.error('usage: node development/server.mjs RECORDING|synthetic|hostile[:well|stopped|stale|observer|fresh|foreign] [PAGE [PORT]]');
   process.exit(2);
 }
 const sources = process.env.HIROSCO_SOURCES ?? join(dirname(fileURLToPath(import.meta.url)), '../../..');

@@ -148,7 +148,7 @@ function Permission({answer, problem, subsystem, action}) {
 
 const preview_after_ms = 180;
 
-function usePreview(subsystem, action, sent_values) {
+function usePreview(subsystem, action, values) {
   const [answer, set_answer] = useState(null);
   const key = JSON.stringify([subsystem, action.name, values, mode_of.value.name, status_of(subsystem)?.state]);
   useEffect(() => {

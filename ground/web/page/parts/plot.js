@@ -107,7 +107,7 @@ function scales_of(units, about) {
     return [middle - half, middle + half];
   };
   return Object.fromEntries(units.map((unit) => [unit, unit.startsWith('times ') ?
-    {from: first, range: (_, low, high) => [low / Number(unit.slice(6)), high / Number(unit.slice(6))]} : about.least || about.range ? {range} : {}]));
+    {from: first, dir: Math.sign(Number(unit.slice(6))), range: (_, low, high) => [low, high].map((value) => value / Number(unit.slice(6))).sort((a, b) => a - b)} : about.least || about.range ? {range} : {}]));
 }
 
 function options_of(names, size, on_zoom, about) {

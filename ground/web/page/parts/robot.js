@@ -66,6 +66,7 @@ export function Robot() {
   const [problem, set_problem] = useState('');
   const [show, set_show] = useState({goal: true, limits: true, force: true, trail: true, frames: false});
   const [gamepad, set_gamepad] = useState(false);
+  const [loaded, set_loaded] = useState(false);
   const description = scene_of_mission.value;
   const hand = description?.hand && mission.value?.devices?.some((one) => one.name === description.hand.device) ? description.hand : null;
   useGamepad(gamepad && !replay.value, hand);
@@ -77,7 +78,9 @@ export function Robot() {
       if (over) return;
       view.current = new RobotView({stage: stage.current, still: still.current, tags: tags.current, leads: leads.current, window: window_ref.current}, mission_folder, description);
       await view.current.load();
-      if (!over) stage.current.dataset.loaded = 'yes';
+      if (over) return;
+      stage.current.dataset.loaded = 'yes';
+      set_loaded(true);
     }).catch((error) => over || set_problem(`No 3D here: ${error.message}`));
     return () => {
       over = true;
@@ -96,10 +99,12 @@ export function Robot() {
     view.current.show = show;
     view.current.stale = old;
     view.current.look_again(stopped);
-  }, [show, old, stopped.join(), Boolean(view.current)]);
+  }, [show, old, stopped.join(), loaded]);
   if (view.current) {
     view.current.hand_allowed = Boolean(hand) && operator.value;
-    view.current.taken = taken_boxes(stage.current);
+    const boxes = taken_boxes(stage.current);
+    if (JSON.stringify(boxes) !== JSON.stringify(view.current.taken)) view.current.draw_soon();
+    view.current.taken = boxes;
   }
   slow.value;
   const from = description?.camera;
@@ -119,7 +124,7 @@ export function Robot() {
     ${problem ? html`<p class="empty">${problem}</p>` : null}
     ${description?.inset ? html`<${Hand} description=${description} window_ref=${window_ref} />` : null}
     ${description ? html`<${Verdict} description=${description} />
-      <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="inhibited" />inhibited</span>` : html`<span><i />measured</span>${
+      <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="fallen" />inhibited</span>` : html`<span><i />measured</span>${
         typed.value?.values || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}<span><i class="touched" />touched</span>${
         description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">drag the handle or the fingertip</span>` : null}</div>` : null}
   </div>`;

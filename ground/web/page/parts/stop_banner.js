@@ -31,7 +31,6 @@ export function StopBanner() {
     <${Severity} severity=${told.severity} />
     <div class="words"><p class="first" data-test="stop-title">${told.title}</p>
       ${rising.value ? html`<${Rising} />` : html`<p class="second"><b>${clock_text(told.t, 3)}</b> ${told.detail} ${up_again ? 'It is up again.' : told.advice}</p>`}</div>
-    <span class="space" />
     <a class="out" href="#/events" data-test="stop-why">Why</a>
     <button class="out" onClick=${replay_it} data-test="stop-replay">Replay 5 s before</button>
     <a class="out" href=${plots.length ? `#/plots?p=${plots.map(encodeURIComponent).join('+')}` : '#/plots'} data-test="stop-plot">Plot</a>

@@ -3,7 +3,9 @@
 //
 // Parts to build a spacecraft of, by code: no file is loaded. A mission's parts.js gets `Kit` and makes its links and surroundings with it.
 // Lengths in metres, z is up.
-import * as T from 'three';
+import {
+  BoxGeometry, BufferGeometry, CatmullRomCurve3, Color, CylinderGeometry, ExtrudeGeometry, Group, LatheGeometry, Mesh, MeshPhongMaterial, MeshStandardMaterial, MultiplyOperation, Path, PlaneGeometry, Shape, SphereGeometry, TorusGeometry, TubeGeometry, Vector2, Vector3,
+} from 'three';
 import {RoundedBoxGeometry} from 'three/addons/geometries/RoundedBoxGeometry.js';
 import {mergeGeometries} from 'three/addons/utils/BufferGeometryUtils.js';
 import {canvas_texture, foil_normals, Random, solar_cells} from './surfaces.js';
@@ -12,20 +14,20 @@ const half_turn = Math.PI, quarter_turn = Math.PI / 2;
 
 /// The same surface as a processor can afford it: a metal is what it mirrors of one cube, in its own colour.
 function phong({envMap, roughness = 0.5, metalness = 0, envMapIntensity = 1, color = 0xffffff, ...rest}) {
-  const tint = new T.Color(color), metal = metalness > 0.6;
-  return new T.MeshPhongMaterial({...rest, color: tint.clone().multiplyScalar(metal ? 1.15 * envMapIntensity : 1), envMap: metal ? envMap : null, combine: T.MultiplyOperation,
+  const tint = new Color(color), metal = metalness > 0.6;
+  return new MeshPhongMaterial({...rest, color: tint.clone().multiplyScalar(metal ? 1.15 * envMapIntensity : 1), envMap: metal ? envMap : null, combine: MultiplyOperation,
     reflectivity: metal ? 0.82 * metalness : 0, specular: tint.clone().multiplyScalar(0.05 + 0.35 * metalness * (1 - roughness)), shininess: 4 + 90 * (1 - roughness) ** 3});
 }
 
 /// Materials by name; `environment` is what metals mirror: filtered, or a cube for a processor, or null.
 export function materials(environment, plain) {
-  const M = plain ? (options) => phong({envMap: environment, ...options}) : (options) => new T.MeshStandardMaterial({envMap: environment, ...options});
+  const M = plain ? (options) => phong({envMap: environment, ...options}) : (options) => new MeshStandardMaterial({envMap: environment, ...options});
   const foil = foil_normals();
   const blanket = (color, roughness, scale, repeat) => {
     const normalMap = foil.clone();
     normalMap.repeat.set(...repeat);
     normalMap.needsUpdate = true;
-    return M({color, roughness, metalness: 0.93, normalMap, normalScale: new T.Vector2(scale, scale), envMapIntensity: 0.95});
+    return M({color, roughness, metalness: 0.93, normalMap, normalScale: new Vector2(scale, scale), envMapIntensity: 0.95});
   };
   return {
     white: M({color: 0xe6e8ea, roughness: 0.46, metalness: 0.05, envMapIntensity: 0.75}),
@@ -48,7 +50,8 @@ export function materials(environment, plain) {
 export class Kit {
   /// `detail` 1 is for a graphics card, less for a processor that draws by itself.
   constructor(environment, detail) {
-    this.three = T;
+    // What the parts below do not offer. All of three.js would be twice as much to send.
+    this.three = {BoxGeometry, BufferGeometry, Group, Mesh, Path, Shape, Vector3};
     this.material = materials(environment, environment?.isCubeTexture ?? false);
     this.detail = detail;
     this.random = new Random(7);
@@ -58,13 +61,13 @@ export class Kit {
   #segments(count) { return Math.max(8, Math.round(count * this.detail)); }
 
   group(...parts) {
-    const group = new T.Group();
+    const group = new Group();
     if (parts.length) group.add(...parts);
     return group;
   }
 
   mesh(geometry, material, at = [0, 0, 0], turned = [0, 0, 0]) {
-    const mesh = new T.Mesh(geometry, material);
+    const mesh = new Mesh(geometry, material);
     mesh.position.set(...at);
     mesh.rotation.set(...turned);
     return mesh;
@@ -76,48 +79,48 @@ export class Kit {
 
   /// Along z, its middle at `at`.
   cylinder(radius, height, material, at, top = radius, segments = 48) {
-    const geometry = new T.CylinderGeometry(top, radius, height, this.#segments(segments));
+    const geometry = new CylinderGeometry(top, radius, height, this.#segments(segments));
     geometry.rotateX(quarter_turn);
     return this.mesh(geometry, material, at);
   }
 
   sphere(radius, material, at) {
-    return this.mesh(new T.SphereGeometry(radius, this.#segments(32), this.#segments(20)), material, at);
+    return this.mesh(new SphereGeometry(radius, this.#segments(32), this.#segments(20)), material, at);
   }
 
   plane(width, height, material, at, turned) {
-    return this.mesh(new T.PlaneGeometry(width, height), material, at, turned);
+    return this.mesh(new PlaneGeometry(width, height), material, at, turned);
   }
 
   /// Turned on a lathe around z: [[radius, z], ...] from below to above.
   turned(profile, material, segments = 56) {
-    const geometry = new T.LatheGeometry(profile.map(([r, z]) => new T.Vector2(Math.max(r, 1e-4), z)), this.#segments(segments));
+    const geometry = new LatheGeometry(profile.map(([r, z]) => new Vector2(Math.max(r, 1e-4), z)), this.#segments(segments));
     geometry.rotateX(quarter_turn);
-    return new T.Mesh(geometry, material);
+    return new Mesh(geometry, material);
   }
 
   ring(radius, thickness, material, at) {
-    return this.mesh(new T.TorusGeometry(radius, thickness, this.#segments(10), this.#segments(40)), material, at);
+    return this.mesh(new TorusGeometry(radius, thickness, this.#segments(10), this.#segments(40)), material, at);
   }
 
   bolts(count, radius, z, size, height, material) {
     const all = Array.from({length: count}, (_, i) => {
-      const geometry = new T.CylinderGeometry(size, size, height, 6);
+      const geometry = new CylinderGeometry(size, size, height, 6);
       geometry.rotateX(quarter_turn);
       geometry.translate(radius * Math.cos(i / count * 2 * half_turn), radius * Math.sin(i / count * 2 * half_turn), z);
       return geometry;
     });
-    return new T.Mesh(mergeGeometries(all), material);
+    return new Mesh(mergeGeometries(all), material);
   }
 
   /// The outline of a link: two circles, `length` apart along x, and their tangents; `pocket` [x1, x2, r1, r2] is cut out.
   bone(first, second, length, pocket) {
-    const shape = new T.Shape(), lean = quarter_turn - Math.asin((first - second) / length);
+    const shape = new Shape(), lean = quarter_turn - Math.asin((first - second) / length);
     shape.absarc(0, 0, first, lean, 2 * half_turn - lean, false);
     shape.absarc(length, 0, second, -lean, lean, false);
     shape.closePath();
     if (pocket) {
-      const [x1, x2, r1, r2] = pocket, hole = new T.Path();
+      const [x1, x2, r1, r2] = pocket, hole = new Path();
       hole.absarc(x1, 0, r1, quarter_turn, 3 * quarter_turn, false);
       hole.absarc(x2, 0, r2, -quarter_turn, quarter_turn, false);
       hole.closePath();
@@ -128,22 +131,22 @@ export class Kit {
 
   /// An outline in x and y as a plate of `depth` with its middle at z.
   plate(shape, depth, bevel, material, z = 0) {
-    const geometry = new T.ExtrudeGeometry(shape, {depth: depth - 2 * bevel, bevelEnabled: bevel > 0, bevelSize: bevel, bevelThickness: bevel,
+    const geometry = new ExtrudeGeometry(shape, {depth: depth - 2 * bevel, bevelEnabled: bevel > 0, bevelSize: bevel, bevelThickness: bevel,
       bevelSegments: this.detail < 1 ? 1 : 3, curveSegments: this.#segments(36), bevelOffset: -bevel});
     geometry.translate(0, 0, z - depth / 2 + bevel);
-    return new T.Mesh(geometry, material);
+    return new Mesh(geometry, material);
   }
 
   outline(points) {
-    const shape = new T.Shape();
+    const shape = new Shape();
     points.forEach(([x, y], i) => i ? shape.lineTo(x, y) : shape.moveTo(x, y));
     shape.closePath();
     return shape;
   }
 
   tube(points, radius, material, segments = 48) {
-    const curve = new T.CatmullRomCurve3(points.map((point) => new T.Vector3(...point)));
-    return new T.Mesh(new T.TubeGeometry(curve, this.#segments(segments), radius, this.detail < 1 ? 5 : 8), material);
+    const curve = new CatmullRomCurve3(points.map((point) => new Vector3(...point)));
+    return new Mesh(new TubeGeometry(curve, this.#segments(segments), radius, this.detail < 1 ? 5 : 8), material);
   }
 
   /// Along +x instead of +z.
@@ -163,7 +166,7 @@ export class Kit {
       context.textBaseline = 'middle';
       context.fillText(text, w / 2, h / 2);
     });
-    const mesh = this.plane(width, height, new T.MeshStandardMaterial({map, transparent: true, roughness: 0.6, polygonOffset: true, polygonOffsetFactor: -2}));
+    const mesh = this.plane(width, height, new MeshStandardMaterial({map, transparent: true, roughness: 0.6, polygonOffset: true, polygonOffsetFactor: -2}));
     mesh.userData.label = true;
     return mesh;
   }
@@ -251,8 +254,8 @@ export class Kit {
       const part = i / (turns * 12), angle = i / 12 * 2 * half_turn, wide = part < 0.05 || part > 0.95 ? 0 : radius;
       return [part, wide * Math.cos(angle), wide * Math.sin(angle)];
     });
-    const curve = new T.CatmullRomCurve3(points.map((point) => new T.Vector3(...point)));
-    return new T.Mesh(new T.TubeGeometry(curve, turns * 12, wire, 4), material);
+    const curve = new CatmullRomCurve3(points.map((point) => new Vector3(...point)));
+    return new Mesh(new TubeGeometry(curve, turns * 12, wire, 4), material);
   }
 }
 
@@ -267,8 +270,8 @@ export function merged(group) {
     for (const name of Object.keys(geometry.attributes)) if (!['position', 'normal', 'uv'].includes(name)) geometry.deleteAttribute(name);
     by_material.set(part.material, [...(by_material.get(part.material) ?? []), geometry]);
   });
-  const whole = new T.Group();
-  for (const [material, geometries] of by_material) whole.add(new T.Mesh(mergeGeometries(geometries), material));
+  const whole = new Group();
+  for (const [material, geometries] of by_material) whole.add(new Mesh(mergeGeometries(geometries), material));
   for (const part of rest) {
     const matrix = home.clone().multiply(part.matrixWorld);
     part.removeFromParent();

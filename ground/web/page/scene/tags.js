@@ -55,10 +55,20 @@ export class Tags {
         continue;
       }
       let box = this.#box(tag, tag.place);
-      if (choose && !this.#fits(box, set, width, height)) {
-        const free = places.findIndex((_, i) => this.#fits(this.#box(tag, i), set, width, height));
-        if (free >= 0) tag.place = free;
-        box = this.#box(tag, tag.place);
+      if (choose) {
+        tag.crowded = false;
+        if (!this.#fits(box, set, width, height)) {
+          const free = places.findIndex((_, i) => this.#fits(this.#box(tag, i), set, width, height));
+          if (free >= 0) tag.place = free;
+          tag.crowded = free < 0;
+          box = this.#box(tag, tag.place);
+        }
+      }
+      // Rather no number than one upon another.
+      if (tag.crowded) {
+        tag.node.style.visibility = 'hidden';
+        tag.line.setAttribute('visibility', 'hidden');
+        continue;
       }
       set.push(box);
       tag.node.style.visibility = '';
