@@ -124,8 +124,7 @@ void Api::opened(const HttpRequest& request, Peer& peer) {
 // --- the page --------------------------------------------------------------------------------------------------------
 
 HttpResponse Api::page_file(const HttpRequest& request, const std::string& path) const {
-  const bool zipped = header(request, "accept-encoding").find("gzip") != std::string::npos;
-  auto file = page_.file(path, zipped);
+  auto file = page_.file(path, {.accepts = header(request, "accept-encoding"), .has = header(request, "if-none-match")});
   return file ? with_headers(std::move(*file)) : error(404, "nothing is there");
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -75,20 +76,67 @@ the target hirosco_ground_page. The API works without it; see ground/api/README.
   return std::ranges::mismatch(top, there).in1 == top.end();
 }
 
+/// The best first.
+constexpr std::array<std::pair<const char*, const char*>, 2> encodings{{{"br", ".br"}, {"gzip", ".gz"}}};
+constexpr unsigned not_modified = 304;
+
+/// Whether the bundler put the hash of the content into the name: NAME-XXXXXXXX.ENDING.
+[[nodiscard]] bool named_by_content(const std::string& name) {
+  constexpr std::size_t hash_length = 8;
+  const std::size_t dash = name.rfind('-');
+  const std::size_t dot = dash == std::string::npos ? dash : name.find('.', dash);
+  if (dot == std::string::npos || dot - dash - 1 != hash_length) return false;
+  const auto of_hash = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); };
+  return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(dash) + 1,
+                     name.begin() + static_cast<std::ptrdiff_t>(dot), of_hash);
+}
+
+/// FNV-1a over type, encoding and content: another file has another tag, and so has the same one compressed otherwise.
+[[nodiscard]] std::string tag_of(const HttpResponse& response) {
+  std::uint64_t hash = 14695981039346656037U;
+  const auto take = [&hash](std::string_view text) {
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  };
+  take(response.type);
+  for (const auto& [name, value] : response.headers) take(value);
+  take(response.body);
+  std::string digits;
+  for (int shift = 60; shift >= 0; shift -= 4) digits += "0123456789abcdef"[(hash >> static_cast<unsigned>(shift)) & 15U];
+  // Weak: the shell may compress what is the same file.
+  return "W/\"" + digits + '"';
+}
+
 }  // namespace
 
-std::optional<HttpResponse> PageFiles::file(const std::string& path, bool zipped) const {
+std::optional<HttpResponse> PageFiles::file(const std::string& path, const Browser& browser) const {
   if (!plain_path(path)) return std::nullopt;
-  if (path.starts_with(mission_prefix)) return of_mission(path.substr(mission_prefix.size()));
-  const std::string wanted = path == "/" ? "/index.html" : path;
-  const std::filesystem::path file = page_ / wanted.substr(1);
+  auto response = path.starts_with(mission_prefix) ? of_mission(path.substr(mission_prefix.size()))
+                                                   : of_page(path == "/" ? "index.html" : path.substr(1), browser.accepts);
+  if (!response) return std::nullopt;
+  const std::string tag = tag_of(*response);
+  response->headers.emplace_back("ETag", tag);
+  if (browser.has.find(tag) != std::string_view::npos) {
+    response->status = not_modified;
+    response->body.clear();
+  }
+  return response;
+}
+
+std::optional<HttpResponse> PageFiles::of_page(const std::string& name, std::string_view accepts) const {
+  const std::filesystem::path file = page_ / name;
   HttpResponse response;
   const char* type = type_of(file);
   response.type = type != nullptr ? type : "application/octet-stream";
-  auto content = zipped ? content_of(file.string() + ".gz") : std::nullopt;
-  if (content) response.headers.emplace_back("Content-Encoding", "gzip");
+  response.headers.emplace_back("Cache-Control", named_by_content(name) ? "public, max-age=31536000, immutable" : "no-cache");
+  response.headers.emplace_back("Vary", "Accept-Encoding");
+  std::optional<std::string> content;
+  for (const auto& [encoding, ending] : encodings) {
+    if (content || accepts.find(encoding) == std::string_view::npos) continue;
+    content = content_of(file.string() + ending);
+    if (content) response.headers.emplace_back("Content-Encoding", encoding);
+  }
   if (!content) content = content_of(file);
-  if (!content && wanted == "/index.html") content = plain_page;
+  if (!content && name == "index.html") content = plain_page;
   if (!content) return std::nullopt;
   response.body = std::move(*content);
   return response;
@@ -96,6 +144,7 @@ std::optional<HttpResponse> PageFiles::file(const std::string& path, bool zipped
 
 std::optional<HttpResponse> PageFiles::of_mission(const std::string& name) const {
   HttpResponse response;
+  response.headers.emplace_back("Cache-Control", "no-cache");
   if (name == "index.json") {
     response.body = names_of_mission();
     return response;

@@ -33,32 +33,32 @@ class PageFilesTest : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder); }
 
   void write(const std::string& name, const std::string& content) { std::ofstream{folder / name} << content; }
-  [[nodiscard]] bool there(const std::string& path) const { return files->file(path, false).has_value(); }
+  [[nodiscard]] bool there(const std::string& path) const { return files->file(path, {}).has_value(); }
 
   fs::path folder;
   std::optional<PageFiles> files;
 };
 
 TEST_F(PageFilesTest, OfAMissionAreServedWithTheTypeThatTheirNameSays) {
-  const auto scene = files->file("/mission/scene.json", false);
+  const auto scene = files->file("/mission/scene.json", {});
   ASSERT_TRUE(scene);
   EXPECT_EQ(scene->body, "{}");
   EXPECT_EQ(scene->type, "application/json");
-  EXPECT_EQ(files->file("/mission/tour.js", false)->type, "text/javascript; charset=utf-8");
-  EXPECT_EQ(files->file("/mission/arm.urdf", false)->type, "application/xml");
-  EXPECT_EQ(files->file("/mission/meshes/link.stl", true)->type, "model/stl");
+  EXPECT_EQ(files->file("/mission/tour.js", {})->type, "text/javascript; charset=utf-8");
+  EXPECT_EQ(files->file("/mission/arm.urdf", {})->type, "application/xml");
+  EXPECT_EQ(files->file("/mission/meshes/link.stl", {})->type, "model/stl");
 }
 
 TEST_F(PageFilesTest, OfAMissionAreListedSoThatAPageNeedNotTry) {
   write("page/index.json", "[\"forged\"]");
-  EXPECT_EQ(files->file("/mission/index.json", false)->body, R"(["arm.urdf","index.json","scene.json","tour.js"])");
+  EXPECT_EQ(files->file("/mission/index.json", {})->body, R"(["arm.urdf","index.json","scene.json","tour.js"])");
 }
 
 TEST_F(PageFilesTest, OfAMissionWithoutThemAreAnEmptyList) {
-  EXPECT_EQ(PageFiles({}, folder / "none").file("/mission/index.json", false)->body, "[]");
-  EXPECT_EQ(PageFiles({}, {}).file("/mission/index.json", false)->body, "[]");
-  EXPECT_FALSE(PageFiles({}, {}).file("/mission/scene.json", false));
-  EXPECT_FALSE(PageFiles({}, {}).file("/mission/etc/passwd.txt", false));
+  EXPECT_EQ(PageFiles({}, folder / "none").file("/mission/index.json", {})->body, "[]");
+  EXPECT_EQ(PageFiles({}, {}).file("/mission/index.json", {})->body, "[]");
+  EXPECT_FALSE(PageFiles({}, {}).file("/mission/scene.json", {}));
+  EXPECT_FALSE(PageFiles({}, {}).file("/mission/etc/passwd.txt", {}));
 }
 
 TEST_F(PageFilesTest, LeadOutOfTheirFolderByNoName) {
@@ -103,9 +103,56 @@ TEST_F(PageFilesTest, OfThePageAreNotHiddenByAMission) {
   write("own/main.js", "page");
   write("page/main.js", "mission");
   const PageFiles both{folder / "own", folder / "page"};
-  EXPECT_EQ(both.file("/main.js", false)->body, "page");
-  EXPECT_EQ(both.file("/mission/main.js", false)->body, "mission");
-  EXPECT_FALSE(both.file("/scene.json", false));
+  EXPECT_EQ(both.file("/main.js", {})->body, "page");
+  EXPECT_EQ(both.file("/mission/main.js", {})->body, "mission");
+  EXPECT_FALSE(both.file("/scene.json", {}));
+}
+
+[[nodiscard]] std::string header_of(const std::optional<HttpResponse>& response, const std::string& name) {
+  if (response)
+    for (const auto& [key, value] : response->headers)
+      if (key == name) return value;
+  return {};
+}
+
+TEST_F(PageFilesTest, AreSentCompressedAsTheBrowserTakesThemTheBestFirst) {
+  fs::create_directories(folder / "own");
+  write("own/main.js", "plain");
+  write("own/main.js.gz", "gzip");
+  write("own/main.js.br", "brotli");
+  write("own/alone.js", "alone");
+  const PageFiles own{folder / "own", {}};
+  EXPECT_EQ(own.file("/main.js", {.accepts = "gzip, deflate, br", .has = {}})->body, "brotli");
+  EXPECT_EQ(own.file("/main.js", {.accepts = "gzip", .has = {}})->body, "gzip");
+  EXPECT_EQ(own.file("/main.js", {})->body, "plain");
+  EXPECT_EQ(header_of(own.file("/main.js", {.accepts = "br", .has = {}}), "Content-Encoding"), "br");
+  EXPECT_EQ(own.file("/main.js", {.accepts = "br", .has = {}})->type, "text/javascript; charset=utf-8");
+  const auto alone = own.file("/alone.js", {.accepts = "gzip, br", .has = {}});
+  EXPECT_EQ(alone->body, "alone");
+  EXPECT_EQ(header_of(alone, "Content-Encoding"), "");
+}
+
+TEST_F(PageFilesTest, AreKeptForGoodWhereTheirNameHoldsTheirHashAndAskedForAgainElsewhere) {
+  fs::create_directories(folder / "own");
+  for (const char* name : {"main-AB12CD34.js", "main.js", "feed-worker.js", "main-ab12cd34.js"})
+    write(std::string{"own/"} + name, "x");
+  write("page/parts-AB12CD34.js", "x");
+  const PageFiles own{folder / "own", folder / "page"};
+  EXPECT_EQ(header_of(own.file("/main-AB12CD34.js", {}), "Cache-Control"), "public, max-age=31536000, immutable");
+  for (const char* path : {"/main.js", "/feed-worker.js", "/main-ab12cd34.js", "/", "/mission/parts-AB12CD34.js"})
+    EXPECT_EQ(header_of(own.file(path, {}), "Cache-Control"), "no-cache") << path;
+}
+
+TEST_F(PageFilesTest, AreNotSentAgainToABrowserThatHasThemAsTheyAre) {
+  const std::string tag = header_of(files->file("/mission/scene.json", {}), "ETag");
+  ASSERT_FALSE(tag.empty());
+  const auto again = files->file("/mission/scene.json", {.accepts = {}, .has = "\"other\", " + tag});
+  EXPECT_EQ(again->status, 304U);
+  EXPECT_EQ(again->body, "");
+  write("page/scene.json", "{\"robots\":[]}");
+  const auto changed = files->file("/mission/scene.json", {.accepts = {}, .has = tag});
+  EXPECT_EQ(changed->status, 200U);
+  EXPECT_EQ(changed->body, "{\"robots\":[]}");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/api/responses.hpp"
 
+#include <algorithm>
+
 #include "ground/model/json.hpp"
 
 namespace hirosco::ground {
@@ -22,7 +24,8 @@ HttpResponse with_headers(HttpResponse response) {
   response.headers.emplace_back("Referrer-Policy", "no-referrer");
   response.headers.emplace_back("Cross-Origin-Resource-Policy", "same-origin");
   response.headers.emplace_back("Cross-Origin-Opener-Policy", "same-origin");
-  response.headers.emplace_back("Cache-Control", "no-store");
+  const auto says_how_long = [](const auto& one) { return one.first == "Cache-Control"; };
+  if (std::ranges::none_of(response.headers, says_how_long)) response.headers.emplace_back("Cache-Control", "no-store");
   return response;
 }
 

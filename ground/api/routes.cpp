@@ -120,6 +120,10 @@ void post_preview(const Question& asked, const Respond& respond) {
   asked.session.preview(asked.body, [respond](const Answered<json>& result) { respond(outcome(result)); });
 }
 
+void post_mode_preview(const Question& asked, const Respond& respond) {
+  asked.session.mode_preview(asked.body, [respond](const Answered<json>& result) { respond(outcome(result)); });
+}
+
 void post_fault(const Question& asked, const Respond& respond) {
   asked.session.fault(asked.body, [respond](const Answered<json>& result) { respond(outcome(result)); });
 }
@@ -209,6 +213,15 @@ constexpr std::array table{
           "Preview",
           not_now,
           post_preview},
+    Route{"/api/modes/preview",
+          post,
+          "What would SET_MODE do now, and what is against it?",
+          {},
+          "ModeRequest",
+          200,
+          "ModePreview",
+          not_now,
+          post_mode_preview},
     Route{"/api/faults",
           post,
           "One line to a simulated device",

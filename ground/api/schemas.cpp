@@ -281,6 +281,14 @@ void add_requests(const Basic& is, json& into) {
                             {"permitted", nullable(is.yes_or_no)},
                             {"code", nullable(is.whole)},
                             {"reason", nullable(is.text)}});
+  into["ModeRequest"] = object({{"mode", described(is.text, "name of a mode")}});
+  into["ModePreview"] = object(
+      {{"mode", is.text},
+       {"against", described(is.texts, "why it would be refused; empty: it is possible")},
+       {"steps", described(list_of(object({{"stage", described(is.whole, "begins when the one before has ended")},
+                                           {"subsystem", is.text},
+                                           {"what", is.text}})),
+                           "what it would do, in order; empty: nobody moves")}});
   into["FaultRequest"] = object({{"device", is.text}, {"line", is.text}});
   into["FaultAnswer"] = object({{"answer", is.text}});
   into["Error"] = object({{"error", is.text}});

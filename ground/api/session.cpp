@@ -130,6 +130,10 @@ void Session::broadcast(const json& message) {
 
 Answered<json> Session::command(const json& body) { return commands_.send(body); }
 
+void Session::mode_preview(const json& body, std::function<void(Answered<json>)> done) {
+  commands_.mode_preview(body, std::move(done));
+}
+
 void Session::preview(const json& body, std::function<void(Answered<json>)> done) {
   commands_.preview(body, std::move(done));
 }

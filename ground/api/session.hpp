@@ -71,6 +71,7 @@ class Session {
   [[nodiscard]] Answered<nlohmann::json> command(const nlohmann::json& body);
   /// Answers through `done`, at the latest after 2 s.
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
+  void mode_preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   void fault(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   [[nodiscard]] nlohmann::json status() const;
   /// Of the link, in every status.

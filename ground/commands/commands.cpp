@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/commands/commands.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -119,6 +120,21 @@ void Commands::preview(const json& body, std::function<void(Answered<json>)> don
                      Question{octets, std::move(done), parts_.clock.now()});
 }
 
+void Commands::mode_preview(const json& body, std::function<void(Answered<json>)> done) {
+  const descriptor::Mission& mission = parts_.catalogue.mission();
+  const std::string name = text_of(body, "mode");
+  const auto wanted = std::ranges::find(mission.modes, name, &descriptor::Mode::name);
+  if (wanted == mission.modes.end()) return done(refuse(400, "no mode '" + name + "'"));
+  const std::array data{std::byte{wanted->id}};
+  const auto query =
+      make_telecommand({mission.supervisor.id, pus::st129::service_type, pus::st129::mode_question, 0}, parts_.source,
+                       next_count(), data);
+  const bool sent = parts_.connected() && query && parts_.send(*query, Way::InTurn);
+  if (!sent) return done(refuse(503, "no link to the spacecraft"));
+  ++sent_;
+  mode_questions_.push_back({wanted->id, std::move(done), parts_.clock.now()});
+}
+
 void Commands::not_sent(Octets packet) {
   const auto header = pus::read_primary_header(packet);
   const auto found = header ? open_.find({parts_.source, header->request_id}) : open_.end();
@@ -136,6 +152,7 @@ void Commands::hear(const Heard& heard, OnboardTime t) {
   if (!heard.telecommand.empty()) take_copy(heard.telecommand, t);
   if (heard.verdict) take_verdict(*heard.verdict, t);
   if (heard.answer) take_answer(*heard.answer);
+  if (heard.mode_answer) take_answer(*heard.mode_answer);
 }
 
 void Commands::take_verdict(const Verdict& verdict, OnboardTime t) {
@@ -198,6 +215,26 @@ void Commands::take_answer(const PermissionAnswer& answer) {
   question.done(std::move(result));
 }
 
+void Commands::take_answer(const ModeAnswer& answer) {
+  if (answer.destination != parts_.source) return;
+  const descriptor::Mission& mission = parts_.catalogue.mission();
+  const auto mode = std::ranges::find(mission.modes, answer.preview.mode, &descriptor::Mode::id);
+  json result{{"mode", mode != mission.modes.end() ? mode->name : ""},
+              {"against", answer.preview.against},
+              {"steps", json::array()}};
+  for (const auto& step : answer.preview.steps)
+    result["steps"].push_back(
+        {{"stage", step.stage}, {"subsystem", parts_.catalogue.name_of(step.subject)}, {"what", step.what}});
+  // Who asked the same meanwhile has the same answer.
+  std::vector<ModeQuestion> answered;
+  std::erase_if(mode_questions_, [&](ModeQuestion& one) {
+    if (one.mode != answer.preview.mode) return false;
+    answered.push_back(std::move(one));
+    return true;
+  });
+  for (const ModeQuestion& one : answered) one.done(result);
+}
+
 void Commands::expire(TimePoint now) {
   std::erase_if(open_, [&](const auto& entry) { return now - entry.second.since > command_limit; });
   std::vector<Question> unanswered;
@@ -211,6 +248,13 @@ void Commands::expire(TimePoint now) {
                        {"permitted", nullptr},
                        {"code", nullptr},
                        {"reason", "the supervisor did not answer"}});
+  std::vector<ModeQuestion> late;
+  std::erase_if(mode_questions_, [&](ModeQuestion& one) {
+    if (now - one.since <= question_limit) return false;
+    late.push_back(std::move(one));
+    return true;
+  });
+  for (const ModeQuestion& one : late) one.done(refuse(503, "the supervisor did not answer"));
 }
 
 }  // namespace hirosco::ground

@@ -41,6 +41,8 @@ class Commands {
   [[nodiscard]] Answered<nlohmann::json> send(const nlohmann::json& body);
   /// The same body: {octets, permitted, code, reason} through `done`, at the latest after 2 s.
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
+  /// {mode}: {mode, against, steps} through `done`, as the supervisor answers TC[129,4]; 503 at the latest after 2 s.
+  void mode_preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   /// A telecommand that was to be sent has not left: its sender is told.
   void not_sent(Octets packet);
   /// What a packet said of telecommands.
@@ -60,6 +62,11 @@ class Commands {
     std::function<void(Answered<nlohmann::json>)> done;
     TimePoint since{};
   };
+  struct ModeQuestion {
+    std::uint8_t mode{};
+    std::function<void(Answered<nlohmann::json>)> done;
+    TimePoint since{};
+  };
   [[nodiscard]] Answered<std::vector<std::byte>> packet_of(const Request& request, std::uint16_t count) const;
   void take_verdict(const Verdict& verdict, OnboardTime t);
   /// The copy of a telecommand of another ground, before the reports on it.
@@ -67,11 +74,13 @@ class Commands {
   /// A telecommand of another ground without a copy: known is whom it went to and what became of it.
   [[nodiscard]] Open add_foreign(const Verdict& verdict, OnboardTime t);
   void take_answer(const PermissionAnswer& answer);
+  void take_answer(const ModeAnswer& answer);
   [[nodiscard]] std::uint16_t next_count();
 
   Parts parts_;
   std::map<std::pair<std::uint16_t, std::uint32_t>, Open> open_;  ///< by destination and request id
   std::multimap<std::uint32_t, Question> questions_;  ///< by the request id that is asked about
+  std::vector<ModeQuestion> mode_questions_;
   std::uint16_t count_;
   std::uint64_t sent_{0};
 };

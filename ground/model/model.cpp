@@ -95,6 +95,10 @@ Heard Model::take(const pus::TelemetryView& packet) {
     answer.code = reader.get<std::uint16_t>();
     if (reader.good()) heard.answer = answer;
   }
+  if (supervision && packet.subtype() == pus::st129::mode_preview) {
+    if (auto preview = pus::st129::read_mode_preview(packet.source_data()))
+      heard.mode_answer = ModeAnswer{.destination = packet.destination(), .preview = std::move(*preview)};
+  }
   if (supervision && packet.subtype() == pus::st129::telecommand_copy)
     heard.telecommand.assign(packet.source_data().begin(), packet.source_data().end());
   if (!heard.changes.empty()) status_revision_ = revision_;

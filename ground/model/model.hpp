@@ -11,6 +11,7 @@
 #include "ground/archive/archive.hpp"
 #include "ground/model/catalogue.hpp"
 #include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/words/describe.hpp"
 
 /// The spacecraft as its packets tell it: newest values, mode, states, links. The live view and every replay have one
@@ -66,12 +67,19 @@ struct PermissionAnswer {
   int code{0};
 };
 
+/// The answer to "what would this mode take?".
+struct ModeAnswer {
+  std::uint16_t destination{};
+  pus::st129::ModePreview preview;
+};
+
 /// What a packet said besides values.
 struct Heard {
   std::optional<StoredEvent> event;
   std::vector<StoredChange> changes;
   std::optional<Verdict> verdict;
   std::optional<PermissionAnswer> answer;
+  std::optional<ModeAnswer> mode_answer;
   std::vector<std::byte> telecommand;  ///< copy of one that the supervisor has received from a ground; empty = none
   std::uint16_t sid{0};
 };

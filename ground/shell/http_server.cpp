@@ -12,6 +12,7 @@
 #include <set>
 
 #include "ground/shell/craft_link.hpp"
+#include "ground/shell/gzip.hpp"
 
 /// One thread, nothing blocks; every queue has a limit.
 namespace hirosco::ground {
@@ -42,11 +43,19 @@ class Server;
   return copy;
 }
 
-[[nodiscard]] http::response<http::string_body> boxed(const HttpResponse& response, unsigned version, bool keep_alive) {
+[[nodiscard]] http::response<http::string_body> boxed(const HttpResponse& response, unsigned version, bool keep_alive,
+                                                      std::string_view accepts) {
   http::response<http::string_body> message{static_cast<http::status>(response.status), version};
   message.set(http::field::content_type, response.type);
   for (const auto& [name, value] : response.headers) message.set(name, value);
-  message.body() = response.body;
+  const bool may_zip = message.count(http::field::content_encoding) == 0 && takes_gzip(accepts);
+  if (auto small = may_zip ? zipped(response.body) : std::nullopt) {
+    message.set(http::field::content_encoding, "gzip");
+    message.set(http::field::vary, "Accept-Encoding");
+    message.body() = std::move(*small);
+  } else {
+    message.body() = response.body;
+  }
   message.keep_alive(keep_alive);
   message.prepare_payload();
   return message;
@@ -319,7 +328,8 @@ void Connection::handle() {
 void Connection::respond(const HttpResponse& response) {
   const bool keep = !last_ && parser_->is_done() && parser_->keep_alive();
   const unsigned version = parser_->is_header_done() ? parser_->get().version() : 11;
-  response_ = boxed(response, version, keep);
+  const auto accepts = parser_->is_header_done() ? parser_->get()[http::field::accept_encoding] : beast::string_view{};
+  response_ = boxed(response, version, keep, {accepts.data(), accepts.size()});
   if (parser_->is_header_done() && parser_->get().method() == http::verb::head) response_->body().clear();
   stream_.expires_after(request_limit);
   http::async_write(stream_, *response_, [self = shared_from_this(), keep](Failure failed, std::size_t) {

@@ -5,7 +5,7 @@
 # and ends nothing, nor is it tried again by itself, which costs offline builds their time: a spacecraft flies without
 # its page.
 
-foreach(file IN ITEMS package.json package-lock.json .npmrc build.mjs)
+foreach(file IN ITEMS package.json package-lock.json .npmrc build.mjs fonts.mjs)
   configure_file(${sources}/${file} ${work}/${file} COPYONLY)
 endforeach()
 file(SHA256 ${sources}/package-lock.json wanted)

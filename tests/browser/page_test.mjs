@@ -55,7 +55,7 @@ describe('a flight that means well', () => {
     await holds(page, () => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
   });
 
-  for (const [what, from, to] of [['the handle of the joystick', 0.15, 0.4], ['the fingertip', 0.58, 0.75]]) {
+  for (const [what, from, to] of [['the handle of the joystick', -0.02, 0.2], ['the fingertip', 0.58, 0.75]]) {
     it(`moves the simulated hand when ${what} is dragged`, async () => {
       await go(page, 'overview');
       await page.waitForSelector('[data-test=robot][data-loaded]');

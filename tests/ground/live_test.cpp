@@ -277,6 +277,21 @@ TEST_F(GroundStation, TheSupervisorSaysBeforeSendingWhatItSaysOnSending) {
   EXPECT_GT(permitted, 8);
 }
 
+TEST_F(GroundStation, WhatAModeWouldTakeIsTheSupervisorsOwnAnswer) {
+  commission();
+  const json asked = station.post("/api/modes/preview", {{"mode", "standalone"}});
+  EXPECT_EQ(asked["mode"], "standalone");
+  EXPECT_EQ(asked["against"], json::array());
+  ASSERT_FALSE(asked["steps"].empty());
+  EXPECT_EQ(asked["steps"][0]["stage"], 1);
+  std::set<std::string> moved;
+  for (const json& step : asked["steps"]) moved.insert(step["subsystem"].get<std::string>());
+  EXPECT_TRUE(moved.contains("MANIPULATOR"));
+  EXPECT_EQ(station.ask("POST", "/api/modes/preview", {{"mode", "nowhere"}}).status, 400U);
+  station.cut_link();
+  EXPECT_EQ(station.ask("POST", "/api/modes/preview", {{"mode", "standalone"}}).status, 503U);
+}
+
 TEST_F(GroundStation, AnArgumentThatDoesNotFitIsNamedAndNothingIsSent) {
   commission();
   const auto error = [&](const json& arguments, const char* function = "MOVE_TO") {

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// node development/server.mjs RECORDING|synthetic|hostile [PAGE [PORT]]: the page without a spacecraft. Answers as ground/api/README.md says,
+// node development/server.mjs RECORDING|synthetic|hostile[:STATE] [PAGE [PORT]]: the page without a spacecraft. Answers as ground/api/README.md says,
 // from a recorded flight that it plays in a loop (development/record.mjs makes one) or from a made-up one; takes telecommands and completes
 // them. For work on the page's looks and tests of the page alone, with the token "development"; nothing here is part of what flies.
+// STATE is what is to be seen: well (nothing fails), stopped, stale (silent from 5 s on), observer, fresh (nothing yet), foreign (a mission without a page folder).
 // Port 0 takes a free one; the URL is the first line of what it prints.
 import {createReadStream, existsSync, readdirSync, readFileSync, statSync} from 'node:fs';
 import {createServer} from 'node:http';
@@ -11,9 +12,10 @@ import {dirname, extname, join, normalize} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {WebSocketServer} from 'ws';
 
-const [recording, page = join(dirname(fileURLToPath(import.meta.url)), '../dist'), port = '8090'] = process.argv.slice(2);
+const [asked, page = join(dirname(fileURLToPath(import.meta.url)), '../dist'), port = '8090'] = process.argv.slice(2);
+const [recording, state = 'normal'] = (asked ?? '').split(':');
 if (!recording) {
-  console.error('usage: node development/server.mjs RECORDING|synthetic|hostile [PAGE [PORT]]');
+  console.error('usage: node development/server.mjs RECORDING|synthetic|hostile[:well|stopped|stale|observer|fresh|foreign] [PAGE [PORT]]');
   process.exit(2);
 }
 const sources = process.env.HIROSCO_SOURCES ?? join(dirname(fileURLToPath(import.meta.url)), '../../..');
@@ -22,7 +24,9 @@ const made_up = ['synthetic', 'hostile'].includes(recording);
 const flight = made_up ? (await import(join(sources, 'tests/browser/synthetic.mjs'))).synthetic_flight({hostile: recording === 'hostile'}) : JSON.parse(readFileSync(recording, 'utf8'));
 // What the mission shows of itself, of those that are here.
 const mission_page = join(sources, 'missions', String(flight.mission.name).toLowerCase().replaceAll(/[^a-z0-9_-]/g, ''), 'page');
-const list = flight.messages;
+if (state === 'foreign') flight.mission = {...flight.mission, name: 'outpost'};
+// In the states that are looked at, what is not to be seen does not happen: the made-up end of the flight least of all.
+const list = state === 'normal' ? flight.messages : flight.messages.filter((one) => state === 'stopped' || one.severity !== 'high');
 const first_t = list[0].t, length_s = list[list.length - 1].t - first_t + 2;
 const burst_events = 10000;
 const step_ms = 50, past_s = 120, longest_value_s = 0.1;
@@ -67,23 +71,28 @@ function* until(t) {
   }
 }
 
-const state_of = (subsystem) => states.get(subsystem.name) ?? 'Offline';
+const state_of = (subsystem) => state === 'stopped' && subsystem.id >= 10 ? 'Offline' : states.get(subsystem.name) ?? 'Offline';
 function status(t = now) {
-  const up = [...states.values()].filter((state) => state === 'Operational').length >= flight.mission.subsystems.length;
+  if (state === 'fresh') return {t, link: {connected: false, age_s: 1e9, rx: 0, tx: 0, lost: 0}, mode: null, commandable: false, subsystems: [], links: []};
+  const up = state !== 'stopped' && [...states.values()].filter((state) => state === 'Operational').length >= flight.mission.subsystems.length;
   return {t, link: {connected: true, age_s: longest_value_s / 2, rx: archive.length, tx: commands.length, lost: 0},
-    mode: mode ?? (up ? flight.mission.start_mode ?? 'telepresence' : 'commissioning'), commandable: true,
+    mode: mode ?? (up || state === 'stopped' ? flight.mission.start_mode ?? 'telepresence' : 'commissioning'), commandable: true,
     subsystems: flight.mission.subsystems.map((one) => ({id: one.id, name: one.name, state: state_of(one),
       configuration: one.configurations[one.configurations.length - 1]?.name, cycles: Math.round((t - first_t) * 2000), overruns: 0, missed: 0,
-      latency_max_ns: 61000, execution_mean_ns: 8400, inhibited: state_of(one) === 'ErrorOperational' ? ['failure'] : [], waits_for: '', age_s: 0.1})),
+      latency_max_ns: 61000, execution_mean_ns: 8400, inhibited: state_of(one) === 'ErrorOperational' ? ['failure'] : state === 'stopped' && one.id >= 10 ? ['device'] : [], waits_for: '', age_s: 0.1})),
     links: flight.mission.links.map((link) => ({id: link.id, up, age_cycles: up ? 0 : 400, rate_hz: up ? link.rate_hz : 0, lost: 0, latency_mean_ns: 310000, latency_max_ns: 620000}))};
 }
 
-for (const message of until(now + past_s)) take(message);
-now += past_s;
+if (state !== 'fresh') {
+  for (const message of until(now + past_s)) take(message);
+  now += past_s;
+}
+const stopped_t = now;
+if (state === 'stopped') for (const name of ['MANIPULATOR', 'JOYSTICK']) states.set(name, 'Offline');
 
 const types = {'.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.json': 'application/json',
-  '.urdf': 'application/xml', '.txt': 'text/plain; charset=utf-8'};
-const policy = "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; " +
+  '.urdf': 'application/xml', '.woff2': 'font/woff2', '.txt': 'text/plain; charset=utf-8'};
+const policy = "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; font-src 'self'; img-src 'self' blob: data:; connect-src 'self'; " +
   "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 function answer(response, code, body) {
@@ -148,6 +157,8 @@ const server = createServer(async (request, response) => {
     '/api/commands': () => request.method === 'POST' ? command(body) : {commands},
     '/api/commands/preview': () => ({octets: '180ae796001929080100014d4f56455f544f0000000000000000',
       permitted: body.function !== 'MOVE_TO', code: body.function === 'MOVE_TO' ? 15 : null, reason: body.function === 'MOVE_TO' ? 'setpoint owned by a link' : null}),
+    '/api/modes/preview': () => ({mode: body.mode, against: [], steps: (flight.mission.modes.find((one) => one.name === body.mode)?.commission ?? [])
+        .flatMap((one, i) => [['configured as', one.configuration], ['to', one.state]].map(([word, what]) => ({stage: i + 1, subsystem: one.subsystem, what: `${word} ${what}`})))}),
     '/api/timeline': () => timeline(query),
     '/api/log': () => {
       const lines = archive.filter((one) => one.type === 'event').reverse().map((one, i) => ({number: archive.length - i, t: one.t, apid: one.apid,
@@ -156,7 +167,9 @@ const server = createServer(async (request, response) => {
       return {packets: lines.filter((one) => words.every((word) => one.text.toLowerCase().includes(word))).slice(0, +(query.get('limit') ?? 200)), before: null};
     },
     // Told, and stopped nobody: no banner over the tests of everything else.
-    '/api/why': () => ({t: now - 60, title: 'Something happened.', detail: '', advice: 'Look into it.', plan: 'note', mode: status().mode, severity: 'medium', stopped: [],
+    '/api/why': () => state === 'stopped' ? {t: stopped_t, title: 'JOYSTICK lost its device. MANIPULATOR and JOYSTICK were stopped.', detail: 'MANIPULATOR and JOYSTICK went Offline within 2.5 ms, by plan network-down. SUPERVISOR goes on.',
+      advice: 'Plug the joystick in, then bring telepresence up.', plan: 'network-down', mode: 'telepresence', severity: 'high', stopped: ['MANIPULATOR', 'JOYSTICK'],
+      causes: [[0, 'high', 'JOYSTICK reports that its device is lost'], [0.1, 'medium', 'MANIPULATOR misses the samples of link 2'], [1.2, 'info', 'both in Error-Operational'], [2.5, 'info', 'both Offline']].map(([after_ms, severity, text]) => ({t: stopped_t + after_ms / 1000, after_ms, severity, text}))} : ({t: now - 60, title: 'Something happened.', detail: '', advice: 'Look into it.', plan: 'note', mode: status().mode, severity: 'medium', stopped: [],
       causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one, i) => ({t: one.t, after_ms: i, severity: 'high', text: `${one.subsystem} reports ${one.name}`}))}),
     '/api/faults': () => {
       if (body.line === 'burst') for (let i = 0; i < burst_events; ++i) tell({...list.find((one) => one.type === 'event'), t: now, id: 3, text: `burst ${i}`});
@@ -171,7 +184,7 @@ const server = createServer(async (request, response) => {
 
 const sockets = new WebSocketServer({server, path: '/ws', verifyClient: ({req}) => new URL(req.url, 'http://x').searchParams.get('token') === token});
 sockets.on('connection', (socket) => {
-  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: 'c1', operator: true, archive_from: first_t}));
+  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: 'c1', operator: state !== 'observer', archive_from: first_t}));
   socket.on('message', (data) => {
     const message = JSON.parse(data);
     socket.replay = message.type === 'replay' ? {at: message.at, speed: message.speed, next: archive.findIndex((one) => one.t >= message.at)} : null;
@@ -180,9 +193,11 @@ sockets.on('connection', (socket) => {
   });
 });
 
+const silent_after = state === 'stale' ? Date.now() + 5000 : Infinity;
 setInterval(() => {
+  if (Date.now() > silent_after || state === 'fresh') return;
   now += step_ms / 1000;
-  const news = [...until(now)];
+  const news = state === 'stopped' ? [] : [...until(now)];
   const set = {};
   for (const message of news) {
     take(message);
@@ -198,6 +213,6 @@ setInterval(() => {
     }
   }
 }, step_ms);
-setInterval(() => tell({type: 'status', ...status()}), 500);
+setInterval(() => { if (Date.now() < silent_after) tell({type: 'status', ...status()}); }, 500);
 
 server.listen(+port, '127.0.0.1', () => console.log(`http://127.0.0.1:${server.address().port}/#token=${token}`));

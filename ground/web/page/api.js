@@ -66,3 +66,9 @@ export async function asset(path) {
   if (!response.ok) throw new RequestError(response.status, `${path}: HTTP ${response.status}`);
   return response;
 }
+
+/// What SET_MODE would do now: {steps: [words], reasons: [words]}, as the supervisor says.
+export async function mode_preview(mode) {
+  const {steps, against} = await post('/api/modes/preview', {mode});
+  return {steps: steps.map((one) => `${one.subsystem} ${one.what}`), reasons: against};
+}

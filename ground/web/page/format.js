@@ -24,6 +24,8 @@ export function date_text(t) {
 /// To the browser's own Date seconds, for axis labels.
 export const axis_seconds = (t) => t >= calendar_from_s ? t + epoch_ms / 1000 : t;
 
+/// Smaller ones are the rounding of a computation.
+const least_shown = 1e-9;
 export function number_text(value) {
   if (typeof value === 'string') return value;
   if (typeof value === 'boolean') return value ? 'yes' : 'no';
@@ -32,10 +34,20 @@ export function number_text(value) {
   if (!Number.isFinite(value)) return value > 0 ? '+∞' : '−∞';
   if (Number.isInteger(value) && Math.abs(value) < 1e9) return String(value).replace('-', '−');
   const size = Math.abs(value);
+  if (size < least_shown) return '0.0000';
   const text = size >= 1e6 || (size < 1e-4 && size > 0) ? value.toExponential(size >= 1e6 ? 3 : 1) :
     value.toFixed(size >= 1000 ? 1 : size >= 100 ? 2 : size >= 10 ? 3 : 4);
   return text.replace('-', '−');
 }
+
+/// Digits after the point by the unit: a number that changes keeps its width, and what is below the resolution of its parameter is 0.
+const digits_of_unit = {rad: 3, deg: 2, mm: 1, m: 4, N: 1, 'N m': 2, Nm: 2, 'rad/s': 3, s: 3, ms: 1, us: 1, 'µs': 1, degC: 1, W: 1, V: 2, A: 2, '%': 1, Hz: 1};
+export function quantity_text(value, unit) {
+  const digits = digits_of_unit[unit];
+  if (typeof value !== 'number' || !Number.isFinite(value) || digits === undefined || Math.abs(value) >= 1e6) return number_text(value);
+  return fixed_text(value, digits);
+}
+export const fixed_text = (value, digits) => Number.isFinite(value) ? value.toFixed(digits).replace(/^-(0(?:\.0*)?)$/, '$1').replace('-', '−') : '–';
 
 /// Without the zeros that a table of changing numbers keeps.
 export const brief_text = (value) => number_text(value).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');

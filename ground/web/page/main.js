@@ -12,7 +12,8 @@ import {Header} from './parts/header.js';
 import {Icon} from './parts/icons.js';
 import {ReplayBar} from './parts/replay_bar.js';
 import {StopBanner} from './parts/stop_banner.js';
-import {live, mission, now_s, problem, start} from './store.js';
+import {live, mission, now_s, problem, start, unseen} from './store.js';
+import {switch_theme, theme} from './theme.js';
 import {Tour, tour_from_url} from './tour.js';
 import {Commands} from './views/commands.js';
 import {Events} from './views/events.js';
@@ -79,7 +80,9 @@ function Page() {
     <${ReplayBar} />
     <${StopBanner} />
     <nav aria-label="views">${Object.entries(views).map(([name, [title]]) => html`<a href=${`#/${name}`} class=${name === view ? 'on' : ''}
-      aria-current=${name === view ? 'page' : undefined} title=${title}><${Icon} name=${name} /><span>${title}</span></a>`)}</nav>
+      aria-current=${name === view ? 'page' : undefined} title=${title}><${Icon} name=${name} /><span>${title}</span>${
+      name === 'events' && unseen.value.high + unseen.value.medium ? html`<i class="news">${unseen.value.high + unseen.value.medium}</i>` : null}</a>${
+      name === 'timeline' ? html`<button class="theme" data-test="theme" onClick=${switch_theme}><${Icon} name="theme" /><span>${theme.value === 'light' ? 'Dark' : 'Light'}</span></button>` : null}`)}</nav>
     ${problem.value ? html`<p class="problem" role="alert">${problem.value}</p>` : null}
     ${mission.value ? html`<${View} key=${view} rest=${rest} query=${query} paused=${paused.value} set_paused=${(t) => { paused.value = t; }} />` :
       html`<main class="starting">${problem.value ? '' : 'Waiting for the gateway …'}</main>`}

@@ -4,10 +4,13 @@
 // A telecommand from its descriptor: one field for each argument, judged while it is typed, the octets and the supervisor's
 // answer to "permitted now?" before sending, the chain of verdicts after.
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {preview, send} from '../commanding.js';
+import {preview, send, send_and_say} from '../commanding.js';
 import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
-import {commands, mission, mode_of, operator, outcome_of, replay, status_of, subsystem_of} from '../store.js';
+import {commands, mission, mode_of, operator, outcome_of, replay, slow, status_of, subsystem_of, values} from '../store.js';
+import {arguments_text} from './arguments.js';
+import {scene_of_mission} from './scene_file.js';
+import {fill_form, kept_texts, typed} from './typed.js';
 
 const integer_ranges = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 4294967295], INT8: [-128, 127], INT16: [-32768, 32767],
   INT32: [-2147483648, 2147483647], UINT64: [0n, 2n ** 64n - 1n], INT64: [-(2n ** 63n), 2n ** 63n - 1n]};
@@ -80,7 +83,17 @@ const first_text = (argument, choices) => {
   return choices?.length ? String(choices[0].value) : '';
 };
 
-function Field({subsystem, action, argument, text, on_text, result, focus}) {
+/// The way that a motion has to go: where the parameter stands, where it is wanted, within the range of the argument.
+function Way({argument, now, wanted}) {
+  slow.value;
+  const [low, high] = range_of(argument), is = values.get(now)?.v;
+  if (!(high > low) || !Number.isFinite(is)) return null;
+  const part = (value) => `${100 * Math.max(0, Math.min(1, (value - low) / (high - low)))}%`;
+  return html`<span class="way" aria-hidden="true"><svg><line class="is" x1=${part(is)} x2=${part(is)} y1="2" y2="13" />${Number.isFinite(wanted) ? html`
+    <line class="between" x1=${part(is)} x2=${part(wanted)} y1="7.5" y2="7.5" /><circle class="typed" cx=${part(wanted)} cy="7.5" r="4.5" />` : null}</svg></span>`;
+}
+
+function Field({subsystem, action, argument, text, on_text, result, focus, now}) {
   const choices = choices_of(subsystem, action, argument);
   const unit = unit_text(argument.unit);
   const field = `field-${argument.name}`;
@@ -92,10 +105,10 @@ function Field({subsystem, action, argument, text, on_text, result, focus}) {
       choices?.length ? html`<select data-test=${field} value=${text} onChange=${(event) => on_text(event.currentTarget.value)}>
         ${choices.map((one) => html`<option value=${String(one.value)}>${state_text(one.name)}${
           Number.isInteger(one.value) ? ` (${one.value})` : ''}</option>`)}</select>` :
-      html`<input data-test=${field} type="text" inputmode=${argument.type === 'TEXT' ? 'text' : 'decimal'} autocomplete="off" spellcheck="false" value=${text}
+      html`<span class="in"><input data-test=${field} type="text" inputmode=${argument.type === 'TEXT' ? 'text' : 'decimal'} autocomplete="off" spellcheck="false" value=${text}
         aria-invalid=${Boolean(error)} placeholder=${placeholder}
-        autofocus=${focus} onInput=${(event) => on_text(event.currentTarget.value)} />`}
-    <em>${error ?? ''}</em></label>`;
+        autofocus=${focus} onInput=${(event) => on_text(event.currentTarget.value)} /><small>${text && argument.type !== 'TEXT' ? range_text(argument) : ''}</small></span>`}
+    <em>${error ?? ''}</em>${now ? html`<${Way} argument=${argument} now=${now} wanted=${result.value} />` : null}</label>`;
 }
 
 const verdict_words = {sent: 'sent', accepted: 'accepted', started: 'started', progress: 'progress', completed: 'completed',
@@ -111,15 +124,26 @@ export function VerdictChain({command}) {
     ${one.stage === 'failed' ? html` <b>${one.reason ?? ''}${one.code ? ` (code ${one.code})` : ''}</b>` : null}</li>`)}</ol>`;
 }
 
-function Permission({answer, problem}) {
+/// Modes that permit a telecommand which the present one refuses.
+function modes_that_permit(subsystem, action) {
+  return (mission.value?.modes ?? []).filter((mode) => mode.name !== mode_of.value.name && (mode.permits ?? []).some((permit) => [subsystem, '*'].includes(permit.subsystem) &&
+    ((permit.functions ?? []).includes(action.name) || (permit.services ?? []).includes(action.service))));
+}
+
+const Lock = () => html`<svg viewBox="0 0 12 12" aria-hidden="true"><rect x="1.8" y="5.4" width="8.4" height="5.8" rx="1.2" fill="currentColor" /><path d="M3.7 5.4V3.7a2.3 2.3 0 0 1 4.6 0v1.7" fill="none" stroke="currentColor" stroke-width="1.5" /></svg>`;
+
+/// What the supervisor answers to "now?", and what would make it permit.
+function Permission({answer, problem, subsystem, action}) {
   if (problem) return html`<p class="permission none">${problem}</p>`;
-  if (!answer) return html`<p class="permission none">supervisor: …</p>`;
+  if (!answer) return html`<p class="permission none">asking the supervisor …</p>`;
   if (answer.permitted === null || answer.permitted === undefined) {
     return html`<p class="permission none">supervisor: ${answer.reason ?? 'does not answer'}</p>`;
   }
-  return html`<p class=${`permission ${answer.permitted ? 'yes' : 'no'}`} data-test="permission">
-    ${answer.permitted ? '✓ the supervisor would permit it now' :
-      html`✕ refused now: ${answer.reason ?? `code ${answer.code}`}${answer.code ? ` (code ${answer.code})` : ''}`}</p>`;
+  if (answer.permitted) return html`<p class="permission yes" data-test="permission">permitted now</p>`;
+  const modes = modes_that_permit(subsystem, action).map((mode) => mode.name);
+  const states = (action.states ?? []).map(state_text);
+  return html`<p class="permission no" data-test="permission"><${Lock} /><b>Not now:</b> ${answer.reason ?? `code ${answer.code}`}.
+    ${modes.length ? html` Permitted in ${modes.slice(0, 3).join(', ')}${states.length ? `, ${states.join(' or ')}` : ''}.` : states.length ? html` Taken in ${states.join(' and ')}.` : null}</p>`;
 }
 
 const preview_after_ms = 180;
@@ -140,8 +164,24 @@ function usePreview(subsystem, action, values) {
   return answer;
 }
 
-export function CommandForm({subsystem, action, given = {}, focus = false}) {
-  const [texts, set_texts] = useState({});
+/// The parameters that the arguments of a motion lead, as scene.json has them of its robots: {argument: parameter}.
+function led_by(subsystem, action) {
+  const robot = scene_of_mission.value?.robots?.find((one) => one.subsystem === subsystem && one.goal?.function === action);
+  return Object.fromEntries(Object.entries(robot?.goal.joints ?? {}).map(([joint, argument]) => [argument, robot.joints[joint]]));
+}
+
+/// What was sent last, to be sent again with one click: its words go back into the form, or at once where it has none.
+function Recent({subsystem}) {
+  const seen = new Set();
+  const list = commands.value.filter((one) => one.subsystem === subsystem && one.function !== '?' && !seen.has(`${one.function} ${arguments_text(one)}`) && seen.add(`${one.function} ${arguments_text(one)}`)).slice(0, 3);
+  if (!list.length) return null;
+  return html`<ul class="recent">${list.map((one) => html`<li key=${one.id}><b>${one.function} ${arguments_text(one)}</b>${operator.value && !replay.value ? html`<button type="button"
+    onClick=${() => send_and_say(one.subsystem, one.function, one.arguments)}>again</button>` : html`<span />`}<span>${outcome_of(one).stage === 'failed' ? 'refused' : outcome_of(one).stage}</span><span>${clock_text(one.t, 0)}</span></li>`)}</ul>`;
+}
+
+export function CommandForm({subsystem, action, given = {}, focus = false, recent = false}) {
+  const key = `${subsystem}.${action.name}`;
+  const texts = kept_texts.value[key] ?? {};
   const [sent, set_sent] = useState(null);
   const [problem, set_problem] = useState('');
   const form = useRef(null);
@@ -150,16 +190,21 @@ export function CommandForm({subsystem, action, given = {}, focus = false}) {
     first_text(argument, choices_of(subsystem, action, argument));
   const results = list.map((argument) => judged(argument, text_of(argument)));
   const wrong = results.filter((result) => result.error).length;
-  const values = wrong ? null : Object.fromEntries(list.map((argument, i) => [argument.name, results[i].value]));
-  const answer = usePreview(subsystem, action, values);
+  const sent_values = wrong ? null : Object.fromEntries(list.map((argument, i) => [argument.name, results[i].value]));
+  const answer = usePreview(subsystem, action, sent_values);
   const mine = commands.value.find((one) => one.id === sent);
+  const now = led_by(subsystem, action.name);
+  useEffect(() => {
+    typed.value = {subsystem, action: action.name, values: Object.keys(texts).length ? sent_values : null};
+  }, [key, JSON.stringify(sent_values), Object.keys(texts).length]);
+  useEffect(() => () => { typed.value = null; }, []);
 
   const submit = async (event) => {
     event.preventDefault();
     if (wrong || replay.value || !operator.value) return;
     set_problem('');
     try {
-      set_sent(await send(subsystem, action.name, values));
+      set_sent(await send(subsystem, action.name, sent_values));
     } catch (error) {
       set_problem(error.message);
     }
@@ -167,12 +212,13 @@ export function CommandForm({subsystem, action, given = {}, focus = false}) {
   return html`<form class="command" ref=${form} onSubmit=${submit} data-test="command-form" autocomplete="off">
     ${action.description ? html`<p class="about">${action.description}</p>` : null}
     ${list.map((argument, i) => html`<${Field} key=${argument.name} subsystem=${subsystem} action=${action}
-      argument=${argument} text=${text_of(argument)} result=${results[i]} focus=${focus && i === 0}
-      on_text=${(text) => set_texts({...texts, [argument.name]: text})} />`)}
-    <div class="foot"><p class="octets" title="the telecommand packet" data-test="octets">${values ? hex_text(answer?.octets) || '…' : ''}</p>
+      argument=${argument} text=${text_of(argument)} result=${results[i]} focus=${focus && i === 0} now=${now[argument.name]}
+      on_text=${(text) => fill_form(subsystem, action.name, {[argument.name]: text})} />`)}
+    ${recent ? html`<${Recent} subsystem=${subsystem} />` : null}
+    <div class="foot"><p class="octets" title="the telecommand packet" data-test="octets">${sent_values ? hex_text(answer?.octets) || '…' : ''}</p>
     ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` :
-      !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : values ?
-      html`<${Permission} answer=${answer} problem=${answer?.problem} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
+      !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : sent_values ?
+      html`<${Permission} answer=${answer} problem=${answer?.problem} subsystem=${subsystem} action=${action} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
     <button class="primary" type="submit" disabled=${wrong > 0 || Boolean(replay.value) || !operator.value} data-test="send">
       ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : `Send ${action.name}`}</button>
     ${problem ? html`<p class="permission no">${problem}</p>` : null}

@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useRef, useState} from 'preact/hooks';
 import {say, send_and_say} from '../commanding.js';
-import {age_text, clock_text, date_text, state_text} from '../format.js';
+import {age_text, clock_text, date_text} from '../format.js';
 import {html} from '../html.js';
-import {link, mission, mode_of, now_s, operator, replay, see_events, slow, subsystem_of, unseen} from '../store.js';
-import {fallen} from '../stop.js';
+import {link, mission, now_s, operator, replay, see_events, slow, subsystem_of, unseen} from '../store.js';
 import {Severity} from './icons.js';
+import {Mode} from './mode_menu.js';
 
 const hold_ms = 800;
 
 const link_words = {
-  up: 'LINK UP', silent: 'LINK SILENT', down: 'NO SPACECRAFT', gateway: 'NO GATEWAY', waiting: 'WAITING',
+  up: 'Link up', silent: 'Link silent', down: 'No spacecraft', gateway: 'No gateway', waiting: 'Waiting',
 };
 
 function LinkState() {
@@ -19,19 +19,11 @@ function LinkState() {
   const replaying = replay.value !== null;
   const unkept = archive_failures > 0;
   const look = replaying ? 'amber' : state === 'up' && !unkept ? 'good' : 'bad';
-  const words = replaying ? 'ARCHIVE' : state === 'up' && unkept ? 'NOT ARCHIVED' : link_words[state];
+  const words = replaying ? 'Archive' : state === 'up' && unkept ? 'Not archived' : link_words[state];
   const title = rx === undefined ? words : `${rx} packets received, ${lost} lost, ${damaged} damaged, ${tx} sent${
       unkept ? `; the archive failed ${archive_failures} times: is the disk full or the file damaged?` : ''}`;
   return html`<span class=${`pill link ${look}`} title=${title} data-test="link"><i class="lamp" />${words}<small>${replaying ? 'not live' :
-      state === 'gateway' || state === 'silent' ? `for ${age_text(age_s)}` : `age ${age_text(age_s)}`}</small></span>`;
-}
-
-/// The mode, and whether it is true: what its members have fallen from is no telepresence any more.
-function Mode() {
-  const down = fallen.value;
-  const words = down.map((one) => `${one.subsystem} is ${state_text(one.state)}`).join(', ');
-  return html`<span class=${`pill mode ${down.length ? 'bad' : ''}`} data-test="mode" title=${words || 'every member is where this mode has it'}><small>mode</small><b>${
-    mode_of.value.name}</b>${down.length ? html`<em data-test="mode-stopped">stopped</em>` : null}</span>`;
+      state === 'gateway' || state === 'silent' ? `for ${age_text(age_s)}` : `${age_text(age_s)} ago`}</small></span>`;
 }
 
 function Clock() {
@@ -39,7 +31,7 @@ function Clock() {
   const t = now_s();
   const known = link.value.state === 'up' || replay.value !== null;
   return html`<span class=${`obt ${known ? '' : 'stale'}`} title=${known ? 'On-board time' : 'On-board time as it would be: nothing comes'}><small>${date_text(t)}</small>
-    <b>${clock_text(t)}</b><small>OBT</small></span>`;
+    <b>${clock_text(t)}</b><small>on board</small></span>`;
 }
 
 /// Pressed for 0.8 s, so that neither a slip nor a held Enter of another field stops the spacecraft.
@@ -74,19 +66,22 @@ function SafeAll() {
     <span>SAFE ALL</span><em>hold</em></button>`;
 }
 
+const Mark = () => html`<svg width="24" height="24" viewBox="0 0 24 24" fill="none" stroke="currentColor" stroke-width="1.8" stroke-linecap="round"
+  stroke-linejoin="round" role="img" aria-label="HIROSCO"><path d="M4 20h7M7.5 20v-5.5L14 8l5 4.5M19 12.5l1.5 2.6M19 12.5l-2 2.3" /><circle cx="7.5" cy="13" r="1.9" /><circle cx="14" cy="7.6" r="1.9" /></svg>`;
+
 export function Header({on_faults, faults_open}) {
   const {high, medium} = unseen.value;
   return html`<header>
-    <a class="brand" href="#/overview"><img src="icon.svg" alt="HIROSCO" width="22" height="22" /><span aria-hidden="true">HIROSCO</span></a>
-    <span class="pill mission"><small>mission</small><b>${mission.value?.name ?? '…'}</b>${
+    <a class="brand" href="#/overview"><${Mark} /><span>HIROSCO</span></a>
+    <span class="pill mission"><b>${mission.value?.name ?? '…'}</b>${
       mission.value?.simulated ? html`<small class="simulated">simulated</small>` : null}</span>
     <${Mode} />
     <${LinkState} />
     <${Clock} />
-    <a class=${`pill count ${high ? 'has' : ''}`} href="#/events?severity=high" onClick=${see_events} title="not looked at in the last hour; a click shows them"><${Severity} severity="high" />${high} high</a>
-    <a class=${`pill count ${medium ? 'has' : ''}`} href="#/events?severity=medium" onClick=${see_events} title="not looked at in the last hour; a click shows them">
-      <${Severity} severity="medium" />${medium} medium</a>
     <span class="space" />
+    ${[['high', high], ['medium', medium]].map(([severity, count]) => html`<a class=${`pill count ${severity} ${count ? 'has' : ''}`}
+      href=${`#/events?severity=${severity}`} onClick=${see_events} title="not looked at in the last hour; a click shows them">
+      <${Severity} severity=${severity} /><b>${count}</b><span class="word">${severity}</span></a>`)}
     ${operator.value ? null : html`<span class="pill" title="this token reads everything and commands nothing">observer</span>`}
     ${mission.value?.simulated && mission.value.devices?.length ? html`
       <button class=${`quiet ${faults_open ? 'on' : ''}`} data-test="faults" onClick=${on_faults}>Faults</button>` : null}

@@ -11,6 +11,7 @@ const paths = {
   events: 'M12 3l10 18H2zM12 10v5M12 18v.5',
   timeline: 'M2 7h7M12 7h10M2 12h14M19 12h3M2 17h4M9 17h9',
   faults: 'M13 2L5 14h6l-1 8 8-12h-6z',
+  theme: 'M12 3a9 9 0 1 0 .01 0M12 3v18M12 7a5 5 0 0 1 0 10',
   help: 'M9 9a3 3 0 1 1 4 3c-1 .5-1 1-1 2.5M12 18v.5M12 2a10 10 0 1 0 .01 0',
 };
 
@@ -18,10 +19,10 @@ export const Icon = ({name}) => html`
   <svg class="icon" viewBox="0 0 24 24" aria-hidden="true"><path d=${paths[name]} /></svg>`;
 
 const shapes = {
-  high: 'M8 1l6.5 3.5v7L8 15l-6.5-3.5v-7z',
+  high: 'M4 .7h8L15.6 8 12 15.3H4L.4 8z',
   medium: 'M8 1.5L15 14.5H1z',
-  low: 'M8 1.5L14.5 8 8 14.5 1.5 8z',
-  info: 'M8 3a5 5 0 1 0 .01 0',
+  low: 'M2.5 2.5h11v11h-11z',
+  info: 'M8 4.5a3.5 3.5 0 1 0 .01 0',
 };
 
 /// Severity by shape and by word, never by colour alone.

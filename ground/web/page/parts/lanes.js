@@ -9,11 +9,12 @@ import {state_name} from '../commanding.js';
 import {clock_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, events, mission, mode_of, newest_s, now_s, outcome_of, replay, replay_from, slow} from '../store.js';
+import {fallen, stop} from '../stop.js';
 import {is_wanted} from './link_graph.js';
 import {is_known, state_look} from './subsystem_card.js';
 
 const refresh_ms = 2000;
-const label_width = 118, lane_height = 20;
+const usual_label_width = 118;
 const longest_ahead_s = 30;
 const shortest_s = 20;
 
@@ -56,7 +57,19 @@ function spans(changes, value_of, from, to) {
 /// When the first thing happened that a timeline knows of; at its left edge, or before it, where the archive goes on before it.
 const first_s = (data) => Math.min(Infinity, ...['modes', 'states', 'links', 'commands', 'events'].flatMap((kind) => data[kind].map((one) => one.t)));
 
-export function Lanes({window_s = 120, big = false}) {
+/// The way up of the whole craft, in milliseconds at the left, where it lies in what is shown: {from, to}; null where it does not.
+const boot_px = 250, break_px = 16, longest_boot_s = 30;
+function boot_of(data, from) {
+  const up = data.states.filter((one) => state_name(one.state) === 'Operational').map((one) => one.t);
+  const first = first_s(data);
+  if (!up.length || !(first > from) || first > Math.min(...up)) return null;
+  const each = new Map();
+  for (const one of data.states) if (state_name(one.state) === 'Operational' && !each.has(one.subsystem)) each.set(one.subsystem, one.t);
+  const end = Math.max(...[...each.values()].filter((t) => t - first < longest_boot_s));
+  return end - first < longest_boot_s && end > first ? {from: first, to: end + (end - first) * 0.05} : null;
+}
+
+export function Lanes({window_s = 120, big = false, small = false}) {
   const node = useRef(null);
   const [width, set_width] = useState(900);
   const [hint, set_hint] = useState(null);
@@ -70,65 +83,89 @@ export function Lanes({window_s = 120, big = false}) {
   const now = now_s();
   const to = replay.value ? Math.max(data.to, now) : Number.isFinite(now) ? now : data.to;
   // Before the flight began there was nothing: an empty stretch would say that nobody knows.
-  const from = Math.max(to - Math.max(window_s, data.to - data.from), Math.min(first_s(data) - 1, to - shortest_s));
-  const plot_width = width - label_width - 14;
-  const x = (t) => label_width + Math.max(0, Math.min(1, (t - from) / (to - from))) * plot_width;
-  const time_at = (event) => from + (event.clientX - node.current.getBoundingClientRect().left - label_width) / plot_width * (to - from);
   const names = (mission.value?.subsystems ?? []).map((one) => one.name);
+  const label_width = usual_label_width, lane_height = small ? Math.max(9, Math.min(15, 84 / (names.length + 2))) : 20, foot = small ? 18 : 22;
+  const earliest = to - Math.max(window_s, data.to - data.from);
+  const boot = small ? boot_of(data, earliest) : null;
+  const from = boot ? boot.to : Math.max(earliest, Math.min(first_s(data) - 1, to - shortest_s));
+  const left = label_width + (boot ? boot_px + break_px : 0), plot_width = width - left - 14;
+  const x = (t) => boot && t < boot.to ? label_width + Math.max(0, (t - boot.from) / (boot.to - boot.from)) * boot_px :
+    left + Math.max(0, Math.min(1, (t - from) / (to - from))) * plot_width;
+  const time_at = (event) => {
+    const at = event.clientX - node.current.getBoundingClientRect().left;
+    return boot && at < left ? boot.from + (at - label_width) / boot_px * (boot.to - boot.from) : from + (at - left) / plot_width * (to - from);
+  };
+  const begin = boot ? boot.from : from;
 
   const lanes = [];
   // What nobody tells any more is not drawn on.
   const told_to = is_known() ? to : Math.min(to, newest_s());
-  const bar = (span, look, text) => html`<g class=${`bar ${look}`}><rect x=${x(span.from)} y="3" rx="3" height=${lane_height - 6}
+  // A state that lasts from the start into the flight is drawn on both sides of the break.
+  const parts = (span) => boot && span.from < boot.to && span.to > boot.to ? [{...span, to: boot.to - 1e-6}, {...span, from: boot.to}] : [span];
+  const bars = (span, look, text) => parts(span).map((part) => bar(part, look, text));
+  const inset = small ? 1 : 3;
+  const bar = (span, look, text) => html`<g class=${`bar ${look}`}><rect x=${x(span.from)} y=${inset} rx=${small ? 1 : 3} height=${lane_height - 2 * inset}
     width=${Math.max(1, x(span.to) - x(span.from))}><title>${text} from ${clock_text(span.from)}</title></rect>
     ${x(span.to) - x(span.from) > text.length * 7 + 8 ? html`<text x=${x(span.from) + 6} y=${lane_height / 2 + 4}>${text}</text>` : null}</g>`;
-  const current = {t: from, mode: mode_of.value.name};
+  const current = {t: begin, mode: mode_of.value.name};
   const mode_list = data.modes.length ? data.modes : [current];
-  lanes.push({label: 'mode', body: spans(mode_list, (one) => one.mode, from, told_to)
-      .map((span, i) => bar(span, `mode ${i % 2 ? 'odd' : ''}`, mission.value?.modes.find((mode) => mode.id === span.value)?.name ?? String(span.value)))});
+  lanes.push({label: 'mode', body: spans(mode_list, (one) => one.mode, begin, told_to)
+      .flatMap((span, i) => bars(span, `mode ${i % 2 ? 'odd' : ''}`, mission.value?.modes.find((mode) => mode.id === span.value)?.name ?? String(span.value)))});
   for (const name of names) {
     const own = data.states.filter((one) => one.subsystem === name);
-    lanes.push({label: name, body: spans(own, (one) => state_name(one.state), from, told_to)
-        .map((span) => bar(span, state_look(span.value), state_text(span.value)))});
+    lanes.push({label: name, body: spans(own, (one) => state_name(one.state), begin, told_to)
+        .flatMap((span) => bars(span, state_look(span.value), state_text(span.value)))});
   }
   if (big) {
     for (const link of mission.value?.links ?? []) {
       const own = data.links.filter((one) => one.id === link.id);
-      lanes.push({label: `link ${link.id}`, body: spans(own, (one) => one.up, from, told_to)
-          .map((span) => bar(span, span.value ? 'good' : is_wanted(link) ? 'bad' : 'off', span.value ? `${link.from} → ${link.to}` : 'down'))});
+      lanes.push({label: `link ${link.id}`, body: spans(own, (one) => one.up, begin, told_to)
+          .flatMap((span) => bars(span, span.value ? 'good' : is_wanted(link) ? 'bad' : 'off', span.value ? `${link.from} → ${link.to}` : 'down'))});
     }
   }
   const sent = replay.value ? data.commands : merged(data.commands, commands.value);
-  lanes.push({label: 'commands', body: sent.filter((one) => one.t >= from && one.t <= to).map((one) => html`
-    <rect class=${`command ${one.stages ? outcome_of(one).stage : one.stage}`} x=${x(one.t) - 3} y="4" width="6" height=${lane_height - 8} rx="2">
-      <title>${one.subsystem} ${one.function}: ${one.stages ? outcome_of(one).stage : one.stage}</title></rect>`)});
+  const command_marks = sent.filter((one) => one.t >= from && one.t <= to).map((one) => html`
+    <path class=${`command ${one.stages ? outcome_of(one).stage : one.stage}`} transform=${`translate(${x(one.t)} ${lane_height / 2})`} d="M-2.5-4L2.5 0L-2.5 4">
+      <title>${one.subsystem} ${one.function}: ${one.stages ? outcome_of(one).stage : one.stage}</title></path>`);
+  if (!small) lanes.push({label: 'commands', body: command_marks});
   const told = replay.value ? data.events : merged(data.events, events.value.slice(0, 200), (one) => `${one.t}/${one.id}/${one.subsystem}`);
-  const shown = told.filter((one) => one.t >= from && one.t <= to);
+  const shown = told.filter((one) => one.t >= begin && one.t <= to && !(small && one.severity === 'info'));
   const marks = shown.filter((one) => one.severity !== 'info').concat(shown.filter((one) => one.severity === 'info')).slice(0, 600);
-  lanes.push({label: 'events', body: marks.reverse().map((one) => html`<path class=${`mark ${one.severity}`}
-    transform=${`translate(${x(one.t)} ${lane_height / 2})`} d=${{high: 'M-4-6h8v12h-8z', medium: 'M0-6L6 5H-6z', low: 'M0-5L5 0L0 5L-5 0z'}[one.severity] ?? 'M-1.5-4h3v8h-3z'}>
-    <title>${one.subsystem} ${one.name} ${clock_text(one.t)}</title></path>`)});
+  lanes[small ? 'unshift' : 'push']({label: 'events', body: [small ? command_marks : null, marks.reverse().map((one) => html`<path class=${`mark ${one.severity}`}
+    transform=${`translate(${x(one.t)} ${lane_height / 2})`} d=${{high: 'M-3-5h6l3 5l-3 5h-6l-3-5z', medium: 'M0-6L6 5H-6z', low: 'M-3.5-3.5h7v7h-7z'}[one.severity] ?? 'M-1.5-4h3v8h-3z'}>
+    <title>${one.subsystem} ${one.name} ${clock_text(one.t)}</title></path>`)]});
   const faults = data.faults ?? [];
-  if (faults.length || big) {
+  if (!small && (faults.length || big)) {
     lanes.push({label: 'faults', body: faults.filter((one) => one.t >= from && !/^hand (target|hold|cartesian)/.test(one.line)).map((one) => html`
       <path class="mark fault" transform=${`translate(${x(one.t)} ${lane_height / 2})`} d="M2-6L-4 2H0L-2 6L5-2H1z"><title>${one.device} ${one.line}</title></path>`)});
   }
 
-  const height = lanes.length * lane_height + 22;
+  const height = lanes.length * lane_height + foot;
   const ticks = time_ticks(from, to, plot_width / 110);
   return html`<div class="lanes" ref=${node} data-test="timeline">
     <svg width=${width} height=${height} onPointerMove=${(event) => set_hint(time_at(event))} onPointerLeave=${() => set_hint(null)}
-      onClick=${(event) => { const at = time_at(event); if (at >= from && at <= to) replay_from(at); }} role="img"
+      onClick=${(event) => { const at = time_at(event); if (at >= begin && at <= to) replay_from(at); }} role="img"
       aria-label="timeline; a click replays from there">
-      ${ticks.map((t) => html`<g class="tick"><line x1=${x(t)} x2=${x(t)} y1="0" y2=${height - 18} /><text x=${x(t)} y=${height - 5}>${clock_text(t, 0)}</text></g>`)}
-      ${lanes.map((lane, i) => html`<g transform=${`translate(0 ${i * lane_height})`}><text class="label" x="10" y=${lane_height / 2 + 4}>${lane.label}</text>${lane.body}</g>`)}
+      ${ticks.map((t) => html`<g class="tick"><line x1=${x(t)} x2=${x(t)} y1="0" y2=${height - 18} /><text x=${Math.min(x(t), width - 34)} y=${height - 5}>${clock_text(t, 0)}</text></g>`)}
+      ${boot ? html`<${Boot} boot=${boot} x=${x} height=${height} left=${left} />` : null}
+      ${lanes.map((lane, i) => html`<g transform=${`translate(0 ${i * lane_height})`}><text class=${`label ${fallen.value.some((one) => one.subsystem === lane.label) ? 'bad' : ''}`} x="12" y=${lane_height / 2 + 4}>${lane.label.slice(0, 15)}</text>${lane.body}</g>`)}
       ${data.gaps.map((gap) => html`<rect class="gap" x=${x(gap.from)} y="0" width=${Math.max(1, x(gap.to) - x(gap.from))} height=${height - 20}>
         <title>no telemetry came</title></rect>`)}
+      ${stop.value && stop.value.t > from ? html`<line class="stopped" x1=${x(stop.value.t)} x2=${x(stop.value.t)} y1="0" y2=${height - 16} />` : null}
       ${replay.value ? html`<g class="now replay"><line x1=${x(now)} x2=${x(now)} y1="0" y2=${height - 16} /></g>` :
         html`<g class="now"><line x1=${x(to)} x2=${x(to)} y1="0" y2=${height - 16} /></g>`}
-      ${hint !== null && hint >= from && hint <= to ? html`<g class="hint"><line x1=${x(hint)} x2=${x(hint)} y1="0" y2=${height - 16} />
-        <text x=${Math.min(x(hint) + 6, width - 150)} y=${height - 22}>replay from ${clock_text(hint)}</text></g>` : null}
+      ${hint !== null && hint >= begin && hint <= to ? html`<g class="hint"><line x1=${x(hint)} x2=${x(hint)} y1="0" y2=${height - 16} />
+        <text x=${Math.min(x(hint) + 6, width - 150)} y=${height - (small ? 5 : 22)}>replay from ${clock_text(hint)}</text></g>` : null}
     </svg></div>`;
+}
+
+function Boot({boot, x, height, left}) {
+  const length_ms = 1000 * (boot.to - boot.from);
+  const step_ms = [5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000].find((one) => length_ms / one <= 4) ?? 20000;
+  const ticks = Array.from({length: Math.floor(length_ms / step_ms) + 1}, (_, i) => i * step_ms);
+  return html`<g class="tick">${ticks.map((ms) => html`<line x1=${x(boot.from + ms / 1000)} x2=${x(boot.from + ms / 1000)} y1="0" y2=${height - 18} />
+    <text x=${x(boot.from + ms / 1000) + (ms ? 0 : 12)} y=${height - 5}>${ms ? `${ms} ms` : 'start'}</text>`)}</g>
+    <path class="break" d=${`M${left - 12} 2l5 11-5 11 5 11-5 11 5 11-5 11`} />`;
 }
 
 function merged(archive, fresh, key = (one) => one.id) {

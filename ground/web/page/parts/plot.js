@@ -2,27 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import uPlot from 'uplot';
-import {brief_text, clock_text, number_text, unit_text} from '../format.js';
+import {brief_text, clock_text, quantity_text, unit_text} from '../format.js';
 import {html} from '../html.js';
 import {aligned, drop_series, extend, use_series} from '../series.js';
+import {stop} from '../stop.js';
 import {columns, freshness, gaps, now_s, replay, slow, values} from '../store.js';
+import {colour, theme} from '../theme.js';
 
-export const colours = ['#5aa9ff', '#ffb454', '#4fd69c', '#ff7eb6', '#b69cff', '#5fd7e8', '#ffe066', '#ff8f70'];
-const axis_colour = '#8e9ab3', grid_colour = '#1c2438';
-const font = '11px system-ui, "DejaVu Sans", sans-serif';
+/// Of curves that have no meaning of their own; what is measured, set, touched or felt has the colour of that everywhere.
+const palette = {dark: ['#6cb0ff', '#ffc06a', '#46d6c8', '#ff8fb8', '#b9a2ff', '#8bd17c', '#ffe27a', '#ff9a7a'],
+  light: ['#1560b3', '#9a5a00', '#0b766c', '#b3225f', '#6a48c7', '#2f6b22', '#7a6200', '#b23c12']};
+export const curve_colour = (i, look) => look ? colour(looks[look].colour) : palette[theme.value][i % palette.dark.length];
+const looks = {is: {colour: 'measured', width: 1.7}, set: {colour: 'blue', width: 1.5, dash: [4, 3]}, touched: {colour: 'teal', width: 3.2},
+  felt: {colour: 'violet', width: 1.5, dash: [5, 3]}};
+const font = '11px Inter';
 
 const short_name = (name) => name.split('.').slice(1).join('.') || name;
 
-const axis_of_time = {
-  stroke: axis_colour, grid: {stroke: grid_colour, width: 1}, ticks: {stroke: grid_colour, width: 1, size: 4}, font,
-  space: 80, size: 26,
-  values: (_, splits) => splits.map((t) => clock_text(t, splits[1] - splits[0] < 1 ? 1 : 0)),
-};
+const line_stroke = () => colour('line'), word_stroke = () => colour('faint');
+const axis_of_time = (relative) => ({
+  stroke: word_stroke, grid: {stroke: line_stroke, width: 1}, ticks: {stroke: line_stroke, width: 1, size: 4}, font,
+  space: relative ? 60 : 80, size: relative ? 22 : 26,
+  // The label of a tick has as many digits as its step: 2.5 s are not cut to whole seconds.
+  splits: relative ? (plot, _, from, to) => [0, 1, 2, 3].map((i) => to - i * (to - from) / 3).reverse() : undefined,
+  values: relative ? (_, splits) => splits.map((t, i) => i === splits.length - 1 ? 'now' : `−${+(splits.at(-1) - t).toFixed(1)} s`) :
+    (_, splits) => splits.map((t) => clock_text(t, splits.length > 1 && (splits[1] - splits[0]) % 1 > 1e-6 ? 1 : 0)),
+});
 
-function axis_of(unit, index) {
-  return {scale: unit, side: index % 2 ? 1 : 3, stroke: axis_colour, font, size: 52, label: unit_text(unit) || 'value',
-    labelSize: 14, labelFont: font, labelGap: 0, ticks: {stroke: grid_colour, width: 1, size: 4},
-    grid: {show: index === 0, stroke: grid_colour, width: 1},
+function axis_of(unit, index, relative) {
+  return {scale: unit, side: index % 2 ? 1 : 3, stroke: word_stroke, font, size: relative ? 40 : 52, label: relative ? undefined : unit_text(unit) || 'value',
+    labelSize: 14, labelFont: font, labelGap: 0, gap: 3, space: 34, ticks: {stroke: line_stroke, width: 1, size: relative ? 0 : 4},
+    grid: {show: index === 0, stroke: line_stroke, width: 1},
     values: (_, splits) => splits.map((value) => brief_text(+value.toPrecision(6)))};
 }
 
@@ -39,24 +49,84 @@ const gap_shade = {hooks: {drawClear: (plot) => {
   ctx.restore();
 }}};
 
+/// A line and a red field from the moment on at which something stopped.
+const stop_mark = {hooks: {draw: (plot) => {
+  const told = stop.peek();
+  if (!told) return;
+  const {ctx, bbox} = plot, x = plot.valToPos(told.t, 'x', true);
+  if (!(x >= bbox.left && x <= bbox.left + bbox.width)) return;
+  ctx.save();
+  ctx.fillStyle = 'rgba(255, 90, 80, .10)';
+  ctx.fillRect(x, bbox.top, bbox.left + bbox.width - x, bbox.height);
+  ctx.fillStyle = colour('red');
+  ctx.fillRect(x - 1, bbox.top, 2, bbox.height);
+  ctx.restore();
+}}};
+
+/// The whole range of a parameter beside its curve: where its ends are, what part the plot shows, where it stands now.
+const gauge = ([low, high], name) => ({hooks: {draw: (plot) => {
+  const {ctx, bbox} = plot, ratio = devicePixelRatio || 1;
+  const scale = plot.scales[plot.series[1].scale];
+  const x = bbox.left + bbox.width + 24 * ratio, wide = 6 * ratio, tall = bbox.height;
+  const y = (value) => bbox.top + tall * (1 - Math.max(0, Math.min(1, (value - low) / (high - low))));
+  const now = values.get(name)?.v, end = (high - low) * 0.05;
+  const near = Number.isFinite(now) && (now - low < end || high - now < end);
+  ctx.save();
+  ctx.fillStyle = colour('come');
+  ctx.fillRect(x - wide / 2, bbox.top, wide, tall);
+  ctx.fillStyle = colour(near ? 'amber' : 'ochre');
+  ctx.fillRect(x - wide / 2, bbox.top, wide, tall * 0.05);
+  ctx.fillRect(x - wide / 2, bbox.top + tall * 0.95, wide, tall * 0.05);
+  ctx.fillStyle = colour('edge');
+  ctx.fillRect(x - wide / 2, y(scale.max), wide, Math.max(2, y(scale.min) - y(scale.max)));
+  if (Number.isFinite(now)) {
+    ctx.fillStyle = colour(near ? 'amber' : 'measured');
+    ctx.beginPath();
+    ctx.moveTo(x - 4 * ratio, y(now));
+    ctx.lineTo(x - 10 * ratio, y(now) - 4 * ratio);
+    ctx.lineTo(x - 10 * ratio, y(now) + 4 * ratio);
+    ctx.fill();
+  }
+  ctx.fillStyle = colour('faint');
+  ctx.font = `${11 * ratio}px Inter`;
+  ctx.textAlign = 'center';
+  ctx.fillText(brief_text(high), x, bbox.top - 4 * ratio);
+  ctx.fillText(brief_text(low), x, bbox.top + tall + 13 * ratio);
+  ctx.restore();
+}}});
+
 const sync = uPlot.sync('hirosco');
 
-function options_of(names, size, on_zoom) {
-  const units = [...new Set(names.map((name) => columns.peek().get(name)?.unit ?? ''))];
+/// A curve that is to be `times` as large has the same axis, divided: curves that lie on each other are as they should be. Never narrower
+/// than `least`, so that noise does not fill the plot.
+function scales_of(units, about) {
+  const first = units.find((unit) => !unit.startsWith('times '));
+  const range = (_, low, high) => {
+    if (!Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+    const middle = (low + high) / 2, half = Math.max((high - low) * 0.6, (about.least ?? 0) / 2, 1e-9);
+    return [middle - half, middle + half];
+  };
+  return Object.fromEntries(units.map((unit) => [unit, unit.startsWith('times ') ?
+    {from: first, dir: Math.sign(Number(unit.slice(6))), range: (_, low, high) => [low, high].map((value) => value / Number(unit.slice(6))).sort((a, b) => a - b)} : about.least || about.range ? {range} : {}]));
+}
+
+function options_of(names, size, on_zoom, about) {
+  const scale_of = (name, i) => about.times?.[i] ? `times ${about.times[i]}` : columns.peek().get(name)?.unit ?? '';
+  const units = [...new Set(names.map(scale_of))];
   const series = [{}];
   const bands = [];
   names.forEach((name, i) => {
-    const scale = columns.peek().get(name)?.unit ?? '';
+    const scale = scale_of(name, i), look = looks[about.looks?.[i]];
     const stepped = Boolean(columns.peek().get(name)?.enumeration?.length) || columns.peek().get(name)?.type === 'BOOL';
-    const stroke = colours[i % colours.length];
-    series.push({label: name, scale, stroke, width: 1.4, points: {show: false}, spanGaps: false,
+    const stroke = () => curve_colour(i, about.looks?.[i]);
+    series.push({label: name, scale, stroke, width: look?.width ?? 1.4, dash: look?.dash, points: {show: false}, spanGaps: false,
       paths: stepped ? uPlot.paths.stepped({align: 1}) : undefined},
     {scale, stroke: 'transparent', points: {show: false}}, {scale, stroke: 'transparent', points: {show: false}});
-    bands.push({series: [3 * i + 3, 3 * i + 2], fill: `${stroke}33`});
+    bands.push({series: [3 * i + 3, 3 * i + 2], fill: () => `${stroke()}33`});
   });
-  return {...size, series, bands, legend: {show: false}, padding: [8, units.length > 1 ? 0 : 30, 0, 0],
-    scales: {x: {time: false}}, plugins: [gap_shade],
-    axes: [axis_of_time, ...units.map(axis_of)],
+  return {...size, series, bands, legend: {show: false}, padding: [about.range ? 18 : 8, about.range ? 44 : units.length > 1 ? 0 : 30, 0, 0],
+    scales: {x: {time: false}, ...scales_of(units, about)}, plugins: [gap_shade, stop_mark, ...(about.range ? [gauge(about.range, names[0])] : [])],
+    axes: [axis_of_time(about.relative), ...units.map((unit, i) => axis_of(unit, i, about.relative))],
     cursor: {sync: {key: sync.key, scales: ['x', null]}, drag: {x: true, y: false, setScale: false}, points: {size: 6}},
     hooks: {setSelect: [(plot) => {
       if (plot.select.width < 4) return;
@@ -79,7 +149,8 @@ function useSize(node) {
 }
 
 /// Curves of parameters over time. `range` null follows the newest sample; else it shows [from, to].
-export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}, plot_ref}) {
+const nothing = {};
+export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}, plot_ref, about = nothing}) {
   const node = useRef(null);
   const drawn = useRef({});
   const size = useSize(node);
@@ -96,7 +167,7 @@ export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}
 
   useEffect(() => {
     if (!size || !columns.value.size) return;
-    const plot = new uPlot(options_of(names, size, (span) => drawn.current.on_zoom(span)),
+    const plot = new uPlot(options_of(names, size, (span) => drawn.current.on_zoom(span), about),
       Array.from({length: 1 + 3 * names.length}, () => []), node.current);
     drawn.current.plot = plot;
     if (plot_ref) plot_ref.current = {plot, list: drawn.current.list};
@@ -105,7 +176,7 @@ export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}
       plot.destroy();
       drawn.current.plot = null;
     };
-  }, [key, Boolean(size), columns.value.size, live]);
+  }, [key, Boolean(size), columns.value.size, live, theme.value]);
   useEffect(() => { if (size) drawn.current.plot?.setSize(size); }, [size?.width, size?.height]);
 
   const draw = () => {
@@ -122,18 +193,16 @@ export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}
   return html`<div class="plot" ref=${node} data-test="plot" />`;
 }
 
-const three_digits = (value) => Number.isFinite(value) ? brief_text(Math.abs(value) < 1e-3 ? 0 : +value.toPrecision(3)) : number_text(value);
-
 /// What the curves are, with their newest values; stale ones are grey.
-export function Legend({names, brief, on_remove}) {
+export function Legend({names, brief, on_remove, about = nothing}) {
   slow.value;
-  const mixed = new Set(names.map((name) => name.split('.')[0])).size > 1;
   return html`<div class=${`legend ${brief ? 'brief' : ''}`}>${names.map((name, i) => {
     const column = columns.value.get(name);
     const {stale} = freshness(name);
-    return html`<span class=${stale ? 'stale' : ''} title=${name}><i style=${{background: colours[i % colours.length]}} />
-      ${brief ? html`${mixed ? html`<small>${name.slice(0, 3)}</small> ` : null}${name.split('.').at(-1)}` : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`} <b>${brief ? three_digits(values.get(name)?.v) :
-        number_text(values.get(name)?.v)}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
+    const look = looks[about.looks?.[i]];
+    const text = quantity_text(values.get(name)?.v, column?.unit);
+    return html`<span class=${stale ? 'stale' : ''} title=${name}><svg viewBox="0 0 12 6" aria-hidden="true"><path d="M0 3h12" stroke=${curve_colour(i, about.looks?.[i])}
+      stroke-width="2" stroke-dasharray=${look?.dash ? '3 2' : undefined} /></svg>${about.labels?.[i] ?? (brief ? name.split('.').at(-1) : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`)} <b>${text}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
       ${on_remove ? html`<button class="tiny" title=${`take ${name} out`} onClick=${() => on_remove(name)}>×</button>` : null}</span>`;
   })}</div>`;
 }
@@ -185,7 +254,7 @@ function draw_xy(canvas, size, list, names, range) {
   ctx.scale(ratio, ratio);
   const points = xy_points(list, range);
   ctx.font = font;
-  ctx.fillStyle = axis_colour;
+  ctx.fillStyle = colour('faint');
   if (points.length < 2) return ctx.fillText('no samples yet', 20, 24);
   const box = {left: 62, top: 10, width: size.width - 76, height: size.height - 50};
   const bounds = [0, 1].map((k) => {
@@ -196,7 +265,7 @@ function draw_xy(canvas, size, list, names, range) {
   });
   const x = (value) => box.left + (value - bounds[0][0]) / (bounds[0][1] - bounds[0][0]) * box.width;
   const y = (value) => box.top + box.height - (value - bounds[1][0]) / (bounds[1][1] - bounds[1][0]) * box.height;
-  ctx.strokeStyle = grid_colour;
+  ctx.strokeStyle = colour('line');
   ctx.textAlign = 'center';
   for (const tick of nice_ticks(...bounds[0], box.width / 90)) {
     ctx.beginPath(); ctx.moveTo(x(tick), box.top); ctx.lineTo(x(tick), box.top + box.height); ctx.stroke();
@@ -212,7 +281,7 @@ function draw_xy(canvas, size, list, names, range) {
   ctx.fillText(labels[0], box.left + box.width / 2, size.height - 6);
   ctx.save(); ctx.translate(12, box.top + box.height / 2); ctx.rotate(-Math.PI / 2); ctx.fillText(labels[1], 0, 0); ctx.restore();
   const parts = 8;
-  ctx.strokeStyle = colours[0];
+  ctx.strokeStyle = curve_colour(0);
   ctx.lineWidth = 1.4;
   for (let part = 0; part < parts; ++part) {
     const first = Math.floor(points.length * part / parts), end = Math.floor(points.length * (part + 1) / parts);
@@ -221,7 +290,7 @@ function draw_xy(canvas, size, list, names, range) {
     for (let i = Math.max(0, first - 1); i < end; ++i) ctx.lineTo(x(points[i][0]), y(points[i][1]));
     ctx.stroke();
   }
-  ctx.fillStyle = '#fff';
+  ctx.fillStyle = colour('text');
   const last = points[points.length - 1];
   ctx.beginPath(); ctx.arc(x(last[0]), y(last[1]), 3.5, 0, 7); ctx.fill();
 }

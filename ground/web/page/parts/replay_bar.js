@@ -11,12 +11,12 @@ export function ReplayBar() {
   slow.value;
   const {speed, state} = replay.value;
   const paused = speed === 0 || state === 'paused';
-  return html`<div class="replay_bar" role="status" data-test="replay-bar"><b>REPLAY — not live</b>
-    <span class="at">${clock_text(now_s())}</span><span>${state === 'ended' ? 'end of the archive' : ''}</span>
+  return html`<div class="replay_bar" role="status" data-test="replay-bar"><b>Replay, not live</b>
+    <span class="at">${clock_text(now_s())}</span><span class="words">${state === 'ended' ? 'end of the archive' : ''}</span>
     <button onClick=${() => replay_from(now_s() - 10)}>−10 s</button>
     <button onClick=${() => replay_from(now_s(), paused ? 1 : 0)}>${paused ? 'play' : 'pause'}</button>
     <button onClick=${() => replay_from(now_s() + 10)}>+10 s</button>
     <span class="speeds">${speeds.map((one) => html`<button class=${one === speed ? 'on' : ''} onClick=${() => replay_from(now_s(), one)}>${one}×</button>`)}</span>
-    <span>telecommands are locked</span>
+    <span class="words">telecommands are locked</span>
     <button class="back" onClick=${live} data-test="live">back to LIVE</button></div>`;
 }

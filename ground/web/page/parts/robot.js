@@ -1,27 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {fault} from '../commanding.js';
-import {age_text, number_text} from '../format.js';
+import {age_text, fixed_text} from '../format.js';
 import {html} from '../html.js';
-import {mission_folder, mission_has, mission_json} from '../mission_files.js';
+import {mission_folder} from '../mission_files.js';
 import {target_line} from './hand.js';
-import {fallen_text, inhibited_text} from '../stop.js';
-import {columns, fast, freshness, mission, operator, replay, slow, status_of, values} from '../store.js';
-
-/// scene.json of the mission; null when there is none, undefined while it is not known.
-export const scene_of_mission = signal(undefined);
-const drawing_code = () => import('./robot_drawing.js');
-// A page that opens with the robot in it asks for the code before it knows what to draw.
-const opens_with_robot = !/^#\/(?!overview)/.test(location.hash);
-mission_has('scene.json').then((there) => {
-  if (!there) return null;
-  if (opens_with_robot) drawing_code().catch(() => {});
-  return mission_json('scene.json');
-})
-    .then((description) => { scene_of_mission.value = description; })
-    .catch(() => { scene_of_mission.value = null; });
+import {drawing_code, scene_of_mission} from './scene_file.js';
+import {typed} from './typed.js';
+import {fallen, fallen_text, inhibited_text} from '../stop.js';
+import {columns, commands, fast, freshness, mission, operator, outcome_of, replay, slow, status_of, values} from '../store.js';
 
 const gamepad_period_ms = 60;
 const dead_zone = 0.08;
@@ -44,17 +32,16 @@ function useGamepad(on, hand) {
   }, [on, hand]);
 }
 
-function Readout({description}) {
+/// The operator's hand, in a picture of its own: it is on the ground, or beside the cabin, not next to the arm.
+function Hand({description, window_ref}) {
   slow.value;
-  const robot = description.robots.find((one) => one.force);
-  if (!robot) return null;
-  const [fx, fy] = robot.force.map((name) => values.get(name)?.v);
-  const stale = freshness(robot.force[0]).stale || freshness(Object.values(robot.joints)[0]).stale;
-  const joints = Object.values(robot.joints).map((name) => values.get(name)?.v);
-  return html`<div class=${`readout ${stale ? 'stale' : ''}`}>
-    ${joints.map((angle, i) => html`<span>q${i + 1} <b>${number_text(angle)}</b> rad</span>`)}
-    <span class=${Math.hypot(fx, fy) > 0.5 ? 'touching' : ''}>force <b>${Number.isFinite(fx) ? Math.hypot(fx, fy).toFixed(1) : '–'}</b> N</span>
-  </div>`;
+  const robot = description.robots.find((one) => one.inset);
+  const down = fallen.value.some((one) => one.subsystem === robot?.subsystem);
+  const lost = down && /lost|unplug|silent|device/i.test(fallen_text(robot.subsystem));
+  const felt = Math.hypot(...(robot?.torque ?? []).map((name) => values.get(name)?.v ?? 0));
+  const first = robot && Object.values(robot.joints)[0];
+  return html`<div class=${`hand ${down ? 'bad' : ''}`}><h3>${description.inset.title}</h3><div class="window" ref=${window_ref} />
+    <p>${down ? html`<b>${lost ? 'Device lost' : 'Stopped'}</b><span>${age_text(freshness(first).age_s)} ago</span>` : html`felt<span><b>${fixed_text(felt, 3)}</b> N m</span>`}</p></div>`;
 }
 
 /// What the picture alone would not say: that it is old, and that nothing there can move.
@@ -71,12 +58,15 @@ function Verdict({description}) {
     <span>${why}${why && silent ? ' · ' : ''}${silent ? `last pose, ${age_text(age_s)} old` : ''}</span></div>`;
 }
 
+const toggles = [['goal', 'Goal'], ['limits', 'Limits'], ['force', 'Force'], ['trail', 'Trail'], ['frames', 'Frames']];
+
 export function Robot() {
-  const node = useRef(null);
+  const stage = useRef(null), still = useRef(null), tags = useRef(null), leads = useRef(null), window_ref = useRef(null);
   const view = useRef(null);
   const [problem, set_problem] = useState('');
-  const [show, set_show] = useState({ghost: true, trail: true, force: true});
+  const [show, set_show] = useState({goal: true, limits: true, force: true, trail: true, frames: false});
   const [gamepad, set_gamepad] = useState(false);
+  const [loaded, set_loaded] = useState(false);
   const description = scene_of_mission.value;
   const hand = description?.hand && mission.value?.devices?.some((one) => one.name === description.hand.device) ? description.hand : null;
   useGamepad(gamepad && !replay.value, hand);
@@ -86,9 +76,11 @@ export function Robot() {
     let over = false;
     drawing_code().then(async ({RobotView}) => {
       if (over) return;
-      view.current = new RobotView(node.current, mission_folder, description);
+      view.current = new RobotView({stage: stage.current, still: still.current, tags: tags.current, leads: leads.current, window: window_ref.current}, mission_folder, description);
       await view.current.load();
-      if (!over) node.current.dataset.loaded = 'yes';
+      if (over) return;
+      stage.current.dataset.loaded = 'yes';
+      set_loaded(true);
     }).catch((error) => over || set_problem(`No 3D here: ${error.message}`));
     return () => {
       over = true;
@@ -98,37 +90,52 @@ export function Robot() {
   }, [description]);
   useEffect(() => fast.subscribe(() => view.current?.update()), []);
   useEffect(() => replay.subscribe(() => view.current?.forget()), []);
+  useEffect(() => typed.subscribe(() => view.current?.draw_soon()), []);
+  useEffect(() => commands.subscribe(() => view.current?.draw_soon()), []);
+  const stopped = (description?.robots ?? []).map((one) => one.subsystem).filter((name) => fallen.value.some((one) => one.subsystem === name) || status_of(name)?.inhibited?.length);
+  const old = Boolean(description) && freshness(Object.values(description.robots[0]?.joints ?? {})[0]).stale;
   useEffect(() => {
     if (!view.current) return;
     view.current.show = show;
-    view.current.robots.forEach((robot) => { robot.last = {}; });
-    view.current.update();
-  }, [show]);
-  if (view.current) view.current.hand_allowed = Boolean(hand) && operator.value;
+    view.current.stale = old;
+    view.current.look_again(stopped);
+  }, [show, old, stopped.join(), loaded]);
+  if (view.current) {
+    view.current.hand_allowed = Boolean(hand) && operator.value;
+    const boxes = taken_boxes(stage.current);
+    if (JSON.stringify(boxes) !== JSON.stringify(view.current.taken)) view.current.draw_soon();
+    view.current.taken = boxes;
+  }
   slow.value;
-
-  const toggle = (name) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]}
-    onClick=${() => set_show({...show, [name]: !show[name]})}>${name}</button>`;
-  const from = description?.camera?.from_m;
-  return html`<div class="robot">
+  const from = description?.camera;
+  const goal_sent = commands.value.some((one) => description?.robots.some((robot) => robot.goal?.function === one.function && robot.subsystem === one.subsystem) && !['completed', 'failed'].includes(outcome_of(one).stage));
+  return html`<div class=${`robot ${old ? 'old' : ''}`}>
+    <canvas class="still" ref=${still} aria-hidden="true" /><div class="stage" ref=${stage} data-test="robot" />
+    <svg class="leads" ref=${leads} aria-hidden="true" /><div class="readout" ref=${tags} />
     ${description ? html`<div class="tools">
-      ${toggle('ghost')}${toggle('trail')}${toggle('force')}
+      ${toggles.map(([name, title]) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]} onClick=${() => set_show({...show, [name]: !show[name]})}>${title}</button>`)}
       <span class="space" />
-      ${hand && !replay.value ? html`<button class="chip" title="the simulated hand wanders by itself"
-          onClick=${() => fault(hand.device, 'hand wander').catch(() => {})}>hand wanders</button>
-        <button class=${`chip ${gamepad ? 'on' : ''}`} title="the left stick of a gamepad is the hand"
-          onClick=${() => set_gamepad(!gamepad)}>gamepad</button>` : null}
-      <button class="chip" onClick=${() => view.current?.view_from(from)}>orbit</button>
-      <button class="chip" onClick=${() => view.current?.view_from(description.camera.above_m)}>top</button>
+      ${hand && operator.value && !replay.value ? html`<button class="chip" title="the simulated hand wanders by itself" onClick=${() => fault(hand.device, 'hand wander').catch(() => {})}>Hand wanders</button>
+        <button class=${`chip ${gamepad ? 'on' : ''}`} title="the left stick of a gamepad is the hand" aria-pressed=${gamepad} onClick=${() => set_gamepad(!gamepad)}>Gamepad</button>` : null}
+      <button class="chip" title="as at first" onClick=${() => view.current?.view_from(from.from_m)}>Scene</button>
+      <button class="chip" title="from above" onClick=${() => view.current?.view_from(from.above_m)}>Top</button>
+      ${from?.tip_from_m ? html`<button class="chip" title="the tip from near" onClick=${() => view.current?.view_tip()}>Tip</button>` : null}
     </div>` : null}
-    <div class=${`stage ${description && freshness(Object.values(description.robots[0]?.joints ?? {})[0]).stale ? 'old' : ''}`} ref=${node} data-test="robot">
-      ${description === null ? html`<p class="empty">This mission has no 3D model.<br />
-        <small>page/scene.json of its folder would be shown here.</small></p>` : null}
-      ${problem ? html`<p class="empty">${problem}</p>` : null}
-    </div>
-    ${description ? html`<${Verdict} description=${description} />` : null}
-    ${description ? html`<${Readout} description=${description} />
-      <div class="key"><span><i class="solid" />measured</span><span><i class="ghost" />commanded</span>${
-        hand && operator.value && !replay.value ? html`<span>drag the blue handle or the fingertip</span>` : null}</div>` : null}
+    ${problem ? html`<p class="empty">${problem}</p>` : null}
+    ${description?.inset ? html`<${Hand} description=${description} window_ref=${window_ref} />` : null}
+    ${description ? html`<${Verdict} description=${description} />
+      <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="fallen" />inhibited</span>` : html`<span><i />measured</span>${
+        typed.value?.values || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}<span><i class="touched" />touched</span>${
+        description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">drag the handle or the fingertip</span>` : null}</div>` : null}
   </div>`;
+}
+
+/// Where tags must not lie: on the buttons above, the hand, the key and the verdict.
+function taken_boxes(stage) {
+  const home = stage?.parentElement?.getBoundingClientRect();
+  if (!home) return [];
+  return [...stage.parentElement.querySelectorAll('.tools, .hand, .key, .inhibited')].map((node) => {
+    const box = node.getBoundingClientRect();
+    return {left: box.left - home.left, right: box.right - home.left, top: box.top - home.top, bottom: box.bottom - home.top};
+  });
 }

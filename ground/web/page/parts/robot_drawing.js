@@ -1,101 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// The robot in 3D: measured solid, commanded as a ghost, with what it touches. Draws only when a joint or the camera has
-// moved. A chunk of its own: three.js is loaded by the views that show it. Realtime: none.
-import {
-  AmbientLight, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry,
-  ExtrudeGeometry, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
-  PerspectiveCamera, Plane, Raycaster, Scene, Shape, SphereGeometry, Vector2, Vector3, WebGLRenderer, Box3,
-} from 'three';
+// The robot in 3D: where it is in orbit, what it touches, where it shall go. Draws only while a joint or the camera moves. With a graphics
+// card all of it at each frame; a processor that draws by itself draws what stands still once for a camera, as a picture behind a transparent
+// one of what moves. A chunk of its own: three.js is loaded by the views that show it. Realtime: none.
+import {ACESFilmicToneMapping, Color, Group, MeshBasicMaterial, PCFShadowMap, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
-import URDFLoader from 'urdf-loader';
 import {asset} from '../api.js';
-import {fault} from '../commanding.js';
-import {replay, values} from '../store.js';
-import {angles_of_offset, before_wall, surface_x_m, target_line, within_range} from './hand.js';
+import {fixed_text} from '../format.js';
+import {mission_code} from '../mission_files.js';
+import {commands, replay, values} from '../store.js';
+import {Goal, goal_of} from '../scene/goal.js';
+import {Grips} from '../scene/grips.js';
+import {Arrow, colours, contact_ring, Ribbon} from '../scene/instruments.js';
+import {Kit, merged} from '../scene/kit.js';
+import {affordable, RobotModel} from '../scene/robot_model.js';
+import {cast_on_plane} from '../scene/skins.js';
+import {environment, lights, mirrored_cube, sky, sun_from} from '../scene/space.js';
+import {StillPicture} from '../scene/still.js';
+import {Tags} from '../scene/tags.js';
+import {surface_x_m} from './hand.js';
+import {typed} from './typed.js';
 
-const moved_rad = 1e-5;
-const quick_ms = 10;
-const trail_points = 400;
-const hand_period_ms = 60;
-const near_limit = 0.08;
-const lever_m = 0.109;
-const band_from_m = 0.006;
-
-const colour_ok = new Color(0x5b6880), colour_near = new Color(0xf2a93b), colour_at = new Color(0xf05d5e);
-
-function parsed_urdf(text) {
-  const loader = new URDFLoader();
-  loader.parseCollision = false;
-  return loader.parse(text);
-}
-
-function dress(robot, ghost) {
-  robot.traverse((part) => {
-    if (!part.isMesh) return;
-    const colour = ghost ? new Color(0x3f8cff) : part.material.color.clone();
-    part.material = new MeshLambertMaterial(ghost ?
-      {color: colour, transparent: true, opacity: 0.3, depthWrite: false,
-        polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4} :
-      {color: colour});
-    part.renderOrder = ghost ? 1 : 0;
-  });
-}
-
-/// Rings of the joints by name, to be coloured near their limits.
-function rings_of(robot) {
-  const rings = {};
-  robot.traverse((part) => {
-    const match = /^(.*)_ring$/.exec(part.urdfName ?? part.name ?? '');
-    if (match) part.traverse((mesh) => { if (mesh.isMesh) rings[match[1]] = mesh; });
-  });
-  return rings;
-}
-
-function contour_mesh(contour) {
-  const shape = new Shape();
-  const steps = 96;
-  shape.moveTo(contour.rail_x_m + contour.depth_m, contour.from_y_m);
-  for (let i = 0; i <= steps; ++i) {
-    const y = contour.from_y_m + (contour.to_y_m - contour.from_y_m) * i / steps;
-    shape.lineTo(surface_x_m(contour, y), y);
-  }
-  shape.lineTo(contour.rail_x_m + contour.depth_m, contour.to_y_m);
-  const geometry = new ExtrudeGeometry(shape, {depth: contour.height_m, bevelEnabled: false});
-  const mesh = new Mesh(geometry, new MeshLambertMaterial({color: 0x8a6f45,
-    // Its edges lie in its own faces: without a distance they would be dashed.
-    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2}));
-  mesh.add(new LineSegments(new EdgesGeometry(geometry, 40), new LineBasicMaterial({color: 0xd9b06a})));
-  return mesh;
-}
-
-/// A coil along x from the origin, of unit length; stretched and turned by its group.
-function spring_mesh({from_m, to_m}, z) {
-  const points = [];
-  const turns = 9, radius_m = 0.0045;
-  for (let i = 0; i <= turns * 12; ++i) {
-    const angle = i / 12 * 2 * Math.PI, part = i / (turns * 12);
-    const inner = part < 0.06 || part > 0.94 ? 0 : radius_m;
-    points.push(new Vector3(part, inner * Math.cos(angle), inner * Math.sin(angle)));
-  }
-  const steel = new MeshLambertMaterial({color: 0x9fd8c0});
-  const coil = new Group();
-  const wire = new Line(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({color: 0x9fd8c0}));
-  coil.add(wire);
-  const group = new Group();
-  const post = new Mesh(new SphereGeometry(0.005, 12, 8), steel);
-  group.add(coil, post);
-  group.position.set(from_m[0], from_m[1], z);
-  group.reach = (x, y) => {
-    const dx = x - from_m[0], dy = y - from_m[1];
-    coil.rotation.z = Math.atan2(dy, dx);
-    coil.scale.x = Math.hypot(dx, dy);
-  };
-  group.rest = () => group.reach(to_m[0], to_m[1]);
-  group.rest();
-  return group;
-}
+const quick_ms = 10, software_period_ms = 40;
+const trail_points = 300, trail_step_m2 = 4e-6;
+const least_force_n = 0.5;
+const words_ms = 200, still_after_ms = 250;
 
 function drawn_by_processor(context) {
   const about = context.getExtension('WEBGL_debug_renderer_info');
@@ -105,186 +35,272 @@ function drawn_by_processor(context) {
 
 /// Without a graphics card smooth edges cost as much as all the rest, and a second context a tenth of a second.
 function new_renderer() {
-  const plain = new WebGLRenderer({antialias: false, powerPreference: 'low-power'});
-  if (devicePixelRatio >= 1.5 || drawn_by_processor(plain.getContext())) return plain;
-  plain.dispose();
-  plain.forceContextLoss();
-  return new WebGLRenderer({antialias: true, powerPreference: 'low-power'});
+  const first = new WebGLRenderer({antialias: false, alpha: true, powerPreference: 'high-performance'});
+  if (drawn_by_processor(first.getContext())) return [first, true];
+  first.dispose();
+  first.forceContextLoss();
+  return [new WebGLRenderer({antialias: true, powerPreference: 'high-performance'}), false];
 }
 
 export class RobotView {
-  constructor(node, folder, description) {
-    this.node = node;
-    this.folder = folder;
-    this.description = description;
+  /// `nodes`: {stage, still, tags, leads, window}: where it draws, the canvas behind, what lies above; `window` may be missing.
+  constructor(nodes, folder, description) {
+    Object.assign(this, {nodes, folder, description, robots: [], springs: [], frames: 0, show: {goal: true, limits: true, force: true, trail: true, frames: false}});
+    [this.renderer, this.software] = new_renderer();
+    const {renderer} = this;
+    renderer.toneMapping = ACESFilmicToneMapping;
+    renderer.setPixelRatio(this.software ? 1 : Math.min(devicePixelRatio, 2));
+    renderer.shadowMap.enabled = !this.software;
+    renderer.shadowMap.type = PCFShadowMap;
+    renderer.autoClear = false;
+    this.canvas = renderer.domElement;
+    this.canvas.setAttribute('aria-label', 'the robot in 3D');
+    nodes.stage.appendChild(this.canvas);
+    nodes.stage.dataset.tier = this.software ? 'software' : 'graphics card';
     this.scene = new Scene();
-    this.scene.background = new Color(0x0a0e17);
-    this.renderer = new_renderer();
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 1.5));
-    this.renderer.domElement.setAttribute('aria-label', 'the robot in 3D');
-    node.appendChild(this.renderer.domElement);
-    this.camera = new PerspectiveCamera(34, 1, 0.02, 10);
+    this.far = this.software ? new Scene() : this.scene;
+    if (!this.software) this.scene.background = new Color(0x04060a);
+    this.still = this.software ? new StillPicture(renderer, this.far, nodes.still) : null;
+    const {camera} = description;
+    this.scale = new Vector3().fromArray(camera.from_m).distanceTo(new Vector3().fromArray(camera.to_m));
+    this.camera = new PerspectiveCamera(camera.fov_deg ?? 34, 1, 0.05 * this.scale, 900 * this.scale);
     this.camera.up.set(0, 0, 1);
-    this.camera.position.fromArray(description.camera.from_m);
-    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-    this.controls.target.fromArray(description.camera.to_m);
-    this.controls.maxDistance = 3;
-    this.controls.minDistance = 0.15;
-    this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
-    this.controls.addEventListener('change', () => this.draw_soon());
+    this.camera.position.fromArray(camera.from_m);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.target.fromArray(camera.to_m);
+    Object.assign(this.controls, {maxDistance: 4 * this.scale, minDistance: 0.15 * this.scale, maxPolarAngle: Math.PI / 2 - 0.02, zoomToCursor: true});
+    this.controls.addEventListener('change', () => this.camera_moved());
     this.controls.update();
-    this.robots = [];
-    this.springs = [];
-    this.show = {ghost: true, trail: true, force: true};
-    this.frames = 0;
-    this.light();
-    this.make_traces();
+    this.size = new Vector2();
+    this.make_inset();
+    this.make_instruments();
+    this.grips = new Grips(this);
     this.observer = new ResizeObserver(() => this.resize());
-    this.observer.observe(node);
-    this.listen();
+    this.observer.observe(nodes.stage);
+    this.values = values;
+  }
+
+  make_inset() {
+    const {inset} = this.description;
+    if (!inset || !this.nodes.window) return;
+    this.inset = {scene: new Scene(), camera: new PerspectiveCamera(28, 1, 0.02, 5), box: {left: 0, top: 0, width: 0, height: 0}};
+    this.inset.camera.up.set(0, 0, 1);
+    this.inset.camera.position.fromArray(inset.from_m);
+    this.inset.camera.lookAt(...inset.to_m);
+    this.inset.scene.add(...lights({target: new Vector3(), reach_m: 0.3, shadow: false}));
+    this.felt = new Arrow(colours.felt, 0.0036);
+    this.inset.scene.add(this.felt.group);
+  }
+
+  make_instruments() {
+    this.force = new Arrow(colours.touched, 0.0046);
+    this.contact = contact_ring(1);
+    this.trail = new Ribbon(trail_points, 0.0022);
+    this.scene.add(this.force.group, this.contact, this.trail.mesh);
+    const target = new Vector3().fromArray(this.description.camera.to_m);
+    this.scene.add(...lights({target, reach_m: 0.62 * this.scale, shadow: !this.software}));
   }
 
   async load() {
     const {description} = this;
-    const texts = await Promise.all(description.robots.map(async ({urdf}) => (await asset(`${this.folder}/${urdf}`)).text()));
-    for (const [i, one] of description.robots.entries()) {
-      const entry = {...one, body: parsed_urdf(texts[i]), rings: {}, last: {}};
-      dress(entry.body, false);
-      entry.rings = rings_of(entry.body);
-      // Unseen until the first telemetry says how it stands.
-      entry.body.visible = false;
-      entry.body.position.fromArray(one.at_m ?? [0, 0, 0]);
-      this.scene.add(entry.body);
-      if (one.ghost) {
-        entry.shadow = parsed_urdf(texts[i]);
-        dress(entry.shadow, true);
-        entry.shadow.visible = false;
-        entry.shadow.position.copy(entry.body.position);
-        this.scene.add(entry.shadow);
-      }
-      this.robots.push(entry);
+    const [own, ...texts] = await Promise.all([description.parts ? mission_code(description.parts) : {}, ...description.robots.map(async ({urdf}) => (await asset(`${this.folder}/${urdf}`)).text())]);
+    this.own = own;
+    this.mirror = this.software ? null : environment(this.renderer, 128);
+    const kit = new Kit(this.mirror, this.software ? 0.55 : 1);
+    this.tags = new Tags(this.nodes.tags, this.nodes.leads);
+    for (const [i, about] of description.robots.entries()) {
+      const parts = () => own.links?.[about.urdf]?.(kit) ?? {};
+      const robot = new RobotModel(about, texts[i], parts(), {environment: this.mirror, software: this.software});
+      robot.make_goal = about.goal ? () => new Goal(robot, texts[i], parts(), {scale: 1, contour: description.contour}) : null;
+      robot.angle_tags = about.inset ? [] : robot.names.map((name) => this.tags.add('', `${about.names?.[name] ?? name} `, 'rad'));
+      if (robot.tip) robot.tip_tag = this.tags.add('', 'tip ', 'mm');
+      if (about.goal) robot.goal_tag = this.tags.add('goal', 'goal ', '');
+      if (about.force) robot.force_tag = this.tags.add('touched', Object.assign(document.createElement('span'), {className: 'unseen', textContent: 'force '}), 'N');
+      this.scene_of(robot).add(robot.body);
+      if (this.software && !about.inset) cast_on_plane(robot.body, sun_from, 0.0006);
+      this.robots.push(robot);
     }
-    if (description.contour) this.scene.add(contour_mesh(description.contour));
-    this.springs = (description.springs ?? []).map((spring) => spring_mesh(spring, description.plane_z_m));
-    this.scene.add(...this.springs);
+    if (own.obstacles) {
+      this.obstacles = merged(own.obstacles(kit, {...description, surface_x_m}));
+      this.obstacles.traverse((part) => { if (part.isMesh) part.castShadow = part.receiveShadow = true; });
+      this.scene.add(this.obstacles);
+    }
+    for (const spring of description.springs ?? []) this.add_spring(kit, spring);
+    if (this.software) this.obstacles?.traverse((part) => { if (part.isMesh) part.material = affordable(part.material, true); });
     this.resize();
     this.update();
+    this.add_surroundings_later();
   }
 
-  light() {
-    this.scene.add(new HemisphereLight(0xdfe8ff, 0x1a2030, 1.5), new AmbientLight(0xffffff, 0.25));
-    const sun = new DirectionalLight(0xffffff, 2.2);
-    sun.position.set(0.6, -0.8, 1.4);
-    this.scene.add(sun);
-    const grid = new GridHelper(1.6, 32, 0x2a3a58, 0x182136);
-    grid.rotation.x = Math.PI / 2;
-    grid.position.set(0.2, 0.05, -0.001);
-    this.scene.add(grid);
+  add_spring(kit, {from_m, to_m}) {
+    const coil = kit.coil(9, 0.0048, 0.0009, affordable(kit.material.steel, this.software));
+    coil.position.set(from_m[0], from_m[1], this.description.plane_z_m);
+    const reach = (x, y) => {
+      coil.rotation.z = Math.atan2(y - from_m[1], x - from_m[0]);
+      coil.scale.x = Math.hypot(x - from_m[0], y - from_m[1]);
+    };
+    const spring = {reach, rest: () => reach(to_m[0], to_m[1])};
+    spring.rest();
+    this.springs.push(spring);
+    this.scene.add(coil);
   }
 
-  make_traces() {
-    this.force = new ArrowHelper(new Vector3(-1, 0, 0), new Vector3(), 0.1, 0xff5f5f, 0.022, 0.014);
-    this.force.visible = false;
-    this.scene.add(this.force);
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * trail_points), 3));
-    geometry.setDrawRange(0, 0);
-    this.trail = new Line(geometry, new LineBasicMaterial({color: 0x41d18f, transparent: true, opacity: 0.55}));
-    this.trail.frustumCulled = false;
-    this.trail_list = [];
-    this.scene.add(this.trail);
+  /// The robot moves first; what is around it takes a second to make without a graphics card.
+  add_surroundings_later() {
+    const later = globalThis.requestIdleCallback ?? ((then) => setTimeout(then, 50));
+    const steps = [
+      () => this.far.add(...sky(this.scale), ...(this.software ? lights({target: this.controls.target, reach_m: 0.62 * this.scale, shadow: false}) : [])),
+      () => {
+        const kit = new Kit(this.software ? mirrored_cube() : this.mirror, this.software ? 0.7 : 1), around = this.own.surroundings?.(kit) ?? usual_surroundings(kit);
+        around.traverse((part) => { if (part.isMesh) part.castShadow = part.receiveShadow = !this.software; });
+        this.far.add(around);
+        if (this.software && this.own.obstacles) this.far.add(merged(this.own.obstacles(kit, {...this.description, surface_x_m})));
+        if (this.software) this.hide_behind_obstacles();
+      },
+      () => this.still?.grown(),
+    ];
+    const next = () => {
+      if (this.closed) return;
+      steps.shift()();
+      this.draw_soon();
+      if (steps.length) later(next, {timeout: 300});
+      else this.nodes.stage.dataset.surroundings = 'yes';
+    };
+    later(next, {timeout: 500});
+  }
+
+  /// What the still picture shows hides the robot where it stands before it.
+  hide_behind_obstacles() {
+    const hidden = new MeshBasicMaterial({colorWrite: false});
+    this.obstacles?.traverse((part) => {
+      if (!part.isMesh) return;
+      part.material = hidden;
+      part.renderOrder = -3;
+    });
   }
 
   resize() {
-    const width = this.node.clientWidth, height = this.node.clientHeight;
+    const {clientWidth: width, clientHeight: height} = this.nodes.stage;
     if (!width || !height) return;
+    this.size.set(width, height);
     this.renderer.setSize(width, height, false);
+    const fov = this.description.camera.fov_deg ?? 34;
     this.camera.aspect = width / height;
     // The robot keeps its size in a narrow panel.
-    this.camera.fov = this.camera.aspect < 1.4 ? 34 * 1.4 / this.camera.aspect : 34;
+    this.camera.fov = this.camera.aspect < 1.4 ? fov * 1.4 / this.camera.aspect : fov;
     this.camera.updateProjectionMatrix();
-    this.draw_soon();
+    if (this.inset) {
+      const stage = this.nodes.stage.getBoundingClientRect(), box = this.nodes.window.getBoundingClientRect();
+      this.inset.box = {left: box.left - stage.left, top: box.top - stage.top, width: box.width, height: box.height};
+      this.inset.camera.aspect = box.width / Math.max(1, box.height);
+      this.inset.camera.updateProjectionMatrix();
+    }
+    this.camera_moved(true);
   }
+
+  camera_moved(at_once = false) {
+    this.moved_at = at_once ? -Infinity : performance.now();
+    this.still?.ask();
+    this.trail_turned = true;
+    this.draw_soon();
+    if (at_once) return;
+    clearTimeout(this.still_timer);
+    this.still_timer = setTimeout(() => this.draw_soon(), still_after_ms);
+  }
+
+  scene_of(robot) { return robot.about.inset && this.inset ? this.inset.scene : this.scene; }
+  may() { return !replay.value && this.hand_allowed; }
 
   /// Takes the newest joints; draws when something moved.
   update() {
-    let moved = false;
-    for (const robot of this.robots) {
-      moved = this.pose(robot, robot.body, robot.joints, 'body') || moved;
-      if (robot.shadow) moved = this.pose(robot, robot.shadow, robot.ghost, 'shadow') || moved;
-      if (robot.shadow && !this.show.ghost) robot.shadow.visible = false;
-      if (moved && robot.tip) this.follow_tip(robot);
-    }
-    if (moved) {
-      this.stretch();
-      this.draw_soon();
-    }
+    const now_ms = performance.now();
+    for (const robot of this.robots) robot.take(values, now_ms);
+    const forces = this.robots.map((robot) => (robot.about.force ?? []).map((name) => values.get(name)?.v)).flat();
+    const changed = forces.some((value, i) => Math.abs(value - (this.forces?.[i] ?? Infinity)) > 0.05);
+    if (changed) this.forces = forces;
+    if (changed || this.robots.some((robot) => robot.motion.moving() || !robot.body.visible)) this.draw_soon();
   }
 
-  pose(robot, body, joints, which) {
-    let moved = false;
-    for (const [joint, parameter] of Object.entries(joints)) {
-      const angle = values.get(parameter)?.v;
-      if (!Number.isFinite(angle)) continue;
-      const key = `${which}/${joint}`;
-      if (Math.abs((robot.last[key] ?? Infinity) - angle) < moved_rad) continue;
-      robot.last[key] = angle;
-      body.visible = true;
-      body.joints[joint].ignoreLimits = true;
-      body.setJointValue(joint, angle);
-      if (which === 'body') this.colour(robot, joint, angle);
-      moved = true;
-    }
-    return moved;
+  /// Once the words beside may have changed: who is stopped, what is typed.
+  look_again(stopped) {
+    for (const robot of this.robots) robot.halo.shown = stopped.includes(robot.about.subsystem);
+    this.draw_soon();
   }
 
-  colour(robot, joint, angle) {
-    const ring = robot.rings[joint];
-    const {lower, upper} = robot.body.joints[joint].limit;
-    if (!ring || !(upper > lower)) return;
-    const left = Math.min(angle - lower, upper - angle);
-    ring.material.color.copy(left < 0.005 ? colour_at : left < near_limit * (upper - lower) ? colour_near : colour_ok);
+  follow_force(robot) {
+    const [x, y, z = 0] = (robot.about.force ?? []).map((name) => values.get(name)?.v ?? 0), size = Math.hypot(x, y, z);
+    robot.force_n = size;
+    const shown = this.show.force && size > least_force_n && robot.body.visible;
+    this.force.group.visible = this.contact.visible = shown;
+    if (!shown) return;
+    const along = new Vector3(x, y, z).divideScalar(size), length = Math.min(0.35, Math.max(0.03, size * robot.about.metres_per_newton));
+    const from = robot.tip.clone().addScaledVector(along, 0.006);
+    this.force.point(from, along, length);
+    robot.force_end = from.addScaledVector(along, length);
+    this.contact.position.copy(robot.tip).addScaledVector(along, -0.0095);
+    this.contact.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), along);
   }
 
-  follow_tip(robot) {
-    robot.body.updateMatrixWorld(true);
-    const tip = new Vector3();
-    robot.body.links[robot.tip].getWorldPosition(tip);
-    this.tip = tip;
-    const last = this.trail_list[this.trail_list.length - 1];
-    if (!last || last.distanceToSquared(tip) > 1e-7) {
-      this.trail_list.push(tip.clone());
-      if (this.trail_list.length > trail_points) this.trail_list.shift();
-      const position = this.trail.geometry.attributes.position;
-      this.trail_list.forEach((point, i) => position.setXYZ(i, point.x, point.y, point.z));
-      position.needsUpdate = true;
-      this.trail.geometry.setDrawRange(0, this.trail_list.length);
+  follow_tip(robot, moved) {
+    const last = this.trail.points.at(-1);
+    if (moved && (!last || last.at.distanceToSquared(robot.tip) > trail_step_m2)) {
+      this.trail.add(robot.tip, robot.force_n > least_force_n ? colours.touched : 0xdfe5ee);
+      this.trail_turned = true;
     }
-    this.trail.visible = this.show.trail;
+    if (this.trail_turned) this.trail.lay(this.camera, (i, count) => 0.85 * (i / count) ** 1.6);
+    this.trail_turned = false;
+    this.trail.mesh.visible = this.show.trail;
     const hooked = values.get(this.description.hooked)?.v ?? 0;
-    this.springs.forEach((spring, i) => hooked === i + 1 ? spring.reach(tip.x, tip.y) : spring.rest());
-    const [fx, fy] = (robot.force ?? []).map((name) => values.get(name)?.v ?? 0);
-    const size = Math.hypot(fx, fy);
-    this.force.visible = this.show.force && size > 0.5;
-    if (this.force.visible) {
-      const length = Math.min(0.35, Math.max(0.03, size * robot.metres_per_newton));
-      this.force.position.copy(tip);
-      this.force.setDirection(new Vector3(fx / size, fy / size, 0));
-      this.force.setLength(length, 0.022, 0.014);
+    this.springs.forEach((spring, i) => hooked === i + 1 ? spring.reach(robot.tip.x, robot.tip.y) : spring.rest());
+  }
+
+  follow_goal(robot) {
+    const wanted = this.show.goal ? goal_of(robot.about, typed.value, commands.value) : null;
+    if (!wanted && !robot.goal) return;
+    if (!robot.goal) {
+      robot.goal = robot.make_goal();
+      this.scene.add(robot.goal.group);
     }
+    robot.goal_told = robot.goal.show(wanted, this.camera);
+    robot.goal_wanted = wanted;
+  }
+
+  follow_stick(robot) {
+    if (!this.felt || !robot.about.torque) return;
+    const [x, y] = robot.about.torque.map((name) => values.get(name)?.v ?? 0), size = Math.hypot(x, y);
+    this.felt.group.visible = this.show.force && size > 0.004;
+    if (this.felt.group.visible) this.felt.point(new Vector3(0, 0, 0.19), new Vector3(x / size, y / size, 0), Math.min(0.1, 0.03 + 0.5 * size));
   }
 
   draw_soon() {
+    if (this.closed) return;
     if (this.resting) this.wanted_again = true;
     else this.waiting ||= requestAnimationFrame(() => this.draw());
   }
 
   draw() {
     this.waiting = 0;
-    ++this.frames;
-    this.node.dataset.frames = this.frames;
     const began_ms = performance.now();
-    this.renderer.render(this.scene, this.camera);
+    let moved = false;
+    for (const robot of this.robots) {
+      const posed = robot.pose(began_ms);
+      moved = posed || moved;
+      robot.show_limits(this.show.limits);
+      if (robot.frame) robot.frame.visible = this.show.frames || !robot.about.inset && this.show.limits;
+      if (!robot.tip || !robot.body.visible) { this.follow_stick(robot); continue; }
+      this.follow_force(robot);
+      this.follow_tip(robot, posed);
+      if (robot.make_goal) this.follow_goal(robot);
+    }
+    this.grips.stretch();
+    ++this.frames;
+    this.nodes.stage.dataset.frames = this.frames;
+    this.nodes.stage.dataset.pose = this.robots.map((robot) => robot.last.map((angle) => angle?.toFixed(6))).join();
+    let more = this.still?.draw(this.camera, this.size, began_ms - this.moved_at < still_after_ms - 20) ?? false;
+    if (this.still?.whole && !this.still.wanted) this.nodes.stage.dataset.still = 'whole';
+    this.draw_live();
+    this.lay_tags(began_ms);
+    if (this.robots.some((robot) => robot.motion.moving())) more = true;
     // Told when the browser is through with the picture: without a graphics card the page waits until the processor has drawn it.
     this.resting = true;
     const through = new MessageChannel();
@@ -293,165 +309,142 @@ export class RobotView {
       this.rest(performance.now() - began_ms);
     };
     through.port2.postMessage(null);
+    if (more) this.draw_soon();
   }
 
-  /// For half as long as a picture took, the page is everybody else's: no slow computer keeps an operator from the rest of it.
+  draw_live() {
+    const {renderer, inset} = this, {x: width, y: height} = this.size;
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, width, height);
+    renderer.setClearColor(0, this.software ? 0 : 1);
+    renderer.clear();
+    renderer.render(this.scene, this.camera);
+    if (!inset || !inset.box.width) return;
+    const {left, top, width: wide, height: tall} = inset.box, bottom = height - top - tall;
+    renderer.setScissorTest(true);
+    renderer.setScissor(left, bottom, wide, tall);
+    renderer.setViewport(left, bottom, wide, tall);
+    renderer.setClearColor(0x14171b, 1);
+    renderer.clear();
+    renderer.render(inset.scene, inset.camera);
+    renderer.setScissorTest(false);
+  }
+
+  /// For half as long as a picture took, the page is everybody else's, and without a graphics card half of a processor is.
   rest(took_ms) {
     if (this.closed) return;
+    const pause_ms = took_ms < quick_ms && !this.software ? 0 : this.software ? Math.max(took_ms / 2, software_period_ms - took_ms) : took_ms / 2;
     this.pause = setTimeout(() => {
       this.resting = false;
       if (!this.wanted_again) return;
       this.wanted_again = false;
       this.draw_soon();
-    }, took_ms < quick_ms ? 0 : took_ms / 2);
+    }, pause_ms);
+  }
+
+  at_px(point) {
+    const seen = point.clone().project(this.camera);
+    return seen.z > 1 ? null : [(seen.x + 1) / 2 * this.size.x, (1 - seen.y) / 2 * this.size.y];
+  }
+
+  lay_tags(now_ms) {
+    if (!this.tags) return;
+    const telling = now_ms - (this.told_ms ?? -Infinity) > words_ms;
+    if (telling) this.told_ms = now_ms;
+    for (const robot of this.robots) {
+      const {body} = robot, seen = body.visible, stale = this.stale ?? false;
+      robot.angle_tags.forEach((tag, i) => {
+        tag.at = this.at_px(body.joints[robot.names[i]].getWorldPosition(new Vector3()));
+        if (telling) this.tags.tell(tag, fixed_text(robot.last[i], 3), {shown: seen, stale});
+      });
+      if (robot.tip_tag) {
+        robot.tip_tag.at = this.at_px(robot.tip);
+        if (telling) this.tags.tell(robot.tip_tag, `${fixed_text(robot.tip.x * 1000, 1)}, ${fixed_text(robot.tip.y * 1000, 1)}`, {shown: seen, stale});
+      }
+      if (robot.goal_tag) {
+        const told = robot.goal_wanted ? robot.goal_told : null;
+        robot.goal_tag.at = told?.tip ? this.at_px(told.tip) : null;
+        if (telling || !told) {
+          const words = told ? Object.values(robot.goal_wanted.angles).map((angle) => fixed_text(angle, 3)).join(', ') : '';
+          this.tags.tell(robot.goal_tag, words, {shown: Boolean(told), look: told?.wrong ? 'wrong' : 'goal',
+            unit: told ? told.wrong || `in ${fixed_text(robot.goal_wanted.duration_s, 1)} s, ${fixed_text(told.fastest, 2)} rad/s` : ''});
+        }
+      }
+      if (robot.force_tag) {
+        const pressing = (robot.force_n ?? 0) > least_force_n && this.show.force;
+        robot.force_tag.at = pressing && robot.force_end ? this.at_px(robot.force_end) : null;
+        if (telling) this.tags.tell(robot.force_tag, fixed_text(robot.force_n ?? 0, 1), {shown: pressing && seen, stale});
+      }
+    }
+    this.tags.lay(this.size.x, this.size.y, this.taken ?? [], telling);
+    clearTimeout(this.words_timer);
+    // The last words are told also when nothing moves any more.
+    if (!telling) this.words_timer = setTimeout(() => this.draw_soon(), words_ms);
+  }
+
+  is_in_inset(event) {
+    if (!this.inset) return false;
+    const stage = this.canvas.getBoundingClientRect(), {left, top, width, height} = this.inset.box;
+    const x = event.clientX - stage.left - left, y = event.clientY - stage.top - top;
+    return x >= 0 && y >= 0 && x <= width && y <= height;
+  }
+
+  /// Where a pointer is in the picture of one camera: [x, y, camera], both from -1 to 1.
+  eye_at(event, inset) {
+    const stage = this.canvas.getBoundingClientRect(), box = inset ? this.inset.box : {left: 0, top: 0, width: stage.width, height: stage.height};
+    return [(event.clientX - stage.left - box.left) / box.width * 2 - 1, 1 - (event.clientY - stage.top - box.top) / box.height * 2, inset ? this.inset.camera : this.camera];
   }
 
   forget() {
-    if (this.trail_list) this.trail_list.length = 0;
-    this.trail?.geometry.setDrawRange(0, 0);
+    this.trail?.clear();
+    for (const robot of this.robots) robot.motion.forget();
   }
 
-  // The visitor's mouse leads the operator's hand, by the handle or by the fingertip. What counts is how far it went since the grab,
-  // wherever on the part that was.
-  listen() {
-    const canvas = this.renderer.domElement;
-    this.ray = new Raycaster();
-    this.band = new Line(new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(6), 3)),
-      new LineBasicMaterial({color: 0xb9a2ff, depthTest: false}));
-    this.band.frustumCulled = false;
-    this.band.visible = false;
-    this.band.renderOrder = 2;
-    this.scene.add(this.band);
-    canvas.addEventListener('pointerdown', (event) => {
-      const grip = this.grip_at(event);
-      if (!grip) return;
-      event.stopImmediatePropagation();
-      this.dragging = grip;
-      this.controls.enabled = false;
-      canvas.style.cursor = 'grabbing';
-      canvas.setPointerCapture(event.pointerId);
-    }, {capture: true});
-    canvas.addEventListener('pointermove', (event) => {
-      if (this.dragging) this.drag(event);
-      else canvas.style.cursor = event.buttons === 0 && this.grip_at(event) ? 'grab' : '';
-    });
-    const end = () => {
-      if (!this.dragging) return;
-      this.dragging = null;
-      this.band.visible = false;
-      canvas.style.cursor = '';
-      this.controls.enabled = true;
-      this.lead([0, 0], true);
-      this.draw_soon();
-    };
-    canvas.addEventListener('pointerup', end);
-    canvas.addEventListener('pointercancel', end);
-  }
-
-  aim(event) {
-    const box = this.renderer.domElement.getBoundingClientRect();
-    this.ray.setFromCamera(new Vector2((event.clientX - box.left) / box.width * 2 - 1,
-      1 - (event.clientY - box.top) / box.height * 2), this.camera);
-  }
-
-  /// What is under the pointer and can be led: where it was touched, in its own and in the world's frame, and how the handle stood.
-  grip_at(event) {
-    if (!this.description.hand || replay.value || !this.hand_allowed) return null;
-    this.aim(event);
-    for (const robot of this.robots) {
-      const what = robot.handle ? 'handle' : robot.tip ? 'tip' : null;
-      if (!what) continue;
-      const link = robot.body.links[robot[what]];
-      // Once for each picture, not for each move of a mouse.
-      if (robot.grip_of !== this.frames) {
-        robot.grip_of = this.frames;
-        robot.grip = new Box3().setFromObject(link).expandByScalar(what === 'tip' ? 0.012 : 0.004);
-      }
-      const box = robot.grip;
-      const touched = this.ray.ray.intersectBox(box, new Vector3());
-      if (!touched) continue;
-      return {what, robot, link, held: link.worldToLocal(touched.clone()), from: touched, angles: this.handle_angles()};
-    }
-    return null;
-  }
-
-  drag(event) {
-    this.aim(event);
-    const {what, robot, from, angles} = this.dragging;
-    const at = new Vector3();
-    if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -from.z), at)) return;
-    const {hand, contour} = this.description;
-    this.dragging.at = at;
-    let turned;
-    if (what === 'tip') {
-      const {tip} = this;
-      this.dragging.tip ??= tip.clone();
-      const start = this.dragging.tip;
-      const [x, y] = before_wall(contour, [start.x + at.x - from.x, start.y + at.y - from.y]);
-      turned = angles_of_offset(hand, [x - start.x, y - start.y]);
-    } else {
-      const pivot = robot.body.position;
-      const angle = (x) => Math.atan2(x, lever_m);
-      turned = [angle(at.x - pivot.x) - angle(from.x - pivot.x), angle(at.y - pivot.y) - angle(from.y - pivot.y)];
-    }
-    this.lead(within_range(hand, [angles[0] + turned[0], angles[1] + turned[1]]));
-    this.stretch();
-  }
-
-  /// The band from what is held to the pointer: the hand goes slower than a mouse, and gives way at the rail.
-  stretch() {
-    if (!this.dragging?.at) return;
-    const {link, held, at} = this.dragging;
-    const from = link.localToWorld(held.clone());
-    this.band.visible = from.distanceTo(at) > band_from_m;
-    const position = this.band.geometry.attributes.position;
-    position.setXYZ(0, from.x, from.y, from.z);
-    position.setXYZ(1, at.x, at.y, at.z);
-    position.needsUpdate = true;
-    this.draw_soon();
-  }
-
-  /// At most one line in 60 ms, the last one always.
-  lead(angles, now = false) {
-    this.wanted = angles;
-    const send = () => {
-      this.hand_timer = 0;
-      if (!this.wanted) return;
-      fault(this.description.hand.device, target_line(this.wanted), {quiet: true}).catch(() => {});
-      this.wanted = null;
-    };
-    if (now) {
-      clearTimeout(this.hand_timer);
-      return send();
-    }
-    this.hand_timer ||= setTimeout(send, hand_period_ms);
-  }
-
-  /// How the handle stands, as measured.
-  handle_angles() {
-    const handle = this.robots.find((robot) => robot.handle);
-    return Object.values(handle?.joints ?? {x: '', y: ''}).map((name) => values.get(name)?.v ?? 0);
-  }
-
-  view_from(from_m) {
+  /// From above, x to the right; or from where the mission looks.
+  view_from(from_m, to_m = this.description.camera.to_m) {
     this.camera.position.fromArray(from_m);
-    this.controls.target.fromArray(this.description.camera.to_m);
+    this.controls.target.fromArray(to_m);
+    // Straight above, the azimuth of before would turn the picture.
+    if (Math.hypot(from_m[0] - to_m[0], from_m[1] - to_m[1]) < 0.05 * this.scale) this.camera.position.set(to_m[0], to_m[1] - 1e-3, from_m[2]);
     this.controls.update();
-    this.draw_soon();
+    this.camera_moved(true);
+  }
+
+  view_tip() {
+    const robot = this.robots.find((one) => one.tip), from = this.description.camera.tip_from_m;
+    if (robot?.body.visible && from) this.view_from(new Vector3().fromArray(from).sub(new Vector3().fromArray(this.description.camera.to_m)).add(robot.tip).toArray(), robot.tip.toArray());
   }
 
   close() {
     cancelAnimationFrame(this.waiting);
     clearTimeout(this.pause);
+    clearTimeout(this.still_timer);
+    clearTimeout(this.words_timer);
     this.closed = true;
     this.observer.disconnect();
     this.controls.dispose();
-    this.scene.traverse((part) => {
-      part.geometry?.dispose();
-      part.material?.dispose?.();
-    });
+    for (const scene of new Set([this.scene, this.far, this.inset?.scene])) {
+      scene?.traverse((part) => {
+        part.geometry?.dispose();
+        for (const material of [part.material].flat()) material?.dispose?.();
+      });
+    }
     this.renderer.dispose();
     this.renderer.forceContextLoss();
-    this.renderer.domElement.remove();
+    this.canvas.remove();
+    this.nodes.tags.replaceChildren();
+    this.nodes.leads.replaceChildren();
   }
+}
+
+/// For a mission that says nothing of its surroundings: a spacecraft's top under the robot.
+function usual_surroundings(kit) {
+  const group = new Group(), deck = kit.box([1.3, 1.0, 0.02], kit.material.aluminium, [0.15, 0, -0.0102]);
+  const bus = kit.bus([1.4, 1.1, 0.9]);
+  bus.position.set(0.15, 0, -0.021);
+  const wings = kit.wings(1.4, [0.9, 0.7], 3);
+  wings.position.set(0.15, 0.2, -0.25);
+  wings.rotation.x = 0.5;
+  group.add(deck, bus, wings);
+  return group;
 }

@@ -6,7 +6,7 @@ import {clock_text} from '../format.js';
 import {html} from '../html.js';
 import {link, mission, operator, replay_from} from '../store.js';
 import {acknowledge, bring_up_again, fallen, rising, stop} from '../stop.js';
-import {scene_of_mission} from './robot.js';
+import {plot_names, scene_of_mission} from './scene_file.js';
 import {Severity} from './icons.js';
 
 function Rising() {
@@ -20,7 +20,7 @@ function Rising() {
 export function StopBanner() {
   const told = stop.value;
   if (!told) return null;
-  const plots = scene_of_mission.value?.plots?.at(-1) ?? [];
+  const plots = plot_names(scene_of_mission.value?.plots?.at(-1));
   const up_again = fallen.value.length === 0;
   const mode = mission.value?.modes.find((one) => one.name === told.mode && one.commission?.length)?.name ?? mission.value?.start_mode;
   const replay_it = () => {
@@ -31,7 +31,6 @@ export function StopBanner() {
     <${Severity} severity=${told.severity} />
     <div class="words"><p class="first" data-test="stop-title">${told.title}</p>
       ${rising.value ? html`<${Rising} />` : html`<p class="second"><b>${clock_text(told.t, 3)}</b> ${told.detail} ${up_again ? 'It is up again.' : told.advice}</p>`}</div>
-    <span class="space" />
     <a class="out" href="#/events" data-test="stop-why">Why</a>
     <button class="out" onClick=${replay_it} data-test="stop-replay">Replay 5 s before</button>
     <a class="out" href=${plots.length ? `#/plots?p=${plots.map(encodeURIComponent).join('+')}` : '#/plots'} data-test="stop-plot">Plot</a>

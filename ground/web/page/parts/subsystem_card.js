@@ -29,31 +29,37 @@ export function is_known() {
   return link.value.state === 'up' || replay.value !== null;
 }
 
+/// "18.2 µs" with its unit in the colour of units.
+function Quantity({text}) {
+  const [number, unit] = String(text).split(/ (.*)/);
+  return html`${number}${unit ? html`<u>${unit}</u>` : null}`;
+}
+
 export function SubsystemCard({name, chosen}) {
   slow.value;
   const now = status_of(name) ?? {};
   const state = state_name(now.state);
   const configuration = configuration_of(name);
   const waits = waits_text(now.waits_for);
-  // What a glance is for; all of it stands in the title and in the subsystem's own view.
-  const brief = [
-    configuration?.sampling_hz && rate_text(configuration.sampling_hz),
-    now.latency_max_ns ? `late ≤ ${duration_text(now.latency_max_ns)}` : null,
-    now.missed ? `${now.missed} missed` : null,
-  ].filter(Boolean);
-  const facts = [...brief,
-    now.execution_mean_ns ? `runs ${duration_text(now.execution_mean_ns)}` : null,
+  const all = [
     now.overruns > 0 ? `${now.overruns} overruns` : null,
     now.memory_kb ? `${(now.memory_kb / 1024).toFixed(1)} MB` : null,
-  ].filter(Boolean);
+  ].filter(Boolean).join(', ');
   const stopped = fallen_text(name);
+  const inhibited = inhibited_text(now);
+  const quiet = stopped || inhibited || waits;
   return html`<a class=${`card ${chosen ? 'chosen' : ''} ${stopped ? 'fallen' : ''} ${is_known() ? '' : 'stale'}`} href=${`#/subsystems/${name}`}
     data-test=${`subsystem-${name}`}>
-    <div class="row"><b class="who_is"><span>${name}</span> <small>${configuration?.name ?? ''}</small></b><span class=${`state ${stopped ? 'bad' : state_look(state)}`}>${state_text(state)}</span></div>
+    <div class="row"><b class="who_is" title=${name}>${name}</b><span class=${`state ${stopped ? 'bad' : state_look(state)}`}>${state_text(state)}</span></div>
     <${StateStrip} state=${state} />
-    ${stopped ? html`<div class="notice bad" data-test=${`stopped-${name}`}>${stopped}</div>` :
-      html`<div class="row facts"><span title=${facts.join(', ')}>${is_switched_off(name) ? 'switched off' : brief.join(' · ')}</span></div>`}
-    ${inhibited_text(now) ? html`<div class="notice bad">actuators inhibited: ${inhibited_text(now)}</div>` : null}
+    ${stopped ? html`<div class="notice bad" data-test=${`stopped-${name}`}>${stopped}</div>` : null}
+    ${inhibited ? html`<div class="notice bad">actuators inhibited: ${inhibited}</div>` : null}
     ${waits ? html`<div class="notice amber">waits for ${waits}</div>` : null}
+    ${quiet ? null : is_switched_off(name) ? html`<div class="notice">switched off</div>` : html`<div class="facts" title=${all}>
+      <span>${(configuration?.name ?? '').slice(0, 12)}</span><span>run</span><span>late ≤</span><span class="end">missed</span>
+      <b><${Quantity} text=${configuration?.sampling_hz ? rate_text(configuration.sampling_hz) : '–'} /></b>
+      <b><${Quantity} text=${now.execution_mean_ns ? duration_text(now.execution_mean_ns) : '–'} /></b>
+      <b><${Quantity} text=${now.latency_max_ns ? duration_text(now.latency_max_ns) : '–'} /></b>
+      <b class="end">${now.missed ?? '–'}</b></div>`}
   </a>`;
 }

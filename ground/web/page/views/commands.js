@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 import {useState} from 'preact/hooks';
-import {brief_text, clock_text, state_text} from '../format.js';
-import {name_operator, operator_name} from '../commanding.js';
+import {clock_text, state_text} from '../format.js';
+import {name_operator, operator_name, send_and_say} from '../commanding.js';
 import {html} from '../html.js';
+import {arguments_text} from '../parts/arguments.js';
 import {CommandForm, VerdictChain} from '../parts/command_form.js';
 import {Panel} from '../parts/panel.js';
-import {commands, mission, mode_of, outcome_of} from '../store.js';
-
-const argument_text = (value) => typeof value === 'number' ? brief_text(value) : state_text(String(value));
-export const arguments_text = (command) => Object.entries(command.arguments ?? {}).map(([name, value]) => `${name} ${argument_text(value)}`).join(', ');
+import {commands, mission, mode_of, operator, outcome_of, replay} from '../store.js';
 
 /// Whether the mode's list permits it at all; the supervisor's own answer stands in the form.
 function listed(subsystem, action) {
@@ -58,6 +56,7 @@ function History() {
     const outcome = outcome_of(command);
     return html`<li key=${command.id} class=${outcome.stage}>
       <div class="row"><span class="time">${clock_text(command.t, 1)}</span><b>${command.subsystem} ${command.function}</b>
+        ${operator.value && !replay.value && command.function !== '?' ? html`<button class="again" onClick=${() => send_and_say(command.subsystem, command.function, command.arguments)}>again</button>` : null}
         <small class="sender">${command.sender ?? ''}${command.mine ? ' (this page)' : ''}</small></div>
       ${arguments_text(command) ? html`<div class="words">${arguments_text(command)}</div>` : null}
       <${VerdictChain} command=${command} /></li>`;

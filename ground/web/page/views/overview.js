@@ -4,16 +4,19 @@ import {useState} from 'preact/hooks';
 import {CommandForm} from '../parts/command_form.js';
 import {EventTable} from '../parts/event_list.js';
 import {Lanes} from '../parts/lanes.js';
-import {LinkGraph} from '../parts/link_graph.js';
+import {LinkRows, links_hint} from '../parts/link_rows.js';
 import {Panel} from '../parts/panel.js';
 import {Legend, TimePlot} from '../parts/plot.js';
-import {Robot, scene_of_mission} from '../parts/robot.js';
+import {Robot} from '../parts/robot.js';
+import {scene_of_mission} from '../parts/scene_file.js';
 import {SubsystemCard} from '../parts/subsystem_card.js';
 import {html} from '../html.js';
 import {stop} from '../stop.js';
 import {Why} from './events.js';
 import {Values} from './subsystems.js';
-import {columns, events, mission} from '../store.js';
+import {state_name} from '../commanding.js';
+import {unit_text} from '../format.js';
+import {columns, commands, events, mission, status} from '../store.js';
 
 /// Measured numbers before counters, those of the mission's own subsystems before those of every mission, fast ones before slow ones.
 function worth(name) {
@@ -27,7 +30,7 @@ export function first_plots() {
   // Not known yet: plots that go again at once would ask the archive in vain.
   if (scene_of_mission.value === undefined) return [];
   const described = scene_of_mission.value?.plots;
-  if (described) return described.map((names) => names.filter((name) => columns.value.has(name))).filter((names) => names.length);
+  if (described) return described.map((plot) => told_by(plot)).filter((plot) => plot.names.length);
   const by_parameter = new Map();
   for (const column of columns.value.values()) {
     if (column.type === 'TEXT' || column.enumeration?.length || /CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name)) continue;
@@ -36,7 +39,15 @@ export function first_plots() {
     by_parameter.set(base, [...(by_parameter.get(base) ?? []), column.name]);
   }
   return [...by_parameter.entries()].sort(([, a], [, b]) => worth(b[0]) - worth(a[0]))
-      .map(([, names]) => names.slice(0, 4)).slice(0, 2);
+      .map(([, names]) => ({names: names.slice(0, 4), title: plot_title(names.slice(0, 4)), about: {}})).slice(0, 3);
+}
+
+/// A plot of scene.json: names alone, or {title, hint, curves: [{name, label, look, times}], range, least}.
+function told_by(plot) {
+  const curves = (Array.isArray(plot) ? plot.map((name) => ({name})) : plot.curves).filter(({name}) => columns.value.has(name));
+  const names = curves.map((one) => one.name);
+  return {names, title: plot.title ?? plot_title(names), hint: plot.hint,
+    about: {looks: curves.map((one) => one.look), labels: curves.map((one) => one.label), times: curves.map((one) => one.times), range: plot.range, least: plot.least}};
 }
 
 export const plot_title = (names) => {
@@ -44,6 +55,7 @@ export const plot_title = (names) => {
   return base.slice(base.length > 2 ? 2 : 1).join('.').replaceAll('_', ' ').toLowerCase();
 };
 
+const chips = 4;
 function QuickCommand() {
   const list = mission.value?.subsystems ?? [];
   const of_its_own = (action) => (action.service === 8 ? !['SET_STATE', 'CONFIGURE'].includes(action.name) : action.service >= 192);
@@ -55,34 +67,51 @@ function QuickCommand() {
   if (!chosen) return null;
   const actions = chosen.functions ?? [];
   const command = actions.find((one) => one.name === action) ?? actions.find(of_its_own) ?? actions[0];
+  // What is at hand: those of its own that need few words, first those that were sent last.
+  const last = commands.value.filter((one) => one.subsystem === chosen.name).map((one) => one.function);
+  const rank = (one) => { const at = last.indexOf(one.name); return at < 0 ? 1000 + (one.arguments ?? []).length : at; };
+  const near = actions.filter((one) => of_its_own(one) && one !== command).sort((one, other) => rank(one) - rank(other)).slice(0, chips);
   return html`<div class="quick">
-    <label class="field"><span>Subsystem</span><select data-test="quick-subsystem" value=${chosen.name}
+    <div class="pick"><select data-test="quick-subsystem" aria-label="subsystem" value=${chosen.name}
       onChange=${(event) => { set_subsystem(event.currentTarget.value); set_action(null); }}>
-      ${list.map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select></label>
-    <label class="field"><span>Command</span><select data-test="quick-command" value=${command?.name}
-      onChange=${(event) => set_action(event.currentTarget.value)}>
-      ${actions.map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select></label>
-    ${command ? html`<${CommandForm} key=${`${chosen.name}.${command.name}`} subsystem=${chosen.name} action=${command} />` : null}</div>`;
+      ${list.map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select>
+    <select data-test="quick-command" aria-label="telecommand" value=${command?.name} onChange=${(event) => set_action(event.currentTarget.value)}>
+      ${actions.map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select></div>
+    ${near.length ? html`<div class="chips">${near.map((one) => html`<button class="chip" key=${one.name} title=${one.description} onClick=${() => set_action(one.name)}>${one.name}</button>`)}</div>` : null}
+    ${command ? html`<${CommandForm} key=${`${chosen.name}.${command.name}`} subsystem=${chosen.name} action=${command} recent />` : null}</div>`;
 }
+
+const operational = () => (status.value?.subsystems ?? []).filter((one) => state_name(one.state) === 'Operational').length;
 
 export function Overview() {
   const plots = first_plots();
   const none = scene_of_mission.value === undefined ? '' : 'No housekeeping to plot.';
-  const last = mission.value?.subsystems.at(-1);
+  const subsystems = mission.value?.subsystems ?? [];
+  const last = subsystems.at(-1);
+  const wanted = plots.length ? plots : [{title: 'Plot', names: [], about: {}}];
   return html`<main class="overview">
-    <${Panel} title="Subsystems" area="subsystems" href="#/subsystems">
-      ${(mission.value?.subsystems ?? []).map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
+    <${Panel} title="Subsystems" hint=${`${operational()} of ${subsystems.length} Operational`} area="subsystems" href="#/subsystems">
+      ${subsystems.map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
     ${scene_of_mission.value === null ? html`<${Panel} title=${`${last?.name ?? ''} housekeeping`} area="robot" href=${`#/subsystems/${last?.name}`}>
       ${last ? html`<${Values} name=${last.name} />` : null}</${Panel}>` :
-    html`<${Panel} title="3D" area="robot" bare><${Robot} /></${Panel}>`}
+    html`<${Panel} title="3D" area="robot" bare titleless><${Robot} /></${Panel}>`}
     <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>
-    <${Panel} title="Real-time links" area="links" href="#/links"><${LinkGraph} width=${320} height=${190} box=${142} /></${Panel}>
-    ${[0, 1].map((i) => plots[i] ? html`<${Panel} title=${plot_title(plots[i])} area=${`plot_${i}`} bare
-      href=${`#/plots?p=${plots[i].map(encodeURIComponent).join('+')}`}>
-      <${Legend} names=${plots[i]} brief /><${TimePlot} names=${plots[i]} window_s=${30} /></${Panel}>` :
-      html`<${Panel} title="plot" area=${`plot_${i}`} href="#/plots"><p class="empty">${none}</p></${Panel}>`)}
-    ${stop.value ? html`<${Why} area="events" brief tools=${html`<a class="chip" href="#/events">All events</a>`} />` :
-      html`<${Panel} title="Events" area="events" href="#/events"><${EventTable} list=${events.value} most=${40} /></${Panel}>`}
-    <${Panel} title="Timeline" hint="click to replay from there" area="timeline" href="#/timeline"><${Lanes} window_s=${120} /></${Panel}>
+    <${Panel} title="Links" hint=${links_hint()} area="links" href="#/links"><${LinkRows} /></${Panel}>
+    <div class="plots_row">${wanted.map(({names, title, hint, about}) => names.length ? html`<${Panel} key=${title} title=${title} hint=${hint ?? unit_text(columns.value.get(names[0])?.unit)} bare
+      href=${`#/plots?p=${names.map(encodeURIComponent).join('+')}`}>
+      <${Legend} names=${names} about=${about} brief /><${TimePlot} names=${names} window_s=${30} about=${{...about, relative: true}} /></${Panel}>` :
+      html`<${Panel} title="Plot" href="#/plots"><p class="empty">${none}</p></${Panel}>`)}</div>
+    ${stop.value ? html`<${Why} area="events" brief tools=${html`<a class="chip" href="#/events">All events</a>`} />` : html`<${EventsAtAGlance} />`}
+    <${Panel} title="Timeline" area="timeline" href="#/timeline"><${Lanes} window_s=${600} small /></${Panel}>
   </main>`;
+}
+
+/// What deviates, and what was done, one sentence each; the changes of state that every start has are counted.
+function EventsAtAGlance() {
+  const [all, set_all] = useState(false);
+  const folded = (event) => !all && event.severity === 'info' && /^(STATE_CHANGED|CONFIGURED|LINK_ESTABLISHED|LINK_RELEASED)$/.test(event.name);
+  const shown = events.value.filter((event) => !folded(event));
+  const count = events.value.length - shown.length;
+  return html`<${Panel} title="Events" area="events" href="#/events" tools=${html`<button class=${`chip ${all ? 'on' : ''}`} aria-pressed=${all} onClick=${() => set_all(!all)}>all</button>`}>
+    <${EventTable} list=${shown} most=${40} />${count ? html`<p class="folded">${count} ${count > 1 ? 'changes of state are' : 'change of state is'} folded</p>` : null}</${Panel}>`;
 }

@@ -104,7 +104,7 @@ function Picker({on_pick}) {
   const groups = [...own, ...common].map(({name}) => [name, by_base(found.filter((column) => column.subsystem === name))]).filter(([, list]) => list.length);
   const button = (column, name) => html`<button class="action" onClick=${(event) => on_pick(column.name, event.shiftKey)}>${
     column.name.slice(name.length + 1)}<small>${unit_text(column.unit)}</small></button>`;
-  return html`<${Panel} title="Parameters" hint="click: into the last plot, Shift: a new one">
+  return html`<${Panel} title="Parameters" hint="Shift: a new plot">
     <input class="search" type="search" placeholder="search  /" aria-label="search parameters" data-search value=${search} onInput=${(event) => set_search(event.currentTarget.value)} />
     ${groups.map(([name, list]) => html`<div class="group" key=${name}><h3>${name}</h3>${list.map(([base, elements]) =>
       elements.length < long_array || words.length ? elements.map((column) => button(column, name)) :
@@ -114,7 +114,7 @@ function Picker({on_pick}) {
 
 export function Plots({query, paused, set_paused}) {
   const asked = parsed(query);
-  const state = asked.groups.length ? asked : {...asked, groups: first_plots()};
+  const state = asked.groups.length ? asked : {...asked, groups: first_plots().map((plot) => plot.names)};
   const [zoom, set_zoom] = useState(null);
   const go = (change) => { location.hash = address({...state, ...change}); };
   const range = zoom ?? (paused !== null ? [paused - state.window_s, paused] : null);

@@ -28,7 +28,7 @@ function Commissioning() {
   const failed = steps.find((step) => step.stage === 'failed');
   const done = steps.length > 0 && !running && !failed && steps.every((step) => ['completed', 'not needed'].includes(step.stage));
   const sign = {completed: '✓', 'not needed': '–', failed: '✕', waiting: '·'};
-  return html`<${Panel} title="Bring a network up" hint="from whatever state it is in">
+  return html`<${Panel} title="Bring a network up" hint="from any state">
     <div class="commissioning">
       <select aria-label="network" value=${mode.name} disabled=${running} data-test="commission-mode"
         onChange=${(event) => { set_name(event.currentTarget.value); set_steps([]); }}>

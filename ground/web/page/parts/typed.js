@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// What is typed into forms: kept when the view is left, and shown by the robot's ghost.
+import {signal} from '@preact/signals';
+
+/// "SUBSYSTEM.FUNCTION" -> {argument: text}
+export const kept_texts = signal({});
+/// The form in front: {subsystem, action, values}; values null while it is empty or wrong.
+export const typed = signal(null);
+export function fill_form(subsystem, action, texts) {
+  const key = `${subsystem}.${action}`;
+  kept_texts.value = {...kept_texts.value, [key]: {...kept_texts.value[key], ...texts}};
+}

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Where a motion that is typed, or sent and not ended, would lead: the robot's ghost at its goal, the path of its tip, red where it cannot be.
+import {Group} from 'three';
+import {outcome_of} from '../store.js';
+import {surface_x_m} from '../parts/hand.js';
+import {colours, GoalPath} from './instruments.js';
+import {Phantom} from './robot_model.js';
+import {ghost_skin, make_ghost} from './skins.js';
+
+const points = 48;
+/// The smooth path of on-board motions: a polynomial of the fifth degree.
+const smooth = (s) => s * s * s * (10 - 15 * s + 6 * s * s);
+const most_smooth_rate = 1.875;
+
+/// The goal that is to be shown: {angles: {joint: angle}, duration_s, sent}; null when none is.
+export function goal_of(about, typed, commands) {
+  if (!about.goal) return null;
+  const read = (values, sent) => {
+    const angles = Object.fromEntries(Object.entries(about.goal.joints).map(([joint, argument]) => [joint, Number(values?.[argument])]));
+    if (!Object.values(angles).every(Number.isFinite)) return null;
+    return {angles, duration_s: Number(values[about.goal.duration]) || 3, sent};
+  };
+  const under_way = commands.find((one) => one.subsystem === about.subsystem && one.function === about.goal.function && !['completed', 'failed'].includes(outcome_of(one).stage));
+  if (under_way) return read(under_way.arguments, true);
+  if (typed?.subsystem !== about.subsystem || typed.action !== about.goal.function || !typed.values) return null;
+  return read(typed.values, false);
+}
+
+export class Goal {
+  constructor(robot, text, parts, {scale, contour, wrong_at}) {
+    this.robot = robot;
+    this.phantom = new Phantom(robot.about, text, parts);
+    this.skin = ghost_skin(colours.goal);
+    make_ghost(this.phantom.body, this.skin);
+    this.path = new GoalPath(scale);
+    this.group = new Group();
+    this.group.add(this.phantom.body, this.path.group);
+    this.group.visible = false;
+    this.contour = contour;
+    this.wrong_at = wrong_at;
+    this.told = '';
+  }
+
+  /// Shows `goal` from where the robot stands; what there is to be said of it: {wrong, fastest, tip}.
+  show(goal, camera) {
+    this.group.visible = Boolean(goal);
+    if (!goal) return null;
+    const from = Object.fromEntries(this.robot.names.map((name, i) => [name, this.robot.last[i] ?? 0]));
+    const path = [];
+    let wrong = '';
+    for (let i = 0; i <= points; ++i) {
+      const part = smooth(i / points);
+      const angles = Object.fromEntries(this.robot.names.map((name) => [name, from[name] + part * ((goal.angles[name] ?? from[name]) - from[name])]));
+      const at = this.phantom.stand(angles), why = this.#wrong(angles, at);
+      wrong ||= why;
+      if (at) path.push({at, wrong: Boolean(why)});
+    }
+    this.skin.uniforms.colour.value.set(wrong ? colours.wrong : colours.goal);
+    this.path.group.visible = path.length > 0;
+    this.path.lay(path, goal.duration_s, camera);
+    const fastest = Math.max(...this.robot.names.map((name) => Math.abs((goal.angles[name] ?? from[name]) - from[name]))) * most_smooth_rate / goal.duration_s;
+    return {wrong, fastest, tip: path.at(-1)?.at ?? null};
+  }
+
+  #wrong(angles, tip) {
+    for (const [name, angle] of Object.entries(angles)) {
+      const {lower, upper} = this.robot.body.joints[name].limit;
+      if (upper > lower && (angle < lower - 1e-9 || angle > upper + 1e-9)) return `${this.robot.about.names?.[name] ?? name} beyond its limit`;
+    }
+    if (!tip) return '';
+    if (this.contour && tip.y > this.contour.from_y_m && tip.y < this.contour.to_y_m && tip.x > surface_x_m(this.contour, tip.y) - this.contour.finger_radius_m + 1e-3) return 'meets the rail';
+    return this.wrong_at?.(tip) ?? '';
+  }
+}

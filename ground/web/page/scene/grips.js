@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// The visitor's mouse leads the operator's hand, by the handle or by the fingertip. What counts is how far it went since the grab, wherever
+// on the part that was.
+import {Box3, BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Plane, Raycaster, Vector2, Vector3} from 'three';
+import {fault} from '../commanding.js';
+import {angles_of_offset, before_wall, target_line, within_range} from '../parts/hand.js';
+
+const hand_period_ms = 60;
+const lever_m = 0.109;
+const band_from_m = 0.006;
+
+export class Grips {
+  /// `view`: {canvas, controls, robots, description, may(), eye_at(event), draw_soon(), frames, values, scene_of(robot)}
+  constructor(view) {
+    this.view = view;
+    this.ray = new Raycaster();
+    this.band = new Line(new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(6), 3)), new LineBasicMaterial({color: 0xb9a2ff, depthTest: false, toneMapped: false}));
+    this.band.frustumCulled = false;
+    this.band.visible = false;
+    this.band.renderOrder = 10;
+    this.#listen();
+  }
+
+  #listen() {
+    const {canvas, controls} = this.view;
+    canvas.addEventListener('pointerdown', (event) => {
+      const grip = this.#grip_at(event);
+      if (!grip) return;
+      event.stopImmediatePropagation();
+      this.dragging = grip;
+      this.view.scene_of(grip.robot).add(this.band);
+      controls.enabled = false;
+      canvas.style.cursor = 'grabbing';
+      canvas.setPointerCapture(event.pointerId);
+    }, {capture: true});
+    canvas.addEventListener('pointermove', (event) => {
+      if (this.dragging) this.#drag(event);
+      else canvas.style.cursor = event.buttons === 0 && this.#grip_at(event) ? 'grab' : '';
+    });
+    const end = () => {
+      if (!this.dragging) return;
+      this.dragging = null;
+      this.band.visible = false;
+      canvas.style.cursor = '';
+      controls.enabled = true;
+      this.#lead([0, 0], true);
+      this.view.draw_soon();
+    };
+    canvas.addEventListener('pointerup', end);
+    canvas.addEventListener('pointercancel', end);
+  }
+
+  #aim(event, inset) {
+    const [x, y, camera] = this.view.eye_at(event, inset);
+    this.ray.setFromCamera(new Vector2(x, y), camera);
+  }
+
+  /// What is under the pointer and can be led: where it was touched, in its own and in the world's frame, and how the handle stood.
+  #grip_at(event) {
+    const {description, robots, frames} = this.view;
+    if (!description.hand || !this.view.may()) return null;
+    const inset = this.view.is_in_inset(event);
+    this.#aim(event, inset);
+    for (const robot of robots) {
+      const what = robot.about.handle ? 'handle' : robot.about.tip ? 'tip' : null;
+      if (!what || Boolean(robot.about.inset) !== inset || !robot.body.visible) continue;
+      const link = robot.body.links[robot.about[what]];
+      // Once for each picture, not for each move of a mouse.
+      if (robot.grip_of !== frames) {
+        robot.grip_of = frames;
+        robot.grip = what === 'tip' ? new Box3().setFromCenterAndSize(robot.tip, new Vector3(0.045, 0.045, 0.045)) : new Box3().setFromObject(link).expandByScalar(0.004);
+      }
+      const touched = this.ray.ray.intersectBox(robot.grip, new Vector3());
+      if (!touched) continue;
+      return {what, robot, link, inset, held: link.worldToLocal(touched.clone()), from: touched, angles: this.#handle_angles()};
+    }
+    return null;
+  }
+
+  #drag(event) {
+    const {what, robot, from, angles, inset} = this.dragging;
+    this.#aim(event, inset);
+    const at = new Vector3();
+    if (!this.ray.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -from.z), at)) return;
+    const {hand, contour} = this.view.description;
+    this.dragging.at = at;
+    let turned;
+    if (what === 'tip') {
+      const start = this.dragging.tip ??= robot.tip.clone();
+      const [x, y] = before_wall(contour, [start.x + at.x - from.x, start.y + at.y - from.y]);
+      turned = angles_of_offset(hand, [x - start.x, y - start.y]);
+    } else {
+      const pivot = robot.body.position;
+      const angle = (x) => Math.atan2(x, lever_m);
+      turned = [angle(at.x - pivot.x) - angle(from.x - pivot.x), angle(at.y - pivot.y) - angle(from.y - pivot.y)];
+    }
+    this.#lead(within_range(hand, [angles[0] + turned[0], angles[1] + turned[1]]));
+    this.stretch();
+  }
+
+  /// The band from what is held to the pointer: the hand goes slower than a mouse, and gives way at the rail.
+  stretch() {
+    if (!this.dragging?.at) return;
+    const {link, held, at} = this.dragging;
+    const from = link.localToWorld(held.clone());
+    this.band.visible = from.distanceTo(at) > band_from_m;
+    const {position} = this.band.geometry.attributes;
+    position.setXYZ(0, from.x, from.y, from.z);
+    position.setXYZ(1, at.x, at.y, at.z);
+    position.needsUpdate = true;
+    this.view.draw_soon();
+  }
+
+  /// At most one line in 60 ms, the last one always.
+  #lead(angles, now = false) {
+    this.wanted = angles;
+    const send = () => {
+      this.timer = 0;
+      if (!this.wanted) return;
+      fault(this.view.description.hand.device, target_line(this.wanted), {quiet: true}).catch(() => {});
+      this.wanted = null;
+    };
+    if (now) {
+      clearTimeout(this.timer);
+      return send();
+    }
+    this.timer ||= setTimeout(send, hand_period_ms);
+  }
+
+  /// How the handle stands, as measured.
+  #handle_angles() {
+    const handle = this.view.robots.find((robot) => robot.about.handle);
+    return Object.values(handle?.about.joints ?? {x: '', y: ''}).map((name) => this.view.values.get(name)?.v ?? 0);
+  }
+}

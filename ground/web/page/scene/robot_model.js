@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// A robot of scene.json: its URDF with the parts that the mission gives for its links, posed by telemetry, with its dials, halo and tool frame.
+import {Box3, Color, MeshLambertMaterial, MeshStandardMaterial, Quaternion, Vector3} from 'three';
+import URDFLoader from 'urdf-loader';
+import {merged} from './kit.js';
+import {Dial, triad} from './instruments.js';
+import {Motion} from './motion.js';
+import {Halo} from './skins.js';
+
+const moved_rad = 1e-5;
+const dial_of_size = 0.28;
+
+export function parsed_urdf(text) {
+  const loader = new URDFLoader();
+  loader.parseCollision = false;
+  return loader.parse(text);
+}
+
+/// Materials of a graphics card, or the same colours as a processor can draw them.
+const plain = new Map();
+export function affordable(material, software) {
+  if (!software || !material.isMeshStandardMaterial) return material;
+  // A metal that mirrors nothing would be dark.
+  const colour = material.color.clone().lerp(new Color(0xffffff), material.metalness * 0.12);
+  if (!plain.has(material)) plain.set(material, new MeshLambertMaterial({color: colour, map: material.map, transparent: material.transparent, polygonOffset: material.polygonOffset, polygonOffsetFactor: material.polygonOffsetFactor}));
+  return plain.get(material);
+}
+
+/// The mission's parts in place of the URDF's own shapes, where it has them; each link's parts of one material are one mesh.
+export function dress(body, parts, environment, software) {
+  for (const [name, link] of Object.entries(body.links)) {
+    if (!parts[name]) {
+      link.traverse((part) => {
+        if (part.isMesh) part.material = affordable(new MeshStandardMaterial({color: part.material.color, roughness: 0.5, metalness: 0.15, envMap: environment}), software);
+      });
+      continue;
+    }
+    for (const child of [...link.children]) if (child.isURDFVisual) child.removeFromParent();
+    const whole = merged(parts[name]);
+    whole.traverse((part) => {
+      if (!part.isMesh) return;
+      part.material = affordable(part.material, software);
+      part.castShadow = part.receiveShadow = !software && !part.userData.label;
+    });
+    link.add(whole);
+  }
+}
+
+export class RobotModel {
+  constructor(about, text, parts, {environment, software}) {
+    this.about = about;
+    this.body = parsed_urdf(text);
+    dress(this.body, parts, environment, software);
+    // Unseen until the first telemetry says how it stands.
+    this.body.visible = false;
+    this.body.position.fromArray(about.at_m ?? [0, 0, 0]);
+    this.names = Object.keys(about.joints);
+    this.motion = new Motion();
+    this.last = [];
+    this.size = new Box3().setFromObject(this.body).getSize(new Vector3()).length();
+    this.halo = new Halo(this.body, software ? 2 : 3);
+    this.dials = about.inset ? [] : this.names.map((name) => this.#dial(name));
+    this.tip = about.tip ? new Vector3() : null;
+    if (about.tip) {
+      this.frame = triad(0.06 * this.size, 0.0016 * this.size);
+      this.body.links[about.tip].add(this.frame);
+    }
+  }
+
+  #dial(name) {
+    const joint = this.body.joints[name], {lower, upper} = joint.limit;
+    if (!(upper > lower)) return null;
+    const [radius, lift] = this.about.dials?.[name] ?? [dial_of_size * this.size * 0.4, 0];
+    const dial = new Dial({lower, upper}, radius);
+    // It stands still while the joint turns.
+    dial.group.position.copy(joint.position);
+    dial.group.quaternion.copy(joint.quaternion).multiply(new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), joint.axis));
+    dial.group.translateZ(lift);
+    joint.parent.add(dial.group);
+    return dial;
+  }
+
+  /// As telemetry has it; `now_ms` is the browser's time.
+  take(values, now_ms) {
+    const sample = this.names.map((name) => values.get(this.about.joints[name])?.v);
+    if (sample.some((angle) => Number.isFinite(angle))) this.motion.take(sample, now_ms);
+  }
+
+  /// Whether it is drawn otherwise than before.
+  pose(now_ms) {
+    const angles = this.motion.at(now_ms);
+    let moved = false;
+    angles.forEach((angle, i) => {
+      if (!Number.isFinite(angle) || Math.abs((this.last[i] ?? Infinity) - angle) < moved_rad) return;
+      this.last[i] = angle;
+      const joint = this.body.joints[this.names[i]];
+      joint.ignoreLimits = true;
+      joint.setJointValue(angle);
+      this.dials[i]?.turn(angle);
+      moved = true;
+    });
+    if (!moved) return false;
+    this.body.visible = true;
+    this.body.updateMatrixWorld(true);
+    if (this.tip) this.body.links[this.about.tip].getWorldPosition(this.tip);
+    return true;
+  }
+
+  show_limits(shown) {
+    for (const dial of this.dials) if (dial) dial.group.visible = shown;
+  }
+}
+
+/// Another one of the same robot that stands where it is told to: for goals that are typed.
+export class Phantom {
+  constructor(about, text, parts) {
+    this.body = parsed_urdf(text);
+    dress(this.body, parts, null, true);
+    this.tip = about.tip;
+    for (const joint of Object.values(this.body.joints)) joint.ignoreLimits = true;
+  }
+
+  /// Joint name -> angle; where its tip is then.
+  stand(angles) {
+    for (const [name, angle] of Object.entries(angles)) this.body.setJointValue(name, angle);
+    this.body.updateMatrixWorld(true);
+    return this.tip ? this.body.links[this.tip].getWorldPosition(new Vector3()) : null;
+  }
+}

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Other ways to draw the parts of a robot: as the ghost of where it shall go, with a halo where it is stopped, as its shadow on a plate.
+import {BackSide, Color, CustomBlending, LessEqualDepth, MaxEquation, Mesh, MeshBasicMaterial, OneFactor, ShaderMaterial, Vector3, ZeroFactor} from 'three';
+
+const world = 'vec4 p = modelMatrix * vec4(position, 1.); vec3 k = normalize(mat3(viewMatrix) * mat3(modelMatrix) * normal);';
+
+const ghost_depth = new MeshBasicMaterial({colorWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2});
+/// One layer of translucent colour, brighter at the edges: behind it stands its own depth, so that no inner face is seen.
+export function ghost_skin(colour) {
+  return new ShaderMaterial({transparent: true, depthWrite: false, depthFunc: LessEqualDepth, uniforms: {colour: {value: new Color(colour)}, opacity: {value: 0.34}},
+    vertexShader: `varying vec3 n, v; void main() { ${world} vec4 c = viewMatrix * p; n = k; v = normalize(-c.xyz); gl_Position = projectionMatrix * c; }`,
+    fragmentShader: `uniform vec3 colour; uniform float opacity; varying vec3 n, v;
+      void main() { float f = 1. - abs(dot(normalize(n), normalize(v))); gl_FragColor = vec4(colour * (.62 + .6 * f), opacity * (.7 + .9 * f * f) + .1);
+      #include <colorspace_fragment>
+      }`});
+}
+
+const halo_hulls = [[0.0028, 0.95], [0.007, 0.34], [0.013, 0.16]];
+/// Hulls grown along the normals and seen from inside, so a red rim without a second pass over the picture.
+function halo_skins(count) {
+  return halo_hulls.slice(0, count).map(([grown, opacity]) => new ShaderMaterial({transparent: true, side: BackSide, depthWrite: false,
+    uniforms: {colour: {value: new Color(0xff4f48)}, opacity: {value: opacity}, grown: {value: grown}},
+    vertexShader: `uniform float grown; void main() { ${world} vec4 c = viewMatrix * p; c.xyz += k * grown; gl_Position = projectionMatrix * c; }`,
+    fragmentShader: `uniform vec3 colour; uniform float opacity; void main() { gl_FragColor = vec4(colour, opacity);
+      #include <colorspace_fragment>
+      }`}));
+}
+
+/// Where the sun's rays through each point meet the plane z: the darkest of all that falls on a place counts, not their sum.
+function shadow_skin(sun, z, strength) {
+  return new ShaderMaterial({transparent: true, depthWrite: false, blending: CustomBlending, blendEquation: MaxEquation, blendSrc: OneFactor, blendDst: OneFactor,
+    blendEquationAlpha: MaxEquation, blendSrcAlpha: OneFactor, blendDstAlpha: ZeroFactor, uniforms: {sun: {value: sun}, z: {value: z}, strength: {value: strength}},
+    vertexShader: `uniform vec3 sun; uniform float z; void main() { ${world} p.xyz -= sun * (p.z - z) / sun.z; gl_Position = projectionMatrix * viewMatrix * p; }`,
+    fragmentShader: 'uniform float strength; void main() { gl_FragColor = vec4(0., 0., 0., strength); }'});
+}
+
+const meshes_of = (robot) => {
+  const found = [];
+  robot.traverse((part) => { if (part.isMesh && !part.userData.label && !part.userData.skin && part.parent) found.push(part); });
+  return found;
+};
+
+function wrapped(part, material, order) {
+  const skin = new Mesh(part.geometry, material);
+  skin.userData.skin = true;
+  skin.renderOrder = order;
+  skin.frustumCulled = false;
+  part.add(skin);
+  return skin;
+}
+
+/// Turns the parts themselves into the ghost.
+export function make_ghost(robot, skin) {
+  for (const part of meshes_of(robot)) {
+    part.material = ghost_depth;
+    part.castShadow = part.receiveShadow = false;
+    part.renderOrder = 5;
+    wrapped(part, skin, 6);
+  }
+  robot.traverse((part) => { if (part.userData.label) part.visible = false; });
+}
+
+export class Halo {
+  #skins;
+  constructor(robot, count) {
+    const materials = halo_skins(count);
+    this.#skins = meshes_of(robot).flatMap((part) => materials.map((material) => wrapped(part, material, 3)));
+    this.shown = false;
+  }
+  get shown() { return this.#skins[0]?.visible ?? false; }
+  set shown(value) { for (const skin of this.#skins) skin.visible = value; }
+}
+
+/// For pictures that are composed of a still one and a transparent one above it, which has no light of its own to be dimmed.
+export function cast_on_plane(robot, sun, z) {
+  const material = shadow_skin(new Vector3().copy(sun).normalize(), z, 0.42);
+  for (const part of meshes_of(robot)) wrapped(part, material, -2);
+}

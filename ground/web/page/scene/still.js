@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// What stands still, as a picture that is drawn once for a camera: for processors that draw by themselves. In bands and program by program,
+// one for each frame of the robot, so that the page never waits for all of it; coarse while the camera turns.
+
+const bands = 8, coarse = 0.34;
+const background = 0x04060a;
+
+export class StillPicture {
+  constructor(renderer, scene, canvas) {
+    Object.assign(this, {renderer, scene, canvas, band: 0, wanted: false, whole: false, unseen: null});
+  }
+
+  /// The camera moved, or there is more to be seen.
+  ask() {
+    this.wanted = true;
+    this.band = 0;
+  }
+
+  /// One step of it; true when there is more to do. The renderer's own canvas is spoiled by it.
+  draw(camera, {x: width, y: height}, turning) {
+    if (!this.wanted || !this.scene.children.length) return false;
+    const {canvas} = this;
+    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    if (this.unseen === null) this.unseen = kinds_of(this.scene);
+    if (this.unseen.length) {
+      this.#warm(camera, this.unseen.pop());
+      return true;
+    }
+    if (turning && this.whole) {
+      this.band = 0;
+      const wide = Math.round(width * coarse), tall = Math.round(height * coarse);
+      this.#render(camera, wide, tall);
+      canvas.getContext('2d').drawImage(this.renderer.domElement, 0, height - tall, wide, tall, 0, 0, width, height);
+      return true;
+    }
+    const top = Math.round(height * this.band / bands), tall = Math.round(height * (this.band + 1) / bands) - top;
+    camera.setViewOffset(width, height, 0, top, width, tall);
+    this.#render(camera, width, tall);
+    camera.clearViewOffset();
+    canvas.getContext('2d').drawImage(this.renderer.domElement, 0, height - tall, width, tall, 0, top, width, tall);
+    this.wanted = ++this.band < bands;
+    if (!this.wanted) this.whole = true;
+    return this.wanted;
+  }
+
+  /// More has been added: its programs are made first.
+  grown() {
+    this.unseen = null;
+    this.ask();
+  }
+
+  #render(camera, wide, tall) {
+    const {renderer, scene} = this;
+    renderer.setScissorTest(true);
+    renderer.setScissor(0, 0, wide, tall);
+    renderer.setViewport(0, 0, wide, tall);
+    renderer.setClearColor(background, 1);
+    renderer.clear();
+    renderer.render(scene, camera);
+  }
+
+  /// Draws one part alone, as small as can be: what that costs is the making of its program.
+  #warm(camera, part) {
+    const hidden = [];
+    this.scene.traverse((other) => {
+      if (other === part || !(other.isMesh || other.isPoints) || !other.visible) return;
+      other.visible = false;
+      hidden.push(other);
+    });
+    // A part within another one would be hidden with it.
+    for (let above = part; above; above = above.parent) above.visible = true;
+    const {frustumCulled} = part;
+    part.frustumCulled = false;
+    this.#render(camera, 4, 4);
+    part.frustumCulled = frustumCulled;
+    for (const other of hidden) other.visible = true;
+  }
+}
+
+/// One part for each kind of program that the scene takes.
+function kinds_of(scene) {
+  const found = new Map();
+  scene.traverse((part) => {
+    if (!part.isMesh && !part.isPoints) return;
+    const material = [part.material].flat()[0];
+    const kind = material.isShaderMaterial ? material.fragmentShader : [material.type, Boolean(material.map), Boolean(material.normalMap), Boolean(material.envMap), material.side, material.transparent].join();
+    if (!found.has(kind)) found.set(kind, part);
+  });
+  return [...found.values()];
+}
