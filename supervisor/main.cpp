@@ -23,6 +23,7 @@
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
+#include "supervisor/guard/life_watch.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/platform/launch/system_launcher.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
@@ -235,6 +236,8 @@ int serve(const descriptor::Mission& mission, const Options& options) {
     launcher.kill_all();
     return exit_environment;
   }
+  const auto life_watch = LifeWatch::start(guard);
+  if (!life_watch) console.told(clock.onboard(), "that a process has ended is known by its handle alone");
   while (!supervisor.finished()) {
     const TimePoint wake = supervisor.step(clock.now());
     own_beats->fetch_add(1, std::memory_order_relaxed);
