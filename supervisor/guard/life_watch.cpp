@@ -13,7 +13,7 @@ namespace hirosco::supervisor {
 namespace {
 
 static_assert(LifeWatch::most < most_seen_words);
-constexpr std::size_t stack_octets = std::size_t{128} << 10;
+constexpr std::size_t watch_stack_octets = std::size_t{128} << 10;
 /// Nothing depends on it: a wake-up that gets lost costs no more.
 constexpr Duration longest_sleep = std::chrono::seconds{1};
 
@@ -23,7 +23,7 @@ Result<std::unique_ptr<LifeWatch>> LifeWatch::start(Guard& guard) {
   std::unique_ptr<LifeWatch> watch{new LifeWatch{guard}};
   const std::array probe{SeenWord{&guard.changes(), guard.changes().load(std::memory_order_acquire)}};
   HIROSCO_TRY(wait_for_change(probe, Duration{0}));
-  HIROSCO_TRY_LET(watch->thread_, Thread::start("ends", [self = watch.get()] { self->run(); }, stack_octets));
+  HIROSCO_TRY_LET(watch->thread_, Thread::start("ends", [self = watch.get()] { self->run(); }, watch_stack_octets));
   return watch;
 }
 
