@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-// Round trip between two processes: 256 octets by LatestWriter and LatestReader against one word on a bare cache line.
+// Round trip between two processes: 256 octets by LatestWriter and LatestReader, against the barest sequence lock of the same octets and one
+// word on a bare cache line.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <optional>
 #include <vector>
 
@@ -26,6 +28,30 @@ constexpr std::uint32_t payload_octets = 256;
 constexpr int warm_up_rounds = 2'000;
 constexpr LinkLayout layout{1, payload_octets, 1, 500us};
 
+/// What a sequence lock costs that has no status, no stamp, no account, no proof and no end: who waits spins for ever. Its copies are plain ones,
+/// which the language calls a race; it is the limit of the machine and no part of a craft.
+struct RawLock {
+  alignas(64) std::uint64_t sequence{0};
+  alignas(64) std::array<std::byte, payload_octets> payload;
+
+  void write(const std::byte* from, std::uint64_t number) {
+    const std::atomic_ref counted{sequence};
+    counted.store(2 * number - 1, std::memory_order_relaxed);
+    std::atomic_thread_fence(std::memory_order_release);
+    std::memcpy(payload.data(), from, payload_octets);
+    counted.store(2 * number, std::memory_order_release);
+  }
+  void await(std::byte* to, std::uint64_t number) {
+    const std::atomic_ref counted{sequence};
+    for (;;) {
+      if (counted.load(std::memory_order_acquire) != 2 * number) continue;
+      std::memcpy(to, payload.data(), payload_octets);
+      std::atomic_thread_fence(std::memory_order_acquire);
+      if (counted.load(std::memory_order_relaxed) == 2 * number) return;
+    }
+  }
+};
+
 /// What both processes see.
 struct Arena {
   SealedMemory provider;
@@ -38,6 +64,7 @@ struct Arena {
   std::atomic_ref<std::uint64_t> line(std::size_t number) {
     return std::atomic_ref{*reinterpret_cast<std::uint64_t*>(lines.octets.data() + number * 128)};
   }
+  RawLock& lock(std::size_t number) { return *reinterpret_cast<RawLock*>(lines.octets.data() + 1024 + number * 1024); }
 };
 
 /// One end of both contests; the first end starts each round, the second one answers.
@@ -54,6 +81,8 @@ class End {
   void await_line(std::uint64_t value) {
     while (arena_.line(in_).load(std::memory_order_acquire) != value) {}
   }
+  void send_lock(std::uint64_t value) { arena_.lock(out_).write(payload_.data(), value); }
+  void await_lock(std::uint64_t value) { arena_.lock(in_).await(payload_.data(), value); }
   void send_link(TimePoint now) { writer_.write(payload_, now, LinkStatus::Valid); }
   void await_link() {
     while (reader_->read(payload_).flow != Flow::New) {}
@@ -75,11 +104,15 @@ bool settle(unsigned cpu) {
 }
 
 void answer(End& end, int repeats, int rounds) {
-  std::uint64_t value = 0;
+  std::uint64_t value = 0, locked = 0;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     for (int i = 0; i < rounds + warm_up_rounds; ++i) {
       end.await_line(++value);
       end.send_line(value);
+    }
+    for (int i = 0; i < rounds + warm_up_rounds; ++i) {
+      end.await_lock(++locked);
+      end.send_lock(locked);
     }
     for (int i = 0; i < rounds + warm_up_rounds; ++i) {
       end.await_link();
@@ -118,12 +151,17 @@ int run(int repeats, int rounds) {
   }
   const bool realtime = settle(0);
   Series line{"bare line", {}};
+  Series raw{"raw sequence lock, 256 B", {}};
   Series link{"link, 256 B", {}};
-  std::uint64_t value = 0;
+  std::uint64_t value = 0, locked = 0;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     line.repeats.push_back(measure(clock, rounds, [&] {
       end.send_line(++value);
       end.await_line(value);
+    }));
+    raw.repeats.push_back(measure(clock, rounds, [&] {
+      end.send_lock(++locked);
+      end.await_lock(locked);
     }));
     link.repeats.push_back(measure(clock, rounds, [&] {
       end.send_link({});
@@ -134,8 +172,10 @@ int run(int repeats, int rounds) {
   std::printf("Round trip between two processes, %d rounds, median of %d repeats, %s\n", rounds, repeats,
               realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)");
   line.print("ns");
+  raw.print("ns");
   link.print("ns");
   link.print_ratio(line);
+  link.print_ratio(raw);
   return EXIT_SUCCESS;
 }
 

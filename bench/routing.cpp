@@ -34,7 +34,6 @@ constexpr std::uint16_t echo_apid = 10;
 constexpr int outstanding = 64;
 constexpr int pings = 20'000;
 constexpr int warm_up = 2'000;
-constexpr int repeats = 5;
 
 /// What a round of pings came to, in memory that the ground shares.
 struct Round {
@@ -289,7 +288,7 @@ Round forwarded(const SystemClock& clock) {
   return *reinterpret_cast<const Round*>(shared.octets.data());
 }
 
-int run(const std::filesystem::path& repository) {
+int run(const std::filesystem::path& repository, int repeats) {
   const SystemClock clock;
   Series ours{"hirosco", {}};
   Series bare{"forwarder", {}};
@@ -316,4 +315,6 @@ int run(const std::filesystem::path& repository) {
 }  // namespace
 }  // namespace hirosco::bench
 
-int main(int argc, char** argv) { return hirosco::bench::run(argc > 1 ? argv[1] : "."); }
+int main(int argc, char** argv) {
+  return hirosco::bench::run(argc > 1 ? argv[1] : ".", argc > 2 ? std::atoi(argv[2]) : 5);
+}

@@ -24,6 +24,7 @@
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
+#include "supervisor/guard/life_watch.hpp"
 #include "supervisor/keeper/kept.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
 #include "supervisor/keeper/kept_store.hpp"
@@ -301,6 +302,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     launcher.kill_all();
     return exit_environment;
   }
+  const auto life_watch = LifeWatch::start(guard);
+  if (!life_watch) console.told(clock.onboard(), "that a process has ended is known by its handle alone");
   while (!supervisor.finished()) {
     const TimePoint wake = supervisor.step(clock.now());
     page.supervisor.fetch_add(1, std::memory_order_relaxed);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "hirosco/utilities/os/life.hpp"
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -80,6 +82,10 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->asked_who_runs.reset();
   member->doomed.reset();
   member->killed = false;
+  member->falls_with.clear();
+  member->life = 0;
+  member->life_told = false;
+  lives_changed();
 }
 
 bool Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, bool may_go_on) {
@@ -125,6 +131,12 @@ void Guard::forget(std::uint16_t apid) {
   member->vital_memory = member->permit_memory = {};
   member->grip.reset();
   member->doomed.reset();
+  lives_changed();
+}
+
+void Guard::falls_with(std::uint16_t apid, std::vector<std::uint16_t> others) {
+  const LockGuard lock{mutex_};
+  if (GuardedMember* member = find(apid)) member->falls_with = std::move(others);
 }
 
 std::vector<GuardFinding> Guard::take_findings() {
@@ -222,6 +234,39 @@ std::uint32_t Guard::highest_epoch() const {
   std::uint32_t highest = parts_.first_epoch;
   for (const GuardedMember& member : members_) highest = std::max(highest, member.epoch);
   return highest;
+}
+
+// --- ends of processes -------------------------------------------------------------------------------------------------
+
+void Guard::lives_changed() noexcept {
+  changes_.fetch_add(1, std::memory_order_release);
+  wake_waiters(changes_);
+}
+
+std::vector<Guard::WatchedLife> Guard::lives() const {
+  const LockGuard lock{mutex_};
+  std::vector<WatchedLife> living;
+  for (const GuardedMember& member : members_)
+    if (member.vital != nullptr && !member.life_told)
+      living.push_back({member.apid(), member.vital_memory, &member.vital->life, member.life});
+  return living;
+}
+
+void Guard::life_changed(std::uint16_t apid) {
+  const LockGuard lock{mutex_};
+  GuardedMember* member = find(apid);
+  if (member == nullptr || member->vital == nullptr || member->life_told) return;
+  const std::uint32_t word = member->vital->life.load(std::memory_order_acquire);
+  if (word == member->life) return;
+  if (member->life == 0 && life_of(word) == Life::Held) {
+    member->life = word;
+    return;
+  }
+  member->life_told = true;
+  member->fence();
+  for (const std::uint16_t other : member->falls_with)
+    if (GuardedMember* with = find(other)) with->fence();
+  find_out(GuardFinding::Kind::Ended, apid);
 }
 
 // --- the guard's own step ----------------------------------------------------------------------------------------------

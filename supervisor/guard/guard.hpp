@@ -75,6 +75,8 @@ class Guard {
   [[nodiscard]] bool has_stopped_by_itself(std::uint16_t apid) const;
   /// It has ended: its devices stay inhibited.
   void forget(std::uint16_t apid);
+  /// Who is fenced with it at once when its process ends, in the guard's own thread; the newest word counts.
+  void falls_with(std::uint16_t apid, std::vector<std::uint16_t> others);
   void beat() noexcept { beats_.fetch_add(1, std::memory_order_relaxed); }
   [[nodiscard]] std::vector<GuardFinding> take_findings();
 
@@ -96,6 +98,21 @@ class Guard {
   /// Highest epoch of all pages, for who must remember it.
   [[nodiscard]] std::uint32_t highest_epoch() const;
 
+  // --- the thread that waits for ends ---------------------------------------------------------------------------------
+  /// A member whose process may end, by the word that the system marks then.
+  struct WatchedLife {
+    std::uint16_t apid{0};
+    Mapping memory;  ///< keeps the word
+    const std::atomic<std::uint32_t>* word{nullptr};
+    std::uint32_t seen{0};
+  };
+  /// Changes with whom lives() names, and who waits on it is woken.
+  [[nodiscard]] const std::atomic<std::uint32_t>& changes() const noexcept { return changes_; }
+  [[nodiscard]] std::vector<WatchedLife> lives() const;
+  /// Its word has changed. When it says that the process has ended, or what none that lives says, the member is fenced with those that fall with
+  /// it; from then on lives() leaves it out, so that no word can keep a thread busy.
+  void life_changed(std::uint16_t apid);
+
   // --- the guard's thread -------------------------------------------------------------------------------------------
   /// Returns when it is due again.  Realtime: bounded; no heap but for findings.
   TimePoint step(TimePoint now);
@@ -104,6 +121,7 @@ class Guard {
   [[nodiscard]] GuardedMember* find(std::uint16_t apid) noexcept;
   [[nodiscard]] const GuardedMember* find(std::uint16_t apid) const noexcept;
   void find_out(GuardFinding::Kind kind, std::uint16_t apid);
+  void lives_changed() noexcept;
   /// The time that all judgements go by: what the guard has watched. While nobody ran (the host was stopped) nobody can be blamed for
   /// standing still, so of a longer time between two steps little counts, unless some cycle went on meanwhile.
   [[nodiscard]] TimePoint watched_at(TimePoint now) const noexcept;
@@ -123,6 +141,7 @@ class Guard {
   mutable Mutex mutex_;
   std::vector<GuardedMember> members_;
   std::vector<GuardFinding> findings_;
+  std::atomic<std::uint32_t> changes_{0};
   std::atomic<std::uint64_t> beats_{0};
   std::uint64_t seen_beats_{0};
   std::optional<TimePoint> beat_seen_;

@@ -28,6 +28,7 @@ struct GuardFinding {
     CycleHangs,  ///< its cycle stands still: fenced, its real-time priority taken; killed unless it comes back
     ServiceHangs,  ///< its service loop stands still: as above
     PageDamaged,  ///< its vital page is not one any more: as above
+    Ended,  ///< the system says that its process has: fenced, with those that fall with it
     Starves,  ///< its loops kept the processor from a service loop: they lose their real-time priority, its cycle keeps its own
     Back,  ///< it moves again within the grace: it is not killed
     Killed,  ///< it did not come back
@@ -67,6 +68,9 @@ struct GuardedMember {
   const VitalPage* vital{nullptr};
   PermitPage* permit{nullptr};
   std::shared_ptr<ProcessGrip> grip;
+  std::vector<std::uint16_t> falls_with;  ///< whom its end stops, too
+  std::uint32_t life{0};  ///< its life word while it is held
+  bool life_told{false};  ///< it has ended, or what its word says is no life
   Taken taken{Taken::Nothing};
   std::uint32_t epoch{0};  ///< of the page, kept when a process ends
   std::uint64_t fences{0};

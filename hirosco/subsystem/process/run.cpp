@@ -23,6 +23,7 @@
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/os/life.hpp"
 #include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -136,6 +137,8 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     fmt::print(stderr, "{}: {}\n", argv[0], why);
     return exit_environment;
   }
+  // Where the system has no such word, the supervisor hears of our end by our process alone.
+  static_cast<void>(hold_life(reinterpret_cast<VitalPage*>(vital.octets.data())->life));
   const bool realtime = realtime_permitted();
   if (realtime) {
     static_cast<void>(lock_memory());

@@ -52,16 +52,19 @@ void Reception::read(Member& member) {
       // The system refuses: the next step tries again, but not for ever.
       if (++member.refused < most_refused) return;
     }
-    if (!found && !member.closed_at) {
-      // Whoever can be neither commanded nor heard moves nothing any more, whatever became of the channel; nor do those whom its
-      // death, which comes within a second, would stop.
-      member.closed_at = craft_.now;
-      craft_.guard.fence(member.apid());
-      parts_.reactions.act_first(member, descriptor::event_of_death, descriptor::Severity::High);
-    }
+    if (!found) give_up(member);
     if (!found || found->flow == Flow::None) return;
     take(member, found->message);
   }
+}
+
+void Reception::give_up(Member& member) {
+  if (member.closed_at) return;
+  member.closed_at = craft_.now;
+  craft_.guard.fence(member.apid());
+  for (const std::uint16_t apid :
+       parts_.reactions.fenced_by(member, descriptor::event_of_death, descriptor::Severity::High))
+    craft_.guard.fence(apid);
 }
 
 void Reception::take(Member& member, const Message& message) {

@@ -43,6 +43,9 @@ class Reception final : public Hearer {
   /// The same for one that has ended, at once.
   void tell_last_unreadable(Member& member);
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
+  /// Whoever can be neither commanded nor heard, or has ended as the system says, moves nothing any more; nor do those whom its death,
+  /// which comes within a second, stops.
+  void give_up(Member& member);
 
  private:
   void take(Member& member, const Message& message);

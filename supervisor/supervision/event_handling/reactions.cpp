@@ -71,10 +71,13 @@ std::vector<PlanStart> Reactions::answer_to(const Member& origin, std::string_vi
   return starts;
 }
 
-void Reactions::act_first(const Member& origin, std::string_view event, Severity severity) const {
+std::vector<std::uint16_t> Reactions::fenced_by(const Member& origin, std::string_view event, Severity severity) const {
+  std::vector<std::uint16_t> fenced;
   for (const PlanStart& start : answer_to(origin, event, severity))
     for (const ProcedureStep& step : start.steps)
-      if (step.kind->act_first != nullptr) step.kind->act_first(step, means_);
+      if (step.kind->fences != nullptr)
+        for (const std::uint16_t apid : step.kind->fences(step, means_)) fenced.push_back(apid);
+  return fenced;
 }
 
 void Reactions::react(Member& origin, std::string_view event, Severity told) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/words/describe.hpp"
@@ -36,8 +37,9 @@ class Reactions {
   [[nodiscard]] bool take_event(std::uint16_t from, Octets message);
   /// What the mission's plans ask for when this event concerns `origin`. A plan that fails escalates once: RECOVERY_FAILED, high.
   void react(Member& origin, std::string_view event, descriptor::Severity severity);
-  /// What they do first of all about this event, fences, where it is as good as certain and its reaction waits for more.
-  void act_first(const Member& origin, std::string_view event, descriptor::Severity severity) const;
+  /// Whose actuators they would stop now because of this event, before anything else.
+  [[nodiscard]] std::vector<std::uint16_t> fenced_by(const Member& origin, std::string_view event,
+                                                     descriptor::Severity severity) const;
   /// TC[129,6]: what it would do about an event now, and what is against it. Nothing is moved, kept or sent but the answer.
   void preview(const pus::Request& asked, Octets data);
 

@@ -11,10 +11,11 @@ namespace hirosco::supervisor {
 struct ProcedureRunner::Run : std::enable_shared_from_this<Run> {
   Run(const Means& with, Procedure what) : means{with}, procedure{std::move(what)} {}
 
-  void act_first() const {
+  void fence() const {
     for (const Stage& each : procedure.stages)
       for (const ProcedureStep& step : each)
-        if (step.kind->act_first != nullptr) step.kind->act_first(step, means);
+        if (step.kind->fences != nullptr)
+          for (const std::uint16_t apid : step.kind->fences(step, means)) means.craft.guard.fence(apid);
   }
 
   void begin_stage() {
@@ -70,7 +71,7 @@ void ProcedureRunner::start(Procedure procedure) {
   cancel();
   run_ = std::make_shared<Run>(means_, std::move(procedure));
   const auto run = run_;  // its end may start another here
-  run->act_first();
+  run->fence();
   run->begin_stage();
 }
 

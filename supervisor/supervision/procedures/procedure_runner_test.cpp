@@ -27,8 +27,11 @@ constexpr StepKind note{
           means.craft.tell("begun " + std::to_string(step.values[0]));
           done(step.values[0] != 0, "nothing to note");
         },
-    .act_first = [](const ProcedureStep& step,
-                    const Means& means) { means.craft.tell("first " + std::to_string(step.values[0])); }};
+    .fences =
+        [](const ProcedureStep& step, const Means& means) {
+          means.craft.tell("first " + std::to_string(step.values[0]));
+          return std::vector<std::uint16_t>{};
+        }};
 
 struct EngineTest : PartsTest {
   PlayedDesk desk;

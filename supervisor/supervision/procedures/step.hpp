@@ -62,8 +62,9 @@ struct StepKind {
   std::string (*text)(const ProcedureStep&, const descriptor::Mission&){nullptr};
   /// Begins it; `done` is called once, now or later. Null: there is nothing to do.
   void (*run)(const ProcedureStep&, const Means&, CommandDone done){nullptr};
-  /// What may wait for nothing, as fences: done for all steps of a procedure before its first one begins.
-  void (*act_first)(const ProcedureStep&, const Means&){nullptr};
+  /// Whose actuators it stops. That may wait for nothing: they are fenced for all steps of a procedure before its first one begins, and
+  /// by the guard alone when the system says that the subject's process has ended (docs/adr/0102). Null: nobody's.
+  std::vector<std::uint16_t> (*fences)(const ProcedureStep&, const Means&){nullptr};
   /// For plans: whether there is something to do now. Null: always.
   bool (*answers)(const ProcedureStep&, const Craft&){nullptr};
   /// For plans: why it could not be done now, in words; empty: it could. Nothing is done. Null: nothing is ever against it.

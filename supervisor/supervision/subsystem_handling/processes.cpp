@@ -136,6 +136,10 @@ void Processes::let_go(Member& subject) {
 
 void Processes::watch(TimePoint now) {
   watch_ends(Whom::All);
+  for (const Member& member : craft_.members)
+    if (member.alive())
+      craft_.guard.falls_with(member.apid(),
+                              parts_.reactions.fenced_by(member, descriptor::event_of_death, Severity::High));
   while (const auto apid = parts_.restarts.take_due(now))
     if (!craft_.shutting_down && !start(*apid)) parts_.restarts.again(*apid, now);
 }
@@ -208,6 +212,7 @@ void Processes::hear_of(Member& subject, GuardFinding::Kind what) {
     case Starves: return tell("'s loops kept the processor from others: they have lost their real-time priority");
     case Back: parts_.restoration.recovered(subject.apid()); return tell(" moves again");
     case Killed: return tell(" was ended: it did not come back or had not stopped in time");
+    case Ended: return parts_.reception.give_up(subject);  // what it left unsaid is read when its process has gone
     default: return;
   }
   parts_.own.announce("HANG", {static_cast<double>(subject.apid())});

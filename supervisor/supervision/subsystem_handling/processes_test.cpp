@@ -43,6 +43,54 @@ TEST_F(ProcessesTest, EachIsStartedInTheOrderOfTheMission) {
   for (const Member& member : craft.members) EXPECT_TRUE(member.alive());
 }
 
+/// The test writes the word as the system does.
+struct ProcessEndsTest : ProcessesTest {
+  static constexpr std::uint32_t held = 0x8000'1267, marked = 0xC000'0000;
+  void word(std::uint16_t apid, std::uint32_t value) {
+    played[apid].vital->life = value;
+    guard.life_changed(apid);
+  }
+  void SetUp() override {
+    ProcessesTest::SetUp();
+    start_all(Operational);
+    parts.graph.set_up(linked, true);
+    for (const std::uint16_t apid : {arm, hand, camera}) {
+      ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+      word(apid, held);
+    }
+    parts.processes.watch(clock.now());
+  }
+  static constexpr std::uint8_t linked = 2;  ///< from HAND to ARM
+};
+
+TEST_F(ProcessEndsTest, WhomADeathWouldStopTheGuardStopsBeforeTheSupervisorHasHeardOfIt) {
+  word(hand, marked);
+  EXPECT_TRUE(guard.fenced(hand));
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_FALSE(guard.fenced(camera));
+  EXPECT_FALSE(craft.member(hand)->closed_at);
+}
+
+TEST_F(ProcessEndsTest, OfWhomALinkThatWasLetGoJoinedNobodyElseIsStopped) {
+  parts.graph.forget(linked);
+  parts.processes.watch(clock.now());
+  word(hand, marked);
+  EXPECT_TRUE(guard.fenced(hand));
+  EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(ProcessEndsTest, WhoLivesOnAlthoughItsEndWasToldIsEndedAfterASecond) {
+  word(hand, marked);
+  parts.processes.take_guard_findings();
+  EXPECT_EQ(craft.member(hand)->closed_at, clock.now());
+  wait(1s);
+  parts.processes.watch(clock.now());
+  EXPECT_TRUE(killed.empty());
+  wait(1ms);
+  parts.processes.watch(clock.now());
+  EXPECT_THAT(killed, ElementsAre(played[hand].process));
+}
+
 TEST_F(ProcessesTest, WhatKeepsNobodyFromOthersIsToldAndRefusedWhereTheMissionWantsIt) {
   lacks = {"files are open to all"};
   parts.processes.start_all();

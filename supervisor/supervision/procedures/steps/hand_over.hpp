@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "supervisor/supervision/procedures/step.hpp"
 
@@ -24,7 +26,7 @@ inline constexpr StepKind hand_over{
           return "task to " + step.words[0] + " in " + step.words[1];
         },
     .run = [](const ProcedureStep& step, const Means& means, CommandDone done) { task::hand_over(step, means, done); },
-    .act_first = [](const ProcedureStep& step, const Means& means) { means.craft.guard.fence(step.subject); },
+    .fences = [](const ProcedureStep& step, const Means&) { return std::vector<std::uint16_t>{step.subject}; },
     .against = task::against,
     .safety = [](const ProcedureStep&) { return Safety::Stop; },
 };

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "supervisor/supervision/procedures/step.hpp"
 
@@ -23,7 +25,7 @@ inline constexpr StepKind kill{
           }
           done(true, {});
         },
-    .act_first = [](const ProcedureStep& step, const Means& means) { means.craft.guard.fence(step.subject); },
+    .fences = [](const ProcedureStep& step, const Means&) { return std::vector<std::uint16_t>{step.subject}; },
     .against = [](const ProcedureStep& step, const Means& means) -> std::string {
       const Member* subject = means.craft.member(step.subject);
       return subject != nullptr && subject->alive() ? std::string{} : "it is down";

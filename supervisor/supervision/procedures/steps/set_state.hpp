@@ -4,6 +4,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "supervisor/supervision/procedures/step.hpp"
 
@@ -20,9 +21,10 @@ namespace state_step {
 
 /// A plan takes its subject from what it does; whether its service loop obeys may be just what has failed. So the
 /// actuators come first, and its next permitted SET_STATE to Operational lets them go. Nobody else of its network is fenced.
-inline void fence(const ProcedureStep& step, const Means& means) {
+[[nodiscard]] inline std::vector<std::uint16_t> fenced(const ProcedureStep& step, const Means& means) {
   const bool stops = !step.occasion.plan.empty() && wanted(step) != State::Operational;
-  if (stops && answers(step, means.craft)) means.craft.guard.fence(step.subject);
+  if (!stops || !answers(step, means.craft)) return {};
+  return {step.subject};
 }
 }  // namespace state_step
 
@@ -36,7 +38,7 @@ inline constexpr StepKind set_state{
         [](const ProcedureStep& step, const Means& means, CommandDone done) {
           const State state = state_step::wanted(step);
           // Again: an earlier step of the same plan may have let it go since.
-          state_step::fence(step, means);
+          for (const std::uint16_t apid : state_step::fenced(step, means)) means.craft.guard.fence(apid);
           if (!step.occasion.plan.empty()) means.commanded.lower(step.subject, state, step.occasion.event);
           if (!step.occasion.event.empty())
             means.craft.tell("plan " + step.occasion.plan + ": " + means.craft.name_of(step.subject) + " to " +
@@ -44,7 +46,7 @@ inline constexpr StepKind set_state{
                              step.subject);
           means.desk.command(step.subject, "SET_STATE", static_cast<double>(state), std::move(done));
         },
-    .act_first = state_step::fence,
+    .fences = state_step::fenced,
     .answers = state_step::answers,
     .safety =
         [](const ProcedureStep& step) {

@@ -13,16 +13,6 @@
 namespace hirosco::supervisor::steps::network {
 namespace {
 
-/// The ground link may carry sets of the network; it has no actuators, and ground must hear what goes on.
-std::vector<std::uint16_t> members_of(const ProcedureStep& step, const Means& means) {
-  auto members = means.links.taken_down_with(step.subject);
-  std::erase_if(members, [&](std::uint16_t apid) {
-    const Member* subject = means.craft.member(apid);
-    return subject != nullptr && apid != step.subject && means.craft.is_ground_link(*subject);
-  });
-  return members;
-}
-
 std::string names(const std::vector<std::uint16_t>& members, const Craft& craft) {
   std::string text;
   for (const std::uint16_t apid : members) text += (text.empty() ? "" : ", ") + craft.name_of(apid);
@@ -56,23 +46,28 @@ void bring_down(const Member& member, const Means& means) {
 
 }  // namespace
 
+std::vector<std::uint16_t> members(const ProcedureStep& step, const Means& means) {
+  auto found = means.links.taken_down_with(step.subject);
+  std::erase_if(found, [&](std::uint16_t apid) {
+    const Member* subject = means.craft.member(apid);
+    return subject != nullptr && apid != step.subject && means.craft.is_ground_link(*subject);
+  });
+  return found;
+}
+
 void shut_down(const ProcedureStep& step, const Means& means, const CommandDone& done) {
-  const auto members = members_of(step, means);
+  const auto network = members(step, means);
   const std::string plan = "plan " + step.occasion.plan;
-  means.craft.tell(plan + ": network {" + names(members, means.craft) + "} to ErrorOperational and down", step.subject);
+  means.craft.tell(plan + ": network {" + names(network, means.craft) + "} to ErrorOperational and down", step.subject);
   if (means.under_way.cancel(plan)) means.craft.fail();
-  for (const std::uint16_t apid : members) {
+  for (const std::uint16_t apid : network) {
     Member* member = means.craft.member(apid);
     if (member == nullptr || !member->alive()) continue;
     means.commanded.lower(apid, State::Offline, step.occasion.event);
     if (member->recovery.goes_down()) bring_down(*member, means);
   }
-  for (const std::uint8_t link : means.links.links_out_of(members)) means.losses.lost(link);
+  for (const std::uint8_t link : means.links.links_out_of(network)) means.losses.lost(link);
   done(true, {});
-}
-
-void fence(const ProcedureStep& step, const Means& means) {
-  for (const std::uint16_t apid : members_of(step, means)) means.craft.guard.fence(apid);
 }
 
 }  // namespace hirosco::supervisor::steps::network
