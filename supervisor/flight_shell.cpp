@@ -197,14 +197,13 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .on_finding = [&] { guard_found->notify(); }}};
   Supervisor supervisor{
       {.mission = mission,
-       .platform =
-           {.clock = clock,
-            .memory = *deployment.memory,
-            .flows = flows,
-            .realtime = realtime,
-            .wakes = true,
-            .explain = {},
-            .links = deployment.links},
+       .platform = {.clock = clock,
+                    .memory = *deployment.memory,
+                    .flows = flows,
+                    .realtime = realtime,
+                    .wakes = true,
+                    .explain = {},
+                    .links = deployment.links},
        .launcher = launcher,
        .guard = guard,
        .log = log,
