@@ -20,7 +20,7 @@ strings sys/mman sys/select sys/socket sys/stat sys/statvfs sys/times sys/types 
 wctype wordexp""".split()
 # The compiler's run time: the C++ ABI, unwinding, libgcc, atomics, stack protection, thread-local storage, the linker's own marks.
 RUNTIME = re.compile(r"^(__cxa_\w+|_Unwind_\w+|__gxx_personality_v0|__dso_handle|__gcc_personality_v0|__stack_chk_fail|__tls_get_addr|"
-                     r"_GLOBAL_OFFSET_TABLE_|__dynamic_cast|__atomic_\w+|__(u?div|u?mod|mul)\w*[st]i\d|__ubsan_\w+|__[at]san_\w+)$")
+                     r"_GLOBAL_OFFSET_TABLE_|__dynamic_cast|__atomic_\w+|__(u?div|u?mod|mul|popcount|clz|ctz|parity)\w*[dst]i\d|__ubsan_\w+|__[at]san_\w+)$")
 # C++ names: the standard library's (also in its own inline namespaces), operators new and delete, type information of built-in types.
 CXX_LIBRARY = re.compile(r"^(_ZN?K?V?S[abdiost]|_ZN?K?St|_ZT[ISVT]\w*St|_ZT[IS]|_ZTV\w*__cxxabiv1|_Zn[wa]|_Zd[la]|_ZSt|_ZNK?10__cxxabiv1|_ZGTt|"
                          r"_ZNK?9__gnu_cxx|_ZTHN?St|_ZNK?S[abdiost])")
@@ -30,7 +30,7 @@ BELOW = re.compile(r"^XML_|3fmt")    # Expat, fmt
 SPELT = {"__errno_location": "errno", "__assert_fail": "assert", "___errno_location": "errno", "__sigsetjmp": "sigsetjmp",
          "__isoc23_strtol": "strtol", "__isoc23_strtoul": "strtoul", "__isoc23_strtoll": "strtoll", "__isoc23_strtoull": "strtoull",
          "__libc_single_threaded": "", "__cmsg_nxthdr": "CMSG_NXTHDR", "__ctype_b_loc": "isalnum", "__ctype_tolower_loc": "tolower",
-         "__ctype_toupper_loc": "toupper", "__fdelt_chk": "FD_SET", "environ": "environ"}
+         "__ctype_toupper_loc": "toupper", "__fdelt_chk": "FD_SET", "environ": "environ", "__sysconf": "sysconf"}
 # What is not to be found in the list, or the list is of no use: extensions of Linux, of the BSDs and of the GNU library.
 PLANTED = "accept4 epoll_wait eventfd gettid memfd_create pipe2 ppoll prctl pthread_setname_np recvmmsg signalfd syscall".split()
 # Of the default build: what HIROSCO_OS=linux has by itself, so that it is not looked at here.
@@ -51,12 +51,12 @@ def interfaces(compiler):
 
 
 def undefined(archive):
-    """{symbol: [objects]} of an archive, but for what its own objects and those that need Linux define."""
+    """{symbol: [objects]} of an archive, but for the objects that need Linux."""
     wanted, name = {}, ""
     for line in subprocess.run(["nm", "--undefined-only", archive], check=True, capture_output=True, text=True).stdout.splitlines():
         if line.endswith(":"):
             name = line[:-1]
-        elif line.strip() and name not in OF_LINUX:
+        elif line.strip() and name not in OF_LINUX and line.split()[-2] == "U":    # a weak one may be missing
             wanted.setdefault(line.split()[-1].split("@")[0], []).append(f"{archive.name}:{name}")
     return wanted
 
