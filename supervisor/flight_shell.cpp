@@ -257,14 +257,13 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
                }}};
   Supervisor supervisor{
       {.mission = mission,
-       .platform =
-           {.clock = clock,
-            .memory = *deployment.memory,
-            .flows = flows,
-            .realtime = realtime,
-            .wakes = true,
-            .explain = {},
-            .links = deployment.links},
+       .platform = {.clock = clock,
+                    .memory = *deployment.memory,
+                    .flows = flows,
+                    .realtime = realtime,
+                    .wakes = true,
+                    .explain = {},
+                    .links = deployment.links},
        .launcher = launcher,
        .guard = guard,
        .log = log,

@@ -70,7 +70,7 @@ class Threads(unittest.TestCase):
     def it_moves_as_commanded(self, rokviss):
         done = rokviss.hirosco("mode", "standalone", "--mission", rokviss.mission)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        code, reports = rokviss.tc("manipulator", "MOVE_TO", 0.1, 1.2, 2.5)
+        code, reports = rokviss.tc("manipulator", "MOVE_TO", -0.85, 1.70, 2.0)     # clear of the rail
         self.assertEqual((code, reports[0], reports[-1]), (0, "1,1", "1,7"), rokviss.log("--text", "MANIPULATOR", last=5))
         done = rokviss.hirosco("mode", "telepresence", "--mission", rokviss.mission)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -18,9 +19,14 @@ namespace hirosco {
 /// Thread: its owner. Realtime: blocks, allocates.
 class Thread {
  public:
-  /// `name` shows in the tools of the operating system (15 octets there); `stack_octets` 0 is the system's own choice.
-  [[nodiscard]] static Result<Thread> start(std::string name, std::move_only_function<void()> body,
-                                            std::size_t stack_octets = 0);
+  /// `body` may be what can only be moved. `name` shows in the tools of the operating system (15 octets there); `stack_octets` 0 is
+  /// the system's own choice.
+  template <class Body>
+  [[nodiscard]] static Result<Thread> start(std::string name, Body body, std::size_t stack_octets = 0) {
+    // Not std::move_only_function: not every standard library has it yet.
+    auto kept = std::make_shared<Body>(std::move(body));
+    return begin(std::move(name), [kept = std::move(kept)] { (*kept)(); }, stack_octets);
+  }
   Thread() = default;
   Thread(Thread&& other) noexcept;
   Thread& operator=(Thread&& other) noexcept;
@@ -33,6 +39,7 @@ class Thread {
   void join() noexcept;
 
  private:
+  [[nodiscard]] static Result<Thread> begin(std::string name, std::function<void()> body, std::size_t stack_octets);
   pthread_t handle_{};
   bool joinable_{false};
 };

@@ -233,14 +233,12 @@ Result<LaunchedSubsystem> ThreadLauncher::launch(const descriptor::MissionSubsys
   member->vital = vital;
   member->permit = permit;
   member->gone.emplace(std::move(gone));
-  HIROSCO_TRY_LET(member->thread, Thread::start(
-                                      subsystem.subsystem.name, [raw = member.get()] { raw->run(); },
-                                      service_stack_octets));
+  HIROSCO_TRY_LET(member->thread,
+                  Thread::start(subsystem.subsystem.name, [raw = member.get()] { raw->run(); }, service_stack_octets));
   LaunchedSubsystem launched;
   launched.vital = std::move(vital);
   launched.permit = std::move(permit);
-  launched.port =
-      std::make_unique<LocalMemberPort>(std::move(ends.first), launched.vital, launched.permit);
+  launched.port = std::make_unique<LocalMemberPort>(std::move(ends.first), launched.vital, launched.permit);
   launched.process = next_++;
   launched.grip = std::make_shared<Grip>(member, parts_.clock);
   members_.emplace(launched.process, std::move(member));
@@ -285,18 +283,20 @@ std::optional<std::string> ThreadLauncher::must_end(TimePoint now) {
     const std::int64_t told = member->told_at_ns.load(std::memory_order_relaxed);
     if (told == 0 || member->ended.load(std::memory_order_acquire)) continue;
     if (now - TimePoint{Duration{told}} >= patience)
-      return member->described.subsystem.name +
-             " does not let go, and a thread cannot be ended: the whole flight ends";
+      return member->described.subsystem.name + " does not let go, and a thread cannot be ended: the whole flight ends";
   }
   return std::nullopt;
 }
 
 std::vector<std::string> ThreadLauncher::isolation_lacks() const {
   return {
-      "threads of one process share their memory: who writes where it should not damages any other, the supervisor and its guard too",
+      "threads of one process share their memory: who writes where it should not damages any other, the supervisor and "
+      "its guard too",
       "the pages that gate actuators and the memory of links are sealed against nobody",
-      "a crash of one (fault, abort, exception in a cycle) is the end of all; then the devices stop by their own watchdogs",
-      "who hangs cannot be ended: it is fenced and loses its real-time priority; if it has not let go after 2 s the whole flight ends",
+      "a crash of one (fault, abort, exception in a cycle) is the end of all; then the devices stop by their own "
+      "watchdogs",
+      "who hangs cannot be ended: it is fenced and loses its real-time priority; if it has not let go after 2 s the "
+      "whole flight ends",
       "nobody is in a sandbox: files, sockets and signals of one are those of all",
       "memory and descriptors that a subsystem declares are counted and limited for nobody",
       "the supervisor cannot be lost alone: its end is the end of all",

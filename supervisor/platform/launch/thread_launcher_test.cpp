@@ -52,13 +52,14 @@ struct ThreadLauncherTest : ::testing::Test {
     other.subsystem.name = "OTHER";
     other.subsystem.id = 11;
     other.executable = "other";
-    launcher.emplace(ThreadLauncher::Parts{.clock = clock,
-                                           .flows = flows,
-                                           .makers = {{"probe", [this] { return std::make_unique<Told>(wish); }},
-                                                      {"other", [this] { return std::make_unique<Told>(wish_of_other); }}},
-                                           .realtime = false,
-                                           .links = local_link_mechanisms(),
-                                           .explain = [this](std::string_view line) { said += line; }});
+    launcher.emplace(
+        ThreadLauncher::Parts{.clock = clock,
+                              .flows = flows,
+                              .makers = {{"probe", [this] { return std::make_unique<Told>(wish); }},
+                                         {"other", [this] { return std::make_unique<Told>(wish_of_other); }}},
+                              .realtime = false,
+                              .links = local_link_mechanisms(),
+                              .explain = [this](std::string_view line) { said += line; }});
   }
   void TearDown() override { wish.holds = wish_of_other.holds = false; }
 
@@ -207,7 +208,8 @@ TEST_F(ThreadLauncherTest, SaysWhatIsNotIsolated) {
   const auto says = [&](std::string_view word) {
     return std::ranges::any_of(lacks, [&](const std::string& line) { return line.contains(word); });
   };
-  for (const auto word : {"share their memory", "sealed", "crash", "cannot be ended", "sandbox", "limited", "supervisor"})
+  for (const auto word :
+       {"share their memory", "sealed", "crash", "cannot be ended", "sandbox", "limited", "supervisor"})
     EXPECT_TRUE(says(word)) << word;
 }
 

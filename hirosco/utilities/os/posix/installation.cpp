@@ -97,7 +97,8 @@ std::expected<const Module*, std::string> load_module_of(std::string_view progra
 }
 
 std::expected<const Module*, std::string> load_module(const fs::path& file, ModuleKind kind) {
-  if (!os_detail::module_is_whole(file)) return std::unexpected{std::string{"it is no shared object, or was cut short"}};
+  if (!os_detail::module_is_whole(file))
+    return std::unexpected{std::string{"it is no shared object, or was cut short"}};
   // Never unloaded: objects that it made may live as long as the process.
   void* const module = ::dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (module == nullptr) {

@@ -15,7 +15,7 @@ namespace {
 
 struct Start {
   std::string name;
-  std::move_only_function<void()> body;
+  std::function<void()> body;
 };
 
 void* run(void* argument) noexcept {
@@ -27,7 +27,7 @@ void* run(void* argument) noexcept {
 
 }  // namespace
 
-Result<Thread> Thread::start(std::string name, std::move_only_function<void()> body, std::size_t stack_octets) {
+Result<Thread> Thread::begin(std::string name, std::function<void()> body, std::size_t stack_octets) {
   auto start = std::make_unique<Start>(Start{std::move(name), std::move(body)});
   pthread_attr_t attributes;
   if (const int error = pthread_attr_init(&attributes); error != 0)

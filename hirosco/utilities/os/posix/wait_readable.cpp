@@ -21,7 +21,8 @@ namespace {
 }  // namespace
 
 bool wait_readable(int descriptor, Duration timeout) noexcept {
-  if (descriptor < 0 || descriptor >= FD_SETSIZE) return false;  // as one that is never ready: it has no place in the set
+  if (descriptor < 0 || descriptor >= FD_SETSIZE)
+    return false;  // as one that is never ready: it has no place in the set
   const Duration end = monotonic() + std::max(timeout, Duration{0});
   for (;;) {
     const Duration left = std::max(end - monotonic(), Duration{0});
