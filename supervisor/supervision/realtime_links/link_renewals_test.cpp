@@ -106,9 +106,12 @@ struct RenewedLinks : PartsTest {
   const std::vector<st128::OfferedField> fields{{"ANGLE", Type::Double, 2}};
   void SetUp() override {
     PartsTest::SetUp();
+    for (auto& member : mission.subsystems)
+      if (member.subsystem.name == "HAND")
+        member.subsystem.configurations[0].provides.emplace_back().name = "HAND_STATE";
     start_all(PreOperational);
     start_supervisor();
-    for (const std::uint16_t apid : {arm, hand}) set(apid, PreOperational, 1);
+    set(arm, PreOperational, 2);
     EXPECT_EQ(call_own("LINK", 2), "");
     answer();
     own_step();
