@@ -32,7 +32,7 @@ struct LinkRenewalsTest : ::testing::Test {
     link.to = "ARM";
     link.provides = "STATE";
     link.requires_ = "WANTED";
-    for (const std::uint8_t id : {1, 2, 3}) {
+    for (const std::uint8_t id : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}}) {
       descriptor::Configuration provider, requirer;
       provider.name = requirer.name = "C" + std::to_string(id);
       provider.id = requirer.id = id;
@@ -202,7 +202,7 @@ TEST_F(RenewedLinks, AreNotThoseOfWhoDied) {
   ends[played[hand].process] = {.by_signal = true, .value = 9};
   parts.processes.watch(clock.now());
   for (int i = 0; i < 5; ++i) look();
-  EXPECT_THAT(texts(arm), Not(::testing::Contains("TC[128,1]")));
+  EXPECT_THAT(texts(arm), ::testing::Not(::testing::Contains("TC[128,1]")));
 }
 
 TEST_F(RenewedLinks, LetACommandToMakeThemJoin) {
