@@ -56,7 +56,8 @@ struct LentHandshakes : ::testing::Test {
   st128::AttachRequest agree(std::uint8_t link) {
     EXPECT_TRUE(links.establish(link, now, {}));
     std::array<std::byte, 4096> buffer{};
-    const st128::Offer offer{.set = "VIEW", .period = 1ms, .terms = {.kinds = {LinkKind::Loaned}}, .fields = agreement.fields};
+    const st128::Offer offer{
+        .set = "VIEW", .period = 1ms, .terms = {.kinds = {LinkKind::Loaned}}, .fields = agreement.fields};
     report(consumer_of(link), st128::offer, Octets{buffer}.first(st128::write_offer(buffer, link, offer).value()));
     report(hand, st128::agreement, Octets{buffer}.first(st128::write_agreement(buffer, link, agreement).value()));
     return st128::read_attach_request(supervisor.last).value();
@@ -113,8 +114,7 @@ TEST_F(LentHandshakes, ThatFailInSharedMemoryTryTheNextTimeInTheirOwn) {
   bring_up(2);
   EXPECT_NE(agree(9).made, 0U);
   std::array<std::byte, 256> buffer{};
-  report(hand, st128::refusal,
-         Octets{buffer}.first(st128::write_refusal(buffer, 9, {0, "sealed"}).value()));
+  report(hand, st128::refusal, Octets{buffer}.first(st128::write_refusal(buffer, 9, {0, "sealed"}).value()));
   EXPECT_EQ(bring_up(9).made, 0U);
 }
 
