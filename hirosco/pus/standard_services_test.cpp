@@ -31,10 +31,12 @@ using testing::Bytes;
 void append(Bytes& data, const Part& part) {
   switch (part.form) {
     case Form::Number:
-      // A link whose kind is 1 has no depth.
+      // A link whose kind is 1 has no depth, and memory of its own.
       for (std::size_t i = 0; i < octets_of(part.type) * part.count; ++i)
-        data.push_back(i % octets_of(part.type) == octets_of(part.type) - 1 && part.name != "DEPTH" ? std::byte{1}
-                                                                                                    : std::byte{});
+        data.push_back(i % octets_of(part.type) == octets_of(part.type) - 1 && part.name != "DEPTH" &&
+                               part.name != "MADE"
+                           ? std::byte{1}
+                           : std::byte{});
       break;
     case Form::Text:
       data.push_back(std::byte{'A'});

@@ -443,8 +443,8 @@ int main(int argc, char** argv) {
   vital_ = page(vital, 2152, 1), permit_ = page(permit, 56, 0);
   if (!vital_ || !permit_ || load32(vital_) != 0x48495243 || load32(permit_) != 0x48495243)
     return fprintf(stderr, "lantern: what should be the supervisor's pages are none\n"), 3;
-  if (load32(vital_ + 4) != 4 || load32(permit_ + 4) != 4)
-    return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 4\n", load32(permit_ + 4)), 3;
+  if (load32(vital_ + 4) != 5 || load32(permit_ + 4) != 5)
+    return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 5\n", load32(permit_ + 4)), 3;
   const char* instance = getenv("HIROSCO_INSTANCE");
   size_t named = strlen(address_);
   if (instance && *instance) snprintf(address_ + named, sizeof address_ - named, ".%s", instance);

@@ -252,7 +252,7 @@ TEST(LinkAgreement, IsWhatAllMakeTheirPartOfTheLinkOf) {
 
 TEST(LinkMessages, HaveTheOctetsWrittenHere) {
   Bytes buffer(256);
-  const Offer offer{"AB", 1ms, {{shm, LinkMethod::Udp}, {little}, {queued}}, 258, {{"P", Type::Double, 2}}};
+  const Offer offer{"AB", 1ms, {{shm, LinkMethod::Udp}, {little}, {queued}}, 258, {{"P", Type::Double, 2}}, true};
   const auto used = write_terms_request(buffer, {7, "CD", offer});
   EXPECT_EQ(to_hex(Octets{buffer}.first(used.value())),
             "07"
@@ -264,6 +264,7 @@ TEST(LinkMessages, HaveTheOctetsWrittenHere) {
             "0101"
             "0102"
             "0102"
+            "01"
             "01"
             "0150"
             "0a"

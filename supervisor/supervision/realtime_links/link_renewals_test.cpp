@@ -32,7 +32,7 @@ struct LinkRenewalsTest : ::testing::Test {
     link.to = "ARM";
     link.provides = "STATE";
     link.requires_ = "WANTED";
-    for (const std::uint8_t id : {1, 2, 3}) {
+    for (const std::uint8_t id : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}}) {
       descriptor::Configuration provider, requirer;
       provider.name = requirer.name = "C" + std::to_string(id);
       provider.id = requirer.id = id;
@@ -106,9 +106,12 @@ struct RenewedLinks : PartsTest {
   const std::vector<st128::OfferedField> fields{{"ANGLE", Type::Double, 2}};
   void SetUp() override {
     PartsTest::SetUp();
+    for (auto& member : mission.subsystems)
+      if (member.subsystem.name == "HAND")
+        member.subsystem.configurations[0].provides.emplace_back().name = "HAND_STATE";
     start_all(PreOperational);
     start_supervisor();
-    for (const std::uint16_t apid : {arm, hand}) set(apid, PreOperational, 1);
+    set(arm, PreOperational, 2);
     EXPECT_EQ(call_own("LINK", 2), "");
     answer();
     own_step();
@@ -199,7 +202,7 @@ TEST_F(RenewedLinks, AreNotThoseOfWhoDied) {
   ends[played[hand].process] = {.by_signal = true, .value = 9};
   parts.processes.watch(clock.now());
   for (int i = 0; i < 5; ++i) look();
-  EXPECT_THAT(texts(arm), Not(::testing::Contains("TC[128,1]")));
+  EXPECT_THAT(texts(arm), ::testing::Not(::testing::Contains("TC[128,1]")));
 }
 
 TEST_F(RenewedLinks, LetACommandToMakeThemJoin) {
