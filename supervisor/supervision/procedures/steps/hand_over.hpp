@@ -19,10 +19,8 @@ void hand_over(const ProcedureStep& step, const Means& means, const CommandDone&
 inline constexpr StepKind hand_over{
     .name = "hand_over",
     .values = 2,
-    .text =
-        [](const ProcedureStep& step, const descriptor::Mission&) {
-          return "task to " + step.words[0] + " in " + step.words[1];
-        },
+    .text = [](const ProcedureStep& step,
+               const descriptor::Mission&) { return "task to " + step.words[0] + " in " + step.words[1]; },
     .run = [](const ProcedureStep& step, const Means& means, CommandDone done) { task::hand_over(step, means, done); },
     .act_first = [](const ProcedureStep& step, const Means& means) { means.craft.guard.fence(step.subject); },
     .against = task::against,
