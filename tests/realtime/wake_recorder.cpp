@@ -18,7 +18,8 @@ constexpr std::size_t bins = 20'000;  ///< the last one has all that is later
 std::uint32_t* make_record() {
   const int file = ::memfd_create("wake-record", MFD_CLOEXEC);
   if (file < 0 || ::ftruncate(file, bins * sizeof(std::uint32_t)) != 0) return nullptr;
-  void* const at = ::mmap(nullptr, bins * sizeof(std::uint32_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, file, 0);
+  void* const at =
+      ::mmap(nullptr, bins * sizeof(std::uint32_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, file, 0);
   return at == MAP_FAILED ? nullptr : static_cast<std::uint32_t*>(at);
 }
 

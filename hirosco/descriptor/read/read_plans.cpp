@@ -169,8 +169,7 @@ std::int64_t MissionReader::read_value(Attributes& attributes, const StepAttribu
                       "Operational is commanded by the ground, a change of mode, or restart to=\"commanded\"");
       return static_cast<std::int64_t>(state);
     }
-    case SeenState:
-      return static_cast<std::int64_t>(read_steady_state(attributes, described.name, State::Offline));
+    case SeenState: return static_cast<std::int64_t>(read_steady_state(attributes, described.name, State::Offline));
     case Word: {
       const auto* at = attributes.optional(described.name);
       if (at == nullptr) return fallback;
@@ -303,9 +302,9 @@ void MissionReader::check_notice(const xml::Attribute& at) {
       known.push_back(function.name);
     }
   }
-  problems_.add(at, "E0310", fmt::format("nobody has a function {} for a notice", in_quotes(at.value)),
-                known.empty() ? "no argument, or one UINT16, which is told whose event it is"
-                              : did_you_mean(at.value, known));
+  problems_.add(
+      at, "E0310", fmt::format("nobody has a function {} for a notice", in_quotes(at.value)),
+      known.empty() ? "no argument, or one UINT16, which is told whose event it is" : did_you_mean(at.value, known));
 }
 
 /// The steps of a plan that another one runs stand in that one's place, so that all that looks at a plan sees them.
@@ -331,7 +330,8 @@ void MissionReader::expand_runs(const xml::Element& element) {
       const auto at = plan.steps.erase(run);
       plan.steps.insert(at, steps.begin(), steps.end());
       if (plan.steps.size() <= most_steps) continue;
-      problems_.add(plan.at, "E0373", fmt::format("plan '{}' has more than {} steps with those that it runs", plan.name, most_steps),
+      problems_.add(plan.at, "E0373",
+                    fmt::format("plan '{}' has more than {} steps with those that it runs", plan.name, most_steps),
                     "does it run itself?");
       std::erase_if(plan.steps, is_run);
       plan.steps.resize(std::min(plan.steps.size(), most_steps));

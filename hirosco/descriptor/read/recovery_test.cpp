@@ -69,6 +69,44 @@ TEST(MissionRecovery, StepsNameWhatIsLookedUpForThem) {
   EXPECT_EQ(steps[5].subsystem, "FLYWHEEL");
 }
 
+TEST(MissionRecovery, AStepThatNamesWhatThereIsNotOrDoesNotFitIsRefused) {
+  struct Case {
+    std::string code, good, bad;
+  };
+  for (const Case& each : std::vector<Case>{
+           {"E0372", R"(<Do action="log"/>)", R"(<Do action="command" function="STOW"/>)"},
+           {"E0310", R"(<Do action="log"/>)", R"(<Do action="command" subsystem="FLYWHEEL" function="SET_STATE"/>)"},
+           {"E0372", R"(<Do action="log"/>)", R"(<Do action="configure" configuration="SPUN"/>)"},
+           {"E0372", R"(<Do action="log"/>)",
+            R"(<Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE"/>)"},
+           {"E0372", R"(<Do action="log"/>)",
+            R"(<Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE" arguments="0.2"/>)"},
+           {"E0372", R"(<Do action="log"/>)",
+            R"(<Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE" arguments="x"/>)"},
+           {"E0316", R"(<Do action="log"/>)",
+            R"(<Do action="configure" subsystem="FLYWHEEL" configuration="COUPLE"/>)"},
+           {"E0309", R"(<Do action="log"/>)", R"(<Do action="link" link="99"/>)"},
+           {"E0309", R"(<Do action="log"/>)", R"(<Do action="unlink" link="a"/>)"},
+           {"E0304", R"(<Do action="log"/>)", R"(<Do action="wait_for" state="Offline" of="FLYWHEELS"/>)"},
+           {"E0306", R"(<Do action="log"/>)", R"(<Do action="wait_for" state="SoftwareInit"/>)"},
+           {"E0304", R"(<Do action="log"/>)", R"(<Do action="hand_over" receiver="FLYWHEELS" configuration="SPUN"/>)"},
+           {"E0372", R"(<Do action="log"/>)",
+            R"(<Do action="hand_over" receiver="FLYWHEEL" configuration="COUPLED"/>)"},
+           {"E0316", R"(<When severity="low info"/><Do action="log"/>)",
+            R"(<When subsystem="CORONAGRAPH"/><Do action="hand_over" receiver="FLYWHEEL" configuration="COUPLE"/>)"},
+           {"E0310", R"(<Do action="log"/>)", R"(<Do action="notify_network" function="NOBODY_HAS_IT"/>)"},
+           {"E0112", R"(<Do action="log"/>)", R"(<Do action="power" budget_W="0"/>)"},
+           {"E0373", R"(<Plan name="note">)",
+            R"(<Plan name="again"><When severity="low"/><Do action="run" plan="nothing"/></Plan><Plan name="note">)"},
+           {"E0373", R"(<Plan name="note">)",
+            R"(<Plan name="again"><When severity="low"/><Do action="run" plan="again"/></Plan><Plan name="note">)"}}) {
+    const auto reading = read_mission(data / "mission.xml", overlay({{"mission.xml", changed(each.good, each.bad)}}));
+    ASSERT_FALSE(reading.problems.empty()) << each.bad;
+    EXPECT_EQ(reading.problems.front().code, each.code) << each.bad;
+    EXPECT_EQ(reading.problems.size(), 1U) << each.bad << rendered(reading.problems, file_system());
+  }
+}
+
 TEST(MissionRecovery, WhatIsToldOfPlansHasTheirNames) {
   const std::string supervisor = file_system()(data / "supervisor.xml").value();
   const auto reading = read_mission(

@@ -41,9 +41,8 @@ std::string Subscriber::use(SubscriptionPort& port) {
   if (subscribes == descriptor_.subscribes.end()) return who + "the descriptor has no <Subscribes> of this subsystem";
   const bool event = port.what() == SubscriptionPort::What::Event;
   const auto kind = event ? descriptor::Thing::Kind::Event : descriptor::Thing::Kind::Housekeeping;
-  const auto thing = std::ranges::find_if(subscribes->things, [&](const descriptor::Thing& each) {
-    return each.kind == kind && each.name == port.name();
-  });
+  const auto thing = std::ranges::find_if(
+      subscribes->things, [&](const descriptor::Thing& each) { return each.kind == kind && each.name == port.name(); });
   if (thing == subscribes->things.end()) return who + "<Subscribes> does not name it";
   if (subscribes->apid == 0) return who + "no mission says who that is";
   const bool same = std::ranges::equal(port.fields(), thing->fields, [](const NativeField& n, const auto& declared) {

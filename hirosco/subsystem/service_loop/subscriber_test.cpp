@@ -75,8 +75,8 @@ struct Porter : Subsystem {
                       std::to_string(at[1]));
     });
     const auto nothing = [](const RequestReport&) {};
-    for (RequestPort* port : std::array<RequestPort*, 8>{&set_pitch, &set_owner, &enable, &disable, &one_shot,
-                                                         &interval, &silence, &tell})
+    for (RequestPort* port :
+         std::array<RequestPort*, 8>{&set_pitch, &set_owner, &enable, &disable, &one_shot, &interval, &silence, &tell})
       use_request(*port, nothing);
     use_request(read_swing, [this](const RequestReport& report) {
       struct Value {
@@ -226,13 +226,14 @@ TEST(HearingWrongly, IsToldWithAllOtherMistakes) {
   EXPECT_NE(rig.set_state_now(State::PreOperational), "1 3 7");
   std::string all;
   for (const auto& each : rig.explanations) all += each + "\n";
-  EXPECT_THAT(all,
-              AllOf(HasSubstr("use_subscription BELL 4900: its values are (float), the descriptor of BELL declares (FLOAT, "
-                              "UINT16[2], BOOL)"),
-                    HasSubstr("use_subscription BELL 4999: <Subscribes> does not name it"),
-                    HasSubstr("use_subscription GONG CRACKED: the descriptor has no <Subscribes> of this subsystem"),
-                    HasSubstr("use_request BELL PITCH: its arguments are (float), the descriptor of BELL declares (DOUBLE)"),
-                    HasSubstr("use_request BELL MUTED: <Commands> does not name it in 'sets'")));
+  EXPECT_THAT(
+      all,
+      AllOf(HasSubstr("use_subscription BELL 4900: its values are (float), the descriptor of BELL declares (FLOAT, "
+                      "UINT16[2], BOOL)"),
+            HasSubstr("use_subscription BELL 4999: <Subscribes> does not name it"),
+            HasSubstr("use_subscription GONG CRACKED: the descriptor has no <Subscribes> of this subsystem"),
+            HasSubstr("use_request BELL PITCH: its arguments are (float), the descriptor of BELL declares (DOUBLE)"),
+            HasSubstr("use_request BELL MUTED: <Commands> does not name it in 'sets'")));
 }
 
 TEST(HearingWrongly, OfNobodyThatAMissionNamedIsRefused) {

@@ -15,11 +15,14 @@ namespace hirosco::supervisor {
 using What = pus::st129::Subscribed::What;
 
 Subscriptions::Subscriptions(Craft& craft, OwnSubsystem& own)
-    : craft_{craft}, own_{own}, deliveries_{craft, [&craft, &own](const Member& member, std::uint32_t lost) {
-        craft.tell(fmt::format("{} does not read what it hears: {} reports lost", member.descriptor().name, lost),
-                   member.apid());
-        own.announce("HEARD_LOST", {static_cast<double>(member.apid()), static_cast<double>(lost)});
-      }} {}
+    : craft_{craft},
+      own_{own},
+      deliveries_{craft, [&craft, &own](const Member& member, std::uint32_t lost) {
+                    craft.tell(
+                        fmt::format("{} does not read what it hears: {} reports lost", member.descriptor().name, lost),
+                        member.apid());
+                    own.announce("HEARD_LOST", {static_cast<double>(member.apid()), static_cast<double>(lost)});
+                  }} {}
 
 void Subscriptions::answer(const pus::Request& asked, Octets data, bool begins) {
   pus::Verification& verification = own_.verification();

@@ -41,7 +41,8 @@ struct SubscriptionsTest : PartsTest {
     own_step();
   }
   /// A member, or the ground, asks; the last verification of it: "7", "2 18".
-  std::string ask(std::uint16_t from, st129::Subtype subtype, st129::Subscribed what, std::optional<std::uint16_t> as = {}) {
+  std::string ask(std::uint16_t from, st129::Subtype subtype, st129::Subscribed what,
+                  std::optional<std::uint16_t> as = {}) {
     std::array<std::byte, pus::max_telecommand_octets> buffer;
     const auto packet = pus::write_telecommand(buffer,
                                                {.apid = supervisor_apid,
@@ -60,7 +61,9 @@ struct SubscriptionsTest : PartsTest {
     if (data.size() < 6) return data.empty() ? "nothing" : "done";
     return "refused " + std::to_string(std::to_integer<int>(data[4]) * 256 + std::to_integer<int>(data[5]));
   }
-  std::string hear_structure(std::uint16_t who) { return ask(who, st129::subscribe, {arm, What::Structure, structure}); }
+  std::string hear_structure(std::uint16_t who) {
+    return ask(who, st129::subscribe, {arm, What::Structure, structure});
+  }
   std::string hear_event(std::uint16_t who) { return ask(who, st129::subscribe, {arm, What::Event, cracked}); }
   /// ARM sends its structure with this value.
   void sample(int value, std::uint16_t of = structure) {
@@ -105,8 +108,8 @@ TEST_F(SubscriptionsTest, AnEventIsHeardWhetherItsReportIsSwitchedOnOrNot) {
   for (const auto reported : {pus::Reported::Yes, pus::Reported::No}) {
     std::array<std::byte, 5> buffer{};
     const std::array depth{std::byte{42}};
-    const auto octets =
-        pus::write_event_message(buffer, {.severity = Severity::Low, .reported = reported, .id = cracked, .auxiliary = depth});
+    const auto octets = pus::write_event_message(
+        buffer, {.severity = Severity::Low, .reported = reported, .id = cracked, .auxiliary = depth});
     ASSERT_TRUE(played[arm].channel.subsystem_end().send({.kind = MessageKind::Event, .packet = *octets}));
     parts.reception.read(*craft.member(arm));
     if (reported == pus::Reported::Yes) report(arm, 5, 2, std::array{std::byte{7}, std::byte{208}, std::byte{42}});

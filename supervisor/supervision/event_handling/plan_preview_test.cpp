@@ -115,7 +115,8 @@ TEST_F(PlanPreviewTest, ASupervisorsEventOfASubsystemIsAskedUnderThatOnesId) {
 }
 
 TEST_F(PlanPreviewTest, TellsWhatIsAgainstIt) {
-  plan("down", {{"set_state", {static_cast<int>(ErrorOperational)}}, {"set_state", {static_cast<int>(PostOperational)}}},
+  plan("down",
+       {{"set_state", {static_cast<int>(ErrorOperational)}}, {"set_state", {static_cast<int>(PostOperational)}}},
        "BURNING");
   descriptor::Event event;
   event.name = "BURNING";

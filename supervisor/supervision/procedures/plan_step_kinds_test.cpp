@@ -67,8 +67,7 @@ struct PlanStepKinds : PartsTest {
       for (const std::uint16_t apid : {arm, hand, camera})
         for (const Received& each : received(apid)) {
           sent.push_back(craft.name_of(apid) + " " + each.text);
-          if (each.text.starts_with("SET_STATE "))
-            set(apid, static_cast<State>(std::stoi(each.text.substr(10))));
+          if (each.text.starts_with("SET_STATE ")) set(apid, static_cast<State>(std::stoi(each.text.substr(10))));
           if (each.text.starts_with("CONFIGURE "))
             played[apid].vital->configuration = static_cast<std::uint8_t>(std::stoi(each.text.substr(10)));
           verify(apid, each.request, 7);
@@ -96,7 +95,8 @@ TEST_F(PlanStepKinds, ACommandThatFailsEscalatesOnceAndIsTold) {
   verify(arm, begun[0].request, 8, pus::FailureCode::ExecutionError);
   EXPECT_TRUE(was_told("plan failed (ARM STOW 0.5: execution error): escalating"));
   EXPECT_TRUE(guard.fenced(arm)) << "the plan for high severity: down with its network";
-  EXPECT_EQ(std::ranges::count_if(story, [](const std::string& line) { return line.find("escalating") != line.npos; }), 1);
+  EXPECT_EQ(std::ranges::count_if(story, [](const std::string& line) { return line.find("escalating") != line.npos; }),
+            1);
 }
 
 TEST_F(PlanStepKinds, ConfigureAndThenAState) {
@@ -253,8 +253,7 @@ TEST_F(HandingOver, AStopOnTheWayUpEndsIt) {
     for (int step = 0; step < steps; ++step) {
       for (const std::uint16_t apid : {arm, camera})
         for (const Received& each : received(apid)) {
-          if (each.text.starts_with("SET_STATE "))
-            set(apid, static_cast<State>(std::stoi(each.text.substr(10))));
+          if (each.text.starts_with("SET_STATE ")) set(apid, static_cast<State>(std::stoi(each.text.substr(10))));
           verify(apid, each.request, 7);
         }
       own_step();

@@ -19,7 +19,8 @@ class Waiting final : public Watch {
   /// `done` is called once: true as soon as `holds`, now perhaps; false at the deadline, or where too many wait.
   void wait(TimePoint now, TimePoint deadline, std::function<bool()> holds, CommandDone done) {
     if (holds()) return done(true, {});
-    if (now >= deadline || waits_.size() == most) return done(false, waits_.size() == most ? "too many wait" : too_late);
+    if (now >= deadline || waits_.size() == most)
+      return done(false, waits_.size() == most ? "too many wait" : too_late);
     waits_.push_back({deadline, std::move(holds), std::move(done)});
   }
   void watch(TimePoint now) override {

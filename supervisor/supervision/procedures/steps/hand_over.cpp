@@ -12,18 +12,22 @@
 namespace hirosco::supervisor::steps::task {
 namespace {
 
-[[nodiscard]] std::uint16_t receiver_of(const ProcedureStep& step) { return static_cast<std::uint16_t>(step.values[0]); }
+[[nodiscard]] std::uint16_t receiver_of(const ProcedureStep& step) {
+  return static_cast<std::uint16_t>(step.values[0]);
+}
 
 /// Each that the configuration needs, is not there, and that its producer has.
-void add_links(const Member& receiver, const descriptor::Configuration& configuration, const Means& means, WayThere& way) {
+void add_links(const Member& receiver, const descriptor::Configuration& configuration, const Means& means,
+               WayThere& way) {
   for (const descriptor::MissionLink& link : means.craft.mission.links) {
     if (link.to != receiver.descriptor().name) continue;
     const auto* producer = means.craft.member(means.craft.mission.find_subsystem(link.from)->subsystem.id);
-    const auto* made = producer != nullptr ? producer->descriptor().find_configuration(producer->configuration()) : nullptr;
+    const auto* made =
+        producer != nullptr ? producer->descriptor().find_configuration(producer->configuration()) : nullptr;
     const bool wanted = std::ranges::find(configuration.requires_, link.requires_, &descriptor::Requires::name) !=
                         configuration.requires_.end();
-    const bool offered = made != nullptr && std::ranges::find(made->provides, link.provides, &descriptor::Provides::name) !=
-                                                made->provides.end();
+    const bool offered = made != nullptr && std::ranges::find(made->provides, link.provides,
+                                                              &descriptor::Provides::name) != made->provides.end();
     if (wanted && offered) way.link(link.id);
   }
 }
@@ -50,18 +54,18 @@ struct HandOver : std::enable_shared_from_this<HandOver> {
   void bring_up() {
     if (const std::string why = against(step, means); !why.empty()) return end(false, why);
     const Member& receiver = *means.craft.member(receiver_of(step));
-    const auto& configuration =
-        *receiver.descriptor().find_configuration(static_cast<std::uint8_t>(step.values[1]));
+    const auto& configuration = *receiver.descriptor().find_configuration(static_cast<std::uint8_t>(step.values[1]));
     if (receiver.state() == State::Operational && receiver.configuration() == configuration.id) return end(true, {});
     WayThere way;
     way.add(receiver.descriptor(), configuration, {receiver.state(), receiver.configuration()}, State::Operational);
     add_links(receiver, configuration, means, way);
-    runner.start({.stages = way.stages(),
-                  .finished = [self = shared_from_this()](const ProcedureEnd& ended) { self->end(ended.success, ended.text()); },
-                  .begins =
-                      [self = shared_from_this()](std::size_t) {
-                        if (const std::string why = against(self->step, self->means); !why.empty()) self->end(false, why);
-                      }});
+    runner.start(
+        {.stages = way.stages(),
+         .finished = [self = shared_from_this()](const ProcedureEnd& ended) { self->end(ended.success, ended.text()); },
+         .begins =
+             [self = shared_from_this()](std::size_t) {
+               if (const std::string why = against(self->step, self->means); !why.empty()) self->end(false, why);
+             }});
   }
 
   void end(bool success, const std::string& why) {

@@ -21,10 +21,8 @@ void hand_over(const ProcedureStep& step, const Means& means, const CommandDone&
 inline constexpr StepKind hand_over{
     .name = "hand_over",
     .values = 2,
-    .text =
-        [](const ProcedureStep& step, const descriptor::Mission&) {
-          return "task to " + step.words[0] + " in " + step.words[1];
-        },
+    .text = [](const ProcedureStep& step,
+               const descriptor::Mission&) { return "task to " + step.words[0] + " in " + step.words[1]; },
     .run = [](const ProcedureStep& step, const Means& means, CommandDone done) { task::hand_over(step, means, done); },
     .fences = [](const ProcedureStep& step, const Means&) { return std::vector<std::uint16_t>{step.subject}; },
     .against = task::against,
