@@ -218,7 +218,7 @@ void connect(Robot& robot, std::vector<NamedJoint>& joints, Findings& findings) 
   const bool connected = named && find_root(robot, joints, above, findings);
   find_mimicked(joints, names, findings);
   robot.joints.reserve(joints.size());
-  for (const NamedJoint& named : joints) robot.joints.push_back(named.joint);
+  for (const NamedJoint& each : joints) robot.joints.push_back(each.joint);
   if (connected) check_motion(robot, findings);
   if (connected && findings.good()) check_bodies(robot, findings);
 }

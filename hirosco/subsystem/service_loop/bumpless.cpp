@@ -20,8 +20,8 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_bumpless(const
   if (reconfiguration_ != nullptr || self_tests_.running())
     return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
   // The guard and the second inhibit: who may not move does not go on moving by other values. The cycle looks again.
-  const bool permitted = permit_.stop.load(std::memory_order_acquire) == 0 &&
-                         permit_.permits(permit_.epoch.load(std::memory_order_acquire));
+  const bool permitted = permit_->stop.load(std::memory_order_acquire) == 0 &&
+                         permit_->permits(permit_->epoch.load(std::memory_order_acquire));
   if (state_ == State::Operational && (!permitted || vital_.inhibited.load(std::memory_order_relaxed) != 0))
     return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
   const descriptor::Bumpless& terms = *descriptor_.bumpless_between(configuration_->id, wanted.id);

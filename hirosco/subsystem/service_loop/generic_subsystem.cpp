@@ -160,6 +160,7 @@ void GenericSubsystem::take_permit_page(const MemoryHandle& memory) {
   permit_ = page;
   last_heartbeat_ = page->heartbeat.load(std::memory_order_acquire);
   cycle_.offer_permit(*page);
+  for (const auto& loop : loops_) loop->take_permit(*page);
   permit_owed_ = true;
   confirm_permit_page();
 }
@@ -168,7 +169,6 @@ void GenericSubsystem::confirm_permit_page() {
   if (!permit_owed_) return;
   if (cycle_rests()) cycle_.take_permit();
   if (!cycle_.looks_at_offered_permit()) return;
-  permit_before_ = {};
   permit_owed_ = !channel_.send({.kind = MessageKind::PermitPage});
 }
 

@@ -277,7 +277,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Channel& channel_;
   VitalPage& vital_;
   const PermitPage* permit_;
-  /// Of a permit page that came by the channel, and of the one before as long as the cycle may look at it.
+  /// Of a permit page that came by the channel, and of the one before, at which the cycle or another loop may just look.
   Mapping permit_memory_, permit_before_;
   bool permit_owed_{false};  ///< the supervisor has not been told yet that it is in force
 

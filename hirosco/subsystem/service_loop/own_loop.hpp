@@ -29,12 +29,14 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
     const descriptor::ServiceLoop& declared;
     pus::ServiceHome& subsystem;  ///< whose services they are
     const VitalPage& vital;
-    const PermitPage& permit;
+    const PermitPage& permit;  ///< until take_permit()
     const Clock& clock;
     const Dictionary& dictionary;
     WriteQueue& writes;
   };
   explicit OwnLoop(const Parts& parts);
+  /// Another supervisor's page counts from now on; the one before stays mapped until yet another comes.  Thread: the service loop's.
+  void take_permit(const PermitPage& page) noexcept { permit_.store(&page, std::memory_order_release); }
 
   // --- the subsystem's service loop ----------------------------------------------------------------------------------
   [[nodiscard]] const descriptor::ServiceLoop& declared() const noexcept { return parts_.declared; }
@@ -87,6 +89,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   void handle(Octets record);
 
   Parts parts_;
+  std::atomic<const PermitPage*> permit_;
   Mutex mutex_;
   std::vector<pus::Service*> services_;
   RecordRing in_;

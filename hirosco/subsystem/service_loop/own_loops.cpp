@@ -21,7 +21,7 @@ std::vector<std::unique_ptr<OwnLoop>> GenericSubsystem::make_loops() {
     loops.push_back(std::make_unique<OwnLoop>(OwnLoop::Parts{.declared = declared,
                                                              .subsystem = *this,
                                                              .vital = vital_,
-                                                             .permit = permit_,
+                                                             .permit = *permit_,
                                                              .clock = platform_.clock,
                                                              .dictionary = dictionary_,
                                                              .writes = writes_}));

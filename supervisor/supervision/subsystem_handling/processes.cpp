@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
