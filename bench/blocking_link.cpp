@@ -102,9 +102,9 @@ Figures by_link(Shared& shared, LinkKind kind, int samples) {
             shared.waited[got++] = (clock.now() - sample.sampled_at).count();
             shared.got = static_cast<std::uint32_t>(got);
             count = sample.count;
+            continue;  // of a queue there may be more
           }
-          if (count < static_cast<std::uint64_t>(samples))
-            (void)wait_on_word(*reader->arrival_word(), before, TimePoint::max());
+          (void)wait_on_word(*reader->arrival_word(), before, TimePoint::max());
         }
       },
       [&](TimePoint now) { writer->write(payload, now, LinkStatus::Valid); });
