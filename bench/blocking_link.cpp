@@ -37,6 +37,7 @@ struct Shared {
   alignas(64) std::atomic<std::uint32_t> word{0};
   std::atomic<std::int64_t> stamp{0};
   alignas(64) std::atomic<std::uint32_t> ready{0};
+  std::atomic<std::uint32_t> got{0};  ///< of the samples: one that came too late for the next is nobody's
   std::array<std::int64_t, max_samples> waited{};
 };
 
@@ -70,7 +71,7 @@ Figures between_processes(Shared& shared, int samples, Consume consume, Produce 
   }
   int status = 0;
   ::waitpid(child, &status, 0);
-  std::vector<std::int64_t> waited(shared.waited.begin(), shared.waited.begin() + samples);
+  std::vector<std::int64_t> waited(shared.waited.begin(), shared.waited.begin() + shared.got.load());
   return figures_of(waited, 1e-3);
 }
 
@@ -93,14 +94,17 @@ Figures by_link(Shared& shared, LinkKind kind, int samples) {
         const auto reader = mechanism.consume(provider, memory, layout).value();
         std::array<std::byte, payload_octets> seen{};
         shared.ready = 1;
-        for (int got = 0; got < samples;) {
+        for (std::uint64_t count = 0, got = 0; count < static_cast<std::uint64_t>(samples);) {
           const std::uint32_t before =
               std::atomic_ref<std::uint32_t>{const_cast<std::uint32_t&>(*reader->arrival_word())}.load();
           const LinkSample sample = reader->read(seen);
-          if (sample.flow == Flow::New)
-            shared.waited[static_cast<std::size_t>(got)] = (clock.now() - sample.sampled_at).count();
-          if (sample.flow == Flow::New) ++got;
-          if (got < samples) (void)wait_on_word(*reader->arrival_word(), before, TimePoint::max());
+          if (sample.flow == Flow::New) {
+            shared.waited[got++] = (clock.now() - sample.sampled_at).count();
+            shared.got = static_cast<std::uint32_t>(got);
+            count = sample.count;
+            continue;  // of a queue there may be more
+          }
+          (void)wait_on_word(*reader->arrival_word(), before, TimePoint::max());
         }
       },
       [&](TimePoint now) { writer->write(payload, now, LinkStatus::Valid); });
@@ -114,10 +118,11 @@ Figures by_futex(Shared& shared, int samples) {
       [&] {
         const SystemClock clock;
         shared.ready = 1;
-        for (std::uint32_t got = 0; got < static_cast<std::uint32_t>(samples);) {
-          while (shared.word.load(std::memory_order_acquire) == got) (void)futex(shared.word, FUTEX_WAIT, got);
-          shared.waited[got] = clock.now().time_since_epoch().count() - shared.stamp.load(std::memory_order_relaxed);
-          ++got;
+        for (std::uint32_t count = 0, got = 0; count < static_cast<std::uint32_t>(samples);) {
+          while (shared.word.load(std::memory_order_acquire) == count) (void)futex(shared.word, FUTEX_WAIT, count);
+          shared.waited[got++] = clock.now().time_since_epoch().count() - shared.stamp.load(std::memory_order_relaxed);
+          shared.got = got;
+          count = shared.word.load(std::memory_order_relaxed);
         }
       },
       [&](TimePoint now) {
