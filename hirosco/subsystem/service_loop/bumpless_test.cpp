@@ -93,15 +93,31 @@ struct Joint final : Subsystem {
 struct BumplessChange : ::testing::Test {
   Joint author;
   Rig rig{author, joint_descriptor};
+  std::array<std::byte, max_device_frame_octets> frame{};
   std::unique_ptr<DataFlow> motor =
       std::move(rig.flows.open({Transfer::SharedMemory, "motor"}, FlowSide::Device)).value();
 
-  /// One cycle, and what the motor is told in it.
+  /// One cycle, and what the motor is told in it; it answers.
   DeviceCommand cycle() {
     rig.cycle();
-    static std::array<std::byte, max_device_frame_octets> frame;
     const auto received = motor->receive(frame).value();
-    return read_command(Octets{frame}.first(received.octets)).value();
+    const DeviceCommand command = read_command(Octets{frame}.first(received.octets)).value();
+    std::array<std::byte, max_device_frame_octets> buffer{};
+    const std::array<std::byte, 8> angle{};
+    static_cast<void>(motor->send(
+        write_status(buffer, {.epoch = command.epoch, .sequence = command.sequence, .payload = angle}).value()));
+    return command;
+  }
+  /// Its silence is long: one answer keeps it alive through a test.
+  void bring_up(State state) {
+    rig.bring_to(State::PreOperational);
+    cycle();
+    cycle();
+    ASSERT_EQ(rig.set_state_now(State::SafeOperational), "1 3 7");
+    if (state == State::Operational) {
+      ASSERT_EQ(rig.set_state_now(State::Operational), "1 3 7");
+    }
+    ASSERT_EQ(rig.inhibited(), 0U);
   }
   static double torque_of(const DeviceCommand& command) {
     OctetReader reader{command.payload, std::endian::little};
@@ -121,7 +137,7 @@ struct BumplessChange : ::testing::Test {
 };
 
 TEST_F(BumplessChange, TenTimesInMotionMovesNoOutputFurtherThanItsStepAndMissesNoCycle) {
-  rig.bring_to(State::Operational);
+  bring_up(State::Operational);
   const std::uint64_t before = rig.vital.cycles.load();
   std::uint64_t cycles = 0;
   double last = torque_of(cycle());
@@ -149,7 +165,7 @@ TEST_F(BumplessChange, TenTimesInMotionMovesNoOutputFurtherThanItsStepAndMissesN
 }
 
 TEST_F(BumplessChange, TakesPeriodPriorityBudgetValuesAndHousekeepingAtOneBoundary) {
-  rig.bring_to(State::Operational);
+  bring_up(State::Operational);
   const auto before = rig.subsystem.cycle_demand();
   EXPECT_EQ(before.period, 1ms);
   EXPECT_EQ(before.priority, 40);
@@ -180,7 +196,7 @@ TEST_F(BumplessChange, TakesPeriodPriorityBudgetValuesAndHousekeepingAtOneBounda
 }
 
 TEST_F(BumplessChange, OfAPlantedJumpReachesNoActuator) {
-  rig.bring_to(State::Operational);
+  bring_up(State::Operational);
   const double last = torque_of(cycle());
   author.jump = 0.06;
   const Sent sent = rig.configure(2);
@@ -196,7 +212,7 @@ TEST_F(BumplessChange, OfAPlantedJumpReachesNoActuator) {
 }
 
 TEST_F(BumplessChange, IsAsNothingWhenTheAuthorRefusesIt) {
-  rig.bring_to(State::Operational);
+  bring_up(State::Operational);
   author.refuses = true;
   EXPECT_THAT(rig.configure_now(2), HasSubstr("1 3 8:0202"));
   EXPECT_EQ(rig.state(), State::Operational);
@@ -206,7 +222,7 @@ TEST_F(BumplessChange, IsAsNothingWhenTheAuthorRefusesIt) {
 }
 
 TEST_F(BumplessChange, IsRefusedWhereTheActuatorsAreInhibitedOrTheGuardHasStoppedThem) {
-  rig.bring_to(State::Operational);
+  bring_up(State::Operational);
   rig.permit.fence();
   EXPECT_EQ(rig.configure_now(2), "2:010700");
   EXPECT_EQ(author.hooks, 0);
@@ -214,7 +230,7 @@ TEST_F(BumplessChange, IsRefusedWhereTheActuatorsAreInhibitedOrTheGuardHasStoppe
 }
 
 TEST_F(BumplessChange, ThatAFenceOvertakesOnItsWayToTheCycleIsNone) {
-  rig.bring_to(State::Operational);
+  bring_up(State::Operational);
   const Sent sent = rig.configure(2);
   rig.service();
   rig.permit.fence();
@@ -225,7 +241,7 @@ TEST_F(BumplessChange, ThatAFenceOvertakesOnItsWayToTheCycleIsNone) {
 }
 
 TEST_F(BumplessChange, IsForConfigurationsThatAreDeclaredCompatibleInTheStatesOfControl) {
-  rig.bring_to(State::Operational);
+  bring_up(State::Operational);
   EXPECT_EQ(rig.configure_now(3), "1 4:000a05") << "not declared";
   EXPECT_EQ(rig.configure_now(1), "1 4:000a05") << "in force already";
   expect_untouched();
@@ -237,7 +253,7 @@ TEST_F(BumplessChange, IsForConfigurationsThatAreDeclaredCompatibleInTheStatesOf
 }
 
 TEST_F(BumplessChange, IsOneAtATimeAndEndsWhateverBecomesOfTheCycle) {
-  rig.bring_to(State::Operational);
+  bring_up(State::Operational);
   const Sent first = rig.configure(2), second = rig.configure(2);
   rig.service();
   EXPECT_EQ(rig.outcome(second), "1 4:0108");
