@@ -76,6 +76,10 @@ struct PlanStepKinds : PartsTest {
       parts.waiting.watch(clock.now());
     }
   }
+  /// As many as one of the supervisor's own functions takes.
+  void some_steps() {
+    for (int step = 0; step < 30; ++step) own_step();
+  }
   std::vector<std::string> sent;
 };
 
@@ -93,7 +97,7 @@ TEST_F(PlanStepKinds, ACommandThatFailsEscalatesOnceAndIsTold) {
   const auto begun = received(arm);
   ASSERT_EQ(begun.size(), 1U);
   verify(arm, begun[0].request, 8, pus::FailureCode::ExecutionError);
-  EXPECT_TRUE(was_told("plan failed (ARM STOW 0.5: execution error): escalating"));
+  EXPECT_TRUE(was_told("plan failed (execution error): escalating"));
   EXPECT_TRUE(guard.fenced(arm)) << "the plan for high severity: down with its network";
   EXPECT_EQ(std::ranges::count_if(story, [](const std::string& line) { return line.find("escalating") != line.npos; }),
             1);
@@ -106,16 +110,20 @@ TEST_F(PlanStepKinds, ConfigureAndThenAState) {
   EXPECT_THAT(sent, ElementsAre("ARM SET_STATE 4", "ARM SET_STATE 3", "ARM CONFIGURE 2"));
 }
 
-TEST_F(PlanStepKinds, LinkAndUnlinkAreTheSupervisorsAndDoneOnceThoughAPlanIsForAll) {
+TEST_F(PlanStepKinds, LinkBeginsTheHandshakeOfTheSupervisor) {
+  plan({{"link", {1}}});
+  happens();
+  some_steps();
+  EXPECT_THAT(texts(hand), Contains("TC[128,1]"));
+  EXPECT_FALSE(was_told("escalating"));
+}
+
+TEST_F(PlanStepKinds, UnlinkIsTheSupervisorsAndDoneOnceThoughAPlanIsForAll) {
   plan({{"unlink", {1}}}, "LOG_DAMAGED");
-  plan({{"link", {1}}}, "LATE");
   parts.own.announce("LOG_DAMAGED", {1});
-  own_step();
+  some_steps();
   EXPECT_EQ(std::ranges::count_if(story, [](const std::string& line) { return line.find("UNLINK") != line.npos; }), 1)
       << "link 1 is not up: refused, told";
-  happens(late);
-  own_step();
-  EXPECT_THAT(texts(arm), Contains("TC[128,1]")) << "the handshake has begun";
 }
 
 TEST_F(PlanStepKinds, FenceStopsTheActuatorsAndNothingElse) {
@@ -162,7 +170,7 @@ TEST_F(PlanStepKinds, WaitForFailsAtItsTimeAndSoDoesItsPlan) {
   happens();
   wait(5s);
   parts.waiting.watch(clock.now());
-  EXPECT_TRUE(was_told("plan failed (ARM until ARM is Offline: not in its time): escalating"));
+  EXPECT_TRUE(was_told("plan failed (not in its time): escalating"));
 }
 
 TEST_F(PlanStepKinds, NotifyNetworkTellsItsMembersAndTakesNobodyDown) {
@@ -179,7 +187,7 @@ TEST_F(PlanStepKinds, NotifyNetworkTellsItsMembersAndTakesNobodyDown) {
 TEST_F(PlanStepKinds, PowerIsTheCraftsBudget) {
   plan({{"power", {400}}});
   happens();
-  own_step();
+  some_steps();
   EXPECT_EQ(parts.power.ledger().budget_mw(), 400'000U);
 }
 
@@ -272,7 +280,7 @@ TEST_F(HandingOver, ItFailsWhereNobodyCanReceive) {
   parts.processes.watch(clock.now());
   happens();
   all_obey();
-  EXPECT_TRUE(was_told("plan failed (ARM task to CAMERA in ONLY: CAMERA is down): escalating"));
+  EXPECT_TRUE(was_told("plan failed (CAMERA is down): escalating"));
 }
 
 }  // namespace
