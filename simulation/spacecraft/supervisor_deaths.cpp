@@ -59,7 +59,8 @@ void Spacecraft::supervisor_dies_here() {
   auto moment = std::make_unique<LastMoment>();
   for (const auto& member : members_) {
     PermitPage& page = member->newest_permit();
-    moment->pages.push_back({&page, page.epoch, page.stop, page.mode_epoch, page.powered.load(), page.go, page.heartbeat});
+    moment->pages.push_back(
+        {&page, page.epoch, page.stop, page.mode_epoch, page.powered.load(), page.go, page.heartbeat});
   }
   moment->journal = journal_memory_;
   for (std::size_t i = 0; i < moment->enabled.size(); ++i) moment->enabled[i] = kept_->inhibits[i].go;

@@ -274,7 +274,8 @@ void Telecommands::outcome_unknown(std::uint16_t apid) {
 void Telecommands::note(OctetWriter& writer) const {
   parts_.unanswered.note(writer);
   const auto& waiting = waiting_.all();
-  writer.put(static_cast<std::uint16_t>(waiting.size()));
+  writer.put(static_cast<std::uint16_t>(waiting.size() + never_left_.size()));
+  for (const auto& [apid, request] : never_left_) writer.put(apid).put(request.id).put(request.source).put(request.ack);
   for (const WaitingForDisk::Telecommand& each : waiting)
     writer.put(each.apid).put(each.request.id).put(each.request.source).put(each.request.ack);
 }

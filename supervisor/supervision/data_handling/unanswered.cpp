@@ -12,6 +12,8 @@ namespace hirosco::supervisor {
 namespace {
 /// Of the supervisor's own telecommands.
 constexpr std::uint16_t own_source = 1;
+/// In the place of a number of reports: its end was heard by a supervisor that died before it could be told.
+constexpr std::uint16_t unsaid = 0xFFFF;
 
 [[nodiscard]] constexpr bool is_end(std::uint8_t subtype) noexcept {
   const bool failed_progress = subtype == 6;  // the execution may go on
@@ -61,33 +63,35 @@ void Unanswered::reported(const pus::TelemetryView& report) {
 }
 
 void Unanswered::note(OctetWriter& writer) const {
-  const auto waited_for = [](const Entry& entry) { return entry.request.source != own_source; };
-  const auto put = [&](const auto& entries) {
-    writer.put(static_cast<std::uint16_t>(std::ranges::count_if(entries, waited_for)));
+  const auto waits = [](const Entry& entry) { return entry.request.source != own_source && entry.reports != unsaid; };
+  const auto ended = [](const Entry& entry) { return entry.request.source != own_source && entry.reports == unsaid; };
+  const auto heard = [](const Entry& entry) { return entry.request.source != own_source; };
+  const auto put = [&](const auto& entries, const auto& which) {
     for (const Entry& entry : entries)
-      if (waited_for(entry))
-        writer.put(entry.apid).put(entry.request.id).put(entry.request.source).put(entry.request.ack);
+      if (which(entry)) writer.put(entry.apid).put(entry.request.id).put(entry.request.source).put(entry.request.ack);
   };
-  put(entries_);
-  put(settled_);
+  writer.put(static_cast<std::uint16_t>(std::ranges::count_if(entries_, waits)));
+  put(entries_, waits);
+  writer.put(
+      static_cast<std::uint16_t>(std::ranges::count_if(entries_, ended) + std::ranges::count_if(settled_, heard)));
+  put(entries_, ended);
+  put(settled_, heard);
   writer.put(static_cast<std::uint16_t>(senders_.size()));
   for (const auto& [apid, sender] : senders_) writer.put(apid).put(sender.count);
 }
 
 void Unanswered::recall(OctetReader& reader) {
-  const auto get = [&](auto& entries) {
+  for (const std::uint16_t reports : {std::uint16_t{0}, unsaid})
     for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
       Entry entry;
       entry.recalled = true;
+      entry.reports = reports;
       entry.apid = reader.get<std::uint16_t>();
       entry.request.id = reader.get<std::uint32_t>();
       entry.request.source = reader.get<std::uint16_t>();
       entry.request.ack = reader.get<std::uint8_t>();
-      if (reader.good()) entries.push_back(entry);
+      if (reader.good()) entries_.push_back(entry);
     }
-  };
-  get(entries_);
-  get(settled_);
   for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
     const auto apid = reader.get<std::uint16_t>();
     senders_[apid] = {reader.get<std::uint16_t>(), true, std::nullopt};
@@ -96,8 +100,11 @@ void Unanswered::recall(OctetReader& reader) {
 
 std::vector<pus::Request> Unanswered::take_settled() {
   std::vector<pus::Request> taken;
-  for (const Entry& entry : settled_) taken.push_back(entry.request);
-  settled_.clear();
+  std::erase_if(entries_, [&](const Entry& entry) {
+    if (entry.reports != unsaid) return false;
+    taken.push_back(entry.request);
+    return true;
+  });
   return taken;
 }
 

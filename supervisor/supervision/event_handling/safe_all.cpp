@@ -30,11 +30,13 @@ void SafeAll::again() {
 }
 
 void SafeAll::note(OctetWriter& writer) const {
-  writer.put(static_cast<std::uint16_t>(pending_.size()));
-  for (const Pending& pending : pending_) {
-    const pus::Request request = pending.request.value_or(pus::Request{});
-    writer.put(static_cast<std::uint8_t>(pending.request ? 1 : 0)).put(request.id).put(request.source).put(request.ack);
-  }
+  writer.put(static_cast<std::uint16_t>(pending_.size() + before_.size()));
+  const auto put = [&](const std::optional<pus::Request>& asked) {
+    const pus::Request request = asked.value_or(pus::Request{});
+    writer.put(static_cast<std::uint8_t>(asked ? 1 : 0)).put(request.id).put(request.source).put(request.ack);
+  };
+  for (const Pending& pending : pending_) put(pending.request);
+  for (const auto& asked : before_) put(asked);
 }
 
 void SafeAll::recall(OctetReader& reader) {

@@ -135,7 +135,8 @@ void LinkCommands::forget(std::uint16_t apid) {
 void LinkCommands::note(OctetWriter& writer) const {
   writer.put(handling_.epoch()).put(static_cast<std::uint16_t>(craft_.mission.links.size()));
   for (const auto& link : craft_.mission.links) writer.put(link.id).put(graph_.standing(link.id));
-  const auto between = handling_.under_way();
+  auto between = handling_.under_way();
+  between.insert(between.end(), broken_.begin(), broken_.end());
   writer.put(static_cast<std::uint16_t>(between.size()));
   for (const std::uint8_t link : between) writer.put(link);
   writer.put(static_cast<std::uint16_t>(configurations_.size()));

@@ -22,16 +22,19 @@ using descriptor::Severity;
 void Adoption::note(OctetWriter& writer) const {
   writer.put(craft_.mode->id).put(craft_.mode_epoch);
   const auto flag = [&](bool set) { writer.put(static_cast<std::uint8_t>(set ? 1 : 0)); };
-  flag(parts_.commissioning.running());
+  // What the supervisor before had begun is still to be ended until this one can.
+  flag(parts_.commissioning.running() || (waits_ && commissioning_));
   flag(parts_.commissioning.succeeded());
-  flag(craft_.shutting_down);
+  flag(craft_.shutting_down || (waits_ && shutting_down_));
   flag(craft_.failed());
-  flag(parts_.safe_all.under_way());
+  flag(parts_.safe_all.under_way() || (waits_ && stop_asked_));
   writer.put(static_cast<std::uint16_t>(craft_.members.size()));
   for (const Member& member : craft_.members) {
+    const auto found = before_.find(member.apid());
+    const Before before = waits_ && found != before_.end() ? found->second : Before{};
     writer.put(member.apid());
-    flag(member.alive());
-    flag(member.recovery.running());
+    flag(member.alive() || before.alive);
+    flag(member.recovery.running() || before.recovering);
   }
 }
 
