@@ -124,7 +124,8 @@ void Api::opened(const HttpRequest& request, Peer& peer) {
 // --- the page --------------------------------------------------------------------------------------------------------
 
 HttpResponse Api::page_file(const HttpRequest& request, const std::string& path) const {
-  auto file = page_.file(path, {.accepts = header(request, "accept-encoding"), .has = header(request, "if-none-match")});
+  auto file =
+      page_.file(path, {.accepts = header(request, "accept-encoding"), .has = header(request, "if-none-match")});
   return file ? with_headers(std::move(*file)) : error(404, "nothing is there");
 }
 

@@ -101,7 +101,8 @@ constexpr unsigned not_modified = 304;
   for (const auto& [name, value] : response.headers) take(value);
   take(response.body);
   std::string digits;
-  for (int shift = 60; shift >= 0; shift -= 4) digits += "0123456789abcdef"[(hash >> static_cast<unsigned>(shift)) & 15U];
+  for (int shift = 60; shift >= 0; shift -= 4)
+    digits += "0123456789abcdef"[(hash >> static_cast<unsigned>(shift)) & 15U];
   // Weak: the shell may compress what is the same file.
   return "W/\"" + digits + '"';
 }
@@ -110,8 +111,9 @@ constexpr unsigned not_modified = 304;
 
 std::optional<HttpResponse> PageFiles::file(const std::string& path, const Browser& browser) const {
   if (!plain_path(path)) return std::nullopt;
-  auto response = path.starts_with(mission_prefix) ? of_mission(path.substr(mission_prefix.size()))
-                                                   : of_page(path == "/" ? "index.html" : path.substr(1), browser.accepts);
+  auto response = path.starts_with(mission_prefix)
+                      ? of_mission(path.substr(mission_prefix.size()))
+                      : of_page(path == "/" ? "index.html" : path.substr(1), browser.accepts);
   if (!response) return std::nullopt;
   const std::string tag = tag_of(*response);
   response->headers.emplace_back("ETag", tag);
@@ -127,7 +129,8 @@ std::optional<HttpResponse> PageFiles::of_page(const std::string& name, std::str
   HttpResponse response;
   const char* type = type_of(file);
   response.type = type != nullptr ? type : "application/octet-stream";
-  response.headers.emplace_back("Cache-Control", named_by_content(name) ? "public, max-age=31536000, immutable" : "no-cache");
+  response.headers.emplace_back("Cache-Control",
+                                named_by_content(name) ? "public, max-age=31536000, immutable" : "no-cache");
   response.headers.emplace_back("Vary", "Accept-Encoding");
   std::optional<std::string> content;
   for (const auto& [encoding, ending] : encodings) {

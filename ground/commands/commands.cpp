@@ -126,9 +126,8 @@ void Commands::mode_preview(const json& body, std::function<void(Answered<json>)
   const auto wanted = std::ranges::find(mission.modes, name, &descriptor::Mode::name);
   if (wanted == mission.modes.end()) return done(refuse(400, "no mode '" + name + "'"));
   const std::array data{std::byte{wanted->id}};
-  const auto query =
-      make_telecommand({mission.supervisor.id, pus::st129::service_type, pus::st129::mode_question, 0}, parts_.source,
-                       next_count(), data);
+  const auto query = make_telecommand({mission.supervisor.id, pus::st129::service_type, pus::st129::mode_question, 0},
+                                      parts_.source, next_count(), data);
   const bool sent = parts_.connected() && query && parts_.send(*query, Way::InTurn);
   if (!sent) return done(refuse(503, "no link to the spacecraft"));
   ++sent_;

@@ -50,7 +50,8 @@ bool takes_gzip(std::string_view accepts) {
   if (at == std::string_view::npos) return false;
   const std::string_view weight = accepts.substr(at + 4, accepts.find(',', at) - at - 4);
   const std::size_t digits = weight.find("q=");
-  return digits == std::string_view::npos || weight.substr(digits + 2).find_first_of("123456789") != std::string_view::npos;
+  return digits == std::string_view::npos ||
+         weight.substr(digits + 2).find_first_of("123456789") != std::string_view::npos;
 }
 
 }  // namespace hirosco::ground

@@ -52,8 +52,10 @@ TEST(Gzip, LeavesAloneWhatIsShortOrLongOrDoesNotShrink) {
 }
 
 TEST(Gzip, IsTakenByWhoSaysSo) {
-  for (const char* yes : {"gzip", "gzip, deflate, br", "br;q=1.0, gzip;q=0.8", "deflate, gzip;q=0.001"}) EXPECT_TRUE(takes_gzip(yes)) << yes;
-  for (const char* no : {"", "br", "identity", "gzip;q=0", "gzip; q=0.000, br", "br;q=1, gzip;q=0"}) EXPECT_FALSE(takes_gzip(no)) << no;
+  for (const char* yes : {"gzip", "gzip, deflate, br", "br;q=1.0, gzip;q=0.8", "deflate, gzip;q=0.001"})
+    EXPECT_TRUE(takes_gzip(yes)) << yes;
+  for (const char* no : {"", "br", "identity", "gzip;q=0", "gzip; q=0.000, br", "br;q=1, gzip;q=0"})
+    EXPECT_FALSE(takes_gzip(no)) << no;
 }
 
 }  // namespace

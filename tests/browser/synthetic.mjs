@@ -60,6 +60,13 @@ function sample(t, hostile) {
     [hostile ? `MANIPULATOR.${markup}` : 'MANIPULATOR.TEMPERATURE']: hostile ? markup : 20 + 0.05 * t};
 }
 
+/// What the gateway would tell of a stop: the answer of /api/why but its times.
+const stop = {title: 'JOYSTICK lost its device. MANIPULATOR and JOYSTICK were stopped.', plan: 'network-down', mode: 'telepresence', severity: 'high',
+  detail: 'MANIPULATOR and JOYSTICK went Offline within 2.5 ms, by plan network-down. SUPERVISOR goes on.', stopped: ['MANIPULATOR', 'JOYSTICK'],
+  advice: 'Plug the joystick in, then bring telepresence up.', causes: [[0, 'high', 'JOYSTICK reports that its device is lost'],
+    [0.1, 'medium', 'MANIPULATOR misses the samples of link 2'], [1.2, 'info', 'both in Error-Operational'], [2.5, 'info', 'both Offline']]
+      .map(([after_ms, severity, text]) => ({after_ms, severity, text}))};
+
 export function synthetic_flight({hostile = false} = {}) {
   const messages = [];
   const event = (t, id, name, number, severity, text) => messages.push({type: 'event', t: begin_t + t, apid: id, subsystem: name, id: number,
@@ -75,5 +82,5 @@ export function synthetic_flight({hostile = false} = {}) {
   event(seconds - 4, 11, 'JOYSTICK', 2, 'high', hostile ? markup : '');
   if (hostile) event(seconds - 3, 10, 'MANIPULATOR', 2, 'low', `${'y'.repeat(65536)} ${markup}`);
   messages.sort((one, other) => one.t - other.t);
-  return {mission: mission(hostile), messages};
+  return {mission: mission(hostile), messages, stop};
 }

@@ -71,7 +71,7 @@ function* until(t) {
   }
 }
 
-const state_of = (subsystem) => state === 'stopped' && subsystem.id >= 10 ? 'Offline' : states.get(subsystem.name) ?? 'Offline';
+const state_of = (subsystem) => state === 'stopped' && flight.stop.stopped.includes(subsystem.name) ? 'Offline' : states.get(subsystem.name) ?? 'Offline';
 function status(t = now) {
   if (state === 'fresh') return {t, link: {connected: false, age_s: 1e9, rx: 0, tx: 0, lost: 0}, mode: null, commandable: false, subsystems: [], links: []};
   const up = state !== 'stopped' && [...states.values()].filter((state) => state === 'Operational').length >= flight.mission.subsystems.length;
@@ -79,7 +79,7 @@ function status(t = now) {
     mode: mode ?? (up || state === 'stopped' ? flight.mission.start_mode ?? 'telepresence' : 'commissioning'), commandable: true,
     subsystems: flight.mission.subsystems.map((one) => ({id: one.id, name: one.name, state: state_of(one),
       configuration: one.configurations[one.configurations.length - 1]?.name, cycles: Math.round((t - first_t) * 2000), overruns: 0, missed: 0,
-      latency_max_ns: 61000, execution_mean_ns: 8400, inhibited: state_of(one) === 'ErrorOperational' ? ['failure'] : state === 'stopped' && one.id >= 10 ? ['device'] : [], waits_for: '', age_s: 0.1})),
+      latency_max_ns: 61000, execution_mean_ns: 8400, inhibited: state_of(one) === 'ErrorOperational' ? ['failure'] : state === 'stopped' && flight.stop.stopped.includes(one.name) ? ['device'] : [], waits_for: '', age_s: 0.1})),
     links: flight.mission.links.map((link) => ({id: link.id, up, age_cycles: up ? 0 : 400, rate_hz: up ? link.rate_hz : 0, lost: 0, latency_mean_ns: 310000, latency_max_ns: 620000}))};
 }
 
@@ -88,7 +88,7 @@ if (state !== 'fresh') {
   now += past_s;
 }
 const stopped_t = now;
-if (state === 'stopped') for (const name of ['MANIPULATOR', 'JOYSTICK']) states.set(name, 'Offline');
+if (state === 'stopped') for (const name of flight.stop.stopped) states.set(name, 'Offline');
 
 const types = {'.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.json': 'application/json',
   '.urdf': 'application/xml', '.woff2': 'font/woff2', '.txt': 'text/plain; charset=utf-8'};
@@ -167,9 +167,7 @@ const server = createServer(async (request, response) => {
       return {packets: lines.filter((one) => words.every((word) => one.text.toLowerCase().includes(word))).slice(0, +(query.get('limit') ?? 200)), before: null};
     },
     // Told, and stopped nobody: no banner over the tests of everything else.
-    '/api/why': () => state === 'stopped' ? {t: stopped_t, title: 'JOYSTICK lost its device. MANIPULATOR and JOYSTICK were stopped.', detail: 'MANIPULATOR and JOYSTICK went Offline within 2.5 ms, by plan network-down. SUPERVISOR goes on.',
-      advice: 'Plug the joystick in, then bring telepresence up.', plan: 'network-down', mode: 'telepresence', severity: 'high', stopped: ['MANIPULATOR', 'JOYSTICK'],
-      causes: [[0, 'high', 'JOYSTICK reports that its device is lost'], [0.1, 'medium', 'MANIPULATOR misses the samples of link 2'], [1.2, 'info', 'both in Error-Operational'], [2.5, 'info', 'both Offline']].map(([after_ms, severity, text]) => ({t: stopped_t + after_ms / 1000, after_ms, severity, text}))} : ({t: now - 60, title: 'Something happened.', detail: '', advice: 'Look into it.', plan: 'note', mode: status().mode, severity: 'medium', stopped: [],
+    '/api/why': () => state === 'stopped' ? {...flight.stop, t: stopped_t, causes: flight.stop.causes.map((one) => ({...one, t: stopped_t + one.after_ms / 1000}))} : ({t: now - 60, title: 'Something happened.', detail: '', advice: 'Look into it.', plan: 'note', mode: status().mode, severity: 'medium', stopped: [],
       causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one, i) => ({t: one.t, after_ms: i, severity: 'high', text: `${one.subsystem} reports ${one.name}`}))}),
     '/api/faults': () => {
       if (body.line === 'burst') for (let i = 0; i < burst_events; ++i) tell({...list.find((one) => one.type === 'event'), t: now, id: 3, text: `burst ${i}`});

@@ -22,7 +22,7 @@ import {Tags} from '../scene/tags.js';
 import {surface_x_m} from './hand.js';
 import {typed} from './typed.js';
 
-const quick_ms = 10, software_period_ms = 40;
+const quick_ms = 10, software_period_ms = 45;
 const trail_points = 300, trail_step_m2 = 4e-6;
 const least_force_n = 0.5;
 const words_ms = 200, still_after_ms = 250;
@@ -106,7 +106,7 @@ export class RobotView {
     const [own, ...texts] = await Promise.all([description.parts ? mission_code(description.parts) : {}, ...description.robots.map(async ({urdf}) => (await asset(`${this.folder}/${urdf}`)).text())]);
     this.own = own;
     this.mirror = this.software ? null : environment(this.renderer, 128);
-    const kit = new Kit(this.mirror, this.software ? 0.55 : 1);
+    const kit = new Kit(this.mirror, this.software ? 0.5 : 1);
     this.tags = new Tags(this.nodes.tags, this.nodes.leads);
     for (const [i, about] of description.robots.entries()) {
       const parts = () => own.links?.[about.urdf]?.(kit) ?? {};

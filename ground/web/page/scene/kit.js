@@ -7,7 +7,7 @@ import {
   BoxGeometry, BufferGeometry, CatmullRomCurve3, Color, CylinderGeometry, ExtrudeGeometry, Group, LatheGeometry, Mesh, MeshPhongMaterial, MeshStandardMaterial, MultiplyOperation, Path, PlaneGeometry, Shape, SphereGeometry, TorusGeometry, TubeGeometry, Vector2, Vector3,
 } from 'three';
 import {RoundedBoxGeometry} from 'three/addons/geometries/RoundedBoxGeometry.js';
-import {mergeGeometries} from 'three/addons/utils/BufferGeometryUtils.js';
+import {mergeGeometries, mergeVertices} from 'three/addons/utils/BufferGeometryUtils.js';
 import {canvas_texture, foil_normals, Random, solar_cells} from './surfaces.js';
 
 const half_turn = Math.PI, quarter_turn = Math.PI / 2;
@@ -266,8 +266,11 @@ export function merged(group) {
   group.traverse((part) => {
     if (!part.isMesh) return;
     if (Array.isArray(part.material) || part.userData.label) return void rest.push(part);
-    const geometry = (part.geometry.index ? part.geometry.toNonIndexed() : part.geometry.clone()).applyMatrix4(home.clone().multiply(part.matrixWorld));
-    for (const name of Object.keys(geometry.attributes)) if (!['position', 'normal', 'uv'].includes(name)) geometry.deleteAttribute(name);
+    const mapped = Boolean(part.material.map ?? part.material.normalMap);
+    let geometry = part.geometry.clone().applyMatrix4(home.clone().multiply(part.matrixWorld));
+    for (const name of Object.keys(geometry.attributes)) if (!['position', 'normal', ...(mapped ? ['uv'] : [])].includes(name)) geometry.deleteAttribute(name);
+    // Each corner once: a processor that draws pays for every one.
+    if (!geometry.index) geometry = mergeVertices(geometry, 1e-6);
     by_material.set(part.material, [...(by_material.get(part.material) ?? []), geometry]);
   });
   const whole = new Group();
