@@ -13,10 +13,10 @@ namespace {
 
 template <class T>
 std::vector<std::byte> octets(std::initializer_list<T> values) {
-  std::vector<std::byte> data(values.size() * sizeof(T));
-  OctetWriter writer{data};
+  std::vector<std::byte> written(values.size() * sizeof(T));
+  OctetWriter writer{written};
   for (const T value : values) writer.put(value);
-  return data;
+  return written;
 }
 
 Field field(Type type, std::uint32_t count = 1) {

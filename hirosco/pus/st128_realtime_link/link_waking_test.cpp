@@ -10,7 +10,7 @@
 namespace hirosco::pus::st128 {
 namespace {
 
-constexpr auto shm = LinkMethod::SharedMemory;
+constexpr auto memory = LinkMethod::SharedMemory;
 
 TEST(LinkWaking, TakesAWayThatWakesForAConsumerThatWaitsForSamples) {
   const auto offer = [](std::vector<LinkMethod> methods, bool wakes) {
@@ -21,13 +21,13 @@ TEST(LinkWaking, TakesAWayThatWakesForAConsumerThatWaitsForSamples) {
                  .wakes = wakes};
   };
   const auto way = [&](const Offer& consumer, const Carried& carried) {
-    const auto result = negotiate(offer({LinkMethod::Udp, shm}, false), consumer, carried);
+    const auto result = negotiate(offer({LinkMethod::Udp, memory}, false), consumer, carried);
     return result ? std::string{to_text(result->method)} + (result->wakes ? " wakes" : "")
                   : std::to_string(result.error().item) + ": " + result.error().text;
   };
-  const Carried memory_wakes = [](LinkMethod method, LinkKind, bool wakes) { return !wakes || method == shm; };
-  EXPECT_EQ(way(offer({LinkMethod::Udp, shm}, false), memory_wakes), "udp");
-  EXPECT_EQ(way(offer({LinkMethod::Udp, shm}, true), memory_wakes), "shared_memory wakes") << "of whatever rate";
+  const Carried memory_wakes = [](LinkMethod method, LinkKind, bool wakes) { return !wakes || method == memory; };
+  EXPECT_EQ(way(offer({LinkMethod::Udp, memory}, false), memory_wakes), "udp");
+  EXPECT_EQ(way(offer({LinkMethod::Udp, memory}, true), memory_wakes), "shared_memory wakes") << "of whatever rate";
   EXPECT_EQ(way(offer({LinkMethod::Udp}, true), memory_wakes), "6: wake: nothing here wakes a consumer by udp");
   EXPECT_EQ(way(offer({LinkMethod::Udp}, true), [](LinkMethod, LinkKind, bool) { return false; }),
             "0: method and kind: nothing here carries what both sides know, as udp with latest");
@@ -35,7 +35,7 @@ TEST(LinkWaking, TakesAWayThatWakesForAConsumerThatWaitsForSamples) {
 
 TEST(LinkWaking, OnlyALentSetHasTheMemoryOfAnEarlierLink) {
   const auto read = [](LinkKind kind, std::uint32_t epoch, std::uint32_t made) {
-    const Agreement of{.method = shm,
+    const Agreement of{.method = memory,
                        .byte_order = descriptor::ByteOrder::Little,
                        .kind = kind,
                        .producer_period = 1ms,

@@ -38,7 +38,7 @@ TEST(LinkSlot, AnInputTakesFieldsOfItsOwnTypeOnlyAndLetsGoOfItsOwnLinkOnly) {
   slot.detach(&link);
   EXPECT_FALSE(slot.attached());
   EXPECT_TRUE(slot.ended());
-  slot.read(TimePoint{});
+  slot.read(TimePoint{}, true);
   EXPECT_TRUE(slot.stale());
 }
 

@@ -21,7 +21,7 @@ using testing::read_descriptor;
 using testing::Rig;
 namespace st129 = pus::st129;
 
-constexpr const char* bell_descriptor = R"(<Subsystem name="BELL" id="11">
+constexpr const char* heard_bell_descriptor = R"(<Subsystem name="BELL" id="11">
   <Parameters>
     <StructRef name="SWING" id="0" type="STRUCT">
       <ParamRef name="ANGLE" id="100" type="FLOAT"/>
@@ -38,7 +38,7 @@ constexpr const char* bell_descriptor = R"(<Subsystem name="BELL" id="11">
     </EventService>
   </Configuration>
 </Subsystem>)";
-constexpr const char* porter_descriptor = R"(<Subsystem name="PORTER" id="10">
+constexpr const char* hearing_porter_descriptor = R"(<Subsystem name="PORTER" id="10">
   <Subscribes subsystem="BELL" housekeeping="4900" events="CRACKED"/>
   <Commands subsystem="BELL" sets="PITCH OWNER" reads="SWING" housekeeping="4900" events="CRACKED"/>
   <Configuration name="ONE" id="1" sampling_us="1000"/>
@@ -50,7 +50,7 @@ struct Swing {
   bool muted;
 };
 
-struct Porter : Subsystem {
+struct HearingPorter : Subsystem {
   Subscription<Swing> swing{"BELL", "4900"};
   EventSubscription<double, std::array<std::uint8_t, 2>> cracked{"BELL", "CRACKED"};
   Request<double> set_pitch{"BELL", Ask::SetValue, "PITCH"};
@@ -93,8 +93,8 @@ struct Porter : Subsystem {
 };
 
 struct Hearing : ::testing::Test {
-  Porter porter;
-  Rig rig{porter, read_descriptor(porter_descriptor, {bell_descriptor})};
+  HearingPorter porter;
+  Rig rig{porter, read_descriptor(hearing_porter_descriptor, {heard_bell_descriptor})};
 
   /// What it asked the supervisor since this was asked last: subtype and data.
   std::vector<std::pair<int, std::string>> asked() {
@@ -222,7 +222,7 @@ TEST(HearingWrongly, IsToldWithAllOtherMistakes) {
       return done;
     }
   } wrong;
-  Rig rig{wrong, read_descriptor(porter_descriptor, {bell_descriptor})};
+  Rig rig{wrong, read_descriptor(hearing_porter_descriptor, {heard_bell_descriptor})};
   EXPECT_NE(rig.set_state_now(State::PreOperational), "1 3 7");
   std::string all;
   for (const auto& each : rig.explanations) all += each + "\n";
@@ -237,8 +237,8 @@ TEST(HearingWrongly, IsToldWithAllOtherMistakes) {
 }
 
 TEST(HearingWrongly, OfNobodyThatAMissionNamedIsRefused) {
-  Porter porter;
-  Rig rig{porter, read_descriptor(porter_descriptor)};
+  HearingPorter porter;
+  Rig rig{porter, read_descriptor(hearing_porter_descriptor)};
   EXPECT_NE(rig.set_state_now(State::PreOperational), "1 3 7");
   std::string all;
   for (const auto& each : rig.explanations) all += each + "\n";
