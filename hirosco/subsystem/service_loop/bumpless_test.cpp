@@ -224,7 +224,7 @@ TEST_F(BumplessChange, IsAsNothingWhenTheAuthorRefusesIt) {
 TEST_F(BumplessChange, IsRefusedWhereTheActuatorsAreInhibitedOrTheGuardHasStoppedThem) {
   bring_up(State::Operational);
   rig.permit.fence();
-  EXPECT_EQ(rig.configure_now(2), "2:010700");
+  EXPECT_EQ(rig.configure_now(2), "1 4:010700");
   EXPECT_EQ(author.hooks, 0);
   expect_untouched();
 }
@@ -247,7 +247,10 @@ TEST_F(BumplessChange, IsForConfigurationsThatAreDeclaredCompatibleInTheStatesOf
   expect_untouched();
   rig.set_state_now(State::ErrorOperational);
   EXPECT_EQ(rig.configure_now(2), "1 4:000a06");
-  rig.set_state_now(State::SafeOperational);
+}
+
+TEST_F(BumplessChange, GoesInSafeOperationalToo) {
+  bring_up(State::SafeOperational);
   EXPECT_EQ(rig.configure_now(2), "1 3 7");
   EXPECT_EQ(in_force(), 2);
 }
