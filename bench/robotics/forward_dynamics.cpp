@@ -4,8 +4,6 @@
 #include <chrono>
 #include <cstdio>
 #include <pinocchio/algorithm/aba.hpp>
-#include <pinocchio/algorithm/crba.hpp>
-#include <pinocchio/algorithm/rnea.hpp>
 #include <pinocchio/multibody.hpp>
 #include <random>
 #include <vector>
@@ -136,23 +134,6 @@ double compare(const ModelDescription& description, Base base) {
         sink += dynamics.forward(forces[at(i)], acceleration) ? acceleration[0] : 0;
       },
       [&](int i) { sink += pinocchio::aba(their_model, data, q[at(i)], v[at(i)], tau[at(i)])[0]; });
-  in_turns(
-      "inverse dynamics",
-      [&](int i) {
-        dynamics.update(ours[at(i)]);
-        dynamics.inverse(forces[at(i)], acceleration);
-        sink += acceleration[0];
-      },
-      [&](int i) { sink += pinocchio::rnea(their_model, data, q[at(i)], v[at(i)], tau[at(i)])[0]; });
-  MassMatrix mass;
-  in_turns(
-      "mass matrix",
-      [&](int i) {
-        dynamics.update(ours[at(i)]);
-        dynamics.mass_matrix(mass);
-        sink += mass(0, 0);
-      },
-      [&](int i) { sink += pinocchio::crba(their_model, data, q[at(i)])(0, 0); });
   std::printf("  (%g)\n", sink);
   return apart < 1e-9 ? ratio : 1e9;
 }

@@ -5,6 +5,11 @@
 #include <array>
 
 namespace hirosco::robotics {
+namespace {
+
+constexpr Error diverged{ErrorCode::OutOfRange, "the motion has become no number: the step may be too long for it"};
+
+}  // namespace
 
 Integrator::Integrator(Dynamics& dynamics) noexcept : dynamics_{&dynamics} {}
 
@@ -26,6 +31,8 @@ Result<> Integrator::slope(const Point& at, double t_s, const Force& force, Poin
   stage_.base_twist = at.twist;
   stage_.q = at.q;
   stage_.qd = at.qd;
+  if (!at.orientation.allFinite() || !at.twist.allFinite() || !at.q.allFinite() || !at.qd.allFinite())
+    return fail(diverged);
   HIROSCO_TRY(acceleration(stage_, t_s, force, acceleration_));
   slope.q = at.qd;
   slope.qd = acceleration_.tail(at.q.size());
@@ -67,7 +74,7 @@ Result<> Integrator::step(State& state, double t_s, double h_s, const Force& for
   }
   if (!to.position.allFinite() || !to.orientation.allFinite() || !to.twist.allFinite() || !to.q.allFinite() ||
       !to.qd.allFinite())
-    return fail(ErrorCode::OutOfRange, "the motion has become no number");
+    return fail(diverged);
   state.base_position = to.position;
   // A fixed base stays where it is to the last bit.
   if (dynamics_->base() == Base::Free) state.base_orientation.coeffs() = to.orientation.normalized();

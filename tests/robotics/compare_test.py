@@ -180,7 +180,7 @@ def compare(probe, path, states, seed):
         for name, theirs in says.items():
             error = error_of(name, answer[name], theirs, says)
             worst[name] = max(worst.get(name, 0), error)
-    engine = mujoco_side.compare(path, described, wanted, answers)
+    engine = mujoco_side.compare(path, described, wanted, answers, head)
     problems += [f"{path.name}: {name} differs from Pinocchio's by {error:.1e}" for name, error in worst.items() if not error <= LIMIT]
     problems += [f"{path.name}: {name} differs from MuJoCo's by {error:.1e}" for name, error in engine.errors.items() if not error <= LIMIT]
     problems += engine.wrong

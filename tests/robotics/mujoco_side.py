@@ -39,7 +39,25 @@ def matrix(wxyz):
     return result.reshape(3, 3)
 
 
-def compare(path, described, wanted, answers):
+def read_as(head, model, path):
+    """Where our reading differs from MuJoCo's."""
+    wrong = []
+    for words in (row.split() for row in head if row.startswith("joint ")):
+        name, (damping, friction, lower, upper, _, _) = words[1], map(float, words[2:])
+        joint = model.joint(name)
+        theirs = [model.dof_damping[joint.dofadr[0]], model.dof_frictionloss[joint.dofadr[0]], *joint.range]
+        ours = [damping, friction, lower, upper]
+        if not model.jnt_limited[joint.id]:  # it turns on and on, or both limits are one
+            ours[2:4] = theirs[2:4] = [0, 0] if not numpy.isfinite(upper) or lower == upper else [1, 0]
+        if not numpy.allclose(ours, theirs, rtol=1e-12, atol=0):
+            wrong.append(f"{path.name}: {name}: {ours} instead of MuJoCo's {theirs}")
+    mass = float(head[-1].split()[1])
+    if abs(mass - model.body_mass.sum()) > 1e-12 * mass:
+        wrong.append(f"{path.name}: {mass} kg instead of MuJoCo's {model.body_mass.sum()}")
+    return wrong
+
+
+def compare(path, described, wanted, answers, head):
     found = Found()
     if described.mimic:
         found.why = "mimic joints"
@@ -49,6 +67,7 @@ def compare(path, described, wanted, answers):
     except ValueError as error:
         found.why = str(error).splitlines()[0][:80]
         return found
+    found.wrong = read_as(head, model, path)
     data = mujoco.MjData(model)
     joints = [model.joint(name) for name in described.own]
     for (state, free), answer in zip(wanted, answers):
