@@ -38,12 +38,13 @@ class MemberClock final : public Clock {
 /// One subsystem as an object: what a process would hold.
 struct Spacecraft::Member {
   Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, Platform platform)
-      : described{&what},
+      : own{what},
+        described{&own},
         author{std::move(make)},
         clock{platform.clock},
         vital{std::make_shared<VitalPage>()},
         permit{std::make_shared<PermitPage>()} {
-    const Platform own{.clock = clock,
+    const Platform around{.clock = clock,
                        .memory = platform.memory,
                        .flows = platform.flows,
                        .realtime = platform.realtime,
@@ -52,9 +53,11 @@ struct Spacecraft::Member {
                        .read_again = [this, changes = descriptor::changes_of(what)](std::string_view text) {
                          return descriptor::read_again(described->subsystem, text, changes);
                        }};
-    engine.emplace(*author, what.subsystem, own, channels.subsystem_end(), *vital, *permit);
+    engine.emplace(*author, what.subsystem, around, channels.subsystem_end(), *vital, *permit);
   }
 
+  /// As it was launched: the mission of the supervisor that did may be gone.
+  descriptor::MissionSubsystem own;
   const descriptor::MissionSubsystem* described;
   std::unique_ptr<Subsystem> author;
   MemberClock clock;

@@ -109,6 +109,10 @@ TEST_F(GroundStation, SaysWhatASubsystemWaitsForAndNothingWhenItIsReady) {
     EXPECT_EQ(station.command("JOYSTICK", "SET_STATE", {{"STATE", state}})["stage"], "completed");
   EXPECT_EQ(station.command("JOYSTICK", "CONFIGURE", {{"CONFIGURATION", "COUPLED"}})["stage"], "completed");
   station.run(500ms);
+  // A link whose end has another configuration is negotiated anew by itself (adr 0094).
+  EXPECT_EQ(subsystem_of(station.get("/api/status"), "JOYSTICK")["waits_for"], "");
+  EXPECT_EQ(station.command("SUPERVISOR", "UNLINK", {{"LINK", 1}})["stage"], "completed");
+  station.run(500ms);
   EXPECT_EQ(subsystem_of(station.get("/api/status"), "JOYSTICK")["waits_for"], "link 1 from MANIPULATOR.ROBOT_STATE");
   EXPECT_EQ(station.command("SUPERVISOR", "LINK", {{"LINK", 1}})["stage"], "completed");
   station.run(500ms);

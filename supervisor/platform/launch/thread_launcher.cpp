@@ -57,7 +57,7 @@ struct ThreadLauncher::Member {
     for (const auto& loop : loops) static_cast<void>(loop->take_realtime());
   }
 
-  const descriptor::MissionSubsystem& described;
+  const descriptor::MissionSubsystem described;  ///< as it was launched; that of the mission may be read again meanwhile
   const Parts* parts{nullptr};
   MemoryProvider* memory{nullptr};
   std::function<std::unique_ptr<Subsystem>()> make;
@@ -212,7 +212,7 @@ Result<LaunchedSubsystem> ThreadLauncher::launch(const descriptor::MissionSubsys
   if (made == parts_.makers.end()) return fail(ErrorCode::NotFound, "nobody here makes this subsystem");
   // Two that move the same devices are worse than none.
   for (const auto& [number, earlier] : members_)
-    if (&earlier->described == &subsystem && !earlier->ended.load(std::memory_order_acquire))
+    if (earlier->described.subsystem.name == subsystem.subsystem.name && !earlier->ended.load(std::memory_order_acquire))
       return fail(ErrorCode::Unavailable, "its earlier threads have not let go, and cannot be ended");
   HIROSCO_TRY_LET(auto bell, Bell::make());
   HIROSCO_TRY_LET(auto gone, WakeEvent::create());
