@@ -214,8 +214,8 @@ void connect(Robot& robot, std::vector<NamedJoint>& joints, Findings& findings) 
       "joint", findings);
   if (robot.links.empty()) return;
   std::vector<const NamedJoint*> above(robot.links.size(), nullptr);
-  const bool named = find_links(links, robot, joints, above, findings) && links.size() == robot.links.size();
-  const bool connected = named && find_root(robot, joints, above, findings);
+  const bool known = find_links(links, robot, joints, above, findings) && links.size() == robot.links.size();
+  const bool connected = known && find_root(robot, joints, above, findings);
   find_mimicked(joints, names, findings);
   robot.joints.reserve(joints.size());
   for (const NamedJoint& each : joints) robot.joints.push_back(each.joint);

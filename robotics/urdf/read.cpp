@@ -87,40 +87,12 @@ const std::vector<Rows>& rows() {
 constexpr const char* xacro_hint =
     "this file is a template: expand it first with `xacro FILE > FILE.urdf`, and read that";
 
-class RobotReader {
+/// Asks elements for what is in them, and says what is wrong with that.
+class ElementReader {
  public:
-  explicit RobotReader(Findings& findings) : findings_{findings} {}
+  explicit ElementReader(Findings& findings) : findings_{findings} {}
 
-  [[nodiscard]] Robot read(const Element& root) {
-    Robot robot;
-    if (root.name != "robot") {
-      findings_.error(place(root.at), "U0101", "the root element is " + in_quotes(root.name) + ", not 'robot'",
-                      root.name == "mujoco" || root.name == "sdf" ? "only URDF is read: convert the file"
-                                                                  : "a URDF file begins with <robot name=\"...\">");
-      return robot;
-    }
-    look_at(root);
-    if (const auto name = text(root, "name")) robot.name = *name;
-    std::vector<NamedJoint> joints;
-    for (const Element& child : root.children) {
-      if (child.name == "link") robot.links.push_back(link(child));
-      if (child.name == "joint") joints.push_back(joint(child));
-    }
-    for (const auto& [what, seen] : passed_)
-      findings_.warning(
-          seen.first, "U0501",
-          what + " is passed over" + (seen.second > 1 ? ", " + std::to_string(seen.second) + " times" : std::string{}),
-          "it is an extension of somebody else's; nothing in it has an effect here");
-    if (robot.links.empty())
-      findings_.error(place(root.at), "U0204", "the robot has no link",
-                      root.find("xmlns:xacro") != nullptr
-                          ? "it was made by xacro from a file that only defines macros: expand the one that uses them"
-                          : "add at least two links and a joint");
-    else connect(robot, joints, findings_);
-    return robot;
-  }
-
- private:
+ protected:
   /// Is everything in it known, and as often as it may?
   void look_at(const Element& element) {
     const auto row = std::ranges::find(rows(), element.name, &Rows::element);
@@ -223,6 +195,44 @@ class RobotReader {
     return {rotation(vector(*element, "rpy", Vector3::Zero())), vector(*element, "xyz", Vector3::Zero())};
   }
 
+  Findings& findings_;
+  std::map<std::string, std::pair<Location, unsigned>> passed_;  ///< where first, how often
+};
+
+class RobotReader : private ElementReader {
+ public:
+  using ElementReader::ElementReader;
+
+  [[nodiscard]] Robot read(const Element& root) {
+    Robot robot;
+    if (root.name != "robot") {
+      findings_.error(place(root.at), "U0101", "the root element is " + in_quotes(root.name) + ", not 'robot'",
+                      root.name == "mujoco" || root.name == "sdf" ? "only URDF is read: convert the file"
+                                                                  : "a URDF file begins with <robot name=\"...\">");
+      return robot;
+    }
+    look_at(root);
+    if (const auto name = text(root, "name")) robot.name = *name;
+    std::vector<NamedJoint> joints;
+    for (const Element& child : root.children) {
+      if (child.name == "link") robot.links.push_back(link(child));
+      if (child.name == "joint") joints.push_back(joint(child));
+    }
+    for (const auto& [what, seen] : passed_)
+      findings_.warning(
+          seen.first, "U0501",
+          what + " is passed over" + (seen.second > 1 ? ", " + std::to_string(seen.second) + " times" : std::string{}),
+          "it is an extension of somebody else's; nothing in it has an effect here");
+    if (robot.links.empty())
+      findings_.error(place(root.at), "U0204", "the robot has no link",
+                      root.find("xmlns:xacro") != nullptr
+                          ? "it was made by xacro from a file that only defines macros: expand the one that uses them"
+                          : "add at least two links and a joint");
+    else connect(robot, joints, findings_);
+    return robot;
+  }
+
+ private:
   Link link(const Element& element) {
     look_at(element);
     Link link;
@@ -410,9 +420,6 @@ class RobotReader {
       findings_.error(place(found->at), "U0304",
                       "the lower limit of joint " + in_quotes(joint.name) + " is above the upper one", "exchange them");
   }
-
-  Findings& findings_;
-  std::map<std::string, std::pair<Location, unsigned>> passed_;  ///< where first, how often
 };
 
 [[nodiscard]] const char* code_of(xml::Refusal refusal) {
