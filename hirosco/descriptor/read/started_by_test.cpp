@@ -30,9 +30,8 @@ Reading<Mission> with(const std::string& flywheel, const std::string& methods = 
                     changed(R"(<Configuration name="COUPLED")", R"(<Configuration name="COUPLED" budget_us="120")",
                             file("coronagraph.xml")))},
            {"flywheel.xml", changed("name=\"PLATE_STATE\" from", "name=\"PLATE_STATE\" " + attribute + " from",
-                                    changed(R"(<Configuration name="COUPLED" id="2" priority="80")",
-                                            R"(<Configuration name="COUPLED" id="2" priority="81" )" + flywheel,
-                                            file("flywheel.xml")))}}));
+                                    changed(R"(<Configuration name="COUPLED")",
+                                            "<Configuration name=\"COUPLED\" " + flywheel, file("flywheel.xml")))}}));
 }
 
 TEST(StartedBy, NamesARequiredSetAndTheShortestDistance) {
