@@ -106,7 +106,7 @@ struct RenewedLinks : PartsTest {
   const std::vector<st128::OfferedField> fields{{"ANGLE", Type::Double, 2}};
   void SetUp() override {
     PartsTest::SetUp();
-    for (auto& member : mission.subsystems)
+    for (auto& member : craft.mission.subsystems)
       if (member.subsystem.name == "HAND")
         member.subsystem.configurations[0].provides.emplace_back().name = "HAND_STATE";
     start_all(PreOperational);
