@@ -54,8 +54,8 @@ struct Shared {
   static_cast<void>(::prctl(PR_SET_PDEATHSIG, SIGKILL));
   static_cast<void>(pin_to_cpu(1));
   if (octets != 0) {
-    auto* const memory = static_cast<std::byte*>(
-        ::mmap(nullptr, octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    auto* const memory =
+        static_cast<std::byte*>(::mmap(nullptr, octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     if (memory == MAP_FAILED) ::_exit(EXIT_FAILURE);
     for (std::size_t at = 0; at < octets; at += page_octets) memory[at] = std::byte{1};
   }
@@ -127,9 +127,8 @@ class Network {
     auto* const vital = page != nullptr ? page : new (vital_[number].octets.data()) VitalPage{};
     new (permit_[number].octets.data()) PermitPage{};
     vital->state = static_cast<std::uint32_t>(State::Operational);
-    launched.vital = page != nullptr
-                         ? Mapping{nullptr, {reinterpret_cast<std::byte*>(page), sizeof(VitalPage)}}
-                         : vital_[number];
+    launched.vital =
+        page != nullptr ? Mapping{nullptr, {reinterpret_cast<std::byte*>(page), sizeof(VitalPage)}} : vital_[number];
     launched.permit = permit_[number];
     guard_.adopt(first_apid + number, launched);
     static_cast<void>(guard_.release(first_apid + number, guard_.fences(first_apid + number)));
@@ -178,8 +177,8 @@ int run(int repeats, int kills) {
     ours[size].print("us");
     ours[size].print_ratio(bare[size]);
   }
-  std::printf("512 MB / small: bare %.2f, network %.2f (p50)\n",
-              bare[1].ratio_to(bare[0], &Figures::p50), ours[1].ratio_to(ours[0], &Figures::p50));
+  std::printf("512 MB / small: bare %.2f, network %.2f (p50)\n", bare[1].ratio_to(bare[0], &Figures::p50),
+              ours[1].ratio_to(ours[0], &Figures::p50));
   return EXIT_SUCCESS;
 }
 

@@ -159,7 +159,8 @@ void rate(std::uint64_t samples) {
   int status = 0;
   ::waitpid(child, &status, 0);
   if (status != 0) std::exit(EXIT_FAILURE);
-  std::printf("%-28s %12.0f samples/s\n", "iceoryx queue", static_cast<double>(samples) * 1e9 / static_cast<double>(done->load() - begun));
+  std::printf("%-28s %12.0f samples/s\n", "iceoryx queue",
+              static_cast<double>(samples) * 1e9 / static_cast<double>(done->load() - begun));
 }
 
 }  // namespace

@@ -26,9 +26,7 @@ class Counting final : public pus::Service {
  public:
   explicit Counting(std::uint8_t type) : kind_{.type = type, .name = "counting", .requests = {}, .reports = {}} {}
   [[nodiscard]] const pus::ServiceKind& kind() const noexcept override { return kind_; }
-  void handle(const pus::TelecommandView&, const pus::Request& request) override {
-    seen += 1U + request.source;
-  }
+  void handle(const pus::TelecommandView&, const pus::Request& request) override { seen += 1U + request.source; }
   std::uint64_t seen{0};
 
  private:
@@ -69,9 +67,9 @@ int run(int repeats, int rounds) {
       asm volatile("" : "+r"(octets) : : "memory");
       const auto telecommand = pus::TelecommandView::parse(octets);
       if (!telecommand) return void(++refused);
-      const auto decision =
-          decide(*telecommand, Origin::ground(), {.mission = mission, .mode = mission.modes[0], .links = links,
-                                                  .state = descriptor::State::Operational});
+      const auto decision = decide(
+          *telecommand, Origin::ground(),
+          {.mission = mission, .mode = mission.modes[0], .links = links, .state = descriptor::State::Operational});
       if (!decision) return void(++refused);
       const auto found = std::ranges::find(list, telecommand->service(), &pus::Service::type);
       if (found == list.end()) return void(++refused);

@@ -26,8 +26,8 @@
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
 #include "supervisor/supervision/stored_values.hpp"
-#include "supervisor/supervision/subsystem_handling/descriptors.hpp"
 #include "supervisor/supervision/subsystem_handling/adoption.hpp"
+#include "supervisor/supervision/subsystem_handling/descriptors.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
@@ -126,9 +126,10 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
                      safe_all, shutdown, memory}};
   Memory memory;
-  std::array<Watch*, 18> watches{&adoption,      &stored,        &processes,    &versions,         &descriptors, &ground_link,
-                                 &restoration,   &losses,        &housekeeping, &power,            &links,       &log_watch,
-                                 &telecommands,  &own_telecommands, &replies,   &resources,        &subscriptions, &waiting};
+  std::array<Watch*, 18> watches{&adoption,    &stored,        &processes,    &versions,         &descriptors,
+                                 &ground_link, &restoration,   &losses,       &housekeeping,     &power,
+                                 &links,       &log_watch,     &telecommands, &own_telecommands, &replies,
+                                 &resources,   &subscriptions, &waiting};
 };
 
 }  // namespace hirosco::supervisor

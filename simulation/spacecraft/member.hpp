@@ -45,14 +45,14 @@ struct Spacecraft::Member {
         vital{std::make_shared<VitalPage>()},
         permit{std::make_shared<PermitPage>()} {
     const Platform around{.clock = clock,
-                       .memory = platform.memory,
-                       .flows = platform.flows,
-                       .realtime = platform.realtime,
-                       .explain = std::move(platform.explain),
-                       .links = platform.links,
-                       .read_again = [this, changes = descriptor::changes_of(what)](std::string_view text) {
-                         return descriptor::read_again(described->subsystem, text, changes);
-                       }};
+                          .memory = platform.memory,
+                          .flows = platform.flows,
+                          .realtime = platform.realtime,
+                          .explain = std::move(platform.explain),
+                          .links = platform.links,
+                          .read_again = [this, changes = descriptor::changes_of(what)](std::string_view text) {
+                            return descriptor::read_again(described->subsystem, text, changes);
+                          }};
     engine.emplace(*author, what.subsystem, around, channels.subsystem_end(), *vital, *permit);
   }
 

@@ -92,7 +92,8 @@ TEST(InterfacePages, VitalPage) {
                                HIROSCO_PLACE(VitalPage, lost_reports),
                                HIROSCO_PLACE(VitalPage, inhibited_at_cycle),
                                HIROSCO_PLACE(VitalPage, incoming),
-                               HIROSCO_PLACE(VitalPage, counters), HIROSCO_PLACE(VitalPage, life)});
+                               HIROSCO_PLACE(VitalPage, counters),
+                               HIROSCO_PLACE(VitalPage, life)});
   EXPECT_EQ(sizeof(VitalPage), 2160U) << "a field more: the page of docs/interfaces lacks it";
   EXPECT_EQ(table("octets: vital page")[0].at(4).substr(0, 10), "0x48495243");
   EXPECT_EQ(page_magic, 0x48495243U);

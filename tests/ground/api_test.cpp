@@ -162,8 +162,8 @@ void expect_described(const json& document, const json& part, const json& answer
 TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
   commission();
   const json document = station.get("/api/openapi.json");
-  const json command{{"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"},
-                     {"mode", "telepresence"}};
+  const json command{
+      {"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"}, {"mode", "telepresence"}};
   std::size_t asked = 0;
   for (const auto& [path, methods] : document["paths"].items())
     for (const auto& [method, operation] : methods.items()) {

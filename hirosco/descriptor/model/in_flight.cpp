@@ -69,8 +69,7 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
          });
 }
 [[nodiscard]] bool same_things(const std::vector<Thing>& a, const std::vector<Thing>& b) {
-  return std::ranges::equal(a, b,
-                            [](const Thing& x, const Thing& y) { return x.kind == y.kind && x.name == y.name; });
+  return std::ranges::equal(a, b, [](const Thing& x, const Thing& y) { return x.kind == y.kind && x.name == y.name; });
 }
 
 /// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
@@ -248,8 +247,8 @@ class Comparison {
   }
   void configuration(const Subsystem& subsystem, const Configuration& flown, const Configuration& fresh) {
     [[maybe_unused]] const auto& [name, id, priority, sampling, started_by, least, budget, power_w, overruns, self_test,
-                                  self_test_within, housekeeping, provides, requires_, devices, initial, services,
-                                  at] = fresh;
+                                  self_test_within, housekeeping, provides, requires_, devices, initial, services, at] =
+        fresh;
     const std::string what = "configuration " + name;
     unless(flown.id == id, at, what + ": its id", code_why);
     unless(flown.priority == priority && flown.sampling == sampling && flown.budget == budget, at,

@@ -52,9 +52,9 @@ struct StandardService {
   bool may_have_loop;  ///< the others speak with the cycle
 };
 inline constexpr std::array standard_services_by_name{
-    StandardService{"ST03", 3, true, true},   StandardService{"ST05", 5, true, false},
-    StandardService{"ST08", 8, false, false}, StandardService{"ST17", 17, false, false},
-    StandardService{"ST20", 20, true, false}, StandardService{"ST128", 128, false, false},
+    StandardService{"ST03", 3, true, true},     StandardService{"ST05", 5, true, false},
+    StandardService{"ST08", 8, false, false},   StandardService{"ST17", 17, false, false},
+    StandardService{"ST20", 20, true, false},   StandardService{"ST128", 128, false, false},
     StandardService{"ST130", 130, false, false}};
 
 /// Configurations between which CONFIGURE goes while the subsystem acts, both ways, each with each.

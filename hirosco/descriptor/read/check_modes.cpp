@@ -98,12 +98,13 @@ void MissionReader::check_cycles(const xml::Element& element, const Mode& mode) 
         "samples start the cycle");
   for (const CycleResponse& cycle : cycle_responses(mission_, mode)) {
     if (cycle.longest) continue;
-    problems_.add(element, "E0331",
-                  fmt::format("in mode {} a {} of {} {} may not end within its {} us", in_quotes(mode.name),
-                              cycle.loop != nullptr ? "step of the loop" : "cycle", cycle.subsystem,
-                              in_quotes(cycle.name()), cycle.period() / 1us),
-                  "others go before it: lower a budget_us, or give the shorter sampling_us (least_us) the higher priority; "
-                  "`hirosco check --show` tells what each takes");
+    problems_.add(
+        element, "E0331",
+        fmt::format("in mode {} a {} of {} {} may not end within its {} us", in_quotes(mode.name),
+                    cycle.loop != nullptr ? "step of the loop" : "cycle", cycle.subsystem, in_quotes(cycle.name()),
+                    cycle.period() / 1us),
+        "others go before it: lower a budget_us, or give the shorter sampling_us (least_us) the higher priority; "
+        "`hirosco check --show` tells what each takes");
   }
 }
 

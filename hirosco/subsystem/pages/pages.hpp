@@ -91,7 +91,8 @@ struct VitalPage {
   std::atomic<std::uint64_t> inhibited_at_cycle{0};  ///< `cycles` in which the actuators were inhibited last
   std::array<IncomingLink, told_incoming_links> incoming;  ///< in the order of <Requires>
   pus::CounterBlock counters;  ///< outlive the process (decision 8b)
-  std::atomic<std::uint32_t> life{0};  ///< marked by the system when the process ends (hirosco/utilities/os/life.hpp); 0: nobody holds it
+  std::atomic<std::uint32_t> life{
+      0};  ///< marked by the system when the process ends (hirosco/utilities/os/life.hpp); 0: nobody holds it
 };
 
 /// Values of PermitPage::powered.

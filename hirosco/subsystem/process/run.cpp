@@ -9,9 +9,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <utility>
-#include <memory>
 #include <vector>
 
 #include "hirosco/data_transfer/control/socket_channel.hpp"

@@ -41,7 +41,8 @@ template <class T>
 
 }  // namespace
 
-OwnLoop::OwnLoop(const Parts& parts) : parts_{parts}, permit_{&parts.permit}, in_{in_octets}, out_{out_octets}, verification_{*this} {}
+OwnLoop::OwnLoop(const Parts& parts)
+    : parts_{parts}, permit_{&parts.permit}, in_{in_octets}, out_{out_octets}, verification_{*this} {}
 
 bool OwnLoop::offer(Octets packet, std::uint32_t mode_epoch) noexcept {
   if (waiting_.load(std::memory_order_acquire) >= parts_.declared.queue) return false;
@@ -100,7 +101,8 @@ void OwnLoop::handle(Octets record) {
   if (!telecommand) return;  // the service loop has looked
   const pus::Request request = pus::request_of(*telecommand);
   // What an old mode permitted is not done under a new one, however long it has waited.
-  if (offered.mode_epoch != 0 && offered.mode_epoch != permit_.load(std::memory_order_acquire)->mode_epoch.load(std::memory_order_acquire))
+  if (offered.mode_epoch != 0 &&
+      offered.mode_epoch != permit_.load(std::memory_order_acquire)->mode_epoch.load(std::memory_order_acquire))
     return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
   const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
   if (found == services_.end() || !(*found)->in_force())

@@ -36,7 +36,8 @@ template <class Page>
 /// One subsystem: what its threads work on, and what others may ask of them.
 struct ThreadLauncher::Member {
   Member(const descriptor::MissionSubsystem& what, Bell rung) : described{what}, bell{std::move(rung)} {
-    for (std::size_t i = 0; i < what.subsystem.service_loops.size(); ++i) loops.push_back(std::make_unique<ThreadHold>());
+    for (std::size_t i = 0; i < what.subsystem.service_loops.size(); ++i)
+      loops.push_back(std::make_unique<ThreadHold>());
   }
 
   void run() noexcept;
@@ -57,7 +58,8 @@ struct ThreadLauncher::Member {
     for (const auto& loop : loops) static_cast<void>(loop->take_realtime());
   }
 
-  const descriptor::MissionSubsystem described;  ///< as it was launched; that of the mission may be read again meanwhile
+  const descriptor::MissionSubsystem
+      described;  ///< as it was launched; that of the mission may be read again meanwhile
   const Parts* parts{nullptr};
   MemoryProvider* memory{nullptr};
   std::function<std::unique_ptr<Subsystem>()> make;
@@ -99,21 +101,20 @@ void ThreadLauncher::Member::run() noexcept {
 void ThreadLauncher::Member::fly() {
   if (parts->realtime) static_cast<void>(set_shared_priority(service_loop_priority));
   else static_cast<void>(ask_for_short_slices());
-  const Platform platform{.clock = parts->clock,
-                          .memory = *memory,
-                          .flows = parts->flows,
-                          .realtime = parts->realtime,
-                          .wakes = true,
-                          .explain =
-                              [this](std::string_view text) {
-                                if (parts->explain) parts->explain(described.subsystem.name + ": " + std::string{text});
-                              },
-                          .links = parts->links,
-                          .usage = {},
-                          .read_again =
-                              [begun = described.subsystem, changes = descriptor::changes_of(described)](std::string_view text) {
-                                return descriptor::read_again(begun, text, changes);
-                              }};
+  const Platform platform{
+      .clock = parts->clock,
+      .memory = *memory,
+      .flows = parts->flows,
+      .realtime = parts->realtime,
+      .wakes = true,
+      .explain =
+          [this](std::string_view text) {
+            if (parts->explain) parts->explain(described.subsystem.name + ": " + std::string{text});
+          },
+      .links = parts->links,
+      .usage = {},
+      .read_again = [begun = described.subsystem, changes = descriptor::changes_of(described)](
+                        std::string_view text) { return descriptor::read_again(begun, text, changes); }};
   const auto author = make();
   if (!author) throw std::bad_alloc{};
   GenericSubsystem subsystem{*author,
@@ -212,7 +213,8 @@ Result<LaunchedSubsystem> ThreadLauncher::launch(const descriptor::MissionSubsys
   if (made == parts_.makers.end()) return fail(ErrorCode::NotFound, "nobody here makes this subsystem");
   // Two that move the same devices are worse than none.
   for (const auto& [number, earlier] : members_)
-    if (earlier->described.subsystem.name == subsystem.subsystem.name && !earlier->ended.load(std::memory_order_acquire))
+    if (earlier->described.subsystem.name == subsystem.subsystem.name &&
+        !earlier->ended.load(std::memory_order_acquire))
       return fail(ErrorCode::Unavailable, "its earlier threads have not let go, and cannot be ended");
   HIROSCO_TRY_LET(auto bell, Bell::make());
   HIROSCO_TRY_LET(auto gone, WakeEvent::create());

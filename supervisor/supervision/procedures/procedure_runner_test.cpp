@@ -17,21 +17,20 @@ using enum descriptor::State;
 
 /// A kind that the table does not know: what is seen by the runner of any kind, without a word of it in the runner.
 /// Values: what it tells when it begins.
-constexpr StepKind note{
-    .name = "note",
-    .values = 1,
-    .text = [](const ProcedureStep& step,
-               const descriptor::Mission&) { return "note " + std::to_string(step.values[0]); },
-    .run =
-        [](const ProcedureStep& step, const Means& means, CommandDone done) {
-          means.craft.tell("begun " + std::to_string(step.values[0]));
-          done(step.values[0] != 0, "nothing to note");
-        },
-    .fences =
-        [](const ProcedureStep& step, const Means& means) {
-          means.craft.tell("first " + std::to_string(step.values[0]));
-          return std::vector<std::uint16_t>{};
-        }};
+constexpr StepKind note{.name = "note",
+                        .values = 1,
+                        .text = [](const ProcedureStep& step,
+                                   const descriptor::Mission&) { return "note " + std::to_string(step.values[0]); },
+                        .run =
+                            [](const ProcedureStep& step, const Means& means, CommandDone done) {
+                              means.craft.tell("begun " + std::to_string(step.values[0]));
+                              done(step.values[0] != 0, "nothing to note");
+                            },
+                        .fences =
+                            [](const ProcedureStep& step, const Means& means) {
+                              means.craft.tell("first " + std::to_string(step.values[0]));
+                              return std::vector<std::uint16_t>{};
+                            }};
 
 struct EngineTest : PartsTest {
   PlayedDesk desk;

@@ -6,7 +6,7 @@ WHO = "a recovery / mode action"
 BEFORE = "0 + 8"
 GOAL = "1 file + 1 row; + 1 row where missions may write it"
 MOST_FILES, MOST_EDITED = 1, 2
-FILES = {"supervisor/supervision/procedures/steps/kill.hpp": """\
+FILES = {"supervisor/supervision/procedures/steps/dismiss.hpp": """\
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ FILES = {"supervisor/supervision/procedures/steps/kill.hpp": """\
 namespace hirosco::supervisor::steps {
 
 /// Its subject's process ends.
-inline constexpr StepKind kill{
-    .name = "kill",
+inline constexpr StepKind dismiss{
+    .name = "dismiss",
     .text = [](const ProcedureStep&, const descriptor::Mission&) { return std::string{"ended"}; },
     .run =
         [](const ProcedureStep& step, const Means& means, CommandDone done) {
@@ -32,11 +32,11 @@ inline constexpr StepKind kill{
 """}
 EDITS = [
     ("supervisor/supervision/procedures/step_kinds.hpp", '#include "supervisor/supervision/procedures/steps/link.hpp"\n',
-     '#include "supervisor/supervision/procedures/steps/kill.hpp"\n#include "supervisor/supervision/procedures/steps/link.hpp"\n'),
-    ("supervisor/supervision/procedures/step_kinds.hpp", "step_kinds{", "step_kinds{&steps::kill, "),
-    ("hirosco/descriptor/model/plan_steps.hpp", '    StepWord{.name = "log"},\n', '    StepWord{.name = "log"},\n    StepWord{.name = "kill"},\n'),
+     '#include "supervisor/supervision/procedures/steps/dismiss.hpp"\n#include "supervisor/supervision/procedures/steps/link.hpp"\n'),
+    ("supervisor/supervision/procedures/step_kinds.hpp", "step_kinds{", "step_kinds{&steps::dismiss, "),
+    ("hirosco/descriptor/model/plan_steps.hpp", '    StepWord{.name = "log"},\n', '    StepWord{.name = "log"},\n    StepWord{.name = "dismiss"},\n'),
 ]
-SOURCES = ["hirosco/descriptor/read/read_modes.cpp", "supervisor/supervision/event_handling/reactions.cpp"]
+SOURCES = ["hirosco/descriptor/read/read_plans.cpp", "supervisor/supervision/event_handling/reactions.cpp"]
 TRY = """\
 #include "supervisor/supervision/procedures/step_kinds.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
@@ -50,7 +50,7 @@ struct NewKind : PartsTest {
   std::vector<descriptor::Plan> plans() {
     const descriptor::FileSource source = [](const std::filesystem::path& file) {
       auto text = descriptor::file_system()(file);
-      constexpr std::string_view now = "action=\\"log\\"", then = "action=\\"kill\\"";
+      constexpr std::string_view now = "action=\\"log\\"", then = "action=\\"dismiss\\"";
       if (file.filename() == "mission.xml") text->replace(text->find(now), now.size(), then);
       return text;
     };
@@ -65,7 +65,7 @@ TEST_F(NewKind, IsReadFromAMissionAndDone) {
   ASSERT_FALSE(read.empty());
   start_all(State::Operational);
   descriptor::Plan plan = read.back();
-  EXPECT_EQ(plan.steps.front().kind, "kill");
+  EXPECT_EQ(plan.steps.front().kind, "dismiss");
   plan.severities.clear();
   craft.mission.plans = {plan};
   parts.reactions.react(*craft.member(arm), "HOT", Severity::High);
@@ -77,7 +77,7 @@ TEST_F(NewKind, IsAStepOfAnyProcedure) {
   craft.member(hand)->died();
   std::string end;
   ProcedureRunner{means_with(parts.own_telecommands)}.start(
-      {.stages = {{step("kill", hand, {})}}, .finished = [&](const ProcedureEnd& ended) { end = ended.text(); }});
+      {.stages = {{step("dismiss", hand, {})}}, .finished = [&](const ProcedureEnd& ended) { end = ended.text(); }});
   EXPECT_EQ(end, "HAND ended: it does not run");
 }
 

@@ -41,8 +41,8 @@ Result<> hold_life(std::atomic<std::uint32_t>& word) noexcept {
   held.node.next = &held.head.list;
   held.head.list.next = &held.node;
   held.head.list_op_pending = nullptr;
-  held.head.futex_offset = static_cast<long>(std::bit_cast<std::uintptr_t>(&word) -
-                                             std::bit_cast<std::uintptr_t>(&held.node));
+  held.head.futex_offset =
+      static_cast<long>(std::bit_cast<std::uintptr_t>(&word) - std::bit_cast<std::uintptr_t>(&held.node));
   // Before the system is told of it: a word that it walks to must name this thread, or it is passed over.
   word.store(static_cast<std::uint32_t>(::syscall(SYS_gettid)) | FUTEX_WAITERS, std::memory_order_release);
   if (::syscall(SYS_set_robust_list, &held.head, sizeof held.head) != 0) {
@@ -59,7 +59,10 @@ Result<> wait_for_change(std::span<const SeenWord> words, Duration limit) noexce
     return fail(ErrorCode::OutOfRange, "words to wait on", static_cast<std::int64_t>(words.size()));
   std::array<futex_waitv, most_seen_words> waits{};
   for (std::size_t i = 0; i < words.size(); ++i)
-    waits[i] = {.val = words[i].seen, .uaddr = std::bit_cast<std::uintptr_t>(words[i].word), .flags = FUTEX_32, .__reserved = 0};
+    waits[i] = {.val = words[i].seen,
+                .uaddr = std::bit_cast<std::uintptr_t>(words[i].word),
+                .flags = FUTEX_32,
+                .__reserved = 0};
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
   const timespec until = at(std::chrono::seconds{now.tv_sec} + Duration{now.tv_nsec} + limit);

@@ -27,7 +27,8 @@ struct Words {
   Words() {
     const int memory = ::memfd_create("words", 0);
     EXPECT_EQ(::ftruncate(memory, 4096), 0);
-    written = new (::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0)) std::atomic<std::uint32_t>[8]{};
+    written =
+        new (::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0)) std::atomic<std::uint32_t>[8]{};
     looked_at = static_cast<const std::atomic<std::uint32_t>*>(::mmap(nullptr, 4096, PROT_READ, MAP_SHARED, memory, 0));
     ::close(memory);
   }
