@@ -83,31 +83,63 @@ function measure_sizes() {
 /// A browser that has never seen the page.
 async function measure_opening(station) {
   const browser = await open_browser();
-  const {page} = await open_page(browser.context, station.url);
+  const {page} = await open_page(browser.context, 'about:blank');
+  const network = await page.context().newCDPSession(page);
+  let transferred = 0;
+  await network.send('Network.enable');
+  network.on('Network.loadingFinished', ({encodedDataLength}) => { transferred += encodedDataLength; });
+  await page.goto(station.url);
   const moving_ms = await (await page.waitForFunction(() => {
     const robot = document.querySelector('[data-test=robot]');
     return Number(robot?.dataset.frames) > 2 && robot.dataset.loaded ? performance.now() : 0;
   }, null, {...wait, polling: 'raf'})).jsonValue();
   const paint_ms = await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime);
-  row('first contentful paint, cold', ['<', 1500, 'ms'], paint_ms);
-  row('the robot moves after opening', ['<', 2000, 'ms'], moving_ms);
+  row('first contentful paint, cold', ['<', 1000, 'ms'], paint_ms);
+  row('the robot moves after opening', ['<', 1500, 'ms'], moving_ms);
+  row('transferred until the robot moves, cold', ['<', 350, 'kB'], transferred / 1000, 'typefaces, code, mission and past, as sent');
   await browser.close();
+}
+
+/// Processor time that all processes of our browsers have taken.
+function cpu_of_browser_s() {
+  const ticks = family_of(process.pid).slice(1).map((pid) => {
+    try {
+      const stat = readFileSync(`/proc/${pid}/stat`, 'utf8'), words = stat.slice(stat.lastIndexOf(')') + 2).split(' ');
+      return /chrom/.test(readFileSync(`/proc/${pid}/cmdline`, 'utf8')) ? Number(words[11]) + Number(words[12]) : 0;
+    } catch {
+      return 0;
+    }
+  });
+  return ticks.reduce((sum, one) => sum + one, 0) / 100;
 }
 
 async function measure_frames(page, seconds) {
   await go(page, 'overview');
   await page.waitForSelector('[data-test=robot][data-loaded]', wait);
+  // What stands still is a picture by then: it is drawn once, beside the robot.
+  await page.waitForFunction(() => ['whole', undefined].includes(document.querySelector('[data-test=robot]').dataset.still) && document.querySelector('[data-test=robot]').dataset.surroundings, null, wait);
+  await page.evaluate(() => {
+    const robot = document.querySelector('[data-test=robot]');
+    window.repeated = 0;
+    let before = robot.dataset.pose;
+    new MutationObserver(() => {
+      if (robot.dataset.pose === before && robot.dataset.moving === 'yes') ++window.repeated;
+      before = robot.dataset.pose;
+    }).observe(robot, {attributeFilter: ['data-frames']});
+  });
   const frames = () => page.evaluate(() => [Number(document.querySelector('[data-test=robot]').dataset.frames), performance.now()]);
-  const [first, began_ms] = await frames();
+  const [first, began_ms] = await frames(), began_cpu_s = cpu_of_browser_s();
   await sleep(seconds * 1000);
-  const [last, ended_ms] = await frames();
+  const [last, ended_ms] = await frames(), ended_cpu_s = cpu_of_browser_s();
   const renderer = await page.evaluate(() => {
     const gl = document.createElement('canvas').getContext('webgl2');
     const known = gl?.getExtension('WEBGL_debug_renderer_info');
     return known ? gl.getParameter(known.UNMASKED_RENDERER_WEBGL) : '';
   });
   const plots = await page.locator('[data-test=plot]').count();
-  row('3D with two plots at 20 Hz', ['≥', 15, 'frames/s'], (last - first) / ((ended_ms - began_ms) / 1000),
+  row('pictures that repeat the pose of the one before', ['=', 0, ''], await page.evaluate(() => window.repeated), `of ${last - first}, while the robot moves`);
+  row('processor of the whole browser meanwhile', ['<', 60, '%'], 100 * (ended_cpu_s - began_cpu_s) / ((ended_ms - began_ms) / 1000), 'of one core');
+  row('3D with three plots at 20 Hz', ['≥', 20, 'frames/s'], (last - first) / ((ended_ms - began_ms) / 1000),
     `${plots} plots, ${/SwiftShader/.test(renderer) ? 'SwiftShader' : renderer}`);
 }
 
@@ -136,7 +168,7 @@ async function measure_verdicts(page, times) {
     await sleep(200);
   }
   all_ms.sort((a, b) => a - b);
-  row('click to its ST[1] report on the screen', ['<', 150, 'ms'], all_ms.at(-1), `worst of ${times}, median ${all_ms[times >> 1].toFixed(0)} ms`);
+  row('click to its ST[1] report on the screen', ['<', 50, 'ms'], all_ms[times >> 1], `median of ${times}, worst ${all_ms.at(-1).toFixed(0)} ms`);
 }
 
 /// Values messages a second at a WebSocket of its own.

@@ -329,11 +329,13 @@ describe('what a mission shows of itself', () => {
     await close();
   });
 
-  it('is a general tour and values where it has no folder, and no file is asked for in vain', async () => {
+  it('is a general tour and a spacecraft with a module for each subsystem where it has no folder, and no file is asked for in vain', async () => {
     const {page, faults, close} = await tour_of('hostile');
     assert.equal(await title(page), 'Look around');
     assert.equal(await page.locator('[data-test=tour] .dots i').count(), 3);
-    assert.equal(await page.locator('[data-test=robot]').count(), 0);
+    await go(page, 'overview');
+    await page.waitForSelector('[data-test=robot][data-loaded]');
+    await holds(page, (count) => [...document.querySelectorAll('.readout .tag b')].filter((one) => one.textContent).length === count, 3);
     assert.deepEqual(faults, []);
     await close();
   });

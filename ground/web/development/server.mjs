@@ -22,9 +22,9 @@ const sources = process.env.HIROSCO_SOURCES ?? join(dirname(fileURLToPath(import
 const token = 'development';
 const made_up = ['synthetic', 'hostile'].includes(recording);
 const flight = made_up ? (await import(join(sources, 'tests/browser/synthetic.mjs'))).synthetic_flight({hostile: recording === 'hostile'}) : JSON.parse(readFileSync(recording, 'utf8'));
+if (state === 'foreign') flight.mission = {...flight.mission, name: 'outpost'};
 // What the mission shows of itself, of those that are here.
 const mission_page = join(sources, 'missions', String(flight.mission.name).toLowerCase().replaceAll(/[^a-z0-9_-]/g, ''), 'page');
-if (state === 'foreign') flight.mission = {...flight.mission, name: 'outpost'};
 // In the states that are looked at, what is not to be seen does not happen: the made-up end of the flight least of all.
 const list = state === 'normal' ? flight.messages : flight.messages.filter((one) => state === 'stopped' || one.severity !== 'high');
 const first_t = list[0].t, length_s = list[list.length - 1].t - first_t + 2;

@@ -219,8 +219,8 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
     ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` :
       !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : sent_values ?
       html`<${Permission} answer=${answer} problem=${answer?.problem} subsystem=${subsystem} action=${action} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
-    <button class="primary" type="submit" disabled=${wrong > 0 || Boolean(replay.value) || !operator.value} data-test="send">
-      ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : `Send ${action.name}`}</button>
+    ${operator.value ? html`<button class="primary" type="submit" disabled=${wrong > 0 || Boolean(replay.value) || !operator.value} data-test="send">
+      ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : `Send ${action.name}`}</button>` : null}
     ${problem ? html`<p class="permission no">${problem}</p>` : null}
     ${mine ? html`<div class=${`verdict ${outcome_of(mine).stage}`} data-test="verdict">
       <small>${clock_text(mine.t, 3)}</small><${VerdictChain} command=${mine} /></div>` : null}</div>

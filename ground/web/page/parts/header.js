@@ -60,7 +60,7 @@ function SafeAll() {
     set_held(false);
   };
   const keyup = () => release();
-  return html`<button class=${`safe_all ${held ? 'held' : ''}`} data-test="safe-all" disabled=${!subsystem_of('SUPERVISOR')}
+  return html`<button class=${`safe_all ${held ? 'held' : ''}`} data-test="safe-all" disabled=${!subsystem_of('SUPERVISOR') || !operator.value}
     title="Inhibits the actuators of every subsystem: hold for 0.8 s" onPointerDown=${press} onPointerUp=${release}
     onPointerLeave=${release} onKeyDown=${press} onKeyUp=${keyup} onBlur=${release}>
     <span>SAFE ALL</span><em>hold</em></button>`;
@@ -83,7 +83,7 @@ export function Header({on_faults, faults_open}) {
       href=${`#/events?severity=${severity}`} onClick=${see_events} title="not looked at in the last hour; a click shows them">
       <${Severity} severity=${severity} /><b>${count}</b><span class="word">${severity}</span></a>`)}
     ${operator.value ? null : html`<span class="pill" title="this token reads everything and commands nothing">observer</span>`}
-    ${mission.value?.simulated && mission.value.devices?.length ? html`
+    ${operator.value && mission.value?.simulated && mission.value.devices?.length ? html`
       <button class=${`quiet ${faults_open ? 'on' : ''}`} data-test="faults" onClick=${on_faults}>Faults</button>` : null}
     <${SafeAll} />
   </header>`;

@@ -72,8 +72,8 @@ function Menu({on_close}) {
       data-test=${`mode-${mode.name}`} onClick=${() => set_chosen(mode)}><b>${mode.name}</b><span>${about(mode, mode_of.value.name)}</span></button>`)}</div>
     <div class="what"><h3>${mode_of.value.name} → ${chosen?.name}</h3><${Steps} answer=${answer} />
       <div class="choice"><button class="quiet" onClick=${on_close}>Cancel</button>
-        <button class="primary" data-test="mode-go" disabled=${refused || !operator.value || replay.value !== null || link.value.state !== 'up'}
-          onClick=${() => { on_close(); go(chosen, answer.steps); }}>Go ${chosen?.name}</button></div></div></div>`;
+        ${operator.value ? html`<button class="primary" data-test="mode-go" disabled=${refused || !operator.value || replay.value !== null || link.value.state !== 'up'}
+          onClick=${() => { on_close(); go(chosen, answer.steps); }}>Go ${chosen?.name}</button>` : null}</div></div></div>`;
 }
 
 /// The mode, and whether it is true: what its members have fallen from is no telepresence any more.

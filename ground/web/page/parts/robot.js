@@ -6,6 +6,7 @@ import {age_text, fixed_text} from '../format.js';
 import {html} from '../html.js';
 import {mission_folder} from '../mission_files.js';
 import {target_line} from './hand.js';
+import {usual_description} from '../scene/usual.js';
 import {drawing_code, scene_of_mission} from './scene_file.js';
 import {typed} from './typed.js';
 import {fallen, fallen_text, inhibited_text} from '../stop.js';
@@ -48,6 +49,7 @@ function Hand({description, window_ref}) {
 function Verdict({description}) {
   slow.value;
   const parameter = Object.values(description.robots[0]?.joints ?? {})[0];
+  if (!parameter) return null;
   const {age_s, stale} = freshness(parameter);
   const name = columns.value.get(parameter)?.subsystem;
   const inhibited = inhibited_text(status_of(name));
@@ -67,7 +69,7 @@ export function Robot() {
   const [show, set_show] = useState({goal: true, limits: true, force: true, trail: true, frames: false});
   const [gamepad, set_gamepad] = useState(false);
   const [loaded, set_loaded] = useState(false);
-  const description = scene_of_mission.value;
+  const description = scene_of_mission.value === null ? usual_description : scene_of_mission.value;
   const hand = description?.hand && mission.value?.devices?.some((one) => one.name === description.hand.device) ? description.hand : null;
   useGamepad(gamepad && !replay.value, hand);
 
@@ -93,13 +95,15 @@ export function Robot() {
   useEffect(() => typed.subscribe(() => view.current?.draw_soon()), []);
   useEffect(() => commands.subscribe(() => view.current?.draw_soon()), []);
   const stopped = (description?.robots ?? []).map((one) => one.subsystem).filter((name) => fallen.value.some((one) => one.subsystem === name) || status_of(name)?.inhibited?.length);
-  const old = Boolean(description) && freshness(Object.values(description.robots[0]?.joints ?? {})[0]).stale;
+  const old = Boolean(description?.robots.length) && freshness(Object.values(description.robots[0]?.joints ?? {})[0]).stale;
   useEffect(() => {
     if (!view.current) return;
     view.current.show = show;
     view.current.stale = old;
     view.current.look_again(stopped);
   }, [show, old, stopped.join(), loaded]);
+  slow.value;
+  if (description?.modules) view.current?.look_at_modules();
   if (view.current) {
     view.current.hand_allowed = Boolean(hand) && operator.value;
     const boxes = taken_boxes(stage.current);
@@ -109,11 +113,11 @@ export function Robot() {
   slow.value;
   const from = description?.camera;
   const goal_sent = commands.value.some((one) => description?.robots.some((robot) => robot.goal?.function === one.function && robot.subsystem === one.subsystem) && !['completed', 'failed'].includes(outcome_of(one).stage));
-  return html`<div class=${`robot ${old ? 'old' : ''}`}>
-    <canvas class="still" ref=${still} aria-hidden="true" /><div class="stage" ref=${stage} data-test="robot" />
+  return html`<div class=${`robot ${old && !stopped.length ? 'old' : ''}`}>
+    <canvas class="still" ref=${still} aria-hidden="true" /><div class="stage" ref=${stage} data-test="robot" /><div class="shade" />
     <svg class="leads" ref=${leads} aria-hidden="true" /><div class="readout" ref=${tags} />
     ${description ? html`<div class="tools">
-      ${toggles.map(([name, title]) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]} onClick=${() => set_show({...show, [name]: !show[name]})}>${title}</button>`)}
+      ${description.robots.length ? toggles.map(([name, title]) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]} onClick=${() => set_show({...show, [name]: !show[name]})}>${title}</button>`) : null}
       <span class="space" />
       ${hand && operator.value && !replay.value ? html`<button class="chip" title="the simulated hand wanders by itself" onClick=${() => fault(hand.device, 'hand wander').catch(() => {})}>Hand wanders</button>
         <button class=${`chip ${gamepad ? 'on' : ''}`} title="the left stick of a gamepad is the hand" aria-pressed=${gamepad} onClick=${() => set_gamepad(!gamepad)}>Gamepad</button>` : null}
@@ -124,8 +128,8 @@ export function Robot() {
     ${problem ? html`<p class="empty">${problem}</p>` : null}
     ${description?.inset ? html`<${Hand} description=${description} window_ref=${window_ref} />` : null}
     ${description ? html`<${Verdict} description=${description} />
-      <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="fallen" />inhibited</span>` : html`<span><i />measured</span>${
-        typed.value?.values || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}<span><i class="touched" />touched</span>${
+      <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="fallen" />inhibited</span>` : html`${description.robots.length ? html`<span><i />measured</span>` : html`<span><i />Operational</span><span><i class="fallen" />inhibited or failed</span>`}${
+        typed.value?.values || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}${description.robots.length ? html`<span><i class="touched" />touched</span>` : null}${
         description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">drag the handle or the fingertip</span>` : null}</div>` : null}
   </div>`;
 }

@@ -4,12 +4,13 @@
 // The robot in 3D: where it is in orbit, what it touches, where it shall go. Draws only while a joint or the camera moves. With a graphics
 // card all of it at each frame; a processor that draws by itself draws what stands still once for a camera, as a picture behind a transparent
 // one of what moves. A chunk of its own: three.js is loaded by the views that show it. Realtime: none.
-import {ACESFilmicToneMapping, Color, Group, MeshBasicMaterial, PCFShadowMap, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {ACESFilmicToneMapping, Color, MeshBasicMaterial, PCFShadowMap, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {asset} from '../api.js';
-import {fixed_text} from '../format.js';
+import {fixed_text, state_text} from '../format.js';
 import {mission_code} from '../mission_files.js';
-import {commands, replay, values} from '../store.js';
+import {state_name} from '../commanding.js';
+import {commands, mission, replay, status_of, values} from '../store.js';
 import {Goal, goal_of} from '../scene/goal.js';
 import {Grips} from '../scene/grips.js';
 import {Arrow, colours, contact_ring, Ribbon} from '../scene/instruments.js';
@@ -19,6 +20,7 @@ import {cast_on_plane} from '../scene/skins.js';
 import {environment, lights, mirrored_cube, sky, sun_from} from '../scene/space.js';
 import {StillPicture} from '../scene/still.js';
 import {Tags} from '../scene/tags.js';
+import {module_of, module_places, usual_surroundings} from '../scene/usual.js';
 import {surface_x_m} from './hand.js';
 import {typed} from './typed.js';
 
@@ -106,7 +108,7 @@ export class RobotView {
     const [own, ...texts] = await Promise.all([description.parts ? mission_code(description.parts) : {}, ...description.robots.map(async ({urdf}) => (await asset(`${this.folder}/${urdf}`)).text())]);
     this.own = own;
     this.mirror = this.software ? null : environment(this.renderer, 128);
-    const kit = new Kit(this.mirror, this.software ? 0.5 : 1);
+    const kit = new Kit(this.mirror, this.software ? 0.42 : 1);
     this.tags = new Tags(this.nodes.tags, this.nodes.leads);
     for (const [i, about] of description.robots.entries()) {
       const parts = () => own.links?.[about.urdf]?.(kit) ?? {};
@@ -151,7 +153,8 @@ export class RobotView {
     const steps = [
       () => this.far.add(...sky(this.scale), ...(this.software ? lights({target: this.controls.target, reach_m: 0.62 * this.scale, shadow: false}) : [])),
       () => {
-        const kit = new Kit(this.software ? mirrored_cube() : this.mirror, this.software ? 0.7 : 1), around = this.own.surroundings?.(kit) ?? usual_surroundings(kit);
+        const kit = new Kit(this.software ? mirrored_cube() : this.mirror, this.software ? 0.7 : 1), around = this.own.surroundings?.(kit) ?? usual_surroundings(kit, this.robots.length > 0);
+        if (this.description.modules) this.add_modules(kit, around);
         around.traverse((part) => { if (part.isMesh) part.castShadow = part.receiveShadow = !this.software; });
         this.far.add(around);
         if (this.software && this.own.obstacles) this.far.add(merged(this.own.obstacles(kit, {...this.description, surface_x_m})));
@@ -167,6 +170,30 @@ export class RobotView {
       else this.nodes.stage.dataset.surroundings = 'yes';
     };
     later(next, {timeout: 500});
+  }
+
+  /// A module for each subsystem: its name and state stand at it, its lamp tells whether it deviates.
+  add_modules(kit, around) {
+    const names = (mission.value?.subsystems ?? []).map((one) => one.name);
+    this.modules = module_places(names.length).map(([x, y, wide], i) => {
+      const {group, lamp, top} = module_of(kit, wide);
+      group.position.set(x, y, -0.02);
+      around.add(group);
+      return {name: names[i], lamp, at: new Vector3(x, y, top + 0.02), tag: this.tags.add('', '', ''), told: ''};
+    });
+    this.look_at_modules();
+  }
+
+  look_at_modules() {
+    for (const module of this.modules ?? []) {
+      const now = status_of(module.name), state = state_name(now?.state), told = `${state} ${now?.inhibited?.length ?? 0}`;
+      this.tags.tell(module.tag, module.name.slice(0, 24), {unit: state_text(state)});
+      if (told === module.told) continue;
+      module.told = told;
+      module.lamp.material.color.set(state === 'ErrorOperational' || now?.inhibited?.length ? colours.wrong : state === 'Operational' ? colours.measured : 0x4b535e);
+      this.still?.ask();
+      this.draw_soon();
+    }
   }
 
   /// What the still picture shows hides the robot where it stands before it.
@@ -224,6 +251,7 @@ export class RobotView {
   /// Once the words beside may have changed: who is stopped, what is typed.
   look_again(stopped) {
     for (const robot of this.robots) robot.halo.shown = stopped.includes(robot.about.subsystem);
+    this.look_at_modules();
     this.draw_soon();
   }
 
@@ -295,6 +323,7 @@ export class RobotView {
     this.grips.stretch();
     ++this.frames;
     this.nodes.stage.dataset.frames = this.frames;
+    this.nodes.stage.dataset.moving = this.robots.some((robot) => robot.motion.moving()) ? 'yes' : 'no';
     this.nodes.stage.dataset.pose = this.robots.map((robot) => robot.last.map((angle) => angle?.toFixed(6))).join();
     let more = this.still?.draw(this.camera, this.size, began_ms - this.moved_at < still_after_ms - 20) ?? false;
     if (this.still?.whole && !this.still.wanted) this.nodes.stage.dataset.still = 'whole';
@@ -376,6 +405,7 @@ export class RobotView {
         if (telling) this.tags.tell(robot.force_tag, fixed_text(robot.force_n ?? 0, 1), {shown: pressing && seen, stale});
       }
     }
+    for (const module of this.modules ?? []) module.tag.at = this.at_px(module.at);
     this.tags.lay(this.size.x, this.size.y, this.taken ?? [], telling);
     clearTimeout(this.words_timer);
     // The last words are told also when nothing moves any more.
@@ -435,16 +465,4 @@ export class RobotView {
     this.nodes.tags.replaceChildren();
     this.nodes.leads.replaceChildren();
   }
-}
-
-/// For a mission that says nothing of its surroundings: a spacecraft's top under the robot.
-function usual_surroundings(kit) {
-  const group = new Group(), deck = kit.box([1.3, 1.0, 0.02], kit.material.aluminium, [0.15, 0, -0.0102]);
-  const bus = kit.bus([1.4, 1.1, 0.9]);
-  bus.position.set(0.15, 0, -0.021);
-  const wings = kit.wings(1.4, [0.9, 0.7], 3);
-  wings.position.set(0.15, 0.2, -0.25);
-  wings.rotation.x = 0.5;
-  group.add(deck, bus, wings);
-  return group;
 }

@@ -4,7 +4,7 @@
 // Parts to build a spacecraft of, by code: no file is loaded. A mission's parts.js gets `Kit` and makes its links and surroundings with it.
 // Lengths in metres, z is up.
 import {
-  BoxGeometry, BufferGeometry, CatmullRomCurve3, Color, CylinderGeometry, ExtrudeGeometry, Group, LatheGeometry, Mesh, MeshPhongMaterial, MeshStandardMaterial, MultiplyOperation, Path, PlaneGeometry, Shape, SphereGeometry, TorusGeometry, TubeGeometry, Vector2, Vector3,
+  BoxGeometry, BufferGeometry, CatmullRomCurve3, Color, CylinderGeometry, ExtrudeGeometry, Group, LatheGeometry, Mesh, MeshBasicMaterial, MeshPhongMaterial, MeshStandardMaterial, MultiplyOperation, Path, PlaneGeometry, Shape, SphereGeometry, TorusGeometry, TubeGeometry, Vector2, Vector3,
 } from 'three';
 import {RoundedBoxGeometry} from 'three/addons/geometries/RoundedBoxGeometry.js';
 import {mergeGeometries, mergeVertices} from 'three/addons/utils/BufferGeometryUtils.js';
@@ -51,7 +51,7 @@ export class Kit {
   /// `detail` 1 is for a graphics card, less for a processor that draws by itself.
   constructor(environment, detail) {
     // What the parts below do not offer. All of three.js would be twice as much to send.
-    this.three = {BoxGeometry, BufferGeometry, Group, Mesh, Path, Shape, Vector3};
+    this.three = {BoxGeometry, BufferGeometry, Group, Mesh, MeshBasicMaterial, Path, Shape, Vector3};
     this.material = materials(environment, environment?.isCubeTexture ?? false);
     this.detail = detail;
     this.random = new Random(7);

@@ -73,8 +73,13 @@ export class Halo {
   set shown(value) { for (const skin of this.#skins) skin.visible = value; }
 }
 
+/// What is smaller hides behind what is not.
+const least_shadow_m = 0.045;
 /// For pictures that are composed of a still one and a transparent one above it, which has no light of its own to be dimmed.
 export function cast_on_plane(robot, sun, z) {
   const material = shadow_skin(new Vector3().copy(sun).normalize(), z, 0.42);
-  for (const part of meshes_of(robot)) wrapped(part, material, -2);
+  for (const part of meshes_of(robot)) {
+    part.geometry.computeBoundingSphere();
+    if (part.geometry.boundingSphere.radius > least_shadow_m) wrapped(part, material, -2);
+  }
 }

@@ -22,7 +22,7 @@ export class StillPicture {
   draw(camera, {x: width, y: height}, turning) {
     if (!this.wanted || !this.scene.children.length) return false;
     const {canvas} = this;
-    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    if (canvas.width !== width || canvas.height !== height) this.#stretch(width, height);
     if (this.unseen === null) this.unseen = kinds_of(this.scene);
     if (this.unseen.length) {
       this.#warm(camera, this.unseen.pop());
@@ -33,6 +33,7 @@ export class StillPicture {
       const wide = Math.round(width * coarse), tall = Math.round(height * coarse);
       this.#render(camera, wide, tall);
       canvas.getContext('2d').drawImage(this.renderer.domElement, 0, height - tall, wide, tall, 0, 0, width, height);
+      this.#shade(width, height);
       return true;
     }
     const top = Math.round(height * this.band / bands), tall = Math.round(height * (this.band + 1) / bands) - top;
@@ -41,14 +42,38 @@ export class StillPicture {
     camera.clearViewOffset();
     canvas.getContext('2d').drawImage(this.renderer.domElement, 0, height - tall, width, tall, 0, top, width, tall);
     this.wanted = ++this.band < bands;
-    if (!this.wanted) this.whole = true;
-    return this.wanted;
+    if (this.wanted) return true;
+    this.whole = true;
+    this.#shade(width, height);
+    return false;
   }
 
   /// More has been added: its programs are made first.
   grown() {
     this.unseen = null;
     this.ask();
+  }
+
+  /// To another size: the picture of before stands there until there is a new one.
+  #stretch(width, height) {
+    const {canvas} = this, before = document.createElement('canvas');
+    [before.width, before.height] = [Math.max(1, canvas.width), Math.max(1, canvas.height)];
+    before.getContext('2d').drawImage(canvas, 0, 0);
+    [canvas.width, canvas.height] = [width, height];
+    if (this.whole) canvas.getContext('2d').drawImage(before, 0, 0, width, height);
+  }
+
+  /// Darker towards the edges, once: a layer above would be mixed in with every frame.
+  #shade(width, height) {
+    const context = this.canvas.getContext('2d');
+    context.save();
+    context.scale(width / 2, height / 2);
+    const shade = context.createRadialGradient(1, 1, 0, 1, 1, 1.64);
+    shade.addColorStop(0.56, 'rgba(4, 6, 10, 0)');
+    shade.addColorStop(1, 'rgba(4, 6, 10, .55)');
+    context.fillStyle = shade;
+    context.fillRect(0, 0, 2, 2);
+    context.restore();
   }
 
   #render(camera, wide, tall) {

@@ -17,6 +17,9 @@ function listed(subsystem, action) {
     ((permit.functions ?? []).includes(action.name) || (permit.services ?? []).includes(action.service)));
 }
 
+/// What a visitor sees first: something of the mission's own, and nothing that takes a subsystem down.
+const harmless = (found) => found.find(({subsystem, action}) => subsystem.id >= 10 && (action.service >= 192 || !['SET_STATE', 'CONFIGURE'].includes(action.name))) ?? found.at(-1);
+
 export function Commands({rest}) {
   const [search, set_search] = useState('');
   const list = mission.value?.subsystems ?? [];
@@ -26,7 +29,7 @@ export function Commands({rest}) {
       .map((action) => ({subsystem, action})));
   const chosen = found.find(({subsystem, action}) => subsystem.name === rest[0] && action.name === rest[1]) ??
     list.flatMap((subsystem) => (subsystem.functions ?? []).map((action) => ({subsystem, action})))
-        .find(({subsystem, action}) => subsystem.name === rest[0] && action.name === rest[1]) ?? found[0];
+        .find(({subsystem, action}) => subsystem.name === rest[0] && action.name === rest[1]) ?? (words ? found[0] : harmless(found));
   return html`<main class="commands">
     <${Panel} title="Telecommands">
       <input class="search" type="search" placeholder="search  /" aria-label="search telecommands" value=${search} data-search

@@ -13,7 +13,6 @@ import {SubsystemCard} from '../parts/subsystem_card.js';
 import {html} from '../html.js';
 import {stop} from '../stop.js';
 import {Why} from './events.js';
-import {Values} from './subsystems.js';
 import {state_name} from '../commanding.js';
 import {unit_text} from '../format.js';
 import {columns, commands, events, mission, status} from '../store.js';
@@ -87,14 +86,11 @@ export function Overview() {
   const plots = first_plots();
   const none = scene_of_mission.value === undefined ? '' : 'No housekeeping to plot.';
   const subsystems = mission.value?.subsystems ?? [];
-  const last = subsystems.at(-1);
   const wanted = plots.length ? plots : [{title: 'Plot', names: [], about: {}}];
   return html`<main class="overview">
     <${Panel} title="Subsystems" hint=${`${operational()} of ${subsystems.length} Operational`} area="subsystems" href="#/subsystems">
       ${subsystems.map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
-    ${scene_of_mission.value === null ? html`<${Panel} title=${`${last?.name ?? ''} housekeeping`} area="robot" href=${`#/subsystems/${last?.name}`}>
-      ${last ? html`<${Values} name=${last.name} />` : null}</${Panel}>` :
-    html`<${Panel} title="3D" area="robot" bare titleless><${Robot} /></${Panel}>`}
+    <${Panel} title="3D" area="robot" bare titleless><${Robot} /></${Panel}>
     <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>
     <${Panel} title="Links" hint=${links_hint()} area="links" href="#/links"><${LinkRows} /></${Panel}>
     <div class="plots_row">${wanted.map(({names, title, hint, about}) => names.length ? html`<${Panel} key=${title} title=${title} hint=${hint ?? unit_text(columns.value.get(names[0])?.unit)} bare
