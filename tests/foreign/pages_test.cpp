@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-// The tables of docs/interfaces are what the code does: each row of a table marked `octets` or `numbers` is compared with it, and
-// nothing that the code has is missing there.
+// The tables of docs/interfaces are what the code does: each row marked `octets` or `numbers` is compared, and nothing is missing.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -94,7 +93,7 @@ TEST(InterfacePages, VitalPage) {
                                HIROSCO_PLACE(VitalPage, incoming),
                                HIROSCO_PLACE(VitalPage, counters),
                                HIROSCO_PLACE(VitalPage, life)});
-  EXPECT_EQ(sizeof(VitalPage), 2160U) << "a field more: the page of docs/interfaces lacks it";
+  EXPECT_EQ(sizeof(VitalPage), 2160U) << "a field more: docs/interfaces lacks it";
   EXPECT_EQ(table("octets: vital page")[0].at(4).substr(0, 10), "0x48495243");
   EXPECT_EQ(page_magic, 0x48495243U);
   EXPECT_EQ(number_of(table("octets: vital page")[1].at(4)), page_version);
