@@ -16,7 +16,7 @@ import flight
 ADOPTED_S = 1.0
 PATIENCE_S = 0.8                  # supervisor/keeper/kept.hpp
 # The structures of both machines come every so often, by their cycles' count.
-SAMPLES_S = {4713: 0.05, 4721: 0.05}
+SAMPLES_S = {4713: 0.05, 4721: 0.25}
 
 
 class Adoption(unittest.TestCase):

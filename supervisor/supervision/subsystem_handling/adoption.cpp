@@ -23,15 +23,15 @@ void Adoption::note(OctetWriter& writer) const {
   writer.put(craft_.mode->id).put(craft_.mode_epoch);
   const auto flag = [&](bool set) { writer.put(static_cast<std::uint8_t>(set ? 1 : 0)); };
   // What the supervisor before had begun is still to be ended until this one can.
-  flag(parts_.commissioning.running() || (waits_ && commissioning_));
+  flag(parts_.commissioning.running() || (owes_ && commissioning_));
   flag(parts_.commissioning.succeeded());
-  flag(craft_.shutting_down || (waits_ && shutting_down_));
+  flag(craft_.shutting_down || (owes_ && shutting_down_));
   flag(craft_.failed());
-  flag(parts_.safe_all.under_way() || (waits_ && stop_asked_));
+  flag(parts_.safe_all.under_way() || (owes_ && stop_asked_));
   writer.put(static_cast<std::uint16_t>(craft_.members.size()));
   for (const Member& member : craft_.members) {
     const auto found = before_.find(member.apid());
-    const Before before = waits_ && found != before_.end() ? found->second : Before{};
+    const Before before = owes_ && found != before_.end() ? found->second : Before{};
     writer.put(member.apid());
     flag(member.alive() || before.alive);
     flag(member.recovery.running() || before.recovering);
@@ -67,7 +67,7 @@ void Adoption::begin(bool stop_asked) {
   for (const auto& [apid, before] : before_)
     if (before.recovering)
       for (const std::uint16_t each : parts_.links.graph().network_of(apid)) stopped_.insert(each);
-  waits_ = true;
+  waits_ = owes_ = true;
   waits_until_ = craft_.now + longest_start;
   for (Member& member : craft_.members) take_over(member);
   parts_.commissioning.start_itself([this](bool) { go_on(); });
@@ -77,6 +77,7 @@ void Adoption::begin(bool stop_asked) {
 void Adoption::go_on() {
   if (!std::exchange(waits_, false)) return;
   finish_what_was_begun();
+  owes_ = false;
 }
 
 bool Adoption::may_go_on(const Member& member) const {

@@ -88,6 +88,7 @@ class Adoption final : public Watch, public Remembered, public Succession {
   std::optional<TimePoint> asked_devices_at_;
   bool remembered_{false};
   bool waits_{false};
+  bool owes_{false};  ///< the end of what the supervisor before had begun
   TimePoint waits_until_{};
   // Of the supervisor before.
   std::map<std::uint16_t, Before> before_;
