@@ -52,6 +52,10 @@ struct Reread : ::testing::Test {
   [[nodiscard]] const descriptor::Subsystem& in_the_member() {
     return flight.craft().subsystem("JOYSTICK")->descriptor();
   }
+  void goes_offline() {
+    for (const State state : {State::SafeOperational, State::Offline})
+      ASSERT_TRUE(flight.set_state("JOYSTICK", state).completed) << flight.story().text();
+  }
   static constexpr int joystick = 11;
 };
 
@@ -61,8 +65,7 @@ TEST_F(Reread, HousekeepingOfWhoIsOfflineChangesWithTheSameProcess) {
   const std::string was = "interval=\"" + std::to_string(interval) + "\"";
   flight.write("joystick.xml", changed(shipped, was, "interval=\"" + std::to_string(2 * interval) + "\""));
   EXPECT_FALSE(reread()) << "it is not at rest";
-  for (const auto name : {"JOYSTICK"})
-    ASSERT_TRUE(flight.set_state(name, State::Offline).completed) << flight.story().text();
+  goes_offline();
   ASSERT_TRUE(reread()) << flight.story().text();
   EXPECT_EQ(flight.craft().subsystem("JOYSTICK"), process);
   EXPECT_EQ(in_the_member().configurations.front().housekeeping.front().interval_cycles, 2 * interval);
@@ -70,7 +73,7 @@ TEST_F(Reread, HousekeepingOfWhoIsOfflineChangesWithTheSameProcess) {
 }
 
 TEST_F(Reread, ABadEditIsToldByPlaceAndWhoDiesThenComesBackByWhatIsInForce) {
-  ASSERT_TRUE(flight.set_state("JOYSTICK", State::Offline).completed) << flight.story().text();
+  goes_offline();
   const std::string bad = changed(shipped, "interval=\"", "interval=\"x");
   flight.write("joystick.xml", bad);
   EXPECT_FALSE(reread());
@@ -86,7 +89,7 @@ TEST_F(Reread, ABadEditIsToldByPlaceAndWhoDiesThenComesBackByWhatIsInForce) {
 }
 
 TEST_F(Reread, WhoNeedsWhatIsGoneIsNamedByItsFile) {
-  ASSERT_TRUE(flight.set_state("JOYSTICK", State::Offline).completed) << flight.story().text();
+  goes_offline();
   const auto& provided = in_the_member().configurations;
   std::string set;
   for (const auto& configuration : provided)

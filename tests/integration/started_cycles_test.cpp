@@ -128,7 +128,8 @@ struct StartedCycles : ::testing::Test {
   }
   /// ENCODER takes another configuration, under the follower that stays as it is.
   void take(std::uint8_t configuration) {
-    ASSERT_TRUE(command("ENCODER", "SET_STATE", static_cast<double>(State::PreOperational))) << flight->story().text();
+    for (const State state : {State::SafeOperational, State::PostOperational, State::PreOperational})
+      ASSERT_TRUE(command("ENCODER", "SET_STATE", static_cast<double>(state))) << flight->story().text();
     ASSERT_TRUE(command("ENCODER", "CONFIGURE", configuration)) << flight->story().text();
     flight->craft().run(200ms);
     forget();
