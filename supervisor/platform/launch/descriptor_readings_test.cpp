@@ -21,10 +21,10 @@ const std::filesystem::path mission =
 struct DescriptorReadingsTest : ::testing::Test {
   std::map<std::string, std::string> files;  ///< in place of those of this name
   std::vector<std::string> asked;
-  descriptor::FileSource source = [this](const std::filesystem::path& file) -> Result<std::string> {
-    asked.push_back(file.filename().string());
+  descriptor::FileSource source = [this](const std::filesystem::path& named) -> Result<std::string> {
+    asked.push_back(named.filename().string());
     const auto found = files.find(asked.back());
-    return found != files.end() ? found->second : descriptor::file_system()(file);
+    return found != files.end() ? found->second : descriptor::file_system()(named);
   };
   descriptor::Mission flown = descriptor::read_mission(mission, descriptor::file_system()).value.value();
   std::filesystem::path file = flown.find_subsystem("FLYWHEEL")->subsystem.file;

@@ -242,7 +242,8 @@ TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
                                                  {8, {1}},
                                                  {17, {1, 128, 130}},
                                                  {20, {1, 3}},
-                                                 {128, {1, 2, 3, 4, 5}}};
+                                                 {128, {1, 2, 3, 4, 5}},
+                                                 {130, {1, 2}}};
   for (int service = 0; service < 256; ++service)
     for (int subtype = 0; subtype < 256; ++subtype) {
       const auto packet =
