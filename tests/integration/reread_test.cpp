@@ -48,6 +48,11 @@ struct Reread : ::testing::Test {
     };
     ASSERT_TRUE(flight.commission()) << flight.story().text();
   }
+  /// Offline, with its links given back.
+  [[nodiscard]] bool comes_to_rest() {
+    return flight.set_state("JOYSTICK", State::SafeOperational).completed &&
+           flight.set_state("JOYSTICK", State::Offline).completed;
+  }
   [[nodiscard]] bool reread() { return flight.craft().command("SUPERVISOR", "REREAD", {Number{joystick}}).completed; }
   [[nodiscard]] const descriptor::Subsystem& in_the_member() {
     return flight.craft().subsystem("JOYSTICK")->descriptor();
@@ -61,8 +66,7 @@ TEST_F(Reread, HousekeepingOfWhoIsOfflineChangesWithTheSameProcess) {
   const std::string was = "interval=\"" + std::to_string(interval) + "\"";
   flight.write("joystick.xml", changed(shipped, was, "interval=\"" + std::to_string(2 * interval) + "\""));
   EXPECT_FALSE(reread()) << "it is not at rest";
-  for (const auto name : {"JOYSTICK"})
-    ASSERT_TRUE(flight.set_state(name, State::Offline).completed) << flight.story().text();
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
   ASSERT_TRUE(reread()) << flight.story().text();
   EXPECT_EQ(flight.craft().subsystem("JOYSTICK"), process);
   EXPECT_EQ(in_the_member().configurations.front().housekeeping.front().interval_cycles, 2 * interval);
@@ -70,7 +74,7 @@ TEST_F(Reread, HousekeepingOfWhoIsOfflineChangesWithTheSameProcess) {
 }
 
 TEST_F(Reread, ABadEditIsToldByPlaceAndWhoDiesThenComesBackByWhatIsInForce) {
-  ASSERT_TRUE(flight.set_state("JOYSTICK", State::Offline).completed) << flight.story().text();
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
   const std::string bad = changed(shipped, "interval=\"", "interval=\"x");
   flight.write("joystick.xml", bad);
   EXPECT_FALSE(reread());
@@ -86,7 +90,7 @@ TEST_F(Reread, ABadEditIsToldByPlaceAndWhoDiesThenComesBackByWhatIsInForce) {
 }
 
 TEST_F(Reread, WhoNeedsWhatIsGoneIsNamedByItsFile) {
-  ASSERT_TRUE(flight.set_state("JOYSTICK", State::Offline).completed) << flight.story().text();
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
   const auto& provided = in_the_member().configurations;
   std::string set;
   for (const auto& configuration : provided)
