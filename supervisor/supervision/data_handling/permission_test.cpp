@@ -237,13 +237,9 @@ TEST(Permission, WhoIsDownIsStartedByTheGroundWhereTheModeOpensThatAndByNobodyEl
 TEST(Permission, EverySubtypeOfEveryServiceIsKnownOrNot) {
   const auto mission = testing::small_mission();
   const LinkGraph links{mission};
-  const std::map<int, std::vector<int>> requests{{3, {1, 3, 5, 6, 9, 27, 29, 31, 33}},
-                                                 {5, {5, 6, 7}},
-                                                 {8, {1}},
-                                                 {17, {1, 128, 130}},
-                                                 {20, {1, 3}},
-                                                 {128, {1, 2, 3, 4, 5}},
-                                                 {130, {1, 2}}};
+  std::map<int, std::vector<int>> requests{{3, {1, 3, 5, 6, 9, 27, 29, 31, 33}}, {5, {5, 6, 7}}, {8, {1}}};
+  requests.merge(
+      std::map<int, std::vector<int>>{{17, {1, 128, 130}}, {20, {1, 3}}, {128, {1, 2, 3, 4, 5}}, {130, {1, 2}}});
   for (int service = 0; service < 256; ++service)
     for (int subtype = 0; subtype < 256; ++subtype) {
       const auto packet =
