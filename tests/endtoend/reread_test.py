@@ -15,7 +15,7 @@ import flight
 
 HELLO = 7
 OFFLINE, PRE_OPERATIONAL, SAFE_OPERATIONAL, OPERATIONAL = 0, 3, 4, 5
-FAR = 5                                   # beyond the range of MOVE_TO, as shipped
+FAR = 1.4                                 # beyond the range that MOVE_TO has at first
 
 
 def copy_of(folder):
@@ -38,7 +38,7 @@ class Reread(unittest.TestCase):
             self.assertEqual(craft.tc("HELLO", "SET_STATE", state)[0], 0, state)
 
     def up(self, craft):
-        self.states(craft, PRE_OPERATIONAL)
+        """From Pre-Operational."""
         self.assertEqual(craft.tc("HELLO", "CONFIGURE", 1)[0], 0)
         self.states(craft, SAFE_OPERATIONAL, OPERATIONAL)
 
@@ -51,13 +51,14 @@ class Reread(unittest.TestCase):
             mission, descriptor = copy_of(folder)
             # The ground's own copy, wider from the beginning: what refuses is the craft.
             ground_mission, ground_descriptor = copy_of(ground)
-            shipped = descriptor.read_text()
-            wider = shipped.replace('minimum="-3.2" maximum="3.2"', 'minimum="-6" maximum="6"') \
-                           .replace('<HKService id="4711" interval="500">',
-                                    '<HKService id="4712" interval="200"><SampledOnce><ParamRef name="DESCRIPTOR"/>'
-                                    '</SampledOnce></HKService>\n    <HKService id="4711" interval="1000">')
-            self.assertNotEqual(shipped, wider)
-            ground_descriptor.write_text(wider)
+            first = descriptor.read_text().replace('minimum="-3.2" maximum="3.2"', 'minimum="-1" maximum="1"')
+            descriptor.write_text(first)
+            ranged = first.replace('minimum="-1" maximum="1"', 'minimum="-1.5" maximum="1.5"')
+            wider = ranged.replace('<HKService id="4711" interval="500">',
+                                   '<HKService id="4712" interval="200"><SampledOnce><ParamRef name="DESCRIPTOR"/>'
+                                   '</SampledOnce></HKService>\n    <HKService id="4711" interval="1000">')
+            self.assertEqual(len({first, ranged, wider}), 3)
+            ground_descriptor.write_text(ranged)
             with flight.Flight(mission=mission) as craft:
                 craft.wait_told("commissioned: mode operation", 20.0)
                 craft.mission = str(ground_mission)
@@ -74,7 +75,7 @@ class Reread(unittest.TestCase):
                 self.assertEqual(craft.pid_of("hirosco-hello"), process, "the same process")
                 self.assertEqual(self.housekeeping(craft, 4712)[:4], struct.pack(">I", zlib.crc32(wider.encode())))
 
-                bad = wider.replace('maximum="6"', 'maximum="much"')
+                bad = wider.replace('maximum="1.5"', 'maximum="much"')
                 line = 1 + bad[:bad.index('maximum="much"')].count("\n")
                 descriptor.write_text(bad)
                 self.states(craft, SAFE_OPERATIONAL, OFFLINE)
@@ -90,12 +91,14 @@ class Reread(unittest.TestCase):
                 os.kill(process, signal.SIGKILL)
                 craft.wait_told("started HELLO", 20.0, begin)
                 self.assertNotEqual(craft.pid_of("hirosco-hello"), process)
+                self.states(craft, PRE_OPERATIONAL)
                 self.up(craft)
                 self.assertEqual(craft.tc("HELLO", "MOVE_TO", FAR)[0], 0)
 
-                descriptor.write_text(shipped)
+                descriptor.write_text(first)
                 self.states(craft, SAFE_OPERATIONAL, OFFLINE)
                 self.assertEqual(self.reread(craft), 0)
+                self.states(craft, PRE_OPERATIONAL)
                 self.up(craft)
                 self.assertNotEqual(craft.tc("HELLO", "MOVE_TO", FAR)[0], 0)
                 craft.end()

@@ -48,13 +48,14 @@ struct Reread : ::testing::Test {
     };
     ASSERT_TRUE(flight.commission()) << flight.story().text();
   }
+  /// Offline, with its links given back.
+  [[nodiscard]] bool comes_to_rest() {
+    return flight.set_state("JOYSTICK", State::SafeOperational).completed &&
+           flight.set_state("JOYSTICK", State::Offline).completed;
+  }
   [[nodiscard]] bool reread() { return flight.craft().command("SUPERVISOR", "REREAD", {Number{joystick}}).completed; }
   [[nodiscard]] const descriptor::Subsystem& in_the_member() {
     return flight.craft().subsystem("JOYSTICK")->descriptor();
-  }
-  void goes_offline() {
-    for (const State state : {State::SafeOperational, State::Offline})
-      ASSERT_TRUE(flight.set_state("JOYSTICK", state).completed) << flight.story().text();
   }
   static constexpr int joystick = 11;
 };
@@ -65,7 +66,7 @@ TEST_F(Reread, HousekeepingOfWhoIsOfflineChangesWithTheSameProcess) {
   const std::string was = "interval=\"" + std::to_string(interval) + "\"";
   flight.write("joystick.xml", changed(shipped, was, "interval=\"" + std::to_string(2 * interval) + "\""));
   EXPECT_FALSE(reread()) << "it is not at rest";
-  goes_offline();
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
   ASSERT_TRUE(reread()) << flight.story().text();
   EXPECT_EQ(flight.craft().subsystem("JOYSTICK"), process);
   EXPECT_EQ(in_the_member().configurations.front().housekeeping.front().interval_cycles, 2 * interval);
@@ -73,7 +74,7 @@ TEST_F(Reread, HousekeepingOfWhoIsOfflineChangesWithTheSameProcess) {
 }
 
 TEST_F(Reread, ABadEditIsToldByPlaceAndWhoDiesThenComesBackByWhatIsInForce) {
-  goes_offline();
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
   const std::string bad = changed(shipped, "interval=\"", "interval=\"x");
   flight.write("joystick.xml", bad);
   EXPECT_FALSE(reread());
@@ -89,7 +90,7 @@ TEST_F(Reread, ABadEditIsToldByPlaceAndWhoDiesThenComesBackByWhatIsInForce) {
 }
 
 TEST_F(Reread, WhoNeedsWhatIsGoneIsNamedByItsFile) {
-  goes_offline();
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
   const auto& provided = in_the_member().configurations;
   std::string set;
   for (const auto& configuration : provided)

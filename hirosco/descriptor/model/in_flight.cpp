@@ -406,6 +406,8 @@ void take_configuration(Configuration& flown, Configuration& fresh) {
 
 }  // namespace
 
+const char* const not_in_flight = "E0380";
+
 std::vector<Obstacle> obstacles(const Subsystem& flown, const Subsystem& fresh) {
   Comparison comparison;
   comparison.subsystem(flown, fresh);

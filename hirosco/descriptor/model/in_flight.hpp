@@ -17,6 +17,9 @@
 /// Everything else is what memory, threads, links, sandbox or guard were made by.
 namespace hirosco::descriptor {
 
+/// Of every problem of a text that is good and cannot be taken in flight (docs/descriptor-errors.md).
+extern const char* const not_in_flight;
+
 /// A change that needs another process.
 struct Obstacle {
   Location at;  ///< in the new descriptor; where what is gone stood, in the old one

@@ -19,13 +19,12 @@
 namespace hirosco::supervisor {
 
 using descriptor::Diagnostic;
+using descriptor::not_in_flight;
 using descriptor::State;
 using pus::DescriptorService;
 using pus::FailureCode;
 
 namespace {
-
-constexpr const char* not_in_flight = "E0380";
 
 [[nodiscard]] std::string line_of(const Diagnostic& problem) {
   std::string line = fmt::format("{}:{}:{}: error {}: {}", problem.file.string(), problem.at.line, problem.at.column,
