@@ -85,6 +85,9 @@ class SupervisorKills(unittest.TestCase):
                     self.assertIsNotNone(ground.verdict(packet, 5.0), "SAFE_ALL has an end")
                     time.sleep(1.0)
                     self.assertEqual(rokviss.tc("supervisor", "SET_MODE", TELEPRESENCE)[0], 0, f"kill {kill}: up again")
+                    # The hand held on while the arm let go: it comes back first.
+                    rokviss.fault("joystick", "hand", "cartesian", 0, 0, 0.5)
+                    time.sleep(1.0)
                     self.push(rokviss)
                     continue
                 self.assertNotIn("stopped", told.told, f"kill {kill}")
