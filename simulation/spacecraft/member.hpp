@@ -38,7 +38,7 @@ class MemberClock final : public Clock {
 /// One subsystem as an object: what a process would hold.
 struct Spacecraft::Member {
   Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, Platform platform)
-      : described{&what},
+      : as_started{what},
         author{std::move(make)},
         clock{platform.clock},
         vital{std::make_shared<VitalPage>()},
@@ -52,7 +52,8 @@ struct Spacecraft::Member {
     engine.emplace(*author, what.subsystem, own, channels.subsystem_end(), *vital, *permit);
   }
 
-  const descriptor::MissionSubsystem* described;
+  descriptor::MissionSubsystem as_started;  ///< outlives the supervisor that started it
+  const descriptor::MissionSubsystem* described{&as_started};
   std::unique_ptr<Subsystem> author;
   MemberClock clock;
   ChannelPair channels;
