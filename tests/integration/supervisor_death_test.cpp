@@ -54,7 +54,7 @@ class MortalChannel final : public Channel {
   Deaths& deaths_;
 };
 
-/// How each telecommand of the ground ended, by its request id.
+/// How each telecommand of the ground ended, by its request id. Those of the supervisor itself are its own concern.
 struct Verdicts {
   struct Verdict {
     int accepted{0};
@@ -62,7 +62,7 @@ struct Verdicts {
   };
   std::map<std::uint32_t, Verdict> of;
   void hear(const pus::TelemetryView& report) {
-    if (report.service() != 1) return;
+    if (report.service() != 1 || report.destination() != 0) return;
     OctetReader reader{report.source_data()};
     Verdict& verdict = of[reader.get<std::uint32_t>()];
     if (report.subtype() == 1) ++verdict.accepted;
