@@ -38,8 +38,7 @@ class MemberClock final : public Clock {
 /// One subsystem as an object: what a process would hold.
 struct Spacecraft::Member {
   Member(const descriptor::MissionSubsystem& what, std::unique_ptr<Subsystem> make, Platform platform)
-      : own{what},
-        described{&own},
+      : as_started{what},
         author{std::move(make)},
         clock{platform.clock},
         vital{std::make_shared<VitalPage>()},
@@ -56,9 +55,8 @@ struct Spacecraft::Member {
     engine.emplace(*author, what.subsystem, around, channels.subsystem_end(), *vital, *permit);
   }
 
-  /// As it was launched: the mission of the supervisor that did may be gone.
-  descriptor::MissionSubsystem own;
-  const descriptor::MissionSubsystem* described;
+  descriptor::MissionSubsystem as_started;  ///< outlives the supervisor that started it
+  const descriptor::MissionSubsystem* described{&as_started};
   std::unique_ptr<Subsystem> author;
   MemberClock clock;
   ChannelPair channels;

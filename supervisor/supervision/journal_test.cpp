@@ -74,7 +74,7 @@ TEST_F(Journals, EveryFlippedBitOfTheNewestLeavesTheOneBefore) {
 TEST_F(Journals, TwoDamagedCopiesAreNone) {
   ASSERT_TRUE(journal.write(octets_of("before")));
   ASSERT_TRUE(journal.write(octets_of("newest")));
-  memory[34] ^= std::byte{1};
+  memory[33] ^= std::byte{1};
   memory[memory.size() / 2 + 34] ^= std::byte{1};
   EXPECT_TRUE(Journal{memory}.newest().empty());
 }

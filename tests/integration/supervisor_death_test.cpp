@@ -54,21 +54,25 @@ class MortalChannel final : public Channel {
   Deaths& deaths_;
 };
 
-/// How each telecommand of the ground ended, by its request id.
+/// How each telecommand of the ground ended, by its request id. Those of the supervisor itself are its own concern.
 struct Verdicts {
   struct Verdict {
     int accepted{0};
     int final{0};
+    int unknown{0};  ///< of these, "outcome unknown"
   };
   std::map<std::uint32_t, Verdict> of;
   void hear(const pus::TelemetryView& report) {
-    if (report.service() != 1) return;
+    if (report.service() != 1 || report.destination() != 0) return;
     OctetReader reader{report.source_data()};
     Verdict& verdict = of[reader.get<std::uint32_t>()];
     if (report.subtype() == 1) ++verdict.accepted;
     if (report.subtype() == 2 || report.subtype() == 4 || report.subtype() == 7 || report.subtype() == 8 ||
         report.subtype() == 10)
       ++verdict.final;
+    if (report.subtype() == 8 &&
+        reader.get<std::uint16_t>() == static_cast<std::uint16_t>(pus::FailureCode::OutcomeUnknown))
+      ++verdict.unknown;
   }
 };
 
@@ -120,10 +124,11 @@ int at_every_moment(const std::function<void(MortalFlight&)>& begin, const std::
     flight.craft().run(100ms);
     mortal.deaths.armed = true;
     begin(mortal);
-    flight.craft().run(5s);
-    ++flights;
-    const bool died = flight.craft().supervisor_deaths() > 0;
+    flight.craft().run(1s);
     mortal.deaths.armed = false;
+    const bool died = flight.craft().supervisor_deaths() > 0;
+    flight.craft().run(4s);
+    ++flights;
     judge(mortal);
     if (::testing::Test::HasFailure()) return flights;
     if (!died) return flights;
@@ -187,6 +192,7 @@ TEST(SupervisorDeath, WithNobodyToGoOnTheCraftIsSafeAfterItsTime) {
 
 TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe) {
   std::map<std::string, int> ends;
+  int told_twice = 0;
   const int flights = at_every_moment(
       [](MortalFlight& mortal) { mortal.send(3000, "SET_MODE", mortal.flight.mission().find_mode("standalone")->id); },
       [&](MortalFlight& mortal) {
@@ -199,15 +205,18 @@ TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe)
           for (const char* name : movers) EXPECT_FALSE(mortal.may_move(name)) << name << "\n" << mortal.text();
         }
         for (const auto& [id, verdict] : mortal.verdicts.of) {
-          EXPECT_LE(verdict.final, 1) << std::hex << id << "\n" << mortal.text();
-          if (verdict.accepted > 0) {
-            EXPECT_EQ(verdict.final, 1) << std::hex << id << "\n" << mortal.text();
-          }
+          EXPECT_LE(verdict.final - verdict.unknown, 1) << std::hex << id << "\n" << mortal.text();
+          EXPECT_TRUE(verdict.accepted == 0 || verdict.final > 0) << std::hex << id << "\n" << mortal.text();
+          told_twice += verdict.final > 1 ? 1 : 0;
         }
         flies_again(mortal);
       });
   EXPECT_GT(flights, 20);
   EXPECT_GT(ends["standalone"], 0);
+  // What a step has to say leaves together, here a message at a time, and is noted behind the last of them.
+  constexpr int moments_of_one_batch = 12;
+  EXPECT_LE(told_twice, moments_of_one_batch)
+      << "between the sending of an end and its note nobody knows that it was sent";
   for (const auto& [mode, count] : ends) std::printf("ended in %s: %d\n", mode.c_str(), count);
 }
 
@@ -219,9 +228,8 @@ TEST(SupervisorDeath, AtEveryMomentOfAStopEverybodyHasStopped) {
                                         for (const auto& [id, verdict] : asked) taken = taken || verdict.accepted > 0;
                                         for (const char* name : movers) {
                                           EXPECT_FALSE(taken && mortal.may_move(name)) << mortal.text();
-                                          if (!mortal.may_move(name)) {
-                                            EXPECT_NE(mortal.flight.state(name), State::Operational) << mortal.text();
-                                          }
+                                          const bool rests = mortal.flight.state(name) != State::Operational;
+                                          EXPECT_TRUE(mortal.may_move(name) || rests) << mortal.text();
                                         }
                                         flies_again(mortal);
                                       });

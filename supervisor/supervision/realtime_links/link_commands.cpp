@@ -158,7 +158,14 @@ void LinkCommands::recall(OctetReader& reader) {
   }
 }
 
+/// Of an end that let go while nobody listened, or told it to a supervisor that died before it could note that, no word comes
+/// any more.
 void LinkCommands::end_what_was_begun() {
+  for (const auto& link : craft_.mission.links)
+    for (const Member& member : craft_.members)
+      if (graph_.holds(link.id, member.apid()) && (has_left(member.apid(), link.id) || member.configuration() == 0))
+        graph_.let_go(link.id, member.apid());
+  for (const LinkGraph::HalfHeld& half : graph_.half_held()) handling_.break_off(half.link);
   for (const std::uint8_t link : std::exchange(broken_, {})) handling_.break_off(link);
 }
 

@@ -268,6 +268,7 @@ void LinkHandshakes::break_off(std::uint8_t link) {
   const auto standing = graph_.standing(link);
   // An end that may have attached holds it until it says otherwise.
   if (standing == 0) graph_.stand(link, LinkGraph::from_holds | LinkGraph::to_holds);
+  broken_off_.insert(link);
   if (!release(link, {})) return;
   operator_.link_changed(*described, false, "the supervisor died in the middle of it");
 }
@@ -304,6 +305,8 @@ bool LinkHandshakes::is_end_of(std::uint8_t link, std::uint16_t apid) const {
 }
 
 void LinkHandshakes::failed(std::uint16_t apid, std::uint8_t subtype, std::uint8_t link, const std::string& why) {
+  const bool knows_nothing = why.find(to_text(pus::FailureCode::UnknownIdentifier)) != std::string::npos;
+  if (subtype == st128::detach && broken_off_.contains(link) && knows_nothing) graph_.let_go(link, apid);
   // Who has let go since refuses nothing: it has nothing left to let go of.
   if (const auto release = releases_.find(link); release != releases_.end())
     release->second.refused |= subtype == st128::detach && graph_.holds(link, apid);

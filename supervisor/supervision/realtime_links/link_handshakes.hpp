@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,7 @@ class LinkHandshakes {
   void go_on_from(std::uint32_t epoch) noexcept { epoch_ = epoch; }
   /// Links of which a handshake or a release is under way.
   [[nodiscard]] std::vector<std::uint8_t> under_way() const;
-  /// The supervisor before died in the middle of one: both ends are told to let go.
+  /// The supervisor before died in the middle of one: both ends are told to let go, and one that knows nothing of it has.
   void break_off(std::uint8_t link);
   /// Begins the handshake. False: unknown link, already up, being released, or a handshake of it is under way.
   [[nodiscard]] bool establish(std::uint8_t link, TimePoint now, Done done);
@@ -123,6 +124,7 @@ class LinkHandshakes {
     std::uint64_t layout_hash{};
   };
   std::map<std::uint8_t, Lent> lent_;
+  std::set<std::uint8_t> broken_off_;
   std::uint32_t epoch_{0};
 };
 
