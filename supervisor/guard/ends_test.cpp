@@ -116,6 +116,14 @@ TEST_F(EndsTest, ThoseThatFellWithAnEarlierProcessDoNotFallWithTheNextOne) {
   EXPECT_TRUE(may_move(hand));
 }
 
+TEST_F(EndsTest, AnEndThatNobodyHasTakenYetIsNotTheNextProcesss) {
+  hold(arm);
+  end(arm);
+  guard.forget(arm);
+  start(arm);
+  EXPECT_TRUE(kinds(arm).empty());
+}
+
 TEST_F(EndsTest, WhoeverIsStartedOrForgottenIsToldToTheThreadThatWaits) {
   const std::uint32_t before = guard.changes().load();
   guard.forget(arm);

@@ -85,6 +85,10 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->falls_with.clear();
   member->life = 0;
   member->life_told = false;
+  // What was found of the process before is no matter of this one.
+  std::erase_if(findings_, [&](const GuardFinding& finding) {
+    return finding.apid == apid && finding.kind == GuardFinding::Kind::Ended;
+  });
   lives_changed();
 }
 

@@ -201,6 +201,8 @@ class Flight {
     }
     const auto end = supervisor_->poll();
     if (end && *end) return ended(**end, now);
+    // One that ends flushes its log, which may take a disk's time: nobody goes on for it.
+    if (page_.finished.load() != 0 && !std::exchange(ends_, true)) progress_ = Progress{keeper_patience};
     const bool still = progress_.stands_still(page_.supervisor.load(std::memory_order_relaxed), now);
     if ((!still && !stopped()) || killed_) return std::nullopt;
     killed_ = true;
@@ -277,6 +279,7 @@ class Flight {
   std::optional<Process> supervisor_;
   TimePoint began_{};
   Progress progress_{supervisor_patience};
+  bool ends_{false};  ///< the supervisor, by itself
   Revivals revivals_;
   std::optional<TimePoint> revive_at_;  ///< there is no supervisor now
   bool killed_{false};

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The imager with real processes: a fall-back in flight, both dead, flown again; power in Offline and after a kill, asked of the device."""
 import pathlib
+import signal
 import time
 import unittest
 
@@ -61,8 +62,10 @@ class Imager(unittest.TestCase):
     def test_a_killed_supervisor_leaves_a_device_without_power_too(self):
         with flight.Flight(MISSION) as imager:
             imager.wait_told("commissioned: mode operation", 20.0)
+            imager.process.send_signal(signal.SIGSTOP)  # or another supervisor would go on, and the power stay
             imager.kill("hirosco-supervisor")
             self.wait_truth(imager, lambda truth: truth["powered"] == 0.0, 10.0)
+            imager.process.kill()
 
 
 if __name__ == "__main__":
