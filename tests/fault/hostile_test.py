@@ -87,13 +87,15 @@ class Hostile(unittest.TestCase):
             craft.wait_commissioned()
             self.push(craft)
             self.assert_nothing_was_changed(craft, self.turn(craft))
-            killed = time.monotonic()
+            craft.process.send_signal(signal.SIGSTOP)  # or another supervisor would go on
+            killed = craft.kill("hirosco-supervisor")
+            craft.wait_at_rest("robot", killed)
+            craft.process.send_signal(signal.SIGCONT)
             # Each that goes on dies young, until nobody does any more.
             while craft.process.poll() is None and time.monotonic() < killed + ORPHANS_GONE_S:
                 if any(name == "hirosco-supervisor" for name in craft.processes().values()):
                     craft.kill("hirosco-supervisor")
                 time.sleep(0.02)
-            craft.wait_at_rest("robot", killed)
             self.assertEqual(craft.wait_until_gone(ORPHANS_GONE_S), {})
             flight.measure(f"everything of the flight gone {time.monotonic() - killed:.1f} s after its first supervisor was killed")
             self.assertEqual(craft.process.wait(5.0), 4)

@@ -199,15 +199,15 @@ struct Other {
   return std::move(*reading.value);
 }
 
-[[nodiscard]] std::string to_text(const std::string& name, std::uint16_t apid, const std::filesystem::path& file) {
+[[nodiscard]] std::string as_word(const std::string& name, std::uint16_t apid, const std::filesystem::path& file) {
   return fmt::format("{}={}:{}", name, apid, file.string());
 }
 
 }  // namespace
 
-std::string to_string(const Commands& commands) { return to_text(commands.subsystem, commands.apid, commands.file); }
+std::string to_string(const Commands& commands) { return as_word(commands.subsystem, commands.apid, commands.file); }
 std::string to_string(const Subscribes& subscribes) {
-  return to_text(subscribes.subsystem, subscribes.apid, subscribes.file);
+  return as_word(subscribes.subsystem, subscribes.apid, subscribes.file);
 }
 
 Result<> apply_commands(Subsystem& subsystem, std::string_view text, const FileSource& source) {
