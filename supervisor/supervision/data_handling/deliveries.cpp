@@ -7,7 +7,7 @@
 namespace hirosco::supervisor {
 
 namespace {
-constexpr Duration loss_period = 1s;
+constexpr Duration heard_loss_period = 1s;
 }
 
 void Deliveries::give(const Member& member, Octets packet) {
@@ -37,7 +37,7 @@ void Deliveries::watch(TimePoint now) {
     }
     flush(member, queue);
     if (queue.lost == queue.lost_told || now < queue.next_told) continue;
-    queue.next_told = now + loss_period;
+    queue.next_told = now + heard_loss_period;
     lost_(member, queue.lost - std::exchange(queue.lost_told, queue.lost));
   }
 }
