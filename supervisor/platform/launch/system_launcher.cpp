@@ -314,12 +314,16 @@ std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
   ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
   if ((*status)->kind == ExitStatus::Kind::Unknown) {
     // Its parent was a supervisor that is gone: the keeper is told, a moment later.
-    const auto how = page_ != nullptr ? page_->end_of(static_cast<std::uint32_t>(found->second.pid())) : std::nullopt;
+    constexpr std::uint32_t not_told = 0xFFFF'FFFF;
+    const auto pid = static_cast<std::uint32_t>(found->second.pid());
+    const std::uint32_t how = page_ != nullptr ? page_->end_of(pid).value_or(not_told) : not_told;
     constexpr Duration longest = 300ms;
     const TimePoint now = SystemClock{}.now();
-    if (!how && page_ != nullptr && now - end_asked_.emplace(process, now).first->second < longest) return std::nullopt;
+    const bool told = how != not_told;
+    if (!told && page_ != nullptr && now - end_asked_.emplace(process, now).first->second < longest)
+      return std::nullopt;
     end_asked_.erase(process);
-    if (how) end = {(*how & ended_by_signal) != 0, static_cast<int>(*how & 0xFF)};
+    if (told) end = {(how & ended_by_signal) != 0, static_cast<int>(how & 0xFF)};
   }
   if (const auto slot = kept_.find(process); slot != kept_.end()) {
     store_.forget(slot->second);
