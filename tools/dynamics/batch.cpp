@@ -48,7 +48,13 @@ class Members {
     return found->get<bool>();
   }
   /// So many numbers; any number of them where `count` is negative.
+  /// As many as are wanted, also where something else was found and told. Fewer than none: as many as there are.
   std::vector<double> numbers(const char* name, int count) {
+    std::vector<double> found = found_numbers(name, count);
+    if (count >= 0) found.resize(static_cast<std::size_t>(count));
+    return found;
+  }
+  std::vector<double> found_numbers(const char* name, int count) {
     const Json* found = member(name);
     return found == nullptr ? std::vector<double>{} : list(*found, name, count);
   }
