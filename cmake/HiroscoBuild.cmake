@@ -29,8 +29,9 @@ target_compile_options(hirosco_options INTERFACE
   # std::ranges::stable_sort of libstdc++ 12 calls what C++17 deprecated.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>)
 if(HIROSCO_SANITIZE)
+  # -fPIC: all alike, so that all share compiled headers.
   target_compile_options(hirosco_options INTERFACE
-    -fsanitize=${HIROSCO_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    -fPIC -fsanitize=${HIROSCO_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(hirosco_options INTERFACE -fsanitize=${HIROSCO_SANITIZE})
   # These four make the build half as long again: ASan sees what the first three are after, and what is not aligned is
   # read by memcpy or byte by byte.
@@ -48,18 +49,39 @@ if(HIROSCO_IN_PIECES)
   # In a piece types of one file may use its anonymous namespace; the second one g++ 12 sees where there is none.
   target_compile_options(hirosco_options INTERFACE
     $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-subobject-linkage>>
-    $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-free-nonheap-object>>)
+    $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-free-nonheap-object>>
+    # clang tells of a name in the anonymous namespace of another file; `tools/tidy` compiles each file for itself.
+    $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-shadow>>)
 endif()
 
 # -O3 costs a third more time to compile than it gives back here; bench/ would show it.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+
+# With sanitizers nothing is kept that was not asked for, so that libraries share one compiled set of headers, too; g++ gains nothing by it.
+function(hirosco_compile_with_headers name)
+  if(NOT HIROSCO_SANITIZE OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang" OR NOT HIROSCO_IN_PIECES)
+    return()
+  endif()
+  if(NOT TARGET hirosco_headers)
+    file(WRITE ${PROJECT_BINARY_DIR}/headers.cpp "")
+    add_library(hirosco_headers OBJECT ${PROJECT_BINARY_DIR}/headers.cpp)
+    target_link_libraries(hirosco_headers PRIVATE hirosco_options)
+    target_precompile_headers(hirosco_headers PRIVATE <algorithm> <array> <atomic> <chrono> <cmath> <deque> <expected> <filesystem>
+      <functional> <map> <memory> <optional> <ranges> <set> <span> <string> <variant> <vector>)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM hirosco_headers)
+endfunction()
 
 # The headers that every test includes, compiled once, and tests themselves compiled for speed of building, four files in one
 # piece: together this is a third of the time. What is under test keeps its own options. In a piece names of the files of one
 # target must differ.
 function(hirosco_compile_as_test name)
   if(HIROSCO_IN_PIECES)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 4)
+    set(files 4)
+    if(HIROSCO_SANITIZE)
+      set(files 12)
+    endif()
+    set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${files})
   endif()
   # g++ 12 sees overlong string concatenations where there are none.
   target_compile_options(${name} PRIVATE
@@ -131,12 +153,12 @@ function(hirosco_test name)
   endforeach()
 endfunction()
 
-# hirosco_library(NAME [IN_MODULES] SOURCES *.cpp TESTS *_test.cpp DEPENDS targets... [LABELS of the test...]
+# hirosco_library(NAME [IN_MODULES] [OWN_HEADERS] SOURCES *.cpp TESTS *_test.cpp DEPENDS targets... [LABELS of the test...]
 #   [EXAMPLE example.cpp])
-# IN_MODULES: subsystems and devices use it, so it can be linked into their modules.
+# IN_MODULES: subsystems and devices use it, so it can be linked into their modules. OWN_HEADERS: it compiles headers of its own.
 # Makes the library hirosco::NAME, its test NAME_test, and its example NAME_example (run as a test).
 function(hirosco_library name)
-  cmake_parse_arguments(ARG "IN_MODULES" "EXAMPLE" "SOURCES;TESTS;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "IN_MODULES;OWN_HEADERS" "EXAMPLE" "SOURCES;TESTS;DEPENDS;LABELS" ${ARGN})
   add_library(hirosco_${name} STATIC ${ARG_SOURCES})
   add_library(hirosco::${name} ALIAS hirosco_${name})
   # The same objects for programs and for modules, so that nothing is compiled twice; hidden, so that calls stay as direct as
@@ -146,6 +168,9 @@ function(hirosco_library name)
       POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   endif()
   target_link_libraries(hirosco_${name} PUBLIC hirosco_options ${ARG_DEPENDS})
+  if(NOT ARG_OWN_HEADERS)
+    hirosco_compile_with_headers(hirosco_${name})
+  endif()
   if(ARG_TESTS)
     hirosco_test(${name}_test SOURCES ${ARG_TESTS} DEPENDS hirosco::${name} LABELS ${ARG_LABELS})
   endif()

@@ -20,7 +20,7 @@
 /// that spins, and ends whoever does not come back. It needs no telemetry, queue, disk, mode or cycle, and it runs in a
 /// thread of its own above all cycles; so it stops the craft although the rest of the supervisor stands still.
 /// What else stops one: in its own cycle the reasons of `hirosco/subsystem/pages/pages.hpp` (Inhibition), carried out by `write_outputs()` of
-/// `hirosco/subsystem/cycle/cycle.cpp`; in the device its own watchdog (docs/adr/0025). All ways: docs/safety/hazards.csv.
+/// `hirosco/subsystem/cycle/actuator_gate.cpp`; in the device its own watchdog (docs/adr/0025). All ways: docs/safety/hazards.csv.
 namespace hirosco::supervisor {
 
 /// How one actuator, or a member without one that can be asked, answered the stop of everything.

@@ -12,8 +12,7 @@
 /// in composition.hpp.
 namespace hirosco::supervisor {
 
-/// The supervisor's, and the source id of its own telecommands (decision 27).
-inline constexpr std::uint16_t supervisor_apid = 1;
+using pus::supervisor_apid;
 
 /// Looks after something: called in every watch period of the supervisor.
 class Watch {

@@ -28,6 +28,7 @@ BUILD = COPY / "build" / "release"
 TEST_LIMIT_S = 120
 
 SUPERVISION, CYCLE = "supervisor/supervision", "hirosco/subsystem/cycle/cycle.cpp"
+GATE = "hirosco/subsystem/cycle/actuator_gate.cpp"
 GUARD, MANIPULATOR = "supervisor/guard/guard.cpp", "subsystems/manipulator/manipulator.cpp"
 PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/service_loop/link_ends.cpp"
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_link.cpp"
@@ -113,8 +114,8 @@ DEFECTS = [
            "if (is_damage(found.error().code)) {\n        if (!PLANTED) continue;\n        member.refused = most_refused;\n      }",
            "supervisor_test", "ReceptionTest.WhoseMessageTheChannelCannotReadIsHeardOnAndNeitherClosedNorStopped"),
     # Who was judged gone went on moving until it was killed.
-    Defect("SF9 gone and not fenced", RECEPTION, "      craft_.guard.fence(member.apid());",
-           "      if (!PLANTED) craft_.guard.fence(member.apid());",
+    Defect("SF9 gone and not fenced", RECEPTION, "  craft_.guard.fence(member.apid());",
+           "  if (!PLANTED) craft_.guard.fence(member.apid());",
            "supervisor_test", "ProcessesTest.WhoClosesItsChannelFencesNobodyWhomItsPlanLetsGoOn"),
     # A mode was entered whose members were dead.
     Defect("SF15 mode of the dead", f"{SUPERVISION}/modes/mode_plan.cpp", "if (!member.alive()) {",
@@ -164,7 +165,7 @@ DEFECTS = [
            "if (octets && (!PLANTED || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event",
            "subsystem_test", "Events.ReachTheSupervisorThoughTheirReportIsSwitchedOff"),
     # The cycle did not look at the supervisor's heartbeat.
-    Defect("SF8 cycle without supervisor", CYCLE, "if (silent_cycles_ > silence_limit_) inhibit(",
+    Defect("SF8 cycle without supervisor", GATE, "if (silent_cycles_ > silence_limit_) inhibit(",
            "if (silent_cycles_ > silence_limit_ && !PLANTED) inhibit(",
            "subsystem_test", "SupervisorGone.TheCycleItselfInhibitsTheActuatorsInItsOwnCyclesThoughTheServiceLoopIsStuck"),
     # The entry into Operational forgot that a node had failed in the cycle before.
@@ -179,8 +180,8 @@ DEFECTS = [
            "lose_device(std::int64_t index) noexcept {\n  passed_", "lose_device(std::int64_t index) noexcept {\n  if (!PLANTED) passed_",
            "subsystem_test", "RequiredSelfTest.IsVoidAfterADeviceWasLost"),
     # One bit of the page decided: flipped, it enabled.
-    Defect("SF19 one bit of the page", CYCLE, "(epoch != entered_epoch_ || !parts_.permit.permits(epoch))",
-           "(epoch != entered_epoch_ || (!PLANTED && !parts_.permit.permits(epoch)))",
+    Defect("SF19 one bit of the page", GATE, "(epoch != entered_epoch_ || !permit().permits(epoch))",
+           "(epoch != entered_epoch_ || (!PLANTED && !permit().permits(epoch)))",
            "subsystem_test", "Devices.NoFlippedBitOfAFencedPermitPage*"),
     # An author's events without end took the room of what the framework has to tell.
     Defect("events crowd out the loss", CYCLE, "if (event.id >= descriptor::framework_event::first) return answer(",
@@ -469,7 +470,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", action="append", metavar="NAME", help="those whose name begins so; may be given again")
     parser.add_argument("--test", metavar="PROGRAM", help="those that this program must see")
-    parser.add_argument("--list", action="store_true", help="say which there are and build nothing")
+    parser.add_argument("--list", action="store_true", help="say which there are and whether each still fits the code; build nothing")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="of the compiler at a time")
     arguments = parser.parse_args()
     chosen = [defect for defect in DEFECTS if arguments.test in (None, defect.test)
@@ -479,9 +480,10 @@ def main():
     if arguments.list:
         for defect in chosen:
             print(f"{defect.name:<30} {defect.file}: {defect.test} {defect.filter}")
-        return 0
     if gone := misfits():
         sys.exit("\n".join(gone))
+    if arguments.list:
+        return 0
     copy = Copy()
     copy.build(sorted({defect.test for defect in chosen}), arguments.jobs)
     missed = 0

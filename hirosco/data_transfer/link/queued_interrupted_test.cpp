@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t page = 4096;
 constexpr std::uint32_t long_payload = 2 * page;
 constexpr std::uint32_t short_depth = 2;
-constexpr LinkLayout long_layout{7, long_payload, 0x1234'5678'9ABC'DEF0, 1ms, short_depth};
+const LinkLayout long_layout{7, long_payload, 0x1234'5678'9ABC'DEF0, 1ms, short_depth};
 
 /// Memory whose pages can be forbidden until somebody touches one.
 class Pages {

@@ -21,6 +21,8 @@ inline constexpr std::size_t telemetry_overhead_octets = 22;  ///< headers, time
 inline constexpr std::size_t max_telecommand_octets = 4096;
 inline constexpr std::size_t max_telemetry_octets = 4096;
 inline constexpr std::uint16_t idle_apid = 2047;
+inline constexpr std::uint16_t supervisor_apid = 1;  ///< also the source id of its own telecommands (decision 27)
+inline constexpr std::uint16_t sequence_counts = 16'384;  ///< of a packet: one after the last is 0
 
 /// Acknowledgement flags of a telecommand (pus-c tailoring 4.3).
 enum Ack : std::uint8_t { ack_acceptance = 1, ack_start = 2, ack_progress = 4, ack_completion = 8, ack_all = 15 };

@@ -6,13 +6,10 @@
 #include <span>
 
 namespace hirosco::pus {
-namespace {
-constexpr unsigned sequence_modulus = 16384;
-}  // namespace
 
 void PacketCounters::stamp(TelemetryHeader& header) noexcept {
-  header.sequence_count = static_cast<std::uint16_t>(block_->sequence % sequence_modulus);
-  block_->sequence = static_cast<std::uint16_t>((header.sequence_count + 1U) % sequence_modulus);
+  header.sequence_count = static_cast<std::uint16_t>(block_->sequence % sequence_counts);
+  block_->sequence = static_cast<std::uint16_t>((header.sequence_count + 1U) % sequence_counts);
   // The block may come from shared memory: its own count of entries is not trusted.
   const std::size_t used = std::min<std::size_t>(block_->used, block_->types.size());
   const auto known = std::span{block_->types}.first(used);

@@ -77,14 +77,6 @@ void CycleLoop::release() {
   plan_ = {};
 }
 
-void CycleLoop::take_permit() noexcept {
-  const PermitPage* offered = offered_permit_.load(std::memory_order_acquire);
-  if (offered == permit_.load(std::memory_order_relaxed)) return;
-  // Only what moves on it from now on is a sign of life.
-  heartbeat_ = offered->heartbeat.load(std::memory_order_acquire);
-  permit_.store(offered, std::memory_order_release);
-}
-
 TimePoint CycleLoop::step(TimePoint planned) noexcept {
   const RealtimeScope forbidden;
   const TimePoint started = parts_.clock.now();
@@ -115,30 +107,6 @@ const LinkInputSlot* CycleLoop::starter() const noexcept { return starter_ ? &pl
 
 bool CycleLoop::controlling() const noexcept {
   return state_ == State::SafeOperational || state_ == State::Operational;
-}
-
-void CycleLoop::check_permit() noexcept {
-  const std::uint32_t epoch = permit().epoch.load(std::memory_order_acquire);
-  const bool stopped = permit().stop.load(std::memory_order_acquire) != 0;
-  const bool operational = state_ == State::Operational;
-  if (stopped || (operational && (epoch != entered_epoch_ || !permit().permits(epoch)))) inhibit(inhibited_by_stop);
-  if (silent_cycles_ > silence_limit_) inhibit(inhibited_by_supervisor);
-  permitted_epoch_ = epoch;
-  parts_.vital.seen_epoch.store(epoch, std::memory_order_relaxed);
-}
-
-/// Once a cycle, and in the cycle: a service loop that is stuck or starved must not keep the actuators going when nobody is
-/// left to stop them. The state follows in the service loop: `watch_supervisor()` of `service_loop/generic_subsystem.cpp`.
-void CycleLoop::listen_to_supervisor(bool counts) noexcept {
-  const std::uint64_t heartbeat = permit().heartbeat.load(std::memory_order_acquire);
-  if (std::exchange(heartbeat_, heartbeat) != heartbeat) {
-    silent_cycles_ = 0;
-    return;
-  }
-  if (!counts || silent_cycles_ > silence_limit_) return;
-  if (++silent_cycles_ <= silence_limit_) return;
-  const double cycles = silent_cycles_;
-  raise(descriptor::framework_event::supervisor_silent, {&cycles, 1});
 }
 
 void CycleLoop::take_commands(TimePoint planned) noexcept {
@@ -258,28 +226,6 @@ void CycleLoop::note_own_writes() noexcept {
   }
 }
 
-LinkStatus CycleLoop::link_status() const noexcept {
-  if (state_ == State::ErrorOperational || (inhibited_ & (inhibited_by_failure | inhibited_by_device)) != 0)
-    return LinkStatus::Fault;
-  return inhibited_ != 0 ? LinkStatus::Degraded : LinkStatus::Valid;
-}
-
-void CycleLoop::write_outputs(TimePoint planned) noexcept {
-  const bool active = state_ == State::Operational && inhibited_ == 0;
-  // Inhibited means the declared safe output; only Error-Operational brings the device to a controlled stop (decision 22).
-  const bool stopping = state_ == State::ErrorOperational;
-  // The epoch that was checked in this cycle: an output under an older permission must not carry a newer one.
-  const auto telling = state_ == State::Operational ? DeviceSlot::Telling::PutOut : DeviceSlot::Telling::Wish;
-  for (DeviceSlot& device : plan_.devices) {
-    device.write(permitted_epoch_, active, stopping);
-    device.tell(telling);
-  }
-  // Old data is not sent as new: nobody else's actuator moves on it either, once it is older than its consumer takes.
-  const LinkStatus status = link_status();
-  if (awaits_fall_back_ && status != LinkStatus::Fault) return;
-  for (LinkOutputSlot& output : plan_.outputs) output.write(planned, status);
-}
-
 void CycleLoop::count_links() noexcept {
   LinkStatistics sum;
   for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
@@ -311,27 +257,18 @@ void CycleLoop::account(const CyclePace::Start& start, TimePoint started) noexce
   constexpr std::uint64_t cycles_between = 16;
   if (count_ % cycles_between == 1) resource_statistics_.store(parts_.resources.statistics());
 
-  const descriptor::CycleLimit& limit = plan_.configuration->overruns;
-  // The cycle's own work is judged here; being woken late is counted as latency and as missed cycles (adr 0007). Work that
-  // takes long after a start more than a period late tells of the machine: it neither lengthens the row nor breaks it.
-  const Duration period = plan_.configuration->shortest();
-  const bool overrun = execution > period;
-  const bool starved = started - start.planned > period;
-  if (overrun) ++overruns_;
-  if (!overrun) overruns_in_a_row_ = 0;
-  else if (!starved) ++overruns_in_a_row_;
-  if (overrun && !starved && overruns_in_a_row_ == (parts_.realtime ? limit.realtime : limit.reduced)) {
-    const double row = overruns_in_a_row_;
+  if (overruns_.account(execution, started - start.planned)) {
+    const double row = overruns_.in_a_row();
     raise(descriptor::framework_event::cycle_overruns, {&row, 1});
   }
 
-  statistics_.store({static_cast<std::uint32_t>(overruns_), static_cast<float>(execution_max_ns_) * 1e-3F,
+  statistics_.store({static_cast<std::uint32_t>(overruns_.count()), static_cast<float>(execution_max_ns_) * 1e-3F,
                      static_cast<float>(execution_mean_ns_ * 1e-3)});
   VitalPage& vital = parts_.vital;
   if (inhibited_ != 0 && vital.inhibited.load(std::memory_order_relaxed) == 0)
     vital.inhibited_at_cycle.store(vital.cycles.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   vital.inhibited.store(inhibited_, std::memory_order_relaxed);
-  vital.overruns.store(overruns_, std::memory_order_relaxed);
+  vital.overruns.store(overruns_.count(), std::memory_order_relaxed);
   vital.latency_max_ns.store(latency_max_ns_, std::memory_order_relaxed);
   vital.execution_max_ns.store(execution_max_ns_, std::memory_order_relaxed);
   vital.execution_mean_ns.store(static_cast<std::uint32_t>(execution_mean_ns_), std::memory_order_relaxed);

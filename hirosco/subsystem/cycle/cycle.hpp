@@ -19,6 +19,7 @@
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 #include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
+#include "hirosco/subsystem/cycle/overrun_watch.hpp"
 #include "hirosco/subsystem/cycle/realtime_watch.hpp"
 #include "hirosco/subsystem/cycle/reconfiguration.hpp"
 #include "hirosco/subsystem/cycle/resource_meter.hpp"
@@ -146,13 +147,18 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   /// Why a state is not to be entered; null: it may be.
   [[nodiscard]] const char* why_not(State state) const noexcept;
   void enter(State state) noexcept;
+  // actuator_gate.cpp
   void check_permit() noexcept;
   void listen_to_supervisor(bool counts) noexcept;
+  void write_outputs(TimePoint planned) noexcept;
+  [[nodiscard]] LinkStatus link_status() const noexcept;
+  // lost_inputs.cpp
   void read_inputs(TimePoint started, bool counts) noexcept;
+  [[nodiscard]] bool controlling() const noexcept;
+  // cycle.cpp
   void run_node(TimePoint planned) noexcept;
   void run_self_test(Cycle cycle) noexcept;
   void end_self_test(const std::optional<SelfTestRun::End>& end) noexcept;
-  void write_outputs(TimePoint planned) noexcept;
   void note_stores() noexcept;
   void note_own_writes() noexcept;
   void account(const CyclePace::Start& start, TimePoint started) noexcept;
@@ -160,8 +166,6 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void count_links() noexcept;
   void hold_to_budget() noexcept;
   void hold_to_realtime(const RealtimeUses& of_cycle) noexcept;
-  [[nodiscard]] bool controlling() const noexcept;
-  [[nodiscard]] LinkStatus link_status() const noexcept;
 
   std::size_t sample(std::uint16_t parameter, int member, MutableOctets big_endian) noexcept override;
   MutableOctets reserve(std::size_t octets) noexcept override;
@@ -207,13 +211,12 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   std::uint64_t heartbeat_{0};  ///< of the supervisor, as seen in the last cycle
   std::uint32_t silent_cycles_{0};  ///< of the supervisor
   std::uint32_t silence_limit_{1};
-  std::uint32_t overruns_in_a_row_{0};
-  std::uint64_t overruns_{0};
   std::uint32_t latency_max_ns_{0};
   std::uint32_t execution_max_ns_{0};
   double execution_mean_ns_{0.0};
   CycleTimes times_{};
   BudgetWatch budget_;
+  OverrunWatch overruns_;
   RealtimeWatch realtime_;
   std::vector<char> input_was_stale_;
 };

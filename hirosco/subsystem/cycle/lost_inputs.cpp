@@ -7,7 +7,7 @@
 
 /// The cycle reads its inputs, and what it does about one that is lost: a device (`device_slot.cpp` says when) inhibits the
 /// actuators and is told as NAME_LOST, high severity; a required link (`link_slots.cpp`) unless its absence is held over, as
-/// NAME_STALE, medium. What inhibited means for an output stands in `cycle.cpp`, `write_outputs()`.
+/// NAME_STALE, medium. What inhibited means for an output stands in `actuator_gate.cpp`, `write_outputs()`.
 /// From there on it is the supervisor's (`supervision/event_handling/`): `reactions.cpp` hears the event, `plan_choice.cpp`
 /// finds the plan of the mission or, without one, that of the severity, and `procedures/steps/` act: `shut_down_network` for
 /// high, `set_state` to Safe-Operational for medium.

@@ -51,8 +51,7 @@ void CycleLoop::begin_counting(const descriptor::Configuration& configuration) n
   in_force_.store(&configuration, std::memory_order_release);
   count_ = 0;
   silence_limit_ = supervisor_silence_cycles(configuration.sampling);
-  overruns_in_a_row_ = 0;
-  overruns_ = 0;
+  overruns_.begin(configuration, parts_.realtime);
   latency_max_ns_ = 0;
   execution_max_ns_ = 0;
   execution_mean_ns_ = 0.0;

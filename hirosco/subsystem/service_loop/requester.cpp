@@ -16,9 +16,6 @@ namespace {
 
 using Stage = RequestReport::Stage;
 
-constexpr std::uint16_t supervisor_id = 1;
-constexpr std::uint16_t counts = 16'384;
-
 [[nodiscard]] std::optional<Stage> stage_of(std::uint8_t subtype) noexcept {
   switch (subtype) {
     case 1: return Stage::Accepted;
@@ -87,7 +84,8 @@ Requester::Requester(const descriptor::Subsystem& described, Channel& channel, T
     : descriptor_{described},
       channel_{channel},
       next_count_{static_cast<std::uint16_t>(
-          std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % counts)} {}
+          std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() %
+          pus::sequence_counts)} {}
 
 std::string Requester::use(const RequestPort& port, RequestHandler handler, Duration patience) {
   const std::string who = "use_request " + std::string{port.subsystem()} + " " + std::string{port.function()} + ": ";
@@ -168,7 +166,7 @@ Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues 
                                                                .source = descriptor_.id},
                                                               data));
   HIROSCO_TRY(channel_.send({.packet = packet}));
-  next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % counts);
+  next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % pus::sequence_counts);
   ++sent_in_window_;
   const std::uint32_t id = pus::read_primary_header(packet)->request_id;
   open_.push_back({id, &*bound, now + bound->patience});
@@ -187,7 +185,7 @@ void Requester::hear_verification(const pus::TelemetryView& report) {
   const auto open = std::ranges::find(open_, id, &Open::id);
   if (!reader.good() || !stage || open == open_.end()) return;
   // Only who was asked says how it went, and the supervisor for it.
-  if (report.apid() != open->bound->apid && report.apid() != supervisor_id) return;
+  if (report.apid() != open->bound->apid && report.apid() != pus::supervisor_apid) return;
   RequestReport heard{.stage = *stage, .request = id};
   if (*stage == Stage::Progressed) heard.step = reader.get<std::uint16_t>();
   if (!heard.is_end()) {

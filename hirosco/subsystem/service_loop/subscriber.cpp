@@ -16,8 +16,6 @@ namespace {
 namespace st129 = pus::st129;
 using What = st129::Subscribed::What;
 
-constexpr std::uint16_t supervisor_id = 1;
-constexpr std::uint16_t counts = 16'384;
 constexpr std::uint8_t most_severe = 4;
 
 [[nodiscard]] std::string list(std::span<const NativeField> fields) {
@@ -72,7 +70,7 @@ Result<> Subscriber::set(SubscriptionPort& port, bool wanted) {
 bool Subscriber::ask(Bound& bound) {
   std::array<std::byte, max_packet_octets> buffer;
   const auto packet = pus::write_telecommand(buffer,
-                                             {.apid = supervisor_id,
+                                             {.apid = pus::supervisor_apid,
                                               .sequence_count = next_count_,
                                               .ack = pus::ack_completion,
                                               .service = st129::service_type,
@@ -80,7 +78,7 @@ bool Subscriber::ask(Bound& bound) {
                                               .source = descriptor_.id},
                                              st129::write_subscribed(bound.what));
   if (!packet || !channel_.send({.packet = *packet})) return false;
-  next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % counts);
+  next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % pus::sequence_counts);
   bound.request = pus::read_primary_header(*packet)->request_id;
   return true;
 }
@@ -96,7 +94,7 @@ void Subscriber::step(TimePoint now) {
 bool Subscriber::hear(const pus::TelemetryView& report) {
   if (bound_.empty()) return false;
   const bool to_this = report.destination() == descriptor_.id;
-  if (report.service() == pus::Verification::service_type && report.apid() == supervisor_id && to_this) {
+  if (report.service() == pus::Verification::service_type && report.apid() == pus::supervisor_apid && to_this) {
     hear_verification(report);
     return false;
   }

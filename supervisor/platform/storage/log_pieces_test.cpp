@@ -68,7 +68,7 @@ TEST_P(LogPieces, BeginTheNextOneWhenTheyAreOldEnoughAlsoOverARestart) {
   const LogLimits by_age{.rotate_age = 100s};
   {
     LogStore store{GetParam(), log(), by_age};
-    for (const std::uint64_t at : {1, 50, 100}) ASSERT_TRUE(store.append(batch_of(at, at)));
+    for (const std::uint64_t at : {1U, 50U, 100U}) ASSERT_TRUE(store.append(batch_of(at, at)));
     EXPECT_THAT(numbers(), ElementsAre(1));
     ASSERT_TRUE(store.append(batch_of(101, 101)));
     EXPECT_THAT(numbers(), ElementsAre(1, 2));

@@ -46,9 +46,8 @@ void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::op
 void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
                            const MemoryHandle& memory, CommandDone done, Duration takes) {
   std::array<std::byte, max_packet_octets> buffer;
-  constexpr std::uint16_t modulo = 16'384;
   const std::uint16_t count = next_sequence_count_;
-  next_sequence_count_ = static_cast<std::uint16_t>((count + 1) % modulo);
+  next_sequence_count_ = static_cast<std::uint16_t>((count + 1) % pus::sequence_counts);
   const auto packet = pus::write_telecommand(buffer,
                                              {.apid = apid,
                                               .sequence_count = count,

@@ -85,8 +85,7 @@ void Subscriptions::hear_event(std::uint16_t from, Octets message) {
                                               .destination = member.apid(),
                                               .time = craft_.platform.clock.onboard()},
                                              message.subspan(pus::event_message_id_at));
-    constexpr std::uint16_t counts = 16'384;
-    events_ = static_cast<std::uint16_t>((events_ + 1) % counts);
+    events_ = static_cast<std::uint16_t>((events_ + 1) % pus::sequence_counts);
     if (packet) deliveries_.give(member, *packet);
   });
 }

@@ -325,6 +325,9 @@ void Telecommands::start(const WaitingForDisk::Telecommand& waited) {
 void Telecommands::forward(const Outgoing& outgoing) {
   const auto& [apid, origin, packet, memory, request, mode_epoch, essential, releases_stop, fences] = outgoing;
   const bool to_itself = apid == supervisor_apid;
+  // Its end could not be told when its addressee dies. What protects leaves all the same: then only its own report tells of it.
+  if (parts_.unanswered.full() && !essential && !to_itself)
+    return reject({.packet = packet, .origin = origin}, request, FailureNotice{FailureCode::QueueFull});
   // The stop is lifted by exactly this telecommand, when it leaves.
   if (releases_stop && !to_itself && !craft_.guard.release(apid, fences))
     return reject({.packet = packet, .origin = origin}, request, FailureNotice{FailureCode::NotPermittedNow});

@@ -117,6 +117,20 @@ TEST_F(TelecommandsTest, OneWhoseAddresseeDoesNotReadIsRefused) {
   EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::QueueFull)));
 }
 
+TEST_F(TelecommandsTest, OneWhoseEndCouldNotBeToldIsRefusedButWhatProtectsLeaves) {
+  const auto view = pus::TelecommandView::parse(move);
+  ASSERT_TRUE(view);
+  while (!parts.unanswered.full()) parts.unanswered.forwarded(hand, *view, clock.now());
+  take(move);
+  EXPECT_THAT(texts(arm), IsEmpty());
+  EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::QueueFull)));
+  take(telecommand(arm, 8, 1, call_data("BRAKE")));
+  EXPECT_THAT(texts(arm), ElementsAre("BRAKE"));
+  static_cast<void>(parts.unanswered.take(hand));
+  take(move);
+  EXPECT_THAT(texts(arm), ElementsAre("MOVE_TO"));
+}
+
 TEST_F(TelecommandsTest, OfDamagedPacketsTenInASecondAreReportedTheOthersAreCounted) {
   auto damaged = move;
   damaged.back() ^= std::byte{1};

@@ -11,7 +11,7 @@ namespace hirosco::supervisor {
 
 namespace {
 /// Of the supervisor's own telecommands.
-constexpr std::uint16_t own_source = 1;
+constexpr std::uint16_t own_source = pus::supervisor_apid;
 /// In the place of a number of reports: its end was heard by a supervisor that died before it could be told.
 constexpr std::uint16_t unsaid = 0xFFFF;
 
@@ -109,9 +109,8 @@ std::vector<pus::Request> Unanswered::take_settled() {
 }
 
 void Unanswered::counted(std::uint16_t apid, std::uint16_t count, TimePoint now) {
-  constexpr std::uint16_t modulo = 16'384;
   Sender& sender = senders_[apid];
-  const bool next = count == (sender.count + 1) % modulo;
+  const bool next = count == (sender.count + 1) % pus::sequence_counts;
   if (std::exchange(sender.recalled, false) && !next) sender.lost_at = now;
   sender.count = count;
 }

@@ -19,7 +19,7 @@ namespace hirosco::supervisor {
 
 class Unanswered {
  public:
-  /// More cannot be on their way to all subsystems at once: forward_room() is asked before.
+  /// To all subsystems at once. Whoever forwards one more asks full() before.
   static constexpr std::size_t most = 16'384;
 
   /// A telecommand leaves for `apid`. One that asks for no report on its completion is known until it was accepted, or

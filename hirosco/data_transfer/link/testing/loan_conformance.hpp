@@ -19,7 +19,7 @@ namespace hirosco::testing {
 class LoanConformance : public ::testing::TestWithParam<const LinkMechanism*> {
  protected:
   static constexpr std::uint32_t octets = 1000;  ///< no multiple of a cache line
-  static constexpr LinkLayout layout{
+  static inline const LinkLayout layout{
       .epoch = 7, .payload_octets = octets, .layout_hash = 0x1234'5678'9ABC'DEF0, .period = 33ms};
   static std::vector<std::byte> sample(std::uint64_t number) {
     std::vector<std::byte> payload(octets);

@@ -18,11 +18,11 @@ class QueueConformance : public ::testing::TestWithParam<const LinkMechanism*> {
  protected:
   using Payload = std::array<std::byte, 24>;
   static constexpr std::uint32_t depth = 8;
-  static constexpr LinkLayout layout{.epoch = 7,
-                                     .payload_octets = sizeof(Payload),
-                                     .layout_hash = 0x1234'5678'9ABC'DEF0,
-                                     .period = 1ms,
-                                     .depth = depth};
+  static inline const LinkLayout layout{.epoch = 7,
+                                        .payload_octets = sizeof(Payload),
+                                        .layout_hash = 0x1234'5678'9ABC'DEF0,
+                                        .period = 1ms,
+                                        .depth = depth};
   static Payload sample(std::uint64_t number) {
     Payload payload{};
     for (std::size_t i = 0; i < payload.size(); ++i) payload[i] = static_cast<std::byte>(number * 31 + i);
