@@ -16,12 +16,11 @@
 #include "hirosco/utilities/time.hpp"
 
 /// The real-time link as a contract (paper 4.1): whoever makes, uses or watches a link knows what stands here and no mechanism
-/// by name. A mechanism is a class beside this file and a row in the table of each backend (`linux_mechanisms.cpp`,
-/// `posix_mechanisms.cpp`).
+/// by name. A mechanism is a class beside this file and a row in the table of each backend that has it (`*_mechanisms.cpp`).
 ///
 /// A sample's way: parameters -> LinkOutputSlot::write (`subsystem/cycle/link_slots.cpp`) -> LinkWriter -> shared memory, or
-/// datagrams (`udp_link.cpp`) -> LinkReader -> LinkInputSlot::read -> the author's LinkInput. Both ends are attached by `subsystem/service_loop/link_ends.cpp`;
-/// the handshake before it is led by `supervisor/supervision/realtime_links/link_handshakes.cpp`.
+/// datagrams (`udp_link.cpp`) -> LinkReader -> LinkInputSlot::read -> the author's LinkInput. Both ends are attached by
+/// `service_loop/link_ends.cpp` of the subsystem, after the handshake of `realtime_links/link_handshakes.cpp` of the supervisor.
 namespace hirosco {
 
 /// How samples travel.
