@@ -188,8 +188,8 @@ DEFECTS = [
            "subsystem_test", "Rings.FullOfAnAuthorsEventsStillTellThatADeviceIsLost"),
     # ... and of answers to telecommands.
     Defect("events crowd out answers", CYCLE,
-           "RecordRing& ring = parts_.handover.events;\n  if (event.severity < descriptor::Severity::Medium &&",
-           "RecordRing& ring = PLANTED ? parts_.handover.answers : parts_.handover.events;\n"
+           "RecordRing& ring = parts_.rings.events;\n  if (event.severity < descriptor::Severity::Medium &&",
+           "RecordRing& ring = PLANTED ? parts_.rings.answers : parts_.rings.events;\n"
            "  if (!PLANTED && event.severity < descriptor::Severity::Medium &&",
            "subsystem_test", "Rings.FullOfAnAuthorsEventsAndProgressLoseNoAnswerAndTellWhatTheyLost"),
     # Events with arrays had another length than their descriptor, and were never reported.
