@@ -31,8 +31,8 @@
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
+#include "supervisor/supervision/subsystem_handling/replacement.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
-#include "supervisor/supervision/subsystem_handling/versions.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::supervisor {
@@ -47,8 +47,9 @@ struct SupervisorParts final : OwnSubsystem::Author {
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count},
         descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
-        memory{outside.journal,
-               {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &versions}} {
+        memory{
+            outside.journal,
+            {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &replacement}} {
     if (outside.journal != nullptr) craft.remembers = [this] { memory.note(); };
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
@@ -70,7 +71,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
     links.provide();
     log_watch.provide();
     power.provide();
-    versions.provide();
+    replacement.provide();
     descriptors.provide();
     safe_all.provide();
     shutdown.provide();
@@ -118,15 +119,15 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Restoration restoration{means, own, under_way};
   LinkLosses losses{means, own, links};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
-                       restarts, restoration, resources, versions, stored}};
-  Versions versions{{craft, own, processes, reactions, under_way}};
+                       restarts, restoration, resources, replacement, stored}};
+  Replacement replacement{{craft, own, processes, reactions, under_way}};
   Descriptors descriptors;
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
   // what outlives this supervisor
   Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
                      safe_all, shutdown, memory}};
   Memory memory;
-  std::array<Watch*, 18> watches{&adoption,    &stored,        &processes,    &versions,         &descriptors,
+  std::array<Watch*, 18> watches{&adoption,    &stored,        &processes,    &replacement,      &descriptors,
                                  &ground_link, &restoration,   &losses,       &housekeeping,     &power,
                                  &links,       &log_watch,     &telecommands, &own_telecommands, &replies,
                                  &resources,   &subscriptions, &waiting};

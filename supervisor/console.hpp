@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
-#include "supervisor/platform/launch/error_lines.hpp"
+#include "supervisor/platform/launch/standard_error.hpp"
 #include "supervisor/supervisor.hpp"
 
 /// What a person at the terminal sees: the story of commissioning and recovery, then a live line every second.

@@ -54,9 +54,9 @@ planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "simulation/devices/a/a.cpp ro
            "simulation/scenarios/a.cpp missions/b/b.hpp", "tools/hirosco/a.cpp missions/b/b.hpp",
            "ground/api/a.cpp boost/asio.hpp", "tools/ground/a.cpp boost/asio.hpp", "ground/model/a.cpp ground/api/b.hpp",
            "ground/api/a.cpp ground/shell/b.hpp", "hirosco/subsystem/author/a.hpp hirosco/subsystem/service_loop/b.hpp", "ground/clients/python/a.cpp ground/replay/b.hpp"]
-missed = [plant for plant in planted if not wrong(*plant.split())]
+missed = [case for case in planted if not wrong(*case.split())]
 root = pathlib.Path(__file__).resolve().parent.parent
 files = [file for top in [*may, "missions", "tools", "tests", "bench"] for file in sorted((root / top).rglob("*.[hc]pp"))]
 found = [f"{path}: includes {to}, {reason}" for path, text in ((f.relative_to(root).as_posix(), f.read_text()) for f in files)
          for to in include.findall(text) if (reason := wrong(path, to))]
-sys.exit("\n".join(found + [f"planted and not seen: {plant}" for plant in missed]) or ("no files" if not files else None))
+sys.exit("\n".join(found + [f"planted and not seen: {case}" for case in missed]) or ("no files" if not files else None))

@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A code block that follows `<!-- quote: PATH -->` in a Markdown file must be PATH or a contiguous part of it; and what
 the documents name in backquotes as a file or folder of the project must exist; in a README also what it names by a part of its
-path. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist."""
+path. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist. Each page of docs/adr has
+a status; one that says "Changes NNNN" is named there by "changed by" of that page, and the other way round."""
 import pathlib
 import posixpath
 import re
@@ -48,6 +49,25 @@ def undefined(text, known):
             yield f"cites {kind} {number}, which does not exist"
 
 
+def statuses(pages):
+    """Yields what is wrong with the statuses of docs/adr; `pages` has the text of each by its number, four digits."""
+    changes = {number: set() for number in pages}
+    changed_by = {number: set() for number in pages}
+    for number, text in pages.items():
+        status = re.search(r"^# .*\n\n(Status: (?:accepted|superseded)[;.].*\n(?:.+\n)*)", re.sub(r"\]\([^)]*\)", "]", text) + "\n", re.M)
+        if not status:
+            yield f"{number} has no line 'Status: accepted.' below its heading"
+            continue
+        words = re.sub(r"\([^)]*\)", "", status[1])
+        for which, told in ((changes, r"\bChanges ([^.]*)"), (changed_by, r"; changed by ([^.]*)")):
+            which[number].update(other for part in re.findall(told, words) for other in re.findall(r"\b\d{4}\b", part))
+    for number in sorted(pages):
+        yield from (f"{number} says that it changes {other}, whose status lacks 'changed by {number}'"
+                    for other in sorted(changes[number]) if number not in changed_by.get(other, ()))
+        yield from (f"{number} says that {other} changed it, which does not say 'Changes {number}'"
+                    for other in sorted(changed_by[number]) if number not in changes.get(other, ()))
+
+
 def self_test():
     read = {"a.cpp": "one\ntwo\nthree\n"}.get
     exists = {"tools/a.cpp", "tools/"}.__contains__
@@ -65,6 +85,12 @@ def self_test():
     assert not list(undefined("adr 0007, docs/adr/0007-one.md, Decision 3, decisions 3 and 4, hazard SF1", known))
     for fault in ("adr 0008", "docs/adr/0008-one.md", "decision 4", "(hazard SF2)", "findings SF1, finding 3", "LW1"):
         assert list(undefined(fault, known)), fault
+    page = "# {} A\n\nStatus: accepted{}\n\n## Context\nChanges 0009.\n".format
+    newer, older = page(2, ". Changes 0001 (as of\n0003), and decision 7. New."), page(1, "; changed by [0002](0002-a.md).")
+    assert not list(statuses({"0001": older, "0002": newer}))
+    for wrong_page in (page(1, "."), page(1, "; changed by 0003."), older.replace("Status", "State"), older.replace("\n\nS", "\n\nA\n\nS")):
+        assert list(statuses({"0001": wrong_page, "0002": newer})), wrong_page
+    assert list(statuses({"0001": older, "0002": page(2, ".")}))
 
 
 self_test()
@@ -92,6 +118,8 @@ known = {"adr": numbers(r"^docs/adr/(\d{4})", "\n".join(files)), "decision": num
          "sf": numbers(r"^SF(\d+),", read("docs/safety/hazards.csv"))}
 index = {int(number) for number in re.findall(r"^\| \[(\d{4})\]", read("docs/adr/README.md"), re.M)}
 found = [f"docs/adr/README.md has no row of {number:04}" for number in sorted(known["adr"] - index)]
+found += [f"docs/adr: {what}" for what in statuses(
+    {pathlib.Path(name).name[:4]: read(name) for name in files if re.match(r"docs/adr/\d{4}-", name) and exists(name)})]
 found += [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
           for what in wrong(file.read_text(), read, exists)]
 for name in sorted(files):

@@ -15,7 +15,7 @@ int main() {
   };
   const Reading<Subsystem> reading = read_subsystem("light.xml", source);
   for (const Diagnostic& problem : reading.problems) std::fputs(render(problem, source, false).c_str(), stdout);
-  // light.xml:2:38: error: unknown parameter type 'DUBLE'
+  // light.xml:2:38: error: E0104: unknown parameter type 'DUBLE'
   //     2 |   <ParamRef name="GOAL" id="1" type="DUBLE"/>
   //       |                                      ^~~~~ did you mean 'DOUBLE'?
   return reading.problems.size() == 1 ? 0 : 1;

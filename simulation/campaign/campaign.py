@@ -24,8 +24,8 @@ def limited():
 class Pilot:
     """Flies plans and has them judged."""
 
-    def __init__(self, mission, fly_plan, plant=None):
-        self.mission, self.fly_plan, self.plant = mission, fly_plan, plant
+    def __init__(self, mission, fly_plan, defect=None):
+        self.mission, self.fly_plan, self.defect = mission, fly_plan, defect
         self.judged = read_mission(mission)
 
     def fly(self, plan, folder=None):
@@ -33,7 +33,7 @@ class Pilot:
         with tempfile.TemporaryDirectory() as own:
             folder = pathlib.Path(folder or own)
             (folder / "plan.txt").write_text(plan)
-            command = [self.fly_plan, self.mission, folder / "plan.txt", folder] + ([self.plant] if self.plant else [])
+            command = [self.fly_plan, self.mission, folder / "plan.txt", folder] + ([self.defect] if self.defect else [])
             flown = subprocess.run(command, capture_output=True, text=True, preexec_fn=limited)
             if flown.returncode == -signal.SIGXCPU:
                 return {"violations": [["I1", 0, "the flight does not end"]], "commands": {}, "faults": {}}
@@ -64,7 +64,7 @@ class Campaign:
     def __init__(self, arguments):
         self.arguments = arguments
         self.mission = read_mission(arguments.mission)
-        self.pilot = Pilot(arguments.mission, arguments.fly_plan, arguments.plant)
+        self.pilot = Pilot(arguments.mission, arguments.fly_plan, arguments.defect)
         self.commands, self.faults = collections.Counter(), collections.Counter()
         self.out_of_reach = out_of_reach(self.mission)
         self.command_cells = [cell for cell in commands_of(self.mission) if cell not in self.out_of_reach]
@@ -151,7 +151,7 @@ def parse(words=None):
     parser.add_argument("--out", help="folder for the plans that failed")
     parser.add_argument("--shrink", type=int, default=3, help="how many failed plans are made small (0: none)")
     parser.add_argument("--table", action="store_true", help="print all cells that are not full")
-    parser.add_argument("--plant", help="fly with this planted defect")
+    parser.add_argument("--defect", help="fly with this planted defect")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--fly-plan", default=os.environ.get("HIROSCO_FLY_PLAN", str(default)))
     return parser.parse_args(words)
@@ -160,7 +160,7 @@ def parse(words=None):
 def main():
     arguments = parse()
     if arguments.plan:
-        result = Pilot(arguments.mission, arguments.fly_plan, arguments.plant).fly(pathlib.Path(arguments.plan).read_text(), arguments.out)
+        result = Pilot(arguments.mission, arguments.fly_plan, arguments.defect).fly(pathlib.Path(arguments.plan).read_text(), arguments.out)
         for invariant, seconds, text in result["violations"]:
             print(f"{invariant} {seconds:.4f} s: {text}")
         return 1 if result["violations"] else 0

@@ -8,8 +8,8 @@
 #include "hirosco/descriptor/read/read.hpp"
 #include "simulation/campaign/planned_flight.hpp"
 
-/// hirosco-fly-plan MISSION PLAN FOLDER [PLANT]: flies the plan, with a planted defect where one is named, and leaves
-/// log.txt, trace.txt and story.txt in the folder. Without arguments: the names of the plants.
+/// hirosco-fly-plan MISSION PLAN FOLDER [DEFECT]: flies the plan, with a planted defect where one is named, and leaves
+/// log.txt, trace.txt and story.txt in the folder. Without arguments: the names of the planted defects.
 namespace {
 
 using namespace hirosco;
@@ -28,12 +28,12 @@ void write_log(const std::vector<supervisor::LogRecord>& records, const std::fil
 int main(int argc, char** argv) {
   constexpr int exit_usage = 2, exit_finding = 1;
   if (argc == 1) {
-    for (const auto name : campaign::plant_names()) fmt::print("{}\n", name);
+    for (const auto name : campaign::defect_names()) fmt::print("{}\n", name);
     return 0;
   }
-  auto plant = argc == 5 ? campaign::plant_named(argv[4]) : nullptr;
-  if (argc < 4 || argc > 5 || (argc == 5 && plant == nullptr)) {
-    fmt::print(stderr, "hirosco-fly-plan MISSION PLAN FOLDER [PLANT]\n");
+  auto defect = argc == 5 ? campaign::defect_named(argv[4]) : nullptr;
+  if (argc < 4 || argc > 5 || (argc == 5 && defect == nullptr)) {
+    fmt::print(stderr, "hirosco-fly-plan MISSION PLAN FOLDER [DEFECT]\n");
     return exit_usage;
   }
   const std::filesystem::path folder{argv[3]};
@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   auto modules = simulation::load_modules(*reading.value);
   for (const auto& [program, why] : modules.missing) fmt::print(stderr, "hirosco-fly-plan: {}\n", why);
   if (!modules.missing.empty()) return exit_finding;
-  campaign::PlannedFlight flight{*reading.value, std::move(modules), std::move(*plan), std::move(plant)};
+  campaign::PlannedFlight flight{*reading.value, std::move(modules), std::move(*plan), std::move(defect)};
   flight.fly();
   write_log(flight.disk().records, folder / "log.txt");
   std::ofstream{folder / "trace.txt"} << flight.trace().text();

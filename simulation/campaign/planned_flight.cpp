@@ -34,16 +34,16 @@ void PlannedFlight::Observer::told(OnboardTime, std::string_view line) {
 }
 
 PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Modules modules, FlightPlan plan,
-                             std::unique_ptr<Plant> plant)
+                             std::unique_ptr<PlantedDefect> defect)
     : mission_{mission},
       plan_{std::move(plan)},
-      plant_{plant ? std::move(plant) : std::make_unique<Plant>()},
+      defect_{defect ? std::move(defect) : std::make_unique<PlantedDefect>()},
       modules_{std::move(modules)} {
   if (!plan_.mode.empty()) mission_.start_mode = plan_.mode;
-  plant_->mission = &mission_;
-  if (plant_->edit) plant_->edit(mission_);
-  if (plant_->devices) plant_->devices(modules_.devices);
-  disk_.keeps = plant_->keeps;
+  defect_->mission = &mission_;
+  if (defect_->edit) defect_->edit(mission_);
+  if (defect_->devices) defect_->devices(modules_.devices);
+  disk_.keeps = defect_->keeps;
   craft_ = std::make_unique<simulation::Spacecraft>(simulation::Spacecraft::Parts{
       .mission = mission_,
       .subsystems = modules_.subsystems,
@@ -53,10 +53,10 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
       .seed = plan_.seed,
       .make_log = [this](const Clock& clock) { return log_on(disk_, clock); },
       .open_database = [this](supervisor::DatabaseStrategy) { return database_on(disk_); },
-      .wrap_channel = plant_->wrap_channel});
-  plant_->craft = craft_.get();
+      .wrap_channel = defect_->wrap_channel});
+  defect_->craft = craft_.get();
   observer_.craft = craft_.get();
-  trace_ = std::make_unique<WorldTrace>(mission_, *craft_, plant_->clock_percent);
+  trace_ = std::make_unique<WorldTrace>(mission_, *craft_, defect_->clock_percent);
   craft_->ground().on_telemetry([this](Octets packet) { received_on_ground(packet); });
 }
 
@@ -72,7 +72,7 @@ void PlannedFlight::fly() {
 }
 
 void PlannedFlight::look() {
-  if (plant_->each_instant) plant_->each_instant();
+  if (defect_->each_instant) defect_->each_instant();
   trace_->look();
 }
 
@@ -103,7 +103,7 @@ void PlannedFlight::run_until(const std::function<bool()>& condition, Duration l
 void PlannedFlight::perform(const Action& action) {
   if (craft_->supervisor().finished()) return;
   const bool done = do_action(action.words);
-  if (plant_->after_action) plant_->after_action(action.words);
+  if (defect_->after_action) defect_->after_action(action.words);
   std::string words;
   for (const std::string& word : action.words)
     if (words.size() < 60) words += " " + word;

@@ -12,7 +12,7 @@
 #include "hirosco/descriptor/model/mission.hpp"
 #include "simulation/campaign/campaign_log.hpp"
 #include "simulation/campaign/plan.hpp"
-#include "simulation/campaign/plants.hpp"
+#include "simulation/campaign/planted_defects.hpp"
 #include "simulation/campaign/world_trace.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "simulation/spacecraft/spacecraft.hpp"
@@ -22,9 +22,9 @@ namespace hirosco::campaign {
 /// One flight of a mission under a plan.
 class PlannedFlight {
  public:
-  /// `plant`: a defect to be found, else null.
+  /// `defect`: a defect to be found, else null.
   PlannedFlight(const descriptor::Mission& mission, simulation::Modules modules, FlightPlan plan,
-                std::unique_ptr<Plant> plant);
+                std::unique_ptr<PlantedDefect> defect);
 
   /// Flies it all. Packet log and trace are whole afterwards.
   void fly();
@@ -73,7 +73,7 @@ class PlannedFlight {
 
   descriptor::Mission mission_;
   FlightPlan plan_;
-  std::unique_ptr<Plant> plant_;
+  std::unique_ptr<PlantedDefect> defect_;
   simulation::Modules modules_;
   Disk disk_;
   std::unique_ptr<supervisor::Database> unused_{database_on(disk_)};

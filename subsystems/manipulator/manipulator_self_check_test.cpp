@@ -110,12 +110,12 @@ TEST(ManipulatorSelfTest, PassesAtItsStopsAndUnderLoad) {
 }
 
 /// What a slip of the pen makes of the law.
-struct Plant {
+struct PlantedDefect {
   const char* what;
   Law law;
   const char* found;
 };
-constexpr Plant plants[]{
+constexpr PlantedDefect defects[]{
     {"all torques reversed",
      [](JointController& law, const Joints& desired, const Measured& measured, const Gains& gains) noexcept {
        Joints torque = law.motor_torque(desired, measured, gains);
@@ -173,14 +173,14 @@ constexpr Plant plants[]{
 };
 
 TEST(ManipulatorSelfTest, FindsAWrongSignInTheLawAndKeepsTheArmFromOperational) {
-  for (const Plant& plant : plants) {
-    SCOPED_TRACE(plant.what);
-    Tested tested{plant.law};
+  for (const PlantedDefect& defect : defects) {
+    SCOPED_TRACE(defect.what);
+    Tested tested{defect.law};
     tested.up();
-    EXPECT_EQ(Tested::said(tested.self_test()), plant.found);
+    EXPECT_EQ(Tested::said(tested.self_test()), defect.found);
     const std::string refused = tested.operational();
     EXPECT_EQ(refused.substr(0, 8), "1 4:010a");
-    const std::string words = std::string{plant.found}.substr(0, std::string{plant.found}.rfind(' '));
+    const std::string words = std::string{defect.found}.substr(0, std::string{defect.found}.rfind(' '));
     EXPECT_NE(refused.find(testing::hex(std::as_bytes(std::span{words}))), std::string::npos) << "with the reason";
     EXPECT_EQ(tested.rig.state(), State::SafeOperational);
     EXPECT_THAT(tested.modes, ::testing::Each(DeviceMode::Off));
@@ -189,10 +189,10 @@ TEST(ManipulatorSelfTest, FindsAWrongSignInTheLawAndKeepsTheArmFromOperational) 
 }
 
 TEST(ManipulatorSelfTest, FindsSensorsThatCannotBeRightAtRest) {
-  const auto found = [](auto plant) {
+  const auto found = [](auto defect) {
     Tested tested;
     tested.up();
-    plant(tested);
+    defect(tested);
     tested.cycle(2);
     return Tested::said(tested.self_test());
   };

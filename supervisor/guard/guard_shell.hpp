@@ -27,7 +27,8 @@ class GuardShell {
  public:
   /// Above all cycles (1 to 89), below the kernel's own.
   static constexpr int priority = 90;
-  /// An empty `folder`: no socket. `on_signal`: after a stop by signal was carried out. Thread: the guard's. SIGUSR1 must be blocked in the process. SystemFailure: socket, thread.
+  /// An empty `folder`: no socket. `on_signal`: after a stop by signal was carried out. Thread: the guard's. SIGUSR1 must be
+  /// blocked in the process. SystemFailure: socket, thread.
   [[nodiscard]] static Result<std::unique_ptr<GuardShell>> start(Guard& guard, const Clock& clock,
                                                                  const std::filesystem::path& folder,
                                                                  std::function<void()> on_signal = {});

@@ -13,8 +13,8 @@
 #include "supervisor/supervision/journal.hpp"
 
 /// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
-/// than its plan says (`procedures/steps/restart.hpp`; `Processes` starts it; hazard SF15; reliability 5: a crash loop stays down until the ground starts it, docs/adr/0068). The ground
-/// link alone never stays down: nobody could bring it up again.
+/// than its plan says (`procedures/steps/restart.hpp`; `Processes` starts it; hazard SF15; reliability 5: a crash loop stays
+/// down until the ground starts it, docs/adr/0068). The ground link alone never stays down: nobody could bring it up again.
 namespace hirosco::supervisor {
 
 class Restarts final : public Remembered {

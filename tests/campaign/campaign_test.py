@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """A slice of the campaign has no violation, the same seed gives the same octets, a failing plan shrinks to what it needs,
-and each planted defect is found. campaign_test.py [flights|typed|plants|tools] [PLANT...]"""
+and each planted defect is found. campaign_test.py [flights|typed|defects|tools] [DEFECT...]"""
 import collections, os, pathlib, subprocess, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor
 
@@ -10,12 +10,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "simulation" / "campaign")]
 from campaign import Campaign, Pilot, parse  # noqa: E402
 from draw import Draw  # noqa: E402
-import defects_in_code, plants_in_code  # noqa: E401, E402
+import defects_in_unit_tests, defects_flown  # noqa: E401, E402
 from shrink import shrink, split  # noqa: E402
 
 MISSION = str(HERE.parents[1] / "missions" / "rokviss")
 # The planted defects bear the name of the invariant that they break.
-PLANTS = ["I1", "I2", "I3", "I4", "I5", "I6", "I8", "I9", "I10", "I11", "I12", "I13"]
+DEFECTS = ["I1", "I2", "I3", "I4", "I5", "I6", "I8", "I9", "I10", "I11", "I12", "I13"]
 MOST_FLIGHTS = 40          # until a planted defect is found
 SLICE = 20
 CALLS = 1_000              # of functions with arguments of every type
@@ -55,22 +55,22 @@ def typed():
     check(called >= CALLS, "they reached a subsystem that is Operational")
 
 
-def find(plant):
+def find(defect):
     """How many flights it took, 0 when it was not found."""
-    campaign = Campaign(parse([MISSION, "--plant", plant]))
+    campaign = Campaign(parse([MISSION, "--defect", defect]))
     for index in range(MOST_FLIGHTS):
         result = campaign.pilot.fly(campaign.plan(index))
-        if any(violation[0] == plant for violation in result["violations"]):
+        if any(violation[0] == defect for violation in result["violations"]):
             return index + 1
     return 0
 
 
-def plants(wanted):
+def defects(wanted):
     names = subprocess.run([fly_plan()], capture_output=True, text=True).stdout.split()
-    check(set(names) == set(PLANTS), "every invariant has a planted defect")
+    check(set(names) == set(DEFECTS), "every invariant has a planted defect")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for plant, found in zip(wanted, pool.map(find, wanted)):
-            check(found, f"what is planted against {plant} is found" + (f" in flight {found}" if found else ""))
+        for defect, found in zip(wanted, pool.map(find, wanted)):
+            check(found, f"what is planted against {defect} is found" + (f" in flight {found}" if found else ""))
 
 
 def fly_plan():
@@ -78,7 +78,7 @@ def fly_plan():
 
 
 def tools():
-    for misfit in (gone := plants_in_code.misfits() + defects_in_code.misfits()):
+    for misfit in (gone := defects_flown.misfits() + defects_in_unit_tests.misfits()):
         print(misfit)
     check(not gone, "every finding that is put back into a copy of the code still has its place there")
     plan = Campaign(parse([MISSION, "--seed", "7"])).plan(3)
@@ -99,8 +99,8 @@ if __name__ == "__main__":
         flights()
     if what in ("typed", "all"):
         typed()
-    if what in ("plants", "all"):
-        plants(sys.argv[2:] or PLANTS)
+    if what in ("defects", "all"):
+        defects(sys.argv[2:] or DEFECTS)
     if what in ("tools", "all"):
         tools()
     sys.exit(1 if problems else 0)

@@ -53,7 +53,7 @@ class Check(unittest.TestCase):
 
     def test_a_missing_program_is_a_warning_until_it_is_to_fly(self):
         mission = self.mission("hello", old='"hirosco-hello"', new='"hirosco-hallo"')
-        self.expect(mission, 0, "warning: no program hirosco-hallo for subsystem HELLO", "mission.xml:10:3", "1 warning")
+        self.expect(mission, 0, "warning: E0401: no program hirosco-hallo for subsystem HELLO", "mission.xml:10:3", "1 warning")
         self.assertEqual(hirosco("check", "--fly", mission)[0], 1)
         for command, what in (("run", "program"), ("simulate", "module")):
             code, told = hirosco(command, mission, "--for", "1s")
@@ -86,8 +86,8 @@ class Check(unittest.TestCase):
         self.expect(mission, 0)
         code, told = hirosco("check", "--fly", mission)
         self.assertEqual(code, 1)
-        self.assertIn("error: HELLO: on_function: the descriptor declares no function 'MOVE_TO'", told)
-        self.assertIn("error: HELLO: function declared but without a handler: MOVE_TOO", told)
+        self.assertIn("error: E0406: HELLO: on_function: the descriptor declares no function 'MOVE_TO'", told)
+        self.assertIn("error: E0406: HELLO: function declared but without a handler: MOVE_TOO", told)
 
     def test_what_cannot_fly_is_refused(self):
         robot, hand = "subsystems/manipulator/manipulator.xml", "subsystems/joystick/joystick.xml"
@@ -114,7 +114,7 @@ class Check(unittest.TestCase):
         code, told = hirosco("check", first, second, self.folder / "none.xml")
         self.assertEqual(code, 1)
         for text in ("</Mission> stands where <Mision>, opened in 4:1",
-                     "</Subsystem> stands where <Parameters>, opened in ", "none.xml: error: does not exist"):
+                     "</Subsystem> stands where <Parameters>, opened in ", "none.xml: error: E0001: does not exist"):
             self.assertIn(text, told)
 
     def test_what_is_no_file_says_what_it_is(self):

@@ -49,6 +49,12 @@ class Pages(unittest.TestCase):
     def test_what_is_no_page_is_refused(self):
         self.assertIn("what should be the permit page is none", self.refused(MAGIC + 1, VERSION))
 
+    def test_the_document_names_the_version_that_is_built(self):
+        rows = [row for row in (REPOSITORY / "docs/interfaces.md").read_text().splitlines() if "`page_version`" in row]
+        self.assertEqual(len(rows), 1)
+        self.assertEqual(re.findall(r"`page_version` (\d+)|this program's of version (\d+)", rows[0]),
+                         [(str(VERSION), ""), ("", str(VERSION))])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -13,7 +13,7 @@ import unittest
 
 import flight
 
-MISSION = pathlib.Path(__file__).resolve().parents[1] / "handover/mission.xml"
+MISSION = pathlib.Path(__file__).resolve().parent / "handover.xml"
 TOLD = "the task of KEEPER is with SPARE"
 
 

@@ -11,7 +11,7 @@ ROOT = HERE.parents[1]
 COMPILERS = ("clang++-19", "clang++")
 FLAGS = ["-std=c++23", "-O1", "-g1", "-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all", f"-I{ROOT}"]
 LONGEST_INPUT = 400
-MOST_RUNS_OF_A_PLANT = 2_000_000
+MOST_RUNS_WITH_A_DEFECT = 2_000_000
 ARGUMENTS = "hirosco/pus/service/arguments.cpp"
 FRAMES = "hirosco/data_transfer/control/stream_frame.cpp"
 DATAGRAMS = "hirosco/data_transfer/link/link_datagram.cpp"
@@ -21,7 +21,7 @@ URDF = "robotics/urdf/read.cpp"
 URDF_TREE = "robotics/urdf/connect.cpp"
 # What a target needs of the system besides the C++ library.
 SYSTEM = {"urdf": ["-isystem", "/usr/include/eigen3", "-lexpat"]}
-# The files of a target, and its plants: what stands in a file, and what does in its place.
+# The files of a target, and its defects: what stands in a file, and what does in its place.
 TARGETS = {"arguments": (
     [ARGUMENTS, "hirosco/pus/st08_function/function_service.cpp", "hirosco/pus/st01_verification/verification.cpp",
      "hirosco/pus/packet/packet.cpp", "hirosco/pus/packet/cuc.cpp", "hirosco/parameter/exact_number.cpp"],
@@ -118,7 +118,7 @@ def main():
     name = compiler()
     if name is None:
         return subprocess.run([ROOT / "tools/skip_reason", "no-libfuzzer"], check=False).returncode
-    files, plants = TARGETS[given.target]
+    files, defects = TARGETS[given.target]
     system = SYSTEM.get(given.target, [])
     harness = HERE / f"{given.target}_fuzz.cpp"
     folder = given.build / "fuzz" / given.target
@@ -131,14 +131,14 @@ def main():
     problem = fuzz(built(name, [harness, *(ROOT / file for file in files)], folder / "target", system), corpus, given.runs)
     print(f"{given.runs} runs of {given.target}: {problem or 'nothing found'}")
     missed = 0
-    for says, (file, good, bad) in plants.items():
+    for says, (file, good, bad) in defects.items():
         text = (ROOT / file).read_text()
         if text.count(good) != 1:
             sys.exit(f"{says}: its place is no longer in {file}")
         planted = folder / (re.sub(r"\W", "_", file) + ".cpp")
         planted.write_text(text.replace(good, bad))
         sources = [harness, planted, *(ROOT / other for other in files if other != file)]
-        found = fuzz(built(name, sources, folder / "planted", system), corpus, MOST_RUNS_OF_A_PLANT)
+        found = fuzz(built(name, sources, folder / "planted", system), corpus, MOST_RUNS_WITH_A_DEFECT)
         print(f"{'found' if found else 'NOT FOUND'}: {says}", flush=True)
         missed += found is None
     return 1 if problem or missed else 0

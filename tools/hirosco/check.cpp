@@ -12,7 +12,7 @@
 #include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/xml/reader.hpp"
-#include "supervisor/supervision/event_handling/dry_run.hpp"
+#include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/readiness.hpp"
 

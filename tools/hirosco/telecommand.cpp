@@ -162,7 +162,7 @@ void print_problem(const pus::TelemetryView& report, bool json) {
   const auto problem = pus::st129::read_descriptor_problem(report.source_data());
   if (!problem) return;
   const auto printable = [](const std::string& text) { return pus::text_of(std::as_bytes(std::span{text})); };
-  std::string text = fmt::format("{}:{}:{}: error {}: {}", printable(problem->file), problem->line, problem->column,
+  std::string text = fmt::format("{}:{}:{}: error: {}: {}", printable(problem->file), problem->line, problem->column,
                                  printable(problem->code), printable(problem->what));
   if (!problem->hint.empty()) text += " (" + printable(problem->hint) + ")";
   if (!json) return fmt::print("{}\n", text);

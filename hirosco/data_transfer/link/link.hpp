@@ -16,11 +16,11 @@
 #include "hirosco/utilities/time.hpp"
 
 /// The real-time link as a contract (paper 4.1): whoever makes, uses or watches a link knows what stands here and no mechanism
-/// by name. A mechanism is a class beside this file and a row in `mechanisms.cpp`.
+/// by name. A mechanism is a class beside this file and a row in the table of each backend that has it (`*_mechanisms.cpp`).
 ///
-/// A sample's way: parameters -> LinkOutputSlot::write (`subsystem/cycle/link_slots.cpp`) -> LinkWriter -> shared memory ->
-/// LinkReader -> LinkInputSlot::read -> the author's LinkInput. Both ends are attached by `subsystem/service_loop/link_ends.cpp`;
-/// the handshake before it is led by `supervisor/supervision/realtime_links/link_handshakes.cpp`.
+/// A sample's way: parameters -> LinkOutputSlot::write (`subsystem/cycle/link_slots.cpp`) -> LinkWriter -> shared memory, or
+/// datagrams (`udp_link.cpp`) -> LinkReader -> LinkInputSlot::read -> the author's LinkInput. Both ends are attached by
+/// `service_loop/link_ends.cpp` of the subsystem, after the handshake of `realtime_links/link_handshakes.cpp` of the supervisor.
 namespace hirosco {
 
 /// How samples travel.
@@ -46,8 +46,8 @@ inline constexpr std::uint32_t max_queue_octets = 64U << 20;
          std::uint64_t{depth} * payload_octets <= max_queue_octets;
 }
 
-/// Written by the producer beside each sample. The larger of two is the worse to rely on. What no producer wrote is read as Fault: no damage of the word turns a
-/// fault into something to rely on (hazard SF19).
+/// Written by the producer beside each sample. The larger of two is the worse to rely on. What no producer wrote is read as
+/// Fault: no damage of the word turns a fault into something to rely on (hazard SF19).
 enum class LinkStatus : std::uint32_t { None = 0, Valid = 1, Degraded = 2, Stopping = 3, Fault = 4 };
 
 /// Where the ends of a link are that is not memory, each in the words of its method; of a link in memory nothing. An address

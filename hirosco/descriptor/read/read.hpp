@@ -74,7 +74,7 @@ inline constexpr std::string_view manifest_extension = ".sha256";
 [[nodiscard]] Result<> apply_other(Subsystem& subsystem, std::string_view word, std::string_view text,
                                    const FileSource& source);
 
-/// file:line:col: error: …, the source line, a caret and the hint (docs: ground habits). `source_line` may be empty.
+/// file:line:col: error: E0104: …, the source line, a caret and the hint. Without the line where `source` is empty or has the file no more.
 [[nodiscard]] std::string render(const Diagnostic& problem, const FileSource& source, bool colour);
 
 }  // namespace hirosco::descriptor

@@ -50,7 +50,7 @@ std::string render(const Diagnostic& problem, const FileSource& source, bool col
   const bool located = problem.at.line > 0;
   const std::string where = located ? fmt::format("{}:{}:{}:", file, problem.at.line, problem.at.column) : file + ":";
   const std::string grade = problem.grade == Grade::Error ? paint(red, "error:") : paint(yellow, "warning:");
-  std::string text = fmt::format("{} {} {}\n", paint(bold, where), grade, message);
+  std::string text = fmt::format("{} {} {}: {}\n", paint(bold, where), grade, problem.code, message);
   const auto content = located && source ? source(problem.file) : fail(ErrorCode::NotFound, "");
   const std::string_view line = content ? line_of(*content, problem.at.line) : std::string_view{};
   if (line.empty()) return hint.empty() ? text : text + fmt::format("        {}\n", hint);

@@ -14,7 +14,7 @@ const Diagnostic problem{"mcs.xml", {2, 46}, "E0104", "unknown parameter type 'D
 TEST(Render, ShowsTheLineACaretAndTheHint) {
   const auto source = text_source("<Subsystem>\n  <ParamRef name=\"DES_POSITION\" id=\"1\" type=\"DUBLE\" />\n");
   EXPECT_EQ(render(problem, source, false),
-            "mcs.xml:2:46: error: unknown parameter type 'DUBLE'\n"
+            "mcs.xml:2:46: error: E0104: unknown parameter type 'DUBLE'\n"
             "    2 |   <ParamRef name=\"DES_POSITION\" id=\"1\" type=\"DUBLE\" />\n"
             "      |                                              ^~~~~ did you mean 'DOUBLE'?\n");
 }
@@ -28,14 +28,15 @@ TEST(Render, ColoursOnlyWhenAsked) {
 TEST(Render, AWarningSaysThatItIsOne) {
   Diagnostic warning = problem;
   warning.grade = Grade::Warning;
-  EXPECT_TRUE(render(warning, text_source(""), false).starts_with("mcs.xml:2:46: warning: unknown"));
+  EXPECT_TRUE(render(warning, text_source(""), false).starts_with("mcs.xml:2:46: warning: E0104: unknown"));
 }
 
 TEST(Render, GoesWithoutTheLineWhenItIsGone) {
   const auto gone = [](const auto&) { return fail(ErrorCode::NotFound, "does not exist"); };
   EXPECT_EQ(render(problem, gone, false),
-            "mcs.xml:2:46: error: unknown parameter type 'DUBLE'\n        did you mean 'DOUBLE'?\n");
-  EXPECT_EQ(render({"a.xml", {}, "E0001", "cannot be read", "", 1}, gone, false), "a.xml: error: cannot be read\n");
+            "mcs.xml:2:46: error: E0104: unknown parameter type 'DUBLE'\n        did you mean 'DOUBLE'?\n");
+  EXPECT_EQ(render({"a.xml", {}, "E0001", "cannot be read", "", 1}, gone, false),
+            "a.xml: error: E0001: cannot be read\n");
 }
 
 TEST(Render, NeverPassesControlCharactersOn) {

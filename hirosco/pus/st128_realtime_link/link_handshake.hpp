@@ -72,8 +72,8 @@ struct Agreement {
   std::uint32_t depth{0};  ///< of kind Queued, the consumer's; else 0
   Duration producer_period{};
   Duration consumer_period{};
-  std::vector<OfferedField>
-      fields;  ///< the producer's in their order: packed, or of a lent sample as in a C++ aggregate
+  /// The producer's in their order: packed, or of a lent sample as in a C++ aggregate.
+  std::vector<OfferedField> fields;
   bool wakes{false};  ///< the producer wakes the consumer after each sample, as that asked
   [[nodiscard]] std::uint32_t payload_octets() const noexcept;  ///< of a lent sample as a C++ aggregate has them
   [[nodiscard]] std::uint64_t layout_hash() const noexcept;  ///< FNV-1a 64 over fields, order, kind
@@ -91,10 +91,10 @@ struct Refusal {
 using Carried = std::function<bool(LinkMethod, LinkKind, bool wakes)>;
 
 /// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
-/// consumer has too; an integer ratio of the rates either way, but for a consumer whose cycle starts with a sample; every field the consumer requires present with the same
-/// name, type and count (the producer may have more). Method and kind are chosen together, by what can be carried. A lent
-/// sample has the same fields in the same order on both sides, and the byte order of the machine. How many samples are kept for a
-/// consumer that wants every one of them it says itself. Pure.
+/// consumer has too; an integer ratio of the rates either way, but for a consumer whose cycle starts with a sample; every
+/// field the consumer requires present with the same name, type and count (the producer may have more). Method and kind are
+/// chosen together, by what can be carried. A lent sample has the same fields in the same order on both sides, and the byte
+/// order of the machine. How many samples are kept for a consumer that wants every one of them it says itself. Pure.
 [[nodiscard]] std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer,
                                                           const Carried& carried);
 

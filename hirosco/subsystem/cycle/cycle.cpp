@@ -112,8 +112,8 @@ bool CycleLoop::controlling() const noexcept {
 void CycleLoop::take_commands(TimePoint planned) noexcept {
   parts_.writes.apply(parts_.dictionary);
   // Bounded by the ring: at most what was there when the cycle began.
-  for (std::size_t left = parts_.handover.commands.size(); left > 0; --left) {
-    const auto command = parts_.handover.commands.try_pop();
+  for (std::size_t left = parts_.rings.commands.size(); left > 0; --left) {
+    const auto command = parts_.rings.commands.try_pop();
     if (!command) return;
     switch (command->kind) {
       case CommandKind::Function: run_function(*command); break;
@@ -272,7 +272,7 @@ void CycleLoop::account(const CyclePace::Start& start, TimePoint started) noexce
   vital.latency_max_ns.store(latency_max_ns_, std::memory_order_relaxed);
   vital.execution_max_ns.store(execution_max_ns_, std::memory_order_relaxed);
   vital.execution_mean_ns.store(static_cast<std::uint32_t>(execution_mean_ns_), std::memory_order_relaxed);
-  vital.lost_reports.store(static_cast<std::uint32_t>(parts_.handover.dropped()), std::memory_order_relaxed);
+  vital.lost_reports.store(static_cast<std::uint32_t>(parts_.rings.dropped()), std::memory_order_relaxed);
   vital.cycles.fetch_add(1, std::memory_order_release);
 }
 
@@ -309,9 +309,9 @@ void CycleLoop::raise_found(const descriptor::Event& event, Octets auxiliary) no
   CycleReport head{.kind = ReportKind::Event, .index = event.id};
   // A lost device or a stale link is told whatever the author raises besides.
   if (event.id >= descriptor::framework_event::first) return answer(head, auxiliary);
-  RecordRing& ring = parts_.handover.events;
+  RecordRing& ring = parts_.rings.events;
   if (event.severity < descriptor::Severity::Medium && ring.used() > ring.capacity() / 2) {
-    parts_.handover.lost_remarks.fetch_add(1, std::memory_order_relaxed);
+    parts_.rings.lost_remarks.fetch_add(1, std::memory_order_relaxed);
     return;
   }
   head.number = ++report_number_;
@@ -330,10 +330,10 @@ void CycleLoop::fail_call(ReportKind kind, pus::FailureCode code, const pus::Req
 }
 
 void CycleLoop::answer(CycleReport head, Octets payload) noexcept {
-  RecordRing& answers = parts_.handover.answers;
+  RecordRing& answers = parts_.rings.answers;
   // Progress is all that an author can have without end: it never takes the last half.
   if (head.kind == ReportKind::Progressed && answers.used() > answers.capacity() / 2) {
-    parts_.handover.lost_progress.fetch_add(1, std::memory_order_relaxed);
+    parts_.rings.lost_progress.fetch_add(1, std::memory_order_relaxed);
     return;
   }
   head.number = ++report_number_;
@@ -345,7 +345,7 @@ std::size_t CycleLoop::sample(std::uint16_t parameter, int member, MutableOctets
 }
 
 MutableOctets CycleLoop::reserve(std::size_t octets) noexcept {
-  reserved_ = parts_.handover.housekeeping.try_reserve(sizeof(CycleReport) + octets);
+  reserved_ = parts_.rings.housekeeping.try_reserve(sizeof(CycleReport) + octets);
   return reserved_.empty() ? MutableOctets{} : reserved_.subspan(sizeof(CycleReport));
 }
 
@@ -353,7 +353,7 @@ void CycleLoop::commit(std::uint16_t structure, std::size_t octets) noexcept {
   // reserve() left room for the head in front of what it handed out.
   const CycleReport head{.kind = ReportKind::Housekeeping, .index = structure};
   std::ranges::copy(octets_of_report(head), reserved_.begin());
-  parts_.handover.housekeeping.commit(sizeof head + octets);
+  parts_.rings.housekeeping.commit(sizeof head + octets);
 }
 
 }  // namespace hirosco

@@ -17,8 +17,8 @@
 #include "hirosco/subsystem/cycle/budget_watch.hpp"
 #include "hirosco/subsystem/cycle/cycle_pace.hpp"
 #include "hirosco/subsystem/cycle/device_slot.hpp"
-#include "hirosco/subsystem/cycle/handover.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
+#include "hirosco/subsystem/cycle/loop_rings.hpp"
 #include "hirosco/subsystem/cycle/overrun_watch.hpp"
 #include "hirosco/subsystem/cycle/realtime_watch.hpp"
 #include "hirosco/subsystem/cycle/reconfiguration.hpp"
@@ -75,7 +75,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
     const Clock& clock;
     Dictionary& dictionary;
     WriteQueue& writes;
-    Handover& handover;
+    LoopRings& rings;
     VitalPage& vital;
     const PermitPage& permit;  ///< to begin with
     bool realtime;

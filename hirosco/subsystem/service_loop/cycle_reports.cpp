@@ -45,15 +45,15 @@ void GenericSubsystem::take_cycle_reports() {
     ring.pop();
   };
   for (;;) {
-    const auto event = handover_.events.front();
+    const auto event = rings_.events.front();
     // Looked at last: an answer that was made before this event is seen, too.
-    const auto answer = handover_.answers.front();
+    const auto answer = rings_.answers.front();
     if (!event && !answer) break;
     const bool answer_first = answer && (!event || comes_before(head_of(*answer).number, head_of(*event).number));
-    if (answer_first) take(handover_.answers, head_of(*answer), *answer);
-    else take(handover_.events, head_of(*event), *event);
+    if (answer_first) take(rings_.answers, head_of(*answer), *answer);
+    else take(rings_.events, head_of(*event), *event);
   }
-  while (const auto record = handover_.housekeeping.front()) take(handover_.housekeeping, head_of(*record), *record);
+  while (const auto record = rings_.housekeeping.front()) take(rings_.housekeeping, head_of(*record), *record);
 }
 
 void GenericSubsystem::take_cycle_report(const CycleReport& head, Octets payload) {
@@ -123,9 +123,9 @@ void GenericSubsystem::report(std::uint8_t service, std::uint8_t subtype, std::u
 
 /// Each loss is counted where it happens; here the counts become an event.
 void GenericSubsystem::tell_losses(TimePoint now) {
-  const std::array losses{handover_.lost_answers(),
-                          handover_.lost_events(),
-                          handover_.housekeeping.dropped(),
+  const std::array losses{rings_.lost_answers(),
+                          rings_.lost_events(),
+                          rings_.housekeeping.dropped(),
                           backlog_.lost(Backlog::Worth::Answer) + lost_by_loops(loops_),
                           backlog_.lost(Backlog::Worth::Event),
                           backlog_.lost(Backlog::Worth::Housekeeping)};

@@ -61,7 +61,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       writes_{32, 2048},
       resources_{descriptor_.resources},
       loops_{make_loops()},
-      cycle_{{author, descriptor_, platform.clock, dictionary_, writes_, handover_, vital, permit, platform.realtime,
+      cycle_{{author, descriptor_, platform.clock, dictionary_, writes_, rings_, vital, permit, platform.realtime,
               resources_}},
       counters_{vital.counters},
       verification_{*this},
@@ -272,7 +272,7 @@ bool GenericSubsystem::close_call(const pus::Request& request) {
   return true;
 }
 
-bool GenericSubsystem::push(const CycleCommand& command) { return handover_.commands.try_push(command); }
+bool GenericSubsystem::push(const CycleCommand& command) { return rings_.commands.try_push(command); }
 
 // --- parameters --------------------------------------------------------------------------------------------------------
 

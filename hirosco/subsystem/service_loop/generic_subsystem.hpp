@@ -286,7 +286,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Dictionary dictionary_;
   bool initialised_{false};  ///< the dictionary holds values, not only places for them
   WriteQueue writes_;
-  Handover handover_;
+  LoopRings rings_;
   ResourceMeter resources_;
   TimePoint look_at_resources_at_{};
   std::vector<std::unique_ptr<OwnLoop>> loops_;

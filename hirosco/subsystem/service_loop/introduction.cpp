@@ -19,7 +19,7 @@ void GenericSubsystem::mistake(std::string problem, std::optional<descriptor::Lo
 std::string GenericSubsystem::words_of(const Mistake& mistake) const {
   if (!mistake.at) return mistake.text;
   return descriptor_.file.string() + ":" + std::to_string(mistake.at->line) + ":" + std::to_string(mistake.at->column) +
-         ": error E0405: " + mistake.text;
+         ": error: E0405: " + mistake.text;
 }
 
 /// What ground has room for: the reason before the length of a path.

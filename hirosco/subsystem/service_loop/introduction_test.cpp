@@ -128,8 +128,8 @@ TEST(AuthorsMistakes, SettingsThatNobodyReadsAreToldWithTheirPlacesBeforeAnyHard
   rig.set_state_now(State::PreOperational);
   EXPECT_EQ(rig.state(), State::Offline);
   EXPECT_THAT(rig.explanations,
-              ElementsAre(::testing::HasSubstr(":6:39: error E0405: nobody reads setting 'STIFNESS' of 'MOTOR'"),
-                          ::testing::HasSubstr(":11:57: error E0405: nobody reads setting 'DAMPING' of 'MOTOR'")));
+              ElementsAre(::testing::HasSubstr(":6:39: error: E0405: nobody reads setting 'STIFNESS' of 'MOTOR'"),
+                          ::testing::HasSubstr(":11:57: error: E0405: nobody reads setting 'DAMPING' of 'MOTOR'")));
 }
 
 TEST(AuthorsMistakes, SettingsThatAreNamedAreNone) {

@@ -40,7 +40,7 @@ pus::ServiceHome& GenericSubsystem::home_of(std::uint8_t type) noexcept {
 }
 
 bool GenericSubsystem::has_reports() const noexcept {
-  return handover_.reports_wait() || std::ranges::any_of(loops_, [](const auto& loop) { return loop->has_reports(); });
+  return rings_.reports_wait() || std::ranges::any_of(loops_, [](const auto& loop) { return loop->has_reports(); });
 }
 
 void GenericSubsystem::take_loop_reports() {

@@ -208,7 +208,7 @@ void GenericSubsystem::release_configuration() {
   end_configuration();
   leaving_links_.clear();
   CycleCommand forgotten;
-  while (handover_.commands.try_pop(forgotten)) {
+  while (rings_.commands.try_pop(forgotten)) {
     // A function that never reached the cycle still ends: nothing accepted is lost.
     if (forgotten.kind == CommandKind::Function)
       verification_.start_failed(forgotten.request, pus::FailureNotice{pus::FailureCode::Aborted});

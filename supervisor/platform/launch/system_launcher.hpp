@@ -11,9 +11,9 @@
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
 #include "supervisor/keeper/kept_store.hpp"
-#include "supervisor/platform/launch/error_lines.hpp"
 #include "supervisor/platform/launch/flight_launcher.hpp"
 #include "supervisor/platform/launch/held_programs.hpp"
+#include "supervisor/platform/launch/standard_error.hpp"
 
 namespace hirosco::supervisor {
 
@@ -58,7 +58,7 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
 
   SealedMemory memory_;
-  ErrorLines errors_;
+  StandardError errors_;
   std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
   std::map<std::uint32_t, ProcessMeter> meters_;
   std::map<std::uint32_t, Process> processes_;

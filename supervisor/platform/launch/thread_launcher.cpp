@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 
-#include "hirosco/data_transfer/control/local_channel.hpp"
+#include "hirosco/data_transfer/control/thread_channel.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/process/loops.hpp"
@@ -63,7 +63,7 @@ struct ThreadLauncher::Member {
   const Parts* parts{nullptr};
   MemoryProvider* memory{nullptr};
   std::function<std::unique_ptr<Subsystem>()> make;
-  std::unique_ptr<LocalChannel> channel;
+  std::unique_ptr<ThreadChannel> channel;
   Mapping vital, permit;
   Bell bell;
   std::optional<WakeEvent> gone;  ///< readable when it has ended
@@ -218,7 +218,7 @@ Result<LaunchedSubsystem> ThreadLauncher::launch(const descriptor::MissionSubsys
       return fail(ErrorCode::Unavailable, "its earlier threads have not let go, and cannot be ended");
   HIROSCO_TRY_LET(auto bell, Bell::make());
   HIROSCO_TRY_LET(auto gone, WakeEvent::create());
-  HIROSCO_TRY_LET(auto ends, LocalChannel::make_pair());
+  HIROSCO_TRY_LET(auto ends, ThreadChannel::make_pair());
   HIROSCO_TRY_LET(Mapping vital, make_page<VitalPage>(memory_, "hirosco-vital"));
   HIROSCO_TRY_LET(Mapping permit, make_page<PermitPage>(memory_, "hirosco-permit"));
   // Its counts go on where those of the threads before it ended (decision 8b).

@@ -3,7 +3,7 @@
 #include "supervisor/supervision/data_handling/permission.hpp"
 
 #include "hirosco/pus/standard_services.hpp"
-#include "supervisor/supervision/event_handling/dry_run.hpp"
+#include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 /// What safety rests on is changed by no telecommand (docs/adr/0091).

@@ -19,7 +19,8 @@ namespace hirosco::supervisor {
 
 /// Events are heard here and nowhere else, and answered by the recovery plans of the mission (paper 4.3 and 5): whether
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Which plan: `plan_choice.hpp`; what its steps do:
-/// `procedures/steps/`, which of two is followed: `plan_runs.hpp`; what a member is in the middle of by that: `subsystem_handling/member_recovery.hpp`. Thread: the supervisor's.
+/// `procedures/steps/`, which of two is followed: `plan_runs.hpp`; what a member is in the middle of by that:
+/// `subsystem_handling/member_recovery.hpp`. Thread: the supervisor's.
 class Reactions {
  public:
   Reactions(const Means& means, OwnSubsystem& own)

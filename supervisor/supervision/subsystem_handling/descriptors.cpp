@@ -27,7 +27,7 @@ using pus::FailureCode;
 namespace {
 
 [[nodiscard]] std::string line_of(const Diagnostic& problem) {
-  std::string line = fmt::format("{}:{}:{}: error {}: {}", problem.file.string(), problem.at.line, problem.at.column,
+  std::string line = fmt::format("{}:{}:{}: error: {}: {}", problem.file.string(), problem.at.line, problem.at.column,
                                  problem.code, problem.message);
   return problem.hint.empty() ? line : line + " (" + problem.hint + ")";
 }

@@ -195,8 +195,8 @@ TEST_F(DescriptorsTest, EachProblemIsToldWithItsPlace) {
       {.file = "arm.xml", .at = {3, 7}, .code = "E0111", .message = "'x' is no number", .hint = {}},
       {.file = "mission.xml", .at = {9, 2}, .code = "E0204", .message = "no GAIN", .hint = "take it out"}};
   is_read(std::move(bad));
-  EXPECT_TRUE(was_told("ARM keeps its descriptor: arm.xml:3:7: error E0111: 'x' is no number"));
-  EXPECT_TRUE(was_told("ARM keeps its descriptor: mission.xml:9:2: error E0204: no GAIN (take it out)"));
+  EXPECT_TRUE(was_told("ARM keeps its descriptor: arm.xml:3:7: error: E0111: 'x' is no number"));
+  EXPECT_TRUE(was_told("ARM keeps its descriptor: mission.xml:9:2: error: E0204: no GAIN (take it out)"));
   EXPECT_THAT(desk.sent, IsEmpty());
   parts.reception.read_own();
   EXPECT_THAT(routed_services, ::testing::Contains(129));

@@ -15,8 +15,8 @@
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/stored_values.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
+#include "supervisor/supervision/subsystem_handling/replacement.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
-#include "supervisor/supervision/subsystem_handling/versions.hpp"
 
 namespace hirosco::supervisor {
 
@@ -176,7 +176,7 @@ void Processes::died(Member& subject, const ProcessEnd& end) {
   // The network is what it was before the death: the others are told while the graph still has the links.
   // Nothing is sent to the dead one any more; telecommands that wait for it are refused when their turn comes.
   subject.died();
-  parts_.versions.died(apid);
+  parts_.replacement.died(apid);
   parts_.stored.ended(apid);
   parts_.telecommands.outcome_unknown(apid);
   parts_.restoration.lost(apid);

@@ -21,7 +21,7 @@ class ResourceHandling;
 class SafeAll;
 class StoredValues;
 class Telecommands;
-class Versions;
+class Replacement;
 
 /// Starts the processes of the subsystems, sees them end or hang, and starts them again (paper 4.3 subsystem handling).
 /// Thread: the supervisor's.
@@ -40,7 +40,7 @@ class Processes final : public Watch {
     Restarts& restarts;
     Restoration& restoration;
     ResourceHandling& resources;
-    Versions& versions;
+    Replacement& replacement;
     StoredValues& stored;
   };
   explicit Processes(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}

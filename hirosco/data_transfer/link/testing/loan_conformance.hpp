@@ -207,7 +207,7 @@ TEST_P(LoanConformance, ASlowOrDeadConsumerCostsSamplesOfItsOwnOnly) {
   EXPECT_EQ(late->newest().lost, 0u);
 }
 
-/// The plant: a consumer that does what none can, as its memory is mapped for reading. The suite sees it in the others.
+/// The planted defect: a consumer that does what none can, as its memory is mapped for reading. The suite sees it in the others.
 TEST_P(LoanConformance, AConsumerThatCouldWriteWouldBeSeenByTheOthers) {
   publish(1);
   ASSERT_EQ(reader_->newest().count, 1u);

@@ -121,7 +121,7 @@ TEST_P(WakeConformance, WhoSleepsIsWokenForEachSample) {
   EXPECT_EQ(first_slept_through(link, 5'000, 30s), 0u);
 }
 
-/// The plant: the very same test finds a producer that publishes and does not wake. It is the one that an agreement without the flag
+/// The planted defect: the very same test finds a producer that publishes and does not wake. It is the one that an agreement without the flag
 /// makes, so this shows as well that who is not asked to makes no system call.
 TEST_P(WakeConformance, AProducerThatDoesNotWakeIsFound) {
   if (!GetParam()->wakes()) return;

@@ -131,7 +131,7 @@ class Attributes {
   [[nodiscard]] std::optional<Number> exact(std::string_view name);
   /// Electrical power, 1 mW to 1 MW.
   [[nodiscard]] std::optional<double> watts(std::string_view name);
-  /// Numbers between white space; empty when one of them is none.
+  /// "yes" or "no"; anything else is reported, and `fallback` then and when absent.
   [[nodiscard]] bool yes(std::string_view name, bool fallback);
 
   template <class E>

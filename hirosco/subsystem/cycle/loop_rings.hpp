@@ -86,8 +86,8 @@ struct CycleReport {
 
 /// Commands and reports between the loops of one subsystem. Three rings of reports, so that none is crowded out by
 /// another kind: whatever an author raises, and however much housekeeping is asked for, who waits for an answer gets it.
-struct Handover {
-  Handover() : answers{32 * 1024}, events{32 * 1024}, housekeeping{64 * 1024} {}
+struct LoopRings {
+  LoopRings() : answers{32 * 1024}, events{32 * 1024}, housekeeping{64 * 1024} {}
   SpscRing<CycleCommand, 64> commands;
   RecordRing answers;  ///< somebody waits for them: at most two for each command, progress, and framework events
   RecordRing events;  ///< the author's

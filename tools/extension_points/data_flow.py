@@ -91,12 +91,12 @@ Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& add
 }  // namespace hirosco
 """}
 EDITS = [
-    ("hirosco/data_transfer/device/flow_means.cpp", '#include "hirosco/data_transfer/device/shared_memory_flow.hpp"\n',
+    ("hirosco/data_transfer/device/linux_flow_means.cpp", '#include "hirosco/data_transfer/device/shared_memory_flow.hpp"\n',
      '#include "hirosco/data_transfer/device/message_queue_flow.hpp"\n#include "hirosco/data_transfer/device/shared_memory_flow.hpp"\n'),
-    ("hirosco/data_transfer/device/flow_means.cpp", "    FlowMeans{Transfer::Udp,",
+    ("hirosco/data_transfer/device/linux_flow_means.cpp", "    FlowMeans{Transfer::Udp,",
      "    FlowMeans{Transfer::MessageQueue, AddressForm::Name, open_message_queue_flow},\n    FlowMeans{Transfer::Udp,"),
 ]
-SOURCES = ["hirosco/data_transfer/device/flow_means.cpp", "hirosco/data_transfer/device/message_queue_flow.cpp"]
+SOURCES = ["hirosco/data_transfer/device/linux_flow_means.cpp", "hirosco/data_transfer/device/message_queue_flow.cpp"]
 TRY = """\
 #include <unistd.h>
 

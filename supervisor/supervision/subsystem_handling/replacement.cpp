@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/subsystem_handling/versions.hpp"
+#include "supervisor/supervision/subsystem_handling/replacement.hpp"
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ namespace {
 
 }  // namespace
 
-void Versions::provide() {
+void Replacement::provide() {
   parts_.own.on_function(
       "REPLACE", [this](std::uint16_t apid, std::string_view version, std::uint16_t within_s, Call call) -> Outcome {
         return replace(apid, version, std::chrono::seconds{within_s}, call);
@@ -38,7 +38,7 @@ void Versions::provide() {
   });
 }
 
-std::optional<Outcome> Versions::against(const Member* subject) const {
+std::optional<Outcome> Replacement::against(const Member* subject) const {
   if (subject == nullptr) return refused(FailureCode::UnknownIdentifier);
   if (craft_.is_ground_link(*subject))
     return refused(FailureCode::NotPermittedNow, "it carries the ground link: nobody could confirm it");
@@ -49,7 +49,7 @@ std::optional<Outcome> Versions::against(const Member* subject) const {
   return std::nullopt;
 }
 
-Outcome Versions::replace(std::uint16_t apid, std::string_view version, Duration within, const Call& call) {
+Outcome Replacement::replace(std::uint16_t apid, std::string_view version, Duration within, const Call& call) {
   const Member* subject = craft_.member(apid);
   if (const auto why_not = against(subject)) return *why_not;
   if (!descriptor::is_version(version)) return refused(FailureCode::ValueNotAcceptable, "that is no name of a version");
@@ -65,7 +65,7 @@ Outcome Versions::replace(std::uint16_t apid, std::string_view version, Duration
   return running;
 }
 
-Outcome Versions::confirm(std::uint16_t apid) {
+Outcome Replacement::confirm(std::uint16_t apid) {
   const auto found = changes_.find(apid);
   if (found == changes_.end() || found->second.phase != Phase::OnTrial)
     return refused(FailureCode::WrongStatus, "no version of it is on trial");
@@ -78,7 +78,7 @@ Outcome Versions::confirm(std::uint16_t apid) {
   return ok();
 }
 
-Outcome Versions::take_back(std::uint16_t apid, const Call& call) {
+Outcome Replacement::take_back(std::uint16_t apid, const Call& call) {
   Member* subject = craft_.member(apid);
   if (const auto why_not = against(subject)) return *why_not;
   auto found = changes_.find(apid);
@@ -97,7 +97,7 @@ Outcome Versions::take_back(std::uint16_t apid, const Call& call) {
   return running;
 }
 
-void Versions::died(std::uint16_t apid) {
+void Replacement::died(std::uint16_t apid) {
   const auto found = changes_.find(apid);
   if (found == changes_.end() || (found->second.phase != Phase::OnTrial && found->second.phase != Phase::GoingDown))
     return;
@@ -110,7 +110,7 @@ void Versions::died(std::uint16_t apid) {
   craft_.launcher.use(subject.described(), found->second.wanted);
 }
 
-void Versions::note(OctetWriter& writer) const {
+void Replacement::note(OctetWriter& writer) const {
   const auto put = [&](const std::string& text) {
     writer.put(static_cast<std::uint8_t>(text.size())).put(std::as_bytes(std::span{text}));
   };
@@ -133,7 +133,7 @@ void Versions::note(OctetWriter& writer) const {
   }
 }
 
-void Versions::recall(OctetReader& reader) {
+void Replacement::recall(OctetReader& reader) {
   const auto get = [&] {
     const Octets text = reader.get(reader.get<std::uint8_t>());
     return std::string{reinterpret_cast<const char*>(text.data()), text.size()};
@@ -160,14 +160,14 @@ void Versions::recall(OctetReader& reader) {
   }
 }
 
-void Versions::watch(TimePoint now) {
+void Replacement::watch(TimePoint now) {
   for (auto entry = changes_.begin(); entry != changes_.end();) {
     const bool over = step(*craft_.member(entry->first), entry->second, now);
     entry = over ? changes_.erase(entry) : std::next(entry);
   }
 }
 
-bool Versions::step(Member& subject, Change& change, TimePoint now) {
+bool Replacement::step(Member& subject, Change& change, TimePoint now) {
   if (craft_.shutting_down) {
     give_up(change, FailureCode::Aborted, "the craft shuts down");
     return true;
@@ -196,7 +196,7 @@ bool Versions::step(Member& subject, Change& change, TimePoint now) {
   return true;
 }
 
-bool Versions::read(Member& subject, Change& change, TimePoint now) {
+bool Replacement::read(Member& subject, Change& change, TimePoint now) {
   const auto ready = craft_.launcher.prepare(subject.described(), change.wanted);
   if (!ready) {
     craft_.tell(fmt::format("{} stays {}: {}", subject.descriptor().name, words_of(change.before), ready.error().words),
@@ -218,7 +218,7 @@ bool Versions::read(Member& subject, Change& change, TimePoint now) {
 }
 
 /// It holds nothing in Offline: its channel is closed, and it ends. Nobody else starts it meanwhile.
-void Versions::end_process(Member& subject, Change& change) {
+void Replacement::end_process(Member& subject, Change& change) {
   change.phase = Phase::Ending;
   change.deadline = craft_.now + longest_end;
   change.process = 0;
@@ -228,7 +228,7 @@ void Versions::end_process(Member& subject, Change& change) {
   parts_.processes.let_go(subject);
 }
 
-bool Versions::start(Member& subject, Change& change, TimePoint now) {
+bool Replacement::start(Member& subject, Change& change, TimePoint now) {
   const std::uint16_t apid = subject.apid();
   const std::string& name = subject.descriptor().name;
   subject.exchanged = false;
@@ -257,7 +257,7 @@ bool Versions::start(Member& subject, Change& change, TimePoint now) {
   return false;
 }
 
-bool Versions::bring_down(Member& subject, Change& change, TimePoint now) {
+bool Replacement::bring_down(Member& subject, Change& change, TimePoint now) {
   if (!subject.alive() || subject.state() == State::Offline) {
     go_back(change);
     end_process(subject, change);
@@ -267,22 +267,22 @@ bool Versions::bring_down(Member& subject, Change& change, TimePoint now) {
   return false;
 }
 
-void Versions::go_back(Change& change) {
+void Replacement::go_back(Change& change) {
   std::swap(change.wanted, change.before);
   change.trial = false;
 }
 
-void Versions::finish(Change& change) {
+void Replacement::finish(Change& change) {
   if (change.call) parts_.own.finish(*change.call);
   change.call.reset();
 }
 
-void Versions::give_up(Change& change, FailureCode code, const char* words) {
+void Replacement::give_up(Change& change, FailureCode code, const char* words) {
   if (change.call) parts_.own.abort(*change.call, code, words);
   change.call.reset();
 }
 
-void Versions::drop_unless_needed(const Member& subject, const std::string& version) {
+void Replacement::drop_unless_needed(const Member& subject, const std::string& version) {
   const std::uint16_t apid = subject.apid();
   const auto earlier = earlier_.find(apid);
   if (version.empty() || version == in_force_[apid] || (earlier != earlier_.end() && version == earlier->second))

@@ -21,7 +21,7 @@ class UnderWay;
 
 /// Puts another version of a subsystem's executable in its place while the others cycle (docs/adr/0089): in Offline, on trial, and
 /// back to the one before by itself unless it is confirmed in time.  Thread: the supervisor's.
-class Versions final : public Watch, public Remembered {
+class Replacement final : public Watch, public Remembered {
  public:
   struct Parts {
     Craft& craft;
@@ -36,7 +36,7 @@ class Versions final : public Watch, public Remembered {
   /// What a file may take to be read.
   static constexpr Duration longest_reading = 60s;
 
-  explicit Versions(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
+  explicit Replacement(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
   /// REPLACE, CONFIRM, TAKE_BACK.
   void provide();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/data_transfer/control/local_channel.hpp"
+#include "hirosco/data_transfer/control/thread_channel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,23 +20,23 @@ class LocalEnds {
   bool same_memory(const MemoryHandle& handle) { return handle.block() == memory_.block(); }
 
  private:
-  std::pair<std::unique_ptr<LocalChannel>, std::unique_ptr<LocalChannel>> ends_ = LocalChannel::make_pair().value();
+  std::pair<std::unique_ptr<ThreadChannel>, std::unique_ptr<ThreadChannel>> ends_ = ThreadChannel::make_pair().value();
   MemoryHandle memory_ = HeapMemory{}.create("link", 64).value();
 };
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Local, ChannelConformance, LocalEnds);
 
-struct LocalChannelTest : ::testing::Test {
+struct ThreadChannelTest : ::testing::Test {
   [[nodiscard]] static bool readable(int descriptor) {
     WaitSet set;
     EXPECT_TRUE(set.add(descriptor));
     return !set.wait(Duration{0}).value().empty();
   }
-  std::pair<std::unique_ptr<LocalChannel>, std::unique_ptr<LocalChannel>> ends = LocalChannel::make_pair().value();
+  std::pair<std::unique_ptr<ThreadChannel>, std::unique_ptr<ThreadChannel>> ends = ThreadChannel::make_pair().value();
   MessageBuffer buffer{};
 };
 
-TEST_F(LocalChannelTest, WakesItsReaderUntilAllIsRead) {
+TEST_F(ThreadChannelTest, WakesItsReaderUntilAllIsRead) {
   EXPECT_FALSE(readable(ends.second->wait_descriptor()));
   ASSERT_TRUE(ends.first->send({}));
   ASSERT_TRUE(ends.first->send({}));
@@ -49,14 +49,14 @@ TEST_F(LocalChannelTest, WakesItsReaderUntilAllIsRead) {
   EXPECT_FALSE(readable(ends.second->wait_descriptor()));
 }
 
-TEST_F(LocalChannelTest, APeerThatIsGoneWakesOnceAndDoesNotEndEveryWait) {
+TEST_F(ThreadChannelTest, APeerThatIsGoneWakesOnceAndDoesNotEndEveryWait) {
   ends.first.reset();
   EXPECT_TRUE(readable(ends.second->wait_descriptor()));
   EXPECT_EQ(ends.second->receive(buffer).error().code, ErrorCode::Unavailable);
   EXPECT_FALSE(readable(ends.second->wait_descriptor()));
 }
 
-TEST_F(LocalChannelTest, TellsWhoFoundNoRoomWhenThereIsSome) {
+TEST_F(ThreadChannelTest, TellsWhoFoundNoRoomWhenThereIsSome) {
   while (ends.first->send({})) {}
   EXPECT_FALSE(readable(ends.first->room_descriptor()));
   ASSERT_EQ(ends.second->receive(buffer).value().flow, Flow::New);
@@ -66,13 +66,13 @@ TEST_F(LocalChannelTest, TellsWhoFoundNoRoomWhenThereIsSome) {
   EXPECT_FALSE(readable(ends.first->room_descriptor())) << "it is full again";
 }
 
-TEST_F(LocalChannelTest, WhoWaitsForRoomIsWokenByTheEndOfItsPeer) {
+TEST_F(ThreadChannelTest, WhoWaitsForRoomIsWokenByTheEndOfItsPeer) {
   while (ends.first->send({})) {}
   ends.second.reset();
   EXPECT_TRUE(readable(ends.first->room_descriptor()));
 }
 
-TEST_F(LocalChannelTest, IsFullByOctetsBeforeItIsByMessagesAndLosesNoneOfThem) {
+TEST_F(ThreadChannelTest, IsFullByOctetsBeforeItIsByMessagesAndLosesNoneOfThem) {
   const std::vector<std::byte> large(max_packet_octets, std::byte{7});
   std::size_t sent = 0;
   for (int round = 0; round < 3; ++round) {
@@ -82,7 +82,7 @@ TEST_F(LocalChannelTest, IsFullByOctetsBeforeItIsByMessagesAndLosesNoneOfThem) {
       ASSERT_TRUE(std::ranges::equal(found.message.packet, large)) << "also one that goes round the end of the ring";
     }
   }
-  EXPECT_EQ(sent, LocalChannel::most_octets / max_packet_octets + 10);
+  EXPECT_EQ(sent, ThreadChannel::most_octets / max_packet_octets + 10);
 }
 
 }  // namespace

@@ -12,14 +12,14 @@ namespace hirosco {
 /// One end of a control channel between two threads of one process, which can wait for it: two queues in memory that is taken when
 /// the channel is made. Its destructor is what the death of a process is to a socket: the other end reads what was sent, then Unavailable.
 /// Thread: each end one per direction. Realtime: a lock that nobody holds for longer than a copy, one system call, no heap.
-class LocalChannel final : public Channel {
+class ThreadChannel final : public Channel {
  public:
   static constexpr std::size_t most_messages = 256;
   static constexpr std::size_t most_octets = std::size_t{256} << 10;  ///< of all packets that wait in one direction
 
   /// SystemFailure: no descriptor is left to wait by.
-  [[nodiscard]] static Result<std::pair<std::unique_ptr<LocalChannel>, std::unique_ptr<LocalChannel>>> make_pair();
-  ~LocalChannel() override;
+  [[nodiscard]] static Result<std::pair<std::unique_ptr<ThreadChannel>, std::unique_ptr<ThreadChannel>>> make_pair();
+  ~ThreadChannel() override;
 
   [[nodiscard]] Result<> send(const Message& message) override;
   [[nodiscard]] Result<Found> receive(MessageBuffer& buffer) override;
@@ -30,7 +30,7 @@ class LocalChannel final : public Channel {
 
  private:
   struct Queue;
-  LocalChannel(std::shared_ptr<Queue> out, std::shared_ptr<Queue> in) noexcept
+  ThreadChannel(std::shared_ptr<Queue> out, std::shared_ptr<Queue> in) noexcept
       : out_{std::move(out)}, in_{std::move(in)} {}
   std::shared_ptr<Queue> out_, in_;
 };

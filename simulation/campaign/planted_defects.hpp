@@ -11,10 +11,10 @@
 #include "simulation/spacecraft/spacecraft.hpp"
 
 /// A defect for each invariant, put in from outside: between the parts, never inside them, so that nothing of them is in
-/// what flies (adr 0039). Findings as they were in the code are put back by plants_in_code.py, into a copy of it.
+/// what flies (adr 0039). Findings as they were in the code are put back by defects_flown.py, into a copy of it.
 namespace hirosco::campaign {
 
-struct Plant {
+struct PlantedDefect {
   std::function<void(descriptor::Mission&)> edit{};
   std::function<void(simulation::DeviceCatalogue&)> devices{};
   std::function<std::unique_ptr<Channel>(std::string_view, std::unique_ptr<Channel>)> wrap_channel{};
@@ -28,8 +28,8 @@ struct Plant {
   [[nodiscard]] double now_s() const;
 };
 
-/// Null: no plant has this name.
-[[nodiscard]] std::unique_ptr<Plant> plant_named(std::string_view name);
-[[nodiscard]] std::vector<std::string_view> plant_names();
+/// Null: no defect has this name.
+[[nodiscard]] std::unique_ptr<PlantedDefect> defect_named(std::string_view name);
+[[nodiscard]] std::vector<std::string_view> defect_names();
 
 }  // namespace hirosco::campaign

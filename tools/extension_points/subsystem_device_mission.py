@@ -4,7 +4,7 @@
 and flies this one against an installed tree, which is more than could be tried here."""
 import pathlib
 
-LAMP = pathlib.Path(__file__).resolve().parents[3] / "tests/author/lamp"
+LAMP = pathlib.Path(__file__).resolve().parents[2] / "tests/author/lamp"
 WHO = "a subsystem, device and mission"
 BEFORE = "7 + 3, 4 + 3, and 8 rooms"
 GOAL = "own folder, in any repository"

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Findings as they were in the code. All are put back into a copy of the sources, which is built once; each is flown until
 the judge sees it, and the same flights without it, of which the judge must say nothing. Nothing of them is ever in what flies.
-plants_in_code.py [--flights N] [--seed S] [FINDING...]"""
+defects_flown.py [--flights N] [--seed S] [FINDING...]"""
 import argparse, os, pathlib, shutil, subprocess, sys, tempfile, time
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -17,7 +17,7 @@ STOPS, SHUTDOWN = f"{SUPERVISION}/event_handling/safe_all.cpp", f"{SUPERVISION}/
 REFUSED = "return refused(pus::FailureCode::ExecutionError);"
 CHOSEN = "HIROSCO_PLANTED_FINDING"  # which of them a flight has
 # {finding: (invariant, [(file, as it is, as it was where the finding is chosen)])}
-PLANTS = {
+DEFECTS = {
     # States of the supervisor were anybody's to command, and SAFE_ALL a function that some of them do not permit.
     "SF1": ("I4", [
         (f"{SUPERVISION}/data_handling/permission.cpp", 'if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode',
@@ -77,9 +77,9 @@ inline bool planted(std::string_view finding) {{
 
 
 def misfits(root=ROOT):
-    """Plants whose place in the code is gone: [text]. A plant that fits nowhere finds nothing."""
+    """Findings whose place in the code is gone: [text]. A defect that fits nowhere finds nothing."""
     found = []
-    for finding, (_, edits) in PLANTS.items():
+    for finding, (_, edits) in DEFECTS.items():
         for name, now, _ in edits:
             number = (root / name).read_text().count(now)
             if number != 1:
@@ -94,7 +94,7 @@ class Copy:
         self.root = root
         shutil.copytree(ROOT, root, symlinks=True, ignore=lambda folder, names: [n for n in names if n in (".git", "build", "__pycache__")])
         (root / "planted.hpp").write_text(HEADER)
-        for finding in PLANTS:
+        for finding in DEFECTS:
             self.replace(finding, of_mission=False)
         self.run("cmake", "--preset", "release")
         self.run("ninja", "-C", "build/release", "hirosco-fly-plan")
@@ -102,7 +102,7 @@ class Copy:
 
     def replace(self, finding, of_mission, back=False):
         """Descriptors are read by each flight: what stands there is put back for the flights of this finding only."""
-        for name, now, was in PLANTS[finding][1]:
+        for name, now, was in DEFECTS[finding][1]:
             if name.endswith(".xml") != of_mission:
                 continue
             text = (self.root / name).read_text()
@@ -121,7 +121,7 @@ def control(copy, finding, arguments, number, flown):
     """What the judge says of the same flights without the defect: nothing, or it was found for another reason. Flights of the
     mission as it is are flown once for all findings."""
     os.environ[CHOSEN] = ""
-    of_mission = finding if any(name.endswith(".xml") for name, _, _ in PLANTS[finding][1]) else ""
+    of_mission = finding if any(name.endswith(".xml") for name, _, _ in DEFECTS[finding][1]) else ""
     campaign = Campaign(parse([str(copy.root / "missions" / "rokviss"), "--seed", str(arguments.seed), "--fly-plan", str(copy.fly_plan)]))
     for index in range(number):
         key = of_mission, index
@@ -138,7 +138,7 @@ def find(copy, finding, arguments):
     campaign = Campaign(parse([str(copy.root / "missions" / "rokviss"), "--seed", str(arguments.seed), "--fly-plan", str(copy.fly_plan)]))
     for index in range(arguments.flights):
         result = campaign.pilot.fly(campaign.plan(index))
-        seen = [violation for violation in result["violations"] if violation[0] == PLANTS[finding][0]]
+        seen = [violation for violation in result["violations"] if violation[0] == DEFECTS[finding][0]]
         if seen:
             return index + 1, f"{seen[0][1]:.3f} s: {seen[0][2]}"
     return 0, ""
@@ -146,7 +146,7 @@ def find(copy, finding, arguments):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("finding", nargs="*", default=list(PLANTS))
+    parser.add_argument("finding", nargs="*", default=list(DEFECTS))
     parser.add_argument("--flights", type=int, default=100, help="at most, for each")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
@@ -162,7 +162,7 @@ def main():
             other = control(copy, finding, arguments, number, flown)
             copy.replace(finding, of_mission=True, back=True)
             missed += number == 0 or bool(other)
-            where = f"found in flight {number}, {PLANTS[finding][0]} {text}" if number else f"NOT FOUND in {arguments.flights} flights"
+            where = f"found in flight {number}, {DEFECTS[finding][0]} {text}" if number else f"NOT FOUND in {arguments.flights} flights"
             print(f"{finding:<5} {where}; {other or 'the same flights without it: nothing'} ({time.monotonic() - begun:.0f} s)", flush=True)
     print(f"{len(arguments.finding) - missed} of {len(arguments.finding)} findings found again")
     return 1 if missed else 0

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Findings of review and the unit test that sees each. As they were they are put into a copy of the sources, all at once and
 each where it is chosen; the copy is built once in build/defects, and the tests of each must fail with it and pass without.
-defects_in_code.py [--list] [--only NAME]... [--test PROGRAM]
+defects_in_unit_tests.py [--list] [--only NAME]... [--test PROGRAM]
 
 Not here, with the reason:
 - a permit page that its subsystem may write (SF13): takes a process that does it, tests/fault/hostile_test.py;
@@ -13,7 +13,7 @@ Not here, with the reason:
 - failing malloc or threads: the whole process ends, hirosco/utilities/os/last_words_test.cpp;
 - on-board time that goes by the calendar: nobody may step that of the computer, hirosco/utilities/os/clock_test.cpp gives an epoch;
 - words declared and not in force: lists, tools/check_declared.py.
-plants_in_code.py has some of those here once more, found by flights.
+defects_flown.py has some of those here once more, found by flights.
 """
 import argparse, os, pathlib, re, shutil, subprocess, sys, time
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from dataclasses import dataclass
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE)]
-from plants_in_code import CHOSEN, HEADER  # noqa: E402
+from defects_flown import CHOSEN, HEADER  # noqa: E402
 
 COPY = ROOT / "build" / "defects" / "sources"
 BUILD = COPY / "build" / "release"
@@ -34,7 +34,7 @@ PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_link.cpp"
 TELECOMMANDS = f"{SUPERVISION}/data_handling/telecommands.cpp"
 DEVICE, LOG_STORE = "simulation/devices/simulated_device.cpp", "supervisor/platform/storage/log_store.cpp"
-ERROR_LINES, MANIPULATOR_TEST = "supervisor/platform/launch/error_lines.cpp", "manipulator_subsystem_test"
+STANDARD_ERROR, MANIPULATOR_TEST = "supervisor/platform/launch/standard_error.cpp", "manipulator_subsystem_test"
 
 
 @dataclass(frozen=True)
@@ -114,8 +114,8 @@ DEFECTS = [
            "if (is_damage(found.error().code)) {\n        if (!PLANTED) continue;\n        member.refused = most_refused;\n      }",
            "supervisor_test", "ReceptionTest.WhoseMessageTheChannelCannotReadIsHeardOnAndNeitherClosedNorStopped"),
     # Who was judged gone went on moving until it was killed.
-    Defect("SF9 gone and not fenced", RECEPTION, "  craft_.guard.fence(member.apid());",
-           "  if (!PLANTED) craft_.guard.fence(member.apid());",
+    Defect("SF9 gone and not fenced", RECEPTION, "\n  craft_.guard.fence(member.apid());",
+           "\n  if (!PLANTED) craft_.guard.fence(member.apid());",
            "supervisor_test", "ProcessesTest.WhoClosesItsChannelFencesNobodyWhomItsPlanLetsGoOn"),
     # A mode was entered whose members were dead.
     Defect("SF15 mode of the dead", f"{SUPERVISION}/modes/mode_plan.cpp", "if (!member.alive()) {",
@@ -189,8 +189,8 @@ DEFECTS = [
            "subsystem_test", "Rings.FullOfAnAuthorsEventsStillTellThatADeviceIsLost"),
     # ... and of answers to telecommands.
     Defect("events crowd out answers", CYCLE,
-           "RecordRing& ring = parts_.handover.events;\n  if (event.severity < descriptor::Severity::Medium &&",
-           "RecordRing& ring = PLANTED ? parts_.handover.answers : parts_.handover.events;\n"
+           "RecordRing& ring = parts_.rings.events;\n  if (event.severity < descriptor::Severity::Medium &&",
+           "RecordRing& ring = PLANTED ? parts_.rings.answers : parts_.rings.events;\n"
            "  if (!PLANTED && event.severity < descriptor::Severity::Medium &&",
            "subsystem_test", "Rings.FullOfAnAuthorsEventsAndProgressLoseNoAnswerAndTellWhatTheyLost"),
     # Events with arrays had another length than their descriptor, and were never reported.
@@ -337,14 +337,14 @@ DEFECTS = [
            "  if (fault != StoreFault::Locked && !PLANTED) store_.reset();",
            "platform_test", "LogStore.StaysInItsSegmentWhenTheDiskIsFullAndResumesByItself"),
     # One talkative subsystem filled the console.
-    Defect("talkative without limit", ERROR_LINES, "return ++found->second <= most_;",
+    Defect("talkative without limit", STANDARD_ERROR, "return ++found->second <= most_;",
            "return ++found->second <= most_ || PLANTED;",
-           "platform_test", "ErrorLines.OfATalkativeSpeakerAreLimitedAndCountedExactlyAndNobodyElsesAre"),
+           "platform_test", "StandardErrorLines.OfATalkativeSpeakerAreLimitedAndCountedExactlyAndNobodyElsesAre"),
     # ... and sent escape codes to the terminal.
-    Defect("escape codes", ERROR_LINES,
+    Defect("escape codes", STANDARD_ERROR,
            r'else clean += fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(letter)));',
            r'else clean += PLANTED ? std::string(1, letter) : fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(letter)));',
-           "platform_test", "ErrorLines.ShowControlCharactersAsText"),
+           "platform_test", "StandardErrorLines.ShowControlCharactersAsText"),
     # The search of the log minded case and did not look at what is shown.
     Defect("search minds case", "supervisor/platform/storage/database.cpp",
            "return lower_case(words).find(lower_case(query.text)) != std::string::npos;",

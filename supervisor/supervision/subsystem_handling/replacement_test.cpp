@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/subsystem_handling/versions.hpp"
+#include "supervisor/supervision/subsystem_handling/replacement.hpp"
 
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using enum descriptor::State;
 
-struct VersionsTest : PartsTest {
+struct ReplacementTest : PartsTest {
   std::expected<bool, StartRefusal> ready{true};
   std::vector<std::string> used, dropped;  ///< by ARM
   int starts{0};
@@ -39,9 +39,9 @@ struct VersionsTest : PartsTest {
     starts = 0;
   }
   [[nodiscard]] Outcome replace(std::uint16_t apid = arm, std::string_view version = "2") {
-    return parts.versions.replace(apid, version, 30s, Call{});
+    return parts.replacement.replace(apid, version, 30s, Call{});
   }
-  void watch() { parts.versions.watch(clock.now()); }
+  void watch() { parts.replacement.watch(clock.now()); }
   /// The process that was let go ends, and what is to come comes.
   void ends_and_begins() {
     watch();
@@ -58,7 +58,7 @@ struct VersionsTest : PartsTest {
   }
 };
 
-TEST_F(VersionsTest, AnotherOneIsStartedInOfflineOnTrialWhileTheOthersGoOn) {
+TEST_F(ReplacementTest, AnotherOneIsStartedInOfflineOnTrialWhileTheOthersGoOn) {
   set(hand, Operational);
   const std::uint64_t fences = craft.guard.fences(hand);
   ASSERT_EQ(replace().kind, Outcome::Kind::Running);
@@ -78,7 +78,7 @@ TEST_F(VersionsTest, AnotherOneIsStartedInOfflineOnTrialWhileTheOthersGoOn) {
   EXPECT_EQ(craft.guard.fences(hand), fences);
 }
 
-TEST_F(VersionsTest, OneThatIsDownIsStartedInAnotherVersion) {
+TEST_F(ReplacementTest, OneThatIsDownIsStartedInAnotherVersion) {
   craft.member(arm)->died();
   ASSERT_EQ(replace().kind, Outcome::Kind::Running);
   watch();
@@ -87,7 +87,7 @@ TEST_F(VersionsTest, OneThatIsDownIsStartedInAnotherVersion) {
   EXPECT_THAT(used, ElementsAre("2"));
 }
 
-TEST_F(VersionsTest, AFileThatIsStillBeingReadIsWaitedForByNobodyAndNotForEver) {
+TEST_F(ReplacementTest, AFileThatIsStillBeingReadIsWaitedForByNobodyAndNotForEver) {
   ready = false;
   ASSERT_EQ(replace().kind, Outcome::Kind::Running);
   watch();
@@ -102,7 +102,7 @@ TEST_F(VersionsTest, AFileThatIsStillBeingReadIsWaitedForByNobodyAndNotForEver) 
   EXPECT_EQ(replace(hand).kind, Outcome::Kind::Running) << "the first is over";
 }
 
-TEST_F(VersionsTest, WhatTheManifestRefusesChangesNothing) {
+TEST_F(ReplacementTest, WhatTheManifestRefusesChangesNothing) {
   ready =
       std::unexpected{StartRefusal{{ErrorCode::Mismatch, "its digest is not the one in the manifest"}, "arm@2 has 12"}};
   ASSERT_EQ(replace().kind, Outcome::Kind::Running);
@@ -114,7 +114,7 @@ TEST_F(VersionsTest, WhatTheManifestRefusesChangesNothing) {
   EXPECT_EQ(replace().kind, Outcome::Kind::Running);
 }
 
-TEST_F(VersionsTest, IsRefusedOutsideOfflineForTheGroundLinkAndWhereThereIsNothingToDo) {
+TEST_F(ReplacementTest, IsRefusedOutsideOfflineForTheGroundLinkAndWhereThereIsNothingToDo) {
   set(arm, PreOperational);
   EXPECT_EQ(replace().code, pus::FailureCode::WrongStatus);
   set(arm, Offline);
@@ -122,15 +122,15 @@ TEST_F(VersionsTest, IsRefusedOutsideOfflineForTheGroundLinkAndWhereThereIsNothi
   EXPECT_EQ(replace(99).code, pus::FailureCode::UnknownIdentifier);
   EXPECT_EQ(replace(arm, "../2").code, pus::FailureCode::ValueNotAcceptable);
   EXPECT_EQ(replace(arm, "").code, pus::FailureCode::ValueNotAcceptable);
-  EXPECT_EQ(parts.versions.confirm(arm).code, pus::FailureCode::WrongStatus);
-  EXPECT_EQ(parts.versions.take_back(arm, {}).code, pus::FailureCode::WrongStatus);
+  EXPECT_EQ(parts.replacement.confirm(arm).code, pus::FailureCode::WrongStatus);
+  EXPECT_EQ(parts.replacement.take_back(arm, {}).code, pus::FailureCode::WrongStatus);
   EXPECT_EQ(replace().kind, Outcome::Kind::Running);
   EXPECT_EQ(replace().code, pus::FailureCode::WrongStatus) << "one at a time";
   craft.shutting_down = true;
   EXPECT_EQ(replace(hand).code, pus::FailureCode::NotPermittedNow);
 }
 
-TEST_F(VersionsTest, WhoLeavesOfflineBeforeItsFileIsReadIsNotTouched) {
+TEST_F(ReplacementTest, WhoLeavesOfflineBeforeItsFileIsReadIsNotTouched) {
   ready = false;
   ASSERT_EQ(replace().kind, Outcome::Kind::Running);
   set(arm, Operational);
@@ -141,19 +141,19 @@ TEST_F(VersionsTest, WhoLeavesOfflineBeforeItsFileIsReadIsNotTouched) {
   EXPECT_THAT(used, IsEmpty());
 }
 
-TEST_F(VersionsTest, ConfirmedItStaysWhateverHappensThen) {
+TEST_F(ReplacementTest, ConfirmedItStaysWhateverHappensThen) {
   on_trial();
   set(arm, Operational);
-  EXPECT_EQ(parts.versions.confirm(arm).kind, Outcome::Kind::Done);
+  EXPECT_EQ(parts.replacement.confirm(arm).kind, Outcome::Kind::Done);
   wait(60s);
   watch();
   EXPECT_TRUE(craft.member(arm)->alive());
-  parts.versions.died(arm);
+  parts.replacement.died(arm);
   EXPECT_THAT(used, ElementsAre("2"));
   EXPECT_THAT(dropped, IsEmpty());
 }
 
-TEST_F(VersionsTest, NotConfirmedInItsTimeItGoesBackByItself) {
+TEST_F(ReplacementTest, NotConfirmedInItsTimeItGoesBackByItself) {
   on_trial();
   wait(29s);
   watch();
@@ -169,7 +169,7 @@ TEST_F(VersionsTest, NotConfirmedInItsTimeItGoesBackByItself) {
   EXPECT_TRUE(craft.member(arm)->alive());
 }
 
-TEST_F(VersionsTest, NotConfirmedAndCyclingItIsTakenDownByTheMissionsPlanFirst) {
+TEST_F(ReplacementTest, NotConfirmedAndCyclingItIsTakenDownByTheMissionsPlanFirst) {
   on_trial();
   set(arm, Operational);
   wait(31s);
@@ -184,7 +184,7 @@ TEST_F(VersionsTest, NotConfirmedAndCyclingItIsTakenDownByTheMissionsPlanFirst) 
   EXPECT_THAT(used, ElementsAre("2", ""));
 }
 
-TEST_F(VersionsTest, WhatDoesNotGoDownIsEndedAndStillFallsBack) {
+TEST_F(ReplacementTest, WhatDoesNotGoDownIsEndedAndStillFallsBack) {
   on_trial();
   set(arm, Operational);
   wait(31s);
@@ -200,7 +200,7 @@ TEST_F(VersionsTest, WhatDoesNotGoDownIsEndedAndStillFallsBack) {
   EXPECT_TRUE(craft.member(arm)->alive());
 }
 
-TEST_F(VersionsTest, WhatDiesOnTrialFallsBack) {
+TEST_F(ReplacementTest, WhatDiesOnTrialFallsBack) {
   on_trial();
   ends[played[arm].process] = {.by_signal = false, .value = 3};
   parts.processes.watch(clock.now());
@@ -212,7 +212,7 @@ TEST_F(VersionsTest, WhatDiesOnTrialFallsBack) {
   EXPECT_EQ(replace().kind, Outcome::Kind::Running) << "it may be tried again";
 }
 
-TEST_F(VersionsTest, WhatCannotEvenBeStartedFallsBack) {
+TEST_F(ReplacementTest, WhatCannotEvenBeStartedFallsBack) {
   starts_that_fail = 1;
   ASSERT_EQ(replace().kind, Outcome::Kind::Running);
   ends_and_begins();
@@ -220,23 +220,23 @@ TEST_F(VersionsTest, WhatCannotEvenBeStartedFallsBack) {
   EXPECT_TRUE(craft.member(arm)->alive());
 }
 
-TEST_F(VersionsTest, IsTakenBackByCommandOnTrialAndAfter) {
+TEST_F(ReplacementTest, IsTakenBackByCommandOnTrialAndAfter) {
   on_trial();
   set(arm, Operational);
-  EXPECT_EQ(parts.versions.take_back(arm, {}).code, pus::FailureCode::WrongStatus);
+  EXPECT_EQ(parts.replacement.take_back(arm, {}).code, pus::FailureCode::WrongStatus);
   set(arm, Offline);
-  EXPECT_EQ(parts.versions.take_back(arm, {}).kind, Outcome::Kind::Running);
+  EXPECT_EQ(parts.replacement.take_back(arm, {}).kind, Outcome::Kind::Running);
   ends_and_begins();
   EXPECT_THAT(used, ElementsAre("2", ""));
   EXPECT_EQ(replace().kind, Outcome::Kind::Running);
   ends_and_begins();
-  EXPECT_EQ(parts.versions.confirm(arm).kind, Outcome::Kind::Done);
-  EXPECT_EQ(parts.versions.take_back(arm, {}).kind, Outcome::Kind::Running);
+  EXPECT_EQ(parts.replacement.confirm(arm).kind, Outcome::Kind::Done);
+  EXPECT_EQ(parts.replacement.take_back(arm, {}).kind, Outcome::Kind::Running);
   ends_and_begins();
   EXPECT_THAT(used, ElementsAre("2", "", "2", ""));
 }
 
-TEST_F(VersionsTest, AProcessThatDoesNotEndIsEnded) {
+TEST_F(ReplacementTest, AProcessThatDoesNotEndIsEnded) {
   ASSERT_EQ(replace().kind, Outcome::Kind::Running);
   watch();
   wait(900ms);

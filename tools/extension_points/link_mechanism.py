@@ -201,13 +201,13 @@ Result<std::unique_ptr<LinkView>> UnixQueue::look(MemoryProvider& provider, cons
 }  // namespace hirosco
 """}
 EDITS = [
-    ("hirosco/data_transfer/link/mechanisms.cpp", '#include "hirosco/data_transfer/link/link.hpp"\n',
+    ("hirosco/data_transfer/link/linux_mechanisms.cpp", '#include "hirosco/data_transfer/link/link.hpp"\n',
      '#include "hirosco/data_transfer/link/link.hpp"\n#include "hirosco/data_transfer/link/unix_queue.hpp"\n'),
-    ("hirosco/data_transfer/link/mechanisms.cpp", "    &latest_link,\n", "    &latest_link,\n    &unix_queue,\n"),
-    ("hirosco/data_transfer/link/mechanisms.cpp", "const LatestLink latest_link;\n",
+    ("hirosco/data_transfer/link/linux_mechanisms.cpp", "    &latest_link,\n", "    &latest_link,\n    &unix_queue,\n"),
+    ("hirosco/data_transfer/link/linux_mechanisms.cpp", "const LatestLink latest_link;\n",
      "const LatestLink latest_link;\nconst UnixQueue unix_queue;\n"),
 ]
-SOURCES = ["hirosco/data_transfer/link/mechanisms.cpp", "hirosco/data_transfer/link/unix_queue.cpp"]
+SOURCES = ["hirosco/data_transfer/link/linux_mechanisms.cpp", "hirosco/data_transfer/link/unix_queue.cpp"]
 TRY = """\
 #include "hirosco/data_transfer/link/testing/link_conformance.hpp"
 #include "hirosco/descriptor/read/read.hpp"

@@ -51,15 +51,15 @@ class LineCutter {
 
 /// The standard errors of the subsystems: each line is printed with its speaker's name, at most `most_lines` of one speaker
 /// in a second, the rest as a count. One ordinary thread.
-class ErrorLines {
+class StandardError {
  public:
   static constexpr std::size_t most_lines = 20;
   using Print = std::function<void(const std::string&)>;
   /// `print` is called by the thread; standard error by default.
-  explicit ErrorLines(Print print = {});
-  ~ErrorLines();
-  ErrorLines(const ErrorLines&) = delete;
-  ErrorLines& operator=(const ErrorLines&) = delete;
+  explicit StandardError(Print print = {});
+  ~StandardError();
+  StandardError(const StandardError&) = delete;
+  StandardError& operator=(const StandardError&) = delete;
 
   /// The end that a new process gets as its standard error.
   /// `reader`: another descriptor of the end that is read here, for who goes on reading it.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/event_handling/dry_run.hpp"
+#include "supervisor/supervision/event_handling/planned_reactions.hpp"
 
 #include <fmt/ranges.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/platform/launch/error_lines.hpp"
+#include "supervisor/platform/launch/standard_error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -64,7 +64,7 @@ void LineCutter::end(const std::function<void(std::string_view)>& line) {
   cut_ = false;
 }
 
-ErrorLines::ErrorLines(Print print) : print_{std::move(print)} {
+StandardError::StandardError(Print print) : print_{std::move(print)} {
   if (!print_) print_ = [](const std::string& line) { std::fputs(line.c_str(), stderr); };
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) return;
@@ -72,14 +72,14 @@ ErrorLines::ErrorLines(Print print) : print_{std::move(print)} {
   wake_write_.reset(ends[1]);
 }
 
-ErrorLines::~ErrorLines() {
+StandardError::~StandardError() {
   ending_ = true;
   const char any = 0;
   static_cast<void>(!::write(wake_write_.get(), &any, 1));
   if (thread_.joinable()) thread_.join();
 }
 
-Result<FileDescriptor> ErrorLines::open(const std::string& speaker, FileDescriptor* reader) {
+Result<FileDescriptor> StandardError::open(const std::string& speaker, FileDescriptor* reader) {
   if (!wake_read_) return fail(ErrorCode::ResourceExhausted, "a pipe for the standard error of subsystems");
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return fail(ErrorCode::SystemFailure, "a pipe for a standard error", errno);
@@ -93,13 +93,13 @@ Result<FileDescriptor> ErrorLines::open(const std::string& speaker, FileDescript
   return writing;
 }
 
-void ErrorLines::go_on(const std::string& speaker, FileDescriptor reader) {
+void StandardError::go_on(const std::string& speaker, FileDescriptor reader) {
   struct stat found{};
   if (!wake_read_ || ::fstat(reader.get(), &found) != 0 || !S_ISFIFO(found.st_mode)) return;
   follow(speaker, std::move(reader));
 }
 
-void ErrorLines::follow(const std::string& speaker, FileDescriptor reader) {
+void StandardError::follow(const std::string& speaker, FileDescriptor reader) {
   {
     const std::lock_guard guard{mutex_};
     fresh_.push_back({speaker, std::move(reader), {}});
@@ -109,12 +109,12 @@ void ErrorLines::follow(const std::string& speaker, FileDescriptor reader) {
   static_cast<void>(!::write(wake_write_.get(), &any, 1));
 }
 
-void ErrorLines::say(const std::string& speaker, std::string_view line, LineLimit& limit) {
+void StandardError::say(const std::string& speaker, std::string_view line, LineLimit& limit) {
   if (limit.admit(speaker)) print_(fmt::format("{}: {}\n", speaker, shown(line)));
 }
 
 /// Closes the stream when its last writer is gone.
-void ErrorLines::read_from(Stream& stream, LineLimit& limit) {
+void StandardError::read_from(Stream& stream, LineLimit& limit) {
   const auto line = [&](std::string_view text) { say(stream.speaker, text, limit); };
   std::array<char, 65'536> buffer;
   const auto got = ::read(stream.end.get(), buffer.data(), buffer.size());
@@ -124,7 +124,7 @@ void ErrorLines::read_from(Stream& stream, LineLimit& limit) {
   stream.end.reset();
 }
 
-void ErrorLines::work() {
+void StandardError::work() {
   // Whoever starts subsystems has real-time priority; this thread must not.
   static_cast<void>(set_ordinary_scheduling());
   std::vector<Stream> streams;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/platform/launch/error_lines.hpp"
+#include "supervisor/platform/launch/standard_error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,11 +13,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
 
-TEST(ErrorLines, ShowControlCharactersAsText) {
+TEST(StandardErrorLines, ShowControlCharactersAsText) {
   EXPECT_EQ(shown("red \x1b[31m bell \a tab\t end \xc3"), "red \\x1b[31m bell \\x07 tab  end \\xc3");
 }
 
-TEST(ErrorLines, OfATalkativeSpeakerAreLimitedAndCountedExactlyAndNobodyElsesAre) {
+TEST(StandardErrorLines, OfATalkativeSpeakerAreLimitedAndCountedExactlyAndNobodyElsesAre) {
   LineLimit limit{20};
   int admitted = 0;
   for (int i = 0; i < 2'000'000; ++i) admitted += limit.admit("LOUD") ? 1 : 0;
@@ -28,7 +28,7 @@ TEST(ErrorLines, OfATalkativeSpeakerAreLimitedAndCountedExactlyAndNobodyElsesAre
   EXPECT_TRUE(limit.turn().empty());
 }
 
-TEST(ErrorLines, AreBoundedInLengthAndPutTogetherFromPieces) {
+TEST(StandardErrorLines, AreBoundedInLengthAndPutTogetherFromPieces) {
   LineCutter cutter;
   std::vector<std::string> lines;
   const auto line = [&](std::string_view text) { lines.emplace_back(text); };
@@ -43,10 +43,10 @@ TEST(ErrorLines, AreBoundedInLengthAndPutTogetherFromPieces) {
   EXPECT_EQ(lines[1], "next");
 }
 
-TEST(ErrorLines, AreNamedAfterWhoWroteThemToTheLastOne) {
+TEST(StandardErrorLines, AreNamedAfterWhoWroteThemToTheLastOne) {
   std::vector<std::string> printed;
   {
-    ErrorLines lines{[&](const std::string& line) { printed.push_back(line); }};
+    StandardError lines{[&](const std::string& line) { printed.push_back(line); }};
     auto arm = lines.open("ARM");
     auto hand = lines.open("HAND");
     ASSERT_TRUE(arm && hand);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/data_transfer/control/local_channel.hpp"
+#include "hirosco/data_transfer/control/thread_channel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 namespace hirosco {
 
 /// One direction. The packets stand one behind the other in a ring of octets, in the order of the messages.
-struct LocalChannel::Queue {
+struct ThreadChannel::Queue {
   Queue(WakeEvent told, WakeEvent taken) : something{std::move(told)}, room{std::move(taken)} {}
 
   [[nodiscard]] bool takes(const Message& message) const noexcept {
@@ -56,7 +56,7 @@ struct LocalChannel::Queue {
   WakeEvent room;       ///< for the writer
 };
 
-Result<std::pair<std::unique_ptr<LocalChannel>, std::unique_ptr<LocalChannel>>> LocalChannel::make_pair() {
+Result<std::pair<std::unique_ptr<ThreadChannel>, std::unique_ptr<ThreadChannel>>> ThreadChannel::make_pair() {
   const auto queue = []() -> Result<std::shared_ptr<Queue>> {
     HIROSCO_TRY_LET(auto something, WakeEvent::create());
     HIROSCO_TRY_LET(auto room, WakeEvent::create());
@@ -64,11 +64,11 @@ Result<std::pair<std::unique_ptr<LocalChannel>, std::unique_ptr<LocalChannel>>> 
   };
   HIROSCO_TRY_LET(auto down, queue());
   HIROSCO_TRY_LET(auto up, queue());
-  return std::pair{std::unique_ptr<LocalChannel>{new LocalChannel{down, up}},
-                   std::unique_ptr<LocalChannel>{new LocalChannel{up, down}}};
+  return std::pair{std::unique_ptr<ThreadChannel>{new ThreadChannel{down, up}},
+                   std::unique_ptr<ThreadChannel>{new ThreadChannel{up, down}}};
 }
 
-LocalChannel::~LocalChannel() {
+ThreadChannel::~ThreadChannel() {
   {
     const LockGuard lock{out_->mutex};
     out_->writer_gone = true;
@@ -79,7 +79,7 @@ LocalChannel::~LocalChannel() {
   in_->room.notify();  // whoever waits for it shall find out
 }
 
-Result<> LocalChannel::send(const Message& message) {
+Result<> ThreadChannel::send(const Message& message) {
   if (message.packet.size() > max_packet_octets)
     return fail(ErrorCode::InvalidArgument, "octets of packet", static_cast<std::int64_t>(message.packet.size()));
   Queue& queue = *out_;
@@ -95,7 +95,7 @@ Result<> LocalChannel::send(const Message& message) {
   return ok();
 }
 
-Result<Channel::Found> LocalChannel::receive(MessageBuffer& buffer) {
+Result<Channel::Found> ThreadChannel::receive(MessageBuffer& buffer) {
   Queue& queue = *in_;
   const LockGuard lock{queue.mutex};
   if (queue.count == 0) {
@@ -108,7 +108,7 @@ Result<Channel::Found> LocalChannel::receive(MessageBuffer& buffer) {
   return Found{Flow::New, std::move(message)};
 }
 
-int LocalChannel::wait_descriptor() const noexcept { return in_->something.descriptor(); }
-int LocalChannel::room_descriptor() const noexcept { return out_->room.descriptor(); }
+int ThreadChannel::wait_descriptor() const noexcept { return in_->something.descriptor(); }
+int ThreadChannel::room_descriptor() const noexcept { return out_->room.descriptor(); }
 
 }  // namespace hirosco

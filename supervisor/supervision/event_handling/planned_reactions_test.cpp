@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/event_handling/dry_run.hpp"
+#include "supervisor/supervision/event_handling/planned_reactions.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-struct DryRunTest : ::testing::Test {
+struct PlannedReactionsTest : ::testing::Test {
   descriptor::Mission mission = testing::small_mission();
   void SetUp() override {
     descriptor::Event event;
@@ -42,7 +42,7 @@ struct DryRunTest : ::testing::Test {
   }
 };
 
-TEST_F(DryRunTest, EveryEventHasItsReactionInEachMode) {
+TEST_F(PlannedReactionsTest, EveryEventHasItsReactionInEachMode) {
   plan("gently", "HOT", "narrow", {{"log"}});
   plan("died", "PROCESS_DIED", "", {{"restart", {3, 60, 100, 5}}, {"shut_down_network"}});
   EXPECT_THAT(lines(),
@@ -55,7 +55,7 @@ TEST_F(DryRunTest, EveryEventHasItsReactionInEachMode) {
                           "to=commanded, shut_down_network"));
 }
 
-TEST_F(DryRunTest, WhichPlanGivesWayToWhichIsSaidForEachSubsystem) {
+TEST_F(PlannedReactionsTest, WhichPlanGivesWayToWhichIsSaidForEachSubsystem) {
   descriptor::Event event;
   event.severity = descriptor::Severity::Low;
   for (const char* name : {"FIRST", "SECOND", "THIRD", "FOURTH"}) {
@@ -81,7 +81,7 @@ TEST_F(DryRunTest, WhichPlanGivesWayToWhichIsSaidForEachSubsystem) {
                           "ARM: second (low) < default (high) third (low)", "HAND: fourth (low) < default (high)"));
 }
 
-TEST_F(DryRunTest, PriorityAndWhomAStepMovesAreShown) {
+TEST_F(PlannedReactionsTest, PriorityAndWhomAStepMovesAreShown) {
   plan("other", "HOT", "", {{"set_state", {4}, "HAND"}});
   mission.plans[0].priority = 7;
   for (const PlannedReaction& each : planned_reactions(mission))

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/campaign/plants.hpp"
+#include "simulation/campaign/planted_defects.hpp"
 
 #include <algorithm>
 #include <map>
@@ -16,32 +16,32 @@ namespace {
 
 using descriptor::State;
 using Hooks = TamperedChannel::Hooks;
-using MakePlant = std::function<void(Plant&)>;
+using MakeDefect = std::function<void(PlantedDefect&)>;
 
 /// Members of the mission by what they are in it.
 enum class Whose : std::uint8_t { GroundLink, Others, FirstOther };
 
-[[nodiscard]] std::vector<std::string_view> members(const Plant& plant, Whose whose) {
+[[nodiscard]] std::vector<std::string_view> members(const PlantedDefect& defect, Whose whose) {
   std::vector<std::string_view> found;
-  for (const auto& member : plant.mission->subsystems)
-    if ((member.subsystem.name == plant.mission->ground.subsystem) == (whose == Whose::GroundLink))
+  for (const auto& member : defect.mission->subsystems)
+    if ((member.subsystem.name == defect.mission->ground.subsystem) == (whose == Whose::GroundLink))
       found.push_back(member.subsystem.name);
   if (whose == Whose::FirstOther && !found.empty()) found.resize(1);
   return found;
 }
 
-void on_channel(Plant& plant, Whose whose, Hooks hooks) {
-  plant.wrap_channel = [&plant, whose, hooks = std::move(hooks)](
-                           std::string_view name, std::unique_ptr<Channel> channel) -> std::unique_ptr<Channel> {
-    if (std::ranges::count(members(plant, whose), name) == 0) return channel;
+void on_channel(PlantedDefect& defect, Whose whose, Hooks hooks) {
+  defect.wrap_channel = [&defect, whose, hooks = std::move(hooks)](
+                            std::string_view name, std::unique_ptr<Channel> channel) -> std::unique_ptr<Channel> {
+    if (std::ranges::count(members(defect, whose), name) == 0) return channel;
     return std::make_unique<TamperedChannel>(std::move(channel), hooks);
   };
 }
 
 /// Each device meets commands that were changed on their way; `change` has a state of its own for each.
-void on_devices(Plant& plant, const std::function<TamperedFlows::Change()>& make_change) {
-  plant.devices = [make_change, kept = std::make_shared<std::vector<std::unique_ptr<TamperedFlows>>>()](
-                      simulation::DeviceCatalogue& catalogue) {
+void on_devices(PlantedDefect& defect, const std::function<TamperedFlows::Change()>& make_change) {
+  defect.devices = [make_change, kept = std::make_shared<std::vector<std::unique_ptr<TamperedFlows>>>()](
+                       simulation::DeviceCatalogue& catalogue) {
     for (auto& [name, make] : catalogue)
       make = [make, make_change, kept](FlowFactory& flows, const FlowAddress& address,
                                        const simulation::SimulatedDevice::Settings& settings) {
@@ -64,37 +64,37 @@ void each_requirement(descriptor::Mission& mission, const std::function<void(des
 // --- one for each invariant --------------------------------------------------------------------------------------------
 
 /// A death takes a bystander along.
-void i1(Plant& plant) {
-  plant.after_action = [&plant](const std::vector<std::string>& words) {
+void i1(PlantedDefect& defect) {
+  defect.after_action = [&defect](const std::vector<std::string>& words) {
     if (words[0] != "kill") return;
-    const auto others = members(plant, Whose::Others);
+    const auto others = members(defect, Whose::Others);
     const auto bystander = std::ranges::find_if(others, [&](std::string_view name) { return name != words[1]; });
-    if (bystander != others.end()) plant.craft->kill(*bystander);
+    if (bystander != others.end()) defect.craft->kill(*bystander);
   };
 }
 
 /// Every fifth final report is lost.
-void i2(Plant& plant) {
-  on_channel(plant, Whose::Others, {.receives = [seen = 0](Message& message, MessageBuffer&) mutable {
+void i2(PlantedDefect& defect) {
+  on_channel(defect, Whose::Others, {.receives = [seen = 0](Message& message, MessageBuffer&) mutable {
                const auto report = pus::TelemetryView::parse(message.packet);
                return !report || !is_final_report(*report) || ++seen % 5 != 0;
              }});
 }
 
 /// Every fiftieth report is not stored, and no gap says so.
-void i3(Plant& plant) {
-  plant.keeps = [seen = 0](const supervisor::LogRecord& record) mutable {
+void i3(PlantedDefect& defect) {
+  defect.keeps = [seen = 0](const supervisor::LogRecord& record) mutable {
     return record.kind != supervisor::LogKind::Telemetry || ++seen % 50 != 0;
   };
 }
 
 /// Devices take Off for Active, with what they were last told to do, and have no second inhibit: with one they stay still.
-void i4(Plant& plant) {
-  plant.edit = [](descriptor::Mission& mission) {
+void i4(PlantedDefect& defect) {
+  defect.edit = [](descriptor::Mission& mission) {
     for (auto& member : mission.subsystems)
       for (auto& device : member.subsystem.devices) device.enable.reset();
   };
-  on_devices(plant, [] {
+  on_devices(defect, [] {
     return [payload = std::vector<std::byte>{}](DeviceCommand& command) mutable {
       if (command.mode == DeviceMode::Active) payload.assign(command.payload.begin(), command.payload.end());
       if (command.mode == DeviceMode::Active || payload.empty()) return;
@@ -106,8 +106,8 @@ void i4(Plant& plant) {
 
 /// Stale samples are used on where the descriptor says that they inhibit, and who stands still is not missed for 100 ms:
 /// otherwise the guard stops the network before it matters.
-void i5(Plant& plant) {
-  plant.edit = [](descriptor::Mission& mission) {
+void i5(PlantedDefect& defect) {
+  defect.edit = [](descriptor::Mission& mission) {
     constexpr std::uint32_t cycles = 100;
     for (auto& member : mission.subsystems) member.subsystem.hang = {.realtime = cycles, .reduced = cycles};
     each_requirement(mission, [](descriptor::Requires& wanted) { wanted.missing = descriptor::MissingPolicy::Hold; });
@@ -115,14 +115,14 @@ void i5(Plant& plant) {
 }
 
 /// The supervisor does not listen to the ground link in half of all seconds.
-void i6(Plant& plant) {
-  on_channel(plant, Whose::GroundLink,
-             {.holds_back = [&plant] { return static_cast<int>(2 * plant.now_s()) % 2 == 1; }});
+void i6(PlantedDefect& defect) {
+  on_channel(defect, Whose::GroundLink,
+             {.holds_back = [&defect] { return static_cast<int>(2 * defect.now_s()) % 2 == 1; }});
 }
 
 /// Every mode permits everything.
-void i8(Plant& plant) {
-  plant.edit = [](descriptor::Mission& mission) {
+void i8(PlantedDefect& defect) {
+  defect.edit = [](descriptor::Mission& mission) {
     for (auto& mode : mission.modes) {
       descriptor::Permit all;
       all.subsystem = "*";
@@ -134,10 +134,10 @@ void i8(Plant& plant) {
 }
 
 /// One state is told for another: from Offline straight to Operational.
-void i9(Plant& plant) {
-  plant.each_instant = [&plant, done = false]() mutable {
-    auto* page = const_cast<VitalPage*>(plant.craft->vital(members(plant, Whose::Others).back()));
-    if (done || plant.now_s() < 3 || page == nullptr ||
+void i9(PlantedDefect& defect) {
+  defect.each_instant = [&defect, done = false]() mutable {
+    auto* page = const_cast<VitalPage*>(defect.craft->vital(members(defect, Whose::Others).back()));
+    if (done || defect.now_s() < 3 || page == nullptr ||
         page->state.load() != static_cast<std::uint32_t>(State::Operational))
       return;
     page->state.store(static_cast<std::uint32_t>(State::HardwareInit));
@@ -146,17 +146,17 @@ void i9(Plant& plant) {
 }
 
 /// A subsystem is deaf after the second fault that strikes it.
-void i10(Plant& plant) {
+void i10(PlantedDefect& defect) {
   auto struck = std::make_shared<int>(0);
-  plant.after_action = [struck](const std::vector<std::string>& words) {
+  defect.after_action = [struck](const std::vector<std::string>& words) {
     *struck += words[0] == "fault" || words[0] == "stop" || words[0] == "strain" ? 1 : 0;
   };
-  on_channel(plant, Whose::FirstOther, {.sends = [struck](const Message&) { return *struck < 2; }});
+  on_channel(defect, Whose::FirstOther, {.sends = [struck](const Message&) { return *struck < 2; }});
 }
 
 /// Every hundredth report bears a count that was used before.
-void i11(Plant& plant) {
-  on_channel(plant, Whose::Others, {.receives = [seen = 0](Message& message, MessageBuffer& buffer) mutable {
+void i11(PlantedDefect& defect) {
+  on_channel(defect, Whose::Others, {.receives = [seen = 0](Message& message, MessageBuffer& buffer) mutable {
                const std::size_t size = message.packet.size();
                if (++seen % 100 != 0 || !pus::TelemetryView::parse(message.packet)) return true;
                MutableOctets octets = MutableOctets{buffer.octets}.first(size);
@@ -169,16 +169,16 @@ void i11(Plant& plant) {
 }
 
 /// Nothing that is required is required.
-void i12(Plant& plant) {
-  plant.edit = [](descriptor::Mission& mission) {
+void i12(PlantedDefect& defect) {
+  defect.edit = [](descriptor::Mission& mission) {
     each_requirement(mission, [](descriptor::Requires& wanted) { wanted.required = false; });
   };
 }
 
 /// A device's clock runs 1.25 times too fast.
-void i13(Plant& plant) {
-  plant.clock_percent = 125;
-  plant.devices = [](simulation::DeviceCatalogue& catalogue) {
+void i13(PlantedDefect& defect) {
+  defect.clock_percent = 125;
+  defect.devices = [](simulation::DeviceCatalogue& catalogue) {
     for (auto& [name, make] : catalogue)
       make = [make](FlowFactory& flows, const FlowAddress& address, simulation::SimulatedDevice::Settings settings) {
         settings.cycle = settings.cycle * 100 / 125;
@@ -187,28 +187,28 @@ void i13(Plant& plant) {
   };
 }
 
-const std::map<std::string_view, MakePlant>& plants() {
-  static const std::map<std::string_view, MakePlant> all{{"I1", i1},   {"I2", i2},   {"I3", i3},   {"I4", i4},
-                                                         {"I5", i5},   {"I6", i6},   {"I8", i8},   {"I9", i9},
-                                                         {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}};
+const std::map<std::string_view, MakeDefect>& planted_defects() {
+  static const std::map<std::string_view, MakeDefect> all{{"I1", i1},   {"I2", i2},   {"I3", i3},   {"I4", i4},
+                                                          {"I5", i5},   {"I6", i6},   {"I8", i8},   {"I9", i9},
+                                                          {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}};
   return all;
 }
 
 }  // namespace
 
-double Plant::now_s() const { return craft != nullptr ? seconds(craft->now() - start_of_flight) : 0; }
+double PlantedDefect::now_s() const { return craft != nullptr ? seconds(craft->now() - start_of_flight) : 0; }
 
-std::unique_ptr<Plant> plant_named(std::string_view name) {
-  const auto found = plants().find(name);
-  if (found == plants().end()) return nullptr;
-  auto plant = std::make_unique<Plant>();
-  found->second(*plant);
-  return plant;
+std::unique_ptr<PlantedDefect> defect_named(std::string_view name) {
+  const auto found = planted_defects().find(name);
+  if (found == planted_defects().end()) return nullptr;
+  auto defect = std::make_unique<PlantedDefect>();
+  found->second(*defect);
+  return defect;
 }
 
-std::vector<std::string_view> plant_names() {
+std::vector<std::string_view> defect_names() {
   std::vector<std::string_view> names;
-  for (const auto& [name, make] : plants()) names.push_back(name);
+  for (const auto& [name, make] : planted_defects()) names.push_back(name);
   return names;
 }
 
