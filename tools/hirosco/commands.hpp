@@ -155,12 +155,14 @@ int ground(const GroundOptions& options);
 /// The chain of causes of the last stop, from the ground station's archive.
 int why(const GroundOptions& options);
 
+/// What other programs need of a mission (adr 0106).
+enum class Exported : std::uint8_t { Python, Xtce, Yamcs, InterfaceDocument };
 struct ExportOptions {
+  Exported what{Exported::Python};
   std::string mission;
-  std::string to{"."};  ///< folder that gets the package
+  std::string to{"."};  ///< folder that gets it
 };
-/// The mission's Python client.
-int export_python(const ExportOptions& options);
+int export_mission(const ExportOptions& options);
 
 // --- shared ------------------------------------------------------------------------------------------------------------
 /// A name or a path: the mission file; a name is looked for in missions/NAME/mission.xml from the working directory and

@@ -3,29 +3,35 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <map>
 
+#include "ground/clients/icd/icd.hpp"
 #include "ground/clients/python/python_package.hpp"
+#include "ground/clients/xtce/xtce.hpp"
+#include "ground/clients/yamcs/yamcs_project.hpp"
 #include "tools/hirosco/commands.hpp"
 
 namespace hirosco::tools {
+namespace {
 
-int export_python(const ExportOptions& options) {
-  auto mission = load_mission(options.mission);
-  if (!mission) return exit_finding;
-  const ground::Catalogue catalogue{std::move(*mission)};
-  const auto package = ground::python_package(catalogue);
-  const std::filesystem::path folder = std::filesystem::path{options.to} / package.name;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  for (const auto& [name, text] : package.files) {
-    std::ofstream file{folder / name, std::ios::binary | std::ios::trunc};
+/// Texts by their file names below `folder`. Not all could be written: said on standard error, false.
+[[nodiscard]] bool write_files(const std::filesystem::path& folder, const std::map<std::string, std::string>& files) {
+  for (const auto& [name, text] : files) {
+    const std::filesystem::path path = folder / name;
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);
+    std::ofstream file{path, std::ios::binary | std::ios::trunc};
     file << text;
     if (!file.flush()) {
-      fmt::print(stderr, "hirosco export: {} cannot be written\n", (folder / name).string());
-      return exit_environment;
+      fmt::print(stderr, "hirosco export: {} cannot be written\n", path.string());
+      return false;
     }
-    fmt::print("wrote {}\n", (folder / name).string());
+    fmt::print("wrote {}\n", path.string());
   }
+  return true;
+}
+
+void explain_python(const ground::Catalogue& catalogue, const std::string& package, const std::string& to) {
   std::string names;
   for (const auto* subsystem : catalogue.subsystems()) names += (names.empty() ? "" : ", ") + subsystem->name;
   fmt::print(
@@ -35,9 +41,40 @@ int export_python(const ExportOptions& options) {
       "    >>> craft = Spacecraft()\n"
       "    >>> help(craft)\n\n"
       "docs/guide/python_client.md says the rest.\n",
-      catalogue.subsystems().size() == 1 ? "The subsystem" : "The subsystems", catalogue.mission().name, names,
-      options.to, package.name);
-  return exit_ok;
+      catalogue.subsystems().size() == 1 ? "The subsystem" : "The subsystems", catalogue.mission().name, names, to,
+      package);
+}
+
+}  // namespace
+
+int export_mission(const ExportOptions& options) {
+  auto mission = load_mission(options.mission);
+  if (!mission) return exit_finding;
+  const ground::Catalogue catalogue{std::move(*mission)};
+  const std::filesystem::path to{options.to};
+  switch (options.what) {
+    case Exported::Python: {
+      const auto package = ground::python_package(catalogue);
+      if (!write_files(to / package.name, package.files)) return exit_environment;
+      explain_python(catalogue, package.name, options.to);
+      return exit_ok;
+    }
+    case Exported::Xtce: {
+      const auto database = ground::xtce(catalogue);
+      return write_files(to, {{database.name + ".xml", database.text}}) ? exit_ok : exit_environment;
+    }
+    case Exported::Yamcs: {
+      const auto project = ground::yamcs_project(catalogue);
+      if (!write_files(to / project.name, project.files)) return exit_environment;
+      fmt::print("{} says how to start it.\n", (to / project.name / "README.md").string());
+      return exit_ok;
+    }
+    case Exported::InterfaceDocument: {
+      const std::string name = ground::XtceNames{}.unique(catalogue.mission().name) + "-icd.md";
+      return write_files(to, {{name, ground::interface_document(catalogue)}}) ? exit_ok : exit_environment;
+    }
+  }
+  return exit_internal;
 }
 
 }  // namespace hirosco::tools

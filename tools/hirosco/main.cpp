@@ -193,10 +193,18 @@ int read_and_do(int argc, char** argv) {
   ExportOptions export_options;
   auto* export_command = app.add_subcommand("export", "What other programs need of a mission");
   export_command->require_subcommand(1);
-  auto* python_command = export_command->add_subcommand(
-      "python", "A Python client from the descriptors: a package without requirements, a class for each subsystem");
-  python_command->add_option("mission", export_options.mission, "Name or path of the mission")->required();
-  python_command->add_option("--to", export_options.to, "Folder that gets the package")->capture_default_str();
+  const auto add_export = [&](tools::Exported what, const char* name, const char* says) {
+    auto* command = export_command->add_subcommand(name, says);
+    command->add_option("mission", export_options.mission, "Name or path of the mission")->required();
+    command->add_option("--to", export_options.to, "Folder that gets it")->capture_default_str();
+    command->callback([&export_options, what] { export_options.what = what; });
+  };
+  using tools::Exported;
+  add_export(Exported::Python, "python",
+             "A Python client from the descriptors: a package without requirements, a class for each subsystem");
+  add_export(Exported::Xtce, "xtce", "Telemetry and telecommands as XTCE 1.2, for ground stations that read it");
+  add_export(Exported::Yamcs, "yamcs", "A project with which Yamcs starts: database, links, events in words, stacks");
+  add_export(Exported::InterfaceDocument, "icd", "The interface document: every packet, octet by octet, as Markdown");
   // Values such as -0.8 are arguments, not options.
   tc_command->prefix_command(false);
 
@@ -224,7 +232,7 @@ int read_and_do(int argc, char** argv) {
   }
   if (*ground_command) return ground(ground_options);
   if (*why_command) return why(ground_options);
-  if (*export_command) return export_python(export_options);
+  if (*export_command) return export_mission(export_options);
   if (*check_command) return check(check_options);
   if (*simulate_command) return simulate(simulate_options);
   if (*report_command) return mission_program("report", judged_mission, {});
