@@ -16,6 +16,7 @@ using pus::Part;
 using pus::Shape;
 
 constexpr std::uint32_t most_word_octets = 255;
+constexpr unsigned word_length_bits = 8;
 
 /// Entries for the parts of one report, in order. A list is a container of its own that is included as often as its count says.
 class PartEntries {
@@ -44,13 +45,11 @@ class PartEntries {
               name, types_.value({.type = Type::Text, .text_octets = part.count}))));
           octets = behind(octets, part.count);
           break;
-        case Form::Word: {
-          const std::string length = system_.add_parameter(name + "_LENGTH", types_.bits(8));
-          entries.push_back(entry_of(length));
-          entries.push_back(entry_of(system_.add_parameter(name, types_.words_by(length, 0, most_word_octets))));
+        case Form::Word:
+          entries.push_back(entry_of(
+              system_.add_parameter(name, types_.words_behind_length(word_length_bits, most_word_octets))));
           octets = unknown;
           break;
-        }
         case Form::List: {
           const std::string count = system_.add_parameter("NUMBER_OF_" + name, types_.bits(8));
           const auto each = of(part.repeated(), unknown);

@@ -93,10 +93,8 @@ class SubsystemReports {
   void add_field(SpaceSystem& place, Container& container, const descriptor::Function::Argument& field) {
     constexpr unsigned length_bits = 16;
     if (field.field.type == Type::Text) {
-      const std::string length = place.add_parameter(field.field.name + "_LENGTH", types_.bits(length_bits));
-      container.entries.push_back(entry_of(length));
-      container.entries.push_back(entry_of(
-          place.add_parameter(field.field.name, types_.words_by(length, 0, field.field.text_octets))));
+      container.entries.push_back(entry_of(place.add_parameter(
+          field.field.name, types_.words_behind_length(length_bits, field.field.text_octets))));
       return;
     }
     auto texts = field.texts.empty() ? catalogue_.texts_of(subsystem_, {}, field.field) : field.texts;

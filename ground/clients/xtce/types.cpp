@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 namespace hirosco::ground {
 namespace {
 
@@ -81,8 +83,14 @@ std::string TypeSet::keep(std::string_view wanted, Element type) {
 
 void TypeSet::add_range(Element& type, const ValueKind& kind) const {
   Element range{of_ == Of::Parameters ? "CriticalRange" : "ValidRange"};
-  if (kind.minimum && kind.minimum->is_finite()) range.attributes.emplace_back("minInclusive", to_string(*kind.minimum));
-  if (kind.maximum && kind.maximum->is_finite()) range.attributes.emplace_back("maxInclusive", to_string(*kind.maximum));
+  // XTCE has a signed 64-bit number for the limit of an integer.
+  const Number most{std::numeric_limits<std::int64_t>::max()};
+  const auto add = [&](const char* name, const std::optional<Number>& limit) {
+    if (!limit || !limit->is_finite() || (is_integer(kind.type) && *limit > most)) return;
+    range.attributes.emplace_back(name, to_string(*limit));
+  };
+  add("minInclusive", kind.minimum);
+  add("maxInclusive", kind.maximum);
   if (range.attributes.empty()) return;
   // What is told outside its promise is an alarm; what is commanded outside is not sent.
   if (of_ == Of::Parameters)
@@ -171,10 +179,14 @@ std::string TypeSet::words_by(const std::string& parameter, int intercept_bits, 
 }
 
 std::string TypeSet::words_behind_length(unsigned length_bits, std::uint32_t most_octets) {
-  // XTCE wants a size of the whole even where the length stands in front; this word says that there is none.
+  // XTCE wants a size of the whole even where the length stands in front; this word says that there is none. A parameter of
+  // its own for the length would not do in a list: Yamcs takes the first one of the packet.
+  constexpr const char* none = "_yamcs_ignore";
+  Element reference = of_ == Of::Parameters ? Element{"ParameterInstanceRef", {{"parameterRef", none}}}
+                                            : Element{"ArgumentInstanceRef", {{"argumentRef", none}}};
   Element size{"Variable",
                {{"maxSizeInBits", std::to_string(8 * most_octets + length_bits)}},
-               {{"DynamicValue", {}, {{"ArgumentInstanceRef", {{"argumentRef", "_yamcs_ignore"}}}}},
+               {{"DynamicValue", {}, {std::move(reference)}},
                 {"LeadingSize", {{"sizeInBitsOfSizeTag", std::to_string(length_bits)}}}}};
   return keep("words", {tag("String"),
                         {},

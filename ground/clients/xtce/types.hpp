@@ -44,7 +44,7 @@ class TypeSet {
   [[nodiscard]] std::string octets_by(const std::string& parameter, int intercept_bits);
   /// Words, as many octets as a parameter says.
   [[nodiscard]] std::string words_by(const std::string& parameter, int intercept_bits, std::uint32_t most_octets);
-  /// Words behind their length, of 8 or 16 bits. Of arguments only.
+  /// Words behind their length, of 8 or 16 bits.
   [[nodiscard]] std::string words_behind_length(unsigned length_bits, std::uint32_t most_octets);
   /// As many elements as another argument says.
   [[nodiscard]] std::string list_by(const std::string& argument, const std::string& element_type);
