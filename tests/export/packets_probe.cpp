@@ -8,7 +8,7 @@
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "simulation/scenarios/flight.hpp"
 
-// Flies rokviss on virtual time, asks it for a report of every kind that it has, and prints each packet that came down, in
+// Flies rokviss on virtual time, asks it for a report of every kind that it has, and prints each packet that it routes to the ground, in
 // hexadecimal, a line each.
 namespace hirosco {
 namespace {
@@ -115,10 +115,10 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   try {
     simulation::Flight flight{{.mission = argv[1]}};
-    flight.craft().ground().on_telemetry([](Octets packet) {
-      for (const std::byte octet : packet) fmt::print("{:02x}", std::to_integer<unsigned>(octet));
+    flight.story().on_telemetry = [](const pus::TelemetryView& told) {
+      for (const std::byte octet : told.packet()) fmt::print("{:02x}", std::to_integer<unsigned>(octet));
       fmt::print("\n");
-    });
+    };
     fly(flight);
   } catch (const std::exception& error) {
     fmt::print(stderr, "packets_probe: {}\n", error.what());
