@@ -29,7 +29,7 @@ constexpr std::array keywords{"False", "None",     "True",  "and",    "as",   "a
 const std::set<std::string> subsystem_names{
     "configuration", "disable_housekeeping", "enable_housekeeping", "latest", "record", "state"};
 const std::set<std::string> craft_names{"close",    "connected", "damaged", "events",     "kept_events", "mode",
-                                        "on_event", "received",  "source",  "wait_event", "wait_until"};
+                                        "on_event", "on_link", "received",  "source",  "wait_event", "wait_until"};
 /// More names would hide what matters in an editor's help.
 constexpr std::size_t most_literals = 16;
 constexpr std::uint16_t in_every_state = 0x03FF;
@@ -418,8 +418,8 @@ class SubsystemClass {
   text += mission_about(catalogue);
   text +=
       "\n    def __init__(self, host: _t.Optional[str] = None, port: _t.Optional[int] = None, "
-      "timeout: float = 5.0,\n                 instance: _t.Optional[str] = None) -> None:\n"
-      "        super().__init__(host, port, timeout, instance)\n";
+      "timeout: float = 5.0,\n                 instance: _t.Optional[str] = None, reconnect: bool = False) -> None:\n"
+      "        super().__init__(host, port, timeout, instance, reconnect)\n";
   return text + made + "        self._subsystems = (" + all + ")\n        self._start()\n";
 }
 

@@ -30,6 +30,7 @@ STATES = ("Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOper
           "ErrorOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit")
 # Source ids of Python clients; reports find back to the one that asked.
 FIRST_SOURCE, LAST_SOURCE = 0x8000, 0xBFFF
+RECONNECT_S = 1.0                 # from one attempt to the next
 
 
 def code_text(code: int) -> str:
@@ -67,6 +68,7 @@ class Request:
         self.reports: List[Report] = []       # that answer it, while it is open
         self.reply: Optional[Telemetry] = None
         self._craft = craft
+        self._link = craft._link          # another link knows nothing of it
         self._sent = time.monotonic()
 
     def __repr__(self) -> str:
@@ -78,7 +80,7 @@ class Request:
 
     def result(self, timeout: float = 70.0) -> Request:
         """Waits for the last report. CommandFailed, NoAnswer, LinkLost."""
-        self._craft._wait(lambda: self.done, timeout, f"{self.subsystem}.{self.name}: no final report")
+        self._craft._wait(lambda: self.done, timeout, f"{self.subsystem}.{self.name}: no final report", self._link)
         for verification in self.verifications:
             if verification.is_failure and (verification.is_last or self.verifications[-1].subtype != 7):
                 raise CommandFailed(self, verification)
@@ -142,7 +144,7 @@ class Subsystem:
         parameter = self._parameters[name]
         data = struct.pack(">BI", 1, parameter.wire)
         request = self._craft._send(self, f"get {name}", 20, 1, data, wait)
-        self._craft._wait(lambda: request.reply, wait, f"{self._about.name}.{name}: no value came")
+        self._craft._wait(lambda: request.reply, wait, f"{self._about.name}.{name}: no value came", request._link)
         values, offset = {}, 5
         for field in parameter.fields:
             values[field.name] = field.decode(request.reply.data, offset)
@@ -206,9 +208,10 @@ class Craft:
     kept_events = 10_000
 
     def __init__(self, host: Optional[str] = None, port: Optional[int] = None, timeout: float = 5.0,
-                 instance: Optional[str] = None) -> None:
+                 instance: Optional[str] = None, reconnect: bool = False) -> None:
         """Connects: to the flight of this mission on this computer, to that of this name (`hirosco run --instance`), or
-        to `host` and `port`. LinkLost: nobody answers there, or it is not clear which flight is meant."""
+        to `host` and `port`. LinkLost: nobody answers there, or it is not clear which flight is meant. With `reconnect` a link
+        that is lost later is looked for every second, wherever the mission then flies; what was asked on the old one is lost."""
         self.source = random.randint(FIRST_SOURCE, LAST_SOURCE)
         self.events: "collections.deque[Event]" = collections.deque(maxlen=self.kept_events)
         self.received = self.damaged = 0
@@ -217,6 +220,15 @@ class Craft:
         self._requests: Dict[int, Request] = {}
         self._count = random.randrange(1 << 14)
         self._lost: Optional[str] = None
+        self._link = 0                    # how many were lost
+        self._link_watchers: List[Callable[[bool], None]] = []
+        self._closed = threading.Event()
+        self._reconnects = reconnect
+        self._wanted = (host, port, timeout, instance)
+        self._socket = self._connect()
+
+    def _connect(self) -> socket.socket:
+        host, port, timeout, instance = self._wanted
         where = (host or self._about.host, port or self._about.port)
         if instance is not None or (host is None and port is None):
             flight = find_flight(self._about.name, instance)
@@ -224,10 +236,11 @@ class Craft:
                 there, _, number = flight["telemetry"].rpartition(":")
                 where = (host or there, port or int(number))
         try:
-            self._socket = socket.create_connection(where, timeout)
+            connection = socket.create_connection(where, timeout)
         except OSError as error:
             raise LinkLost(f"{where[0]}:{where[1]}: {error}; does the mission fly?") from None
-        self._socket.settimeout(None)
+        connection.settimeout(None)
+        return connection
 
     def _start(self) -> None:
         """Once the subsystems are there."""
@@ -243,7 +256,8 @@ class Craft:
         self.close()
 
     def close(self) -> None:
-        with contextlib.suppress(OSError):
+        with self._arrived, contextlib.suppress(OSError):
+            self._closed.set()
             self._socket.shutdown(socket.SHUT_RDWR)
         if threading.current_thread() is not self._reader:
             self._reader.join(5.0)
@@ -278,6 +292,10 @@ class Craft:
         """`watcher(event)` in the reading thread: it may not wait for anything of this object."""
         self._watchers = [*self._watchers, watcher]
 
+    def on_link(self, watcher: Callable[[bool], None]) -> None:
+        """`watcher(False)` when the link is lost, `watcher(True)` when there is one again; in the reading thread, too."""
+        self._link_watchers = [*self._link_watchers, watcher]
+
     def _told(self, apid: int, what: str, newest: Tuple[float, Optional[int]] = (-math.inf, None)) -> Optional[int]:
         """What the supervisor's housekeeping says of a subsystem, unless `newest` (time, value) is newer."""
         with self._arrived:
@@ -302,11 +320,14 @@ class Craft:
                 raise LinkLost(f"the link was closed: {error}") from None
         return request if wait is None else request.result(wait)
 
-    def _wait(self, condition: Callable[[], Any], timeout: float, what: str) -> None:
+    def _wait(self, condition: Callable[[], Any], timeout: float, what: str, link: Optional[int] = None) -> None:
+        """`link`: the one on which it was asked; any other brings no answer."""
         end = time.monotonic() + timeout
         with self._arrived:
             while not condition():
-                if self._lost is not None:
+                if link not in (None, self._link):
+                    raise LinkLost(f"{what}: the link on which it was asked is lost")
+                if self._lost is not None and not (self._reconnects and not self._closed.is_set()):
                     raise LinkLost(self._lost)
                 left = end - time.monotonic()
                 if left <= 0:
@@ -314,6 +335,41 @@ class Craft:
                 self._arrived.wait(left)
 
     def _read(self) -> None:
+        while True:
+            why = self._read_link()
+            with self._arrived:
+                self._lost = why
+                self._link += 1
+                self._requests.clear()
+                self._arrived.notify_all()
+            self._tell_link(False)
+            if not self._reconnects or not self._connect_again():
+                return
+            self._tell_link(True)
+
+    def _tell_link(self, up: bool) -> None:
+        for watcher in self._link_watchers:
+            watcher(up)
+
+    def _connect_again(self) -> bool:
+        """False: this object is closed."""
+        while not self._closed.wait(RECONNECT_S):
+            try:
+                connection = self._connect()
+            except LinkLost:
+                continue
+            with self._arrived:
+                if self._closed.is_set():
+                    connection.close()
+                    return False
+                self._socket.close()
+                self._socket, self._lost = connection, None
+                self._arrived.notify_all()
+            return True
+        return False
+
+    def _read_link(self) -> str:
+        """Until it ends: why."""
         stream, why = bytearray(), "the spacecraft closed the link"
         try:
             while octets := self._socket.recv(65536):
@@ -322,9 +378,7 @@ class Craft:
                     self._take(packet)
         except (OSError, LinkLost) as error:
             why = str(error)
-        with self._arrived:
-            self._lost = why
-            self._arrived.notify_all()
+        return why
 
     def _take(self, octets: bytes) -> None:
         packet = Telemetry.parse(octets)

@@ -186,10 +186,11 @@ class Peer:
         self.port = self._listener.getsockname()[1]
         self._count = 0
 
-    def accept(self):
+    def accept(self, last=True):
         self.socket = self._listener.accept()[0]
         self.socket.settimeout(5.0)
-        self._listener.close()
+        if last:
+            self._listener.close()
 
     def telecommand(self):
         data = self.socket.recv(6, socket.MSG_WAITALL)
@@ -268,13 +269,16 @@ class Client(unittest.TestCase):
             _about = MissionAbout("SMALL", "127.0.0.1", self.peer.port, "ARM", ((4, "safe"),), (),
                                   ((10, "not permitted in this state"), (13, "not permitted in this mode")))
 
-        self.craft = Small()
-        self.craft.arm = Arm(self.craft)
-        self.craft._subsystems = (self.craft.arm,)
+        self.craft = self.started(Small())
         self.peer.accept()
-        self.craft._start()
         self.addCleanup(self.peer.socket.close)
-        self.addCleanup(self.craft.close)
+
+    def started(self, craft):
+        craft.arm = Arm(craft)
+        craft._subsystems = (craft.arm,)
+        craft._start()
+        self.addCleanup(craft.close)
+        return craft
 
     def answer(self, *reports):
         """Answers the next telecommand by reports [(subtype, data)]."""
@@ -430,6 +434,44 @@ class Client(unittest.TestCase):
         with self.assertRaises(LinkLost):
             self.craft.arm.move(3)
         self.assertFalse(self.craft.connected)
+
+    def test_a_link_that_is_lost_is_made_again_where_that_is_wanted(self):
+        peer, told = Peer(), []
+        with unittest.mock.patch.object(runtime, "RECONNECT_S", 0.01):
+            craft = self.started(type(self.craft)("127.0.0.1", peer.port, reconnect=True))
+            craft.on_link(told.append)
+            peer.accept(last=False)
+            asked = craft.arm.move(3, wait=None)
+            request = peer.telecommand()
+            peer.tell(3, 25, b"\x00\x07\x01\xff")
+            craft.wait_until(lambda: craft.received == 1)
+            peer.socket.close()
+            with self.assertRaises(LinkLost):
+                asked.result(5.0)
+            peer.accept()
+            # An answer to what was asked before means nothing any more; reports, recordings and requests go on.
+            with craft.arm.record(7) as reports:
+                peer.verify(request, 7)
+                peer.tell(3, 25, b"\x00\x07\x02\xfe")
+                craft.wait_until(lambda: reports)
+            self.assertFalse(asked.done)
+            self.assertTrue(craft.connected)
+            again = craft.arm.move(4, wait=None)
+            peer.verify(peer.telecommand(), 7)
+            self.assertTrue(again.result(5.0).done)
+            self.assertEqual(told, [False, True])
+            craft.close()
+            self.assertFalse(craft.connected)
+        peer.socket.close()
+
+    def test_who_closes_while_it_is_down_waits_for_nobody(self):
+        peer = Peer()
+        craft = self.started(type(self.craft)("127.0.0.1", peer.port, reconnect=True))
+        peer.accept()
+        peer.socket.close()
+        craft.wait_until(lambda: not craft.connected)
+        craft.close()
+        self.assertFalse(craft._reader.is_alive())
 
     def test_nobody_there_is_said_at_once(self):
         with self.assertRaisesRegex(LinkLost, "does the mission fly"):
