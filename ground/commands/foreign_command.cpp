@@ -21,7 +21,8 @@ struct Senders {
   std::uint16_t last;
   const char* name;
 };
-constexpr std::array senders{Senders{0x2000, 0x3FFF, "another ground station"}, Senders{0x4000, 0x7FFF, "hirosco tc"},
+constexpr std::array senders{Senders{0x1000, 0x1000, "an exported database"},
+                             Senders{0x2000, 0x3FFF, "another ground station"}, Senders{0x4000, 0x7FFF, "hirosco tc"},
                              Senders{0x8000, 0xBFFF, "a Python client"}};
 
 /// The name in the first 16 octets of TC[8,1], up to its padding.

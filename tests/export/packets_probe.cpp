@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <cstdio>
 #include <exception>
-#include <fmt/format.h>
 
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"

@@ -44,7 +44,8 @@ using Texts = std::vector<descriptor::EnumerationText>;
 }
 
 [[nodiscard]] std::string range_text(const descriptor::Field& field) {
-  if (field.minimum && field.maximum) return fmt::format("{} to {}", to_string(*field.minimum), to_string(*field.maximum));
+  if (field.minimum && field.maximum)
+    return fmt::format("{} to {}", to_string(*field.minimum), to_string(*field.maximum));
   if (field.minimum) return "from " + to_string(*field.minimum);
   if (field.maximum) return "up to " + to_string(*field.maximum);
   return {};
@@ -126,7 +127,7 @@ class SubsystemPart {
           for (const auto& reference : set.parameters) add(reference, fmt::format(" sample {}", i + 1));
       // The same in many configurations is said once.
       if (!said_.insert(std::to_string(structure.id) + text).second) continue;
-      const Duration cycle = configuration != nullptr           ? configuration->sampling
+      const Duration cycle = configuration != nullptr            ? configuration->sampling
                              : subsystem_.configurations.empty() ? Duration{0}
                                                                  : subsystem_.configurations.front().sampling;
       out_ += fmt::format("\n### TM[3,25] structure {}\n\n{}: every {:g} s, {} octets in all{}.\n\n{}", structure.id,
@@ -137,8 +138,9 @@ class SubsystemPart {
 
   void events() {
     if (subsystem_.events.empty()) return;
-    out_ += "\n### Events, TM[5,1] to TM[5,4]\n\nEvent id at octet 20, arguments from octet 22 on.\n\n"
-            "| id | event | severity | arguments |\n|---|---|---|---|\n";
+    out_ +=
+        "\n### Events, TM[5,1] to TM[5,4]\n\nEvent id at octet 20, arguments from octet 22 on.\n\n"
+        "| id | event | severity | arguments |\n|---|---|---|---|\n";
     for (const auto& event : subsystem_.events) {
       std::string arguments;
       for (const auto& argument : event.arguments)
@@ -157,20 +159,24 @@ class SubsystemPart {
       for (const auto& row : EnumTexts<descriptor::State>::table)
         if (function.permitted_in(row.value)) states += (states.empty() ? "" : ", ") + std::string{row.text};
       out_ += fmt::format("\n#### {}, TC[{},{}]\n\n{}{}Permitted in: {}.{}\n", cell(function.name), function.service,
-                          function.subtype, cell(function.description), function.description.empty() ? "" : ". ", states,
-                          function.essential ? " Essential: forwarded before it is logged." : "");
+                          function.subtype, cell(function.description), function.description.empty() ? "" : ". ",
+                          states, function.essential ? " Essential: forwarded before it is logged." : "");
       if (function.arguments.empty()) continue;
-      out_ += call ? fmt::format("\nThe name in octets 11 to 26, the number of arguments ({}) in octet 27, in front of each its id.\n\n",
-                                 function.arguments.size())
+      out_ += call ? fmt::format(
+                         "\nThe name in octets 11 to 26, the number of arguments ({}) in octet 27, in front of each "
+                         "its id.\n\n",
+                         function.arguments.size())
                    : std::string{"\nFrom octet 11 on, in this order.\n\n"};
       Table table{out_, call ? "id" : "order"};
       unsigned number = 0;
       for (const auto& argument : function.arguments) {
         const std::string given = argument.fallback ? "; left out: " + value_text(*argument.fallback) : "";
         std::string type = type_text(argument.field);
-        if (argument.field.type == Type::Text) type = fmt::format("TEXT, length u16, at most {} octets", argument.field.text_octets);
+        if (argument.field.type == Type::Text)
+          type = fmt::format("TEXT, length u16, at most {} octets", argument.field.text_octets);
         table.row(std::to_string(++number), argument.field.name, type, argument.field.unit,
-                  joined(range_text(argument.field), names_text(catalogue_.texts_of(subsystem_, function, argument))) + given);
+                  joined(range_text(argument.field), names_text(catalogue_.texts_of(subsystem_, function, argument))) +
+                      given);
       }
     }
   }
@@ -181,7 +187,8 @@ class SubsystemPart {
     Table table{out_, "id on the wire"};
     const auto add = [&](const std::string& name, const descriptor::Field& field, std::uint8_t id, bool writable) {
       const ParameterId wire{subsystem_.id, field.type, id};
-      table.row(fmt::format("{:#x}", wire.wire()), name, type_text(field), field.unit, more(field) + (writable ? "; may be set" : ""));
+      table.row(fmt::format("{:#x}", wire.wire()), name, type_text(field), field.unit,
+                more(field) + (writable ? "; may be set" : ""));
     };
     for (const auto& parameter : subsystem_.parameters) {
       const std::string& name = parameter.field.name;
@@ -232,12 +239,15 @@ class SubsystemPart {
     const std::string name{part.name};
     switch (part.form) {
       case pus::Form::Number:
-        result += fmt::format("{} {}{}", name, part.count == 1 ? "" : fmt::format("{} x ", part.count), to_text(part.type));
+        result +=
+            fmt::format("{} {}{}", name, part.count == 1 ? "" : fmt::format("{} x ", part.count), to_text(part.type));
         break;
       case pus::Form::Text: result += fmt::format("{} {} octets of ASCII", name, part.count); break;
       case pus::Form::Word: result += name + " length u8 and words"; break;
       case pus::Form::Time: result += name + " on-board time"; break;
-      case pus::Form::List: result += fmt::format("number of {} u8, each: ({})", name, shape_text(part.repeated())); break;
+      case pus::Form::List:
+        result += fmt::format("number of {} u8, each: ({})", name, shape_text(part.repeated()));
+        break;
       case pus::Form::Value: result += name + " as the parameter's type"; break;
       case pus::Form::Arguments: result += "number of arguments u8, each: (id u8, value)"; break;
       case pus::Form::Rest: result += name + ", all that is left"; break;
@@ -247,13 +257,16 @@ class SubsystemPart {
 }
 
 void write_services(std::string& out) {
-  out += "\n## Services of the framework\n\nData of a request from octet 11 on, of a report from octet 20 on.\n\n"
-         "| packet | name | data |\n|---|---|---|\n";
+  out +=
+      "\n## Services of the framework\n\nData of a request from octet 11 on, of a report from octet 20 on.\n\n"
+      "| packet | name | data |\n|---|---|---|\n";
   for (const pus::ServiceKind* service : pus::standard_services()) {
     for (const auto& request : service->requests)
-      out += fmt::format("| TC[{},{}] | {} | {} |\n", service->type, request.subtype, request.name, shape_text(request.data));
+      out += fmt::format("| TC[{},{}] | {} | {} |\n", service->type, request.subtype, request.name,
+                         shape_text(request.data));
     for (const auto& report : service->reports)
-      out += fmt::format("| TM[{},{}] | {} | {} |\n", service->type, report.subtype, report.name, shape_text(report.data));
+      out +=
+          fmt::format("| TM[{},{}] | {} | {} |\n", service->type, report.subtype, report.name, shape_text(report.data));
   }
 }
 
@@ -282,16 +295,21 @@ std::string interface_document(const Catalogue& catalogue) {
   const auto& mission = catalogue.mission();
   std::string out = fmt::format(
       "<!-- SPDX-FileCopyrightText: 2026 The HIROSCO developers -->\n<!-- SPDX-License-Identifier: Apache-2.0 -->\n"
-      "# Interface document of {}\n\nFrom the mission's descriptors, by `hirosco export icd` of hirosco {}: export it again rather than "
-      "change it.\n\nTelemetry and telecommands are exchanged by TCP at {}; {} takes telecommands alone. A packet has at most {} octets.\n",
-      cell(mission.name), version, code(mission.ground.telemetry), code(mission.ground.telecommand), pus::max_telemetry_octets);
+      "# Interface document of {}\n\nFrom the mission's descriptors, by `hirosco export icd` of hirosco {}: export it "
+      "again rather than "
+      "change it.\n\nTelemetry and telecommands are exchanged by TCP at {}; {} takes telecommands alone. A packet has "
+      "at most {} octets.\n",
+      cell(mission.name), version, code(mission.ground.telemetry), code(mission.ground.telecommand),
+      pus::max_telemetry_octets);
   out += packets;
   out += "\n## Modes\n\n| id | mode |\n|---|---|\n";
   for (const auto& mode : mission.modes) out += fmt::format("| {} | {} |\n", mode.id, code(mode.name));
   for (const auto* subsystem : catalogue.subsystems()) SubsystemPart{out, catalogue, *subsystem}.write();
   write_services(out);
-  out += "\n## Failure codes\n\nBehind the request's own first four octets (and the step, of TM[1,6]) in TM[1,2], 4, 6, 8 and 10.\n\n"
-         "| code | name |\n|---|---|\n";
+  out +=
+      "\n## Failure codes\n\nBehind the request's own first four octets (and the step, of TM[1,6]) in TM[1,2], 4, 6, 8 "
+      "and 10.\n\n"
+      "| code | name |\n|---|---|\n";
   for (const auto& row : EnumTexts<pus::FailureCode>::table)
     out += fmt::format("| {:#06x} | {} |\n", static_cast<unsigned>(row.value), row.text);
   return out;

@@ -28,8 +28,8 @@ constexpr std::array keywords{"False", "None",     "True",  "and",    "as",   "a
 /// Public names of runtime.Subsystem and runtime.Craft (runtime_test.py compares).
 const std::set<std::string> subsystem_names{
     "configuration", "disable_housekeeping", "enable_housekeeping", "latest", "record", "state"};
-const std::set<std::string> craft_names{"close",    "connected", "damaged", "events",     "kept_events", "mode",
-                                        "on_event", "on_link", "received",  "source",  "wait_event", "wait_until"};
+const std::set<std::string> craft_names{"close",    "connected", "damaged",  "events", "kept_events", "mode",
+                                        "on_event", "on_link",   "received", "source", "wait_event",  "wait_until"};
 /// More names would hide what matters in an editor's help.
 constexpr std::size_t most_literals = 16;
 constexpr std::uint16_t in_every_state = 0x03FF;

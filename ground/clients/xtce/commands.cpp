@@ -31,15 +31,12 @@ const std::set<std::string> header_arguments{"apid", "ack", "service", "subtype"
 [[nodiscard]] Element fixed_bits(std::string_view name, const char* hex, unsigned bits) {
   return {"FixedValueEntry", {{"name", std::string{name}}, {"binaryValue", hex}, {"sizeInBits", std::to_string(bits)}}};
 }
-[[nodiscard]] Element argument_entry(const std::string& name) {
-  return {"ArgumentRefEntry", {{"argumentRef", name}}};
-}
+[[nodiscard]] Element argument_entry(const std::string& name) { return {"ArgumentRefEntry", {{"argumentRef", name}}}; }
 
 [[nodiscard]] Element assignments(const std::vector<std::pair<std::string, unsigned>>& values) {
   Element list{"ArgumentAssignmentList"};
   for (const auto& [name, value] : values)
-    list.children.push_back(
-        {"ArgumentAssignment", {{"argumentName", name}, {"argumentValue", std::to_string(value)}}});
+    list.children.push_back({"ArgumentAssignment", {{"argumentName", name}, {"argumentValue", std::to_string(value)}}});
   return list;
 }
 
@@ -52,8 +49,7 @@ class Verifiers {
                               bool ends = false) const {
     Element inputs{"InputSet"};
     const auto add = [&](const char* input, const std::string& parameter) {
-      inputs.children.push_back(
-          {"InputParameterInstanceRef", {{"parameterRef", parameter}, {"inputName", input}}});
+      inputs.children.push_back({"InputParameterInstanceRef", {{"parameterRef", parameter}, {"inputName", input}}});
     };
     add("sentApid", "/yamcs/cmd/arg/apid");
     add("sentSeq", "/yamcs/cmdHist/ccsds-seqcount");
@@ -61,12 +57,13 @@ class Verifiers {
     add("rcvdSeq", root_.verified_count);
     add("reportSubtype", root_.verified_subtype);
     add("code", failure_);
-    Element algorithm{"CustomAlgorithm",
-                      {{"name", fmt::format("stage_{}", stage)}},
-                      {{.name = "AlgorithmText",
-                        .attributes = {{"language", "Java"}},
-                        .text = fmt::format("org.yamcs.pus.Pus1Verifier({{stage: {}, template: \"{{code}}\"}})", stage)},
-                       std::move(inputs)}};
+    Element algorithm{
+        "CustomAlgorithm",
+        {{"name", fmt::format("stage_{}", stage)}},
+        {{.name = "AlgorithmText",
+          .attributes = {{"language", "Java"}},
+          .text = fmt::format("org.yamcs.pus.Pus1Verifier({{stage: {}, template: \"{{code}}\"}})", stage)},
+         std::move(inputs)}};
     Element verifier{tag, {{"name", name}}};
     if (ends)
       verifier.children.push_back(
@@ -116,9 +113,8 @@ class Commands {
     base.children.push_back(
         {"BaseMetaCommand", {{"metaCommandRef", telecommand}}, {assignments({{"apid", subsystem.id}})}});
     const std::string name = system_.free_command_name("telecommand");
-    base.children.push_back({"CommandContainer",
-                             {{"name", name}},
-                             {{"EntryList"}, {"BaseContainer", {{"containerRef", telecommand}}}}});
+    base.children.push_back(
+        {"CommandContainer", {{"name", name}}, {{"EntryList"}, {"BaseContainer", {{"containerRef", telecommand}}}}});
     base.children.push_back(
         {"VerifierSet", {}, {verifiers_.stage("AcceptedVerifier", "Accepted", 1, longest_acceptance)}});
     base_ = system_.add_command(name, std::move(base));
@@ -155,8 +151,9 @@ class Commands {
         if (by_name || service->needs_of(request.subtype) == pus::Needs::SupervisorAsks) continue;
         Layout layout;
         if (!add_parts(layout, request.data, false)) continue;
-        add(std::string{request.name}, fmt::format("TC[{},{}], service of {}", service->type, request.subtype, service->name),
-            service->type, request.subtype, std::move(layout), false);
+        add(std::string{request.name},
+            fmt::format("TC[{},{}], service of {}", service->type, request.subtype, service->name), service->type,
+            request.subtype, std::move(layout), false);
       }
     }
   }
@@ -181,7 +178,8 @@ class Commands {
     return function.description + (function.description.empty() ? "" : ". ") + "Permitted in: " + states;
   }
 
-  void add_argument(Layout& layout, const descriptor::Function& function, const descriptor::Function::Argument& argument) {
+  void add_argument(Layout& layout, const descriptor::Function& function,
+                    const descriptor::Function::Argument& argument) {
     constexpr unsigned length_bits = 16;
     const auto& field = argument.field;
     const Texts texts = catalogue_.texts_of(subsystem_, function, argument);
@@ -217,9 +215,7 @@ class Commands {
     for (const pus::Part& part : shape) switch (part.form) {
         case Form::Number: layout.add(part.name, types_.value(named(part))); break;
         case Form::Time: layout.add(part.name, types_.time()); break;
-        case Form::Text:
-          layout.add(part.name, types_.value({.type = Type::Text, .text_octets = part.count}));
-          break;
+        case Form::Text: layout.add(part.name, types_.value({.type = Type::Text, .text_octets = part.count})); break;
         case Form::Word: layout.add(part.name, types_.words_behind_length(length_bits, most_words)); break;
         case Form::List:
           if (!add_list(layout, part, in_list)) return false;

@@ -31,8 +31,9 @@ class FailureReports {
  public:
   FailureReports(SpaceSystem& system, TypeSet& types, const PacketRoot& root, const Catalogue& catalogue)
       : system_{system}, root_{root} {
-    code_ = system.add_parameter("failure_code", types.value({.type = Type::Uint16, .texts = texts_of<pus::FailureCode>()}),
-                                 "docs/failure-codes.md; an author's own codes have their names in the subsystem");
+    code_ =
+        system.add_parameter("failure_code", types.value({.type = Type::Uint16, .texts = texts_of<pus::FailureCode>()}),
+                             "docs/failure-codes.md; an author's own codes have their names in the subsystem");
     Texts modes;
     for (const auto& mode : catalogue.mission().modes) modes.push_back({mode.id, mode.name});
     mode_ = system.add_parameter("failure_mode", types.value({.texts = modes}));
@@ -53,23 +54,31 @@ class FailureReports {
   }
 
   /// `base` has been read up to the code.
-  void add(const std::string& name, const std::string& base, std::vector<Condition> when, std::vector<Condition> or_when,
-           bool step) {
+  void add(const std::string& name, const std::string& base, std::vector<Condition> when,
+           std::vector<Condition> or_when, bool step) {
     using pus::FailureCode;
     const std::size_t octets = step ? 8 : 6;  // request, step, code
-    const std::string failed = add({.name = name, .entries = {entry_of(code_)}, .base = base, .when = std::move(when),
-                                    .or_when = std::move(or_when), .abstract = true});
+    const std::string failed = add({.name = name,
+                                    .entries = {entry_of(code_)},
+                                    .base = base,
+                                    .when = std::move(when),
+                                    .or_when = std::move(or_when),
+                                    .abstract = true});
     const auto code_is = [&](FailureCode code, const char* comparison) {
       return Condition{code_, text_of(code), comparison};
     };
     const std::vector<Condition> other{code_is(FailureCode::WrongState, "!="), code_is(FailureCode::WrongMode, "!=")};
     add({.name = name + "_without_data", .base = failed, .when = {with_data(root_, octets)}}, {});
-    add({.name = name + "_in_state", .base = failed,
-         .when = {code_is(FailureCode::WrongState, "=="), with_data(root_, octets + 1)}}, {state_});
-    add({.name = name + "_in_mode", .base = failed,
-         .when = {code_is(FailureCode::WrongMode, "=="), with_data(root_, octets + 1)}}, {mode_});
-    Container data{.name = name + "_with_data", .entries = {entry_of(mark_)}, .base = failed, .when = other,
-                   .abstract = true};
+    add({.name = name + "_in_state",
+         .base = failed,
+         .when = {code_is(FailureCode::WrongState, "=="), with_data(root_, octets + 1)}},
+        {state_});
+    add({.name = name + "_in_mode",
+         .base = failed,
+         .when = {code_is(FailureCode::WrongMode, "=="), with_data(root_, octets + 1)}},
+        {mode_});
+    Container data{
+        .name = name + "_with_data", .entries = {entry_of(mark_)}, .base = failed, .when = other, .abstract = true};
     data.when.push_back(with_data(root_, octets, ">"));
     const std::string with = add(data);
     const Condition reason{mark_, text_of(pus::FailureNotice::reason_mark)};
@@ -123,15 +132,13 @@ void add_verification(SpaceSystem& system, TypeSet& types, PacketRoot& root, con
        .abstract = true});
   const Element crc = entry_of(root.crc);
   const auto add_success = [&](const char* name, std::uint8_t subtype) {
-    system.add_container(
-        {.name = name, .entries = {crc}, .base = base, .when = {{root.subtype, text_of(subtype)}}});
+    system.add_container({.name = name, .entries = {crc}, .base = base, .when = {{root.subtype, text_of(subtype)}}});
   };
   add_success("accepted", 1);
   add_success("started", 3);
   add_success("completed", 7);
   const Element step = field("request_step", 16);
-  system.add_container(
-      {.name = "progress", .entries = {step, crc}, .base = base, .when = {{root.subtype, "5"}}});
+  system.add_container({.name = "progress", .entries = {step, crc}, .base = base, .when = {{root.subtype, "5"}}});
   FailureReports failures{system, types, root, catalogue};
   failures.add("failed", base, {}, one_failed(root), false);
   const std::string failed_step = system.add_container({.name = "step_failed",
@@ -144,14 +151,13 @@ void add_verification(SpaceSystem& system, TypeSet& types, PacketRoot& root, con
   root.verified_subtype = system.add_parameter("verified_subtype", types.bits(8));
   root.verified_apid = system.add_parameter("verified_apid", types.bits(11));
   root.verified_count = system.add_parameter("verified_count", types.bits(14));
-  root.verification = system.add_container({.name = "own_verification",
-                                            .says = "The same, of what was commanded by this database",
-                                            .entries = {entry_at(root.verified_subtype, 64),
-                                                        entry_at(root.verified_apid, data_bit + 5),
-                                                        entry_at(root.verified_count, data_bit + 18)},
-                                            .base = root.telemetry,
-                                            .when = {{root.service, service},
-                                                     {root.destination, text_of(exported_source)}}});
+  root.verification =
+      system.add_container({.name = "own_verification",
+                            .says = "The same, of what was commanded by this database",
+                            .entries = {entry_at(root.verified_subtype, 64), entry_at(root.verified_apid, data_bit + 5),
+                                        entry_at(root.verified_count, data_bit + 18)},
+                            .base = root.telemetry,
+                            .when = {{root.service, service}, {root.destination, text_of(exported_source)}}});
 }
 
 }  // namespace
@@ -189,12 +195,13 @@ PacketRoot add_packet_root(SpaceSystem& system, TypeSet& types, const Catalogue&
   root.apid = field("apid", 11, "Application process: the subsystem");
   const std::string flags = field("sequence_flags", 2), count = field("sequence_count", 14);
   root.packet_length = field("packet_length", 16, "Octets behind the primary header, less one");
-  const std::string packet = system.add_container({.name = "space_packet",
-                                                   .entries = {entry_of(version), entry_of(type), entry_of(secondary),
-                                                               entry_of(root.apid), entry_of(flags), entry_of(count),
-                                                               entry_of(root.packet_length)},
-                                                   .abstract = true});
-  root.crc = system.add_parameter("packet_error_control", types.crc(), "CRC-16 of the whole packet, 0x1021, preset 0xFFFF");
+  const std::string packet =
+      system.add_container({.name = "space_packet",
+                            .entries = {entry_of(version), entry_of(type), entry_of(secondary), entry_of(root.apid),
+                                        entry_of(flags), entry_of(count), entry_of(root.packet_length)},
+                            .abstract = true});
+  root.crc =
+      system.add_parameter("packet_error_control", types.crc(), "CRC-16 of the whole packet, 0x1021, preset 0xFFFF");
   const std::string pus_version = field("pus_version", 4), time_status = field("time_status", 4);
   root.service = field("service", 8);
   root.subtype = field("subtype", 8);
@@ -211,14 +218,14 @@ PacketRoot add_packet_root(SpaceSystem& system, TypeSet& types, const Catalogue&
   add_verification(system, types, root, catalogue);
 
   root.structure_id = system.add_parameter("structure_id", types.bits(16));
-  root.housekeeping = system.add_container(
-      {.name = "housekeeping",
-       .says = "One that was made in flight has no description here",
-       .entries = {entry_of(root.structure_id)},
-       .base = root.telemetry,
-       .when = {{root.service, text_of(pus::HousekeepingService::service_kind.type)},
-                {root.subtype, text_of(pus::HousekeepingService::parameter_report)}},
-       .abstract = true});
+  root.housekeeping =
+      system.add_container({.name = "housekeeping",
+                            .says = "One that was made in flight has no description here",
+                            .entries = {entry_of(root.structure_id)},
+                            .base = root.telemetry,
+                            .when = {{root.service, text_of(pus::HousekeepingService::service_kind.type)},
+                                     {root.subtype, text_of(pus::HousekeepingService::parameter_report)}},
+                            .abstract = true});
 
   Texts events;
   for (const auto& [id, name] : event_names(catalogue)) events.push_back({id, name});
@@ -240,8 +247,9 @@ std::string add_failure_of(SpaceSystem& system, TypeSet& types, const PacketRoot
                            const descriptor::Subsystem& subsystem) {
   Texts codes = texts_of<pus::FailureCode>();
   for (const auto& own : subsystem.failures) codes.push_back({own.code, own.name});
-  const std::string code = system.add_parameter("failure_code", types.value({.type = Type::Uint16, .texts = std::move(codes)}),
-                                                "Why the newest of our requests that has failed did");
+  const std::string code =
+      system.add_parameter("failure_code", types.value({.type = Type::Uint16, .texts = std::move(codes)}),
+                           "Why the newest of our requests that has failed did");
   const Condition ours{root.verified_apid, text_of(subsystem.id)};
   constexpr unsigned request_bits = 32, step_bits = 16;
   system.add_container({.name = "failed",

@@ -41,13 +41,13 @@ class PartEntries {
           octets = behind(octets, 7);
           break;
         case Form::Text:
-          entries.push_back(entry_of(system_.add_parameter(
-              name, types_.value({.type = Type::Text, .text_octets = part.count}))));
+          entries.push_back(
+              entry_of(system_.add_parameter(name, types_.value({.type = Type::Text, .text_octets = part.count}))));
           octets = behind(octets, part.count);
           break;
         case Form::Word:
-          entries.push_back(entry_of(
-              system_.add_parameter(name, types_.words_behind_length(word_length_bits, most_word_octets))));
+          entries.push_back(
+              entry_of(system_.add_parameter(name, types_.words_behind_length(word_length_bits, most_word_octets))));
           octets = unknown;
           break;
         case Form::List: {
@@ -115,11 +115,11 @@ void add_service_reports(SpaceSystem& system, TypeSet& types, const PacketRoot& 
       auto entries = PartEntries{place, types, root}.of(report.data, 0);
       if (!entries) continue;
       entries->push_back(entry_of(root.crc));
-      place.add_container({.name = "report",
-                           .entries = std::move(*entries),
-                           .base = root.telemetry,
-                           .when = {{root.service, std::to_string(service->type)},
-                                    {root.subtype, std::to_string(report.subtype)}}});
+      place.add_container(
+          {.name = "report",
+           .entries = std::move(*entries),
+           .base = root.telemetry,
+           .when = {{root.service, std::to_string(service->type)}, {root.subtype, std::to_string(report.subtype)}}});
     }
   }
 }

@@ -6,7 +6,8 @@ namespace hirosco::ground {
 namespace {
 
 void describe(Element& element, std::string_view says) {
-  if (!says.empty()) element.children.insert(element.children.begin(), {.name = "LongDescription", .text = std::string{says}});
+  if (!says.empty())
+    element.children.insert(element.children.begin(), {.name = "LongDescription", .text = std::string{says}});
 }
 
 [[nodiscard]] Element comparison(const Condition& condition) {
@@ -41,9 +42,8 @@ void describe(Element& element, std::string_view says) {
 }
 
 [[nodiscard]] Element repeated(const std::string& container, Element count) {
-  return {"ContainerRefEntry",
-          {{"containerRef", container}},
-          {{"RepeatEntry", {}, {{"Count", {}, {std::move(count)}}}}}};
+  return {
+      "ContainerRefEntry", {{"containerRef", container}}, {{"RepeatEntry", {}, {{"Count", {}, {std::move(count)}}}}}};
 }
 
 }  // namespace
@@ -129,8 +129,7 @@ Element included_times(const std::string& container, std::uint32_t times) {
 }
 
 Element included_by(const std::string& container, const std::string& parameter) {
-  return repeated(container,
-                  {"DynamicValue", {}, {{"ParameterInstanceRef", {{"parameterRef", parameter}}}}});
+  return repeated(container, {"DynamicValue", {}, {{"ParameterInstanceRef", {{"parameterRef", parameter}}}}});
 }
 
 }  // namespace hirosco::ground

@@ -25,7 +25,8 @@ class SubsystemReports {
       std::vector<std::string>& paths = paths_.emplace_back();
       const std::string& name = parameter.field.name;
       if (parameter.members.empty()) {
-        paths.push_back(system_.add_parameter(name, type_of(parameter.field), "", id_of(parameter.field, parameter.id)));
+        paths.push_back(
+            system_.add_parameter(name, type_of(parameter.field), "", id_of(parameter.field, parameter.id)));
         continue;
       }
       SpaceSystem& structure = system_.add_system(name);
@@ -37,7 +38,8 @@ class SubsystemReports {
         members.emplace_back(names.unique(member.field.name), type);
       }
       // Reports of ST[20] may carry the structure as a whole.
-      (void)structure.add_parameter("WHOLE", types_.aggregate(members), "All members, as a report of service 20 has them",
+      (void)structure.add_parameter("WHOLE", types_.aggregate(members),
+                                    "All members, as a report of service 20 has them",
                                     id_of(parameter.field, parameter.id));
     }
   }
@@ -51,7 +53,8 @@ class SubsystemReports {
     EventArguments all;
     for (const auto& event : subsystem_.events) {
       if (event.arguments.empty()) continue;
-      SpaceSystem& place = system_.add_system(event.name, fmt::format("Event {}, {}", event.id, to_text(event.severity)));
+      SpaceSystem& place =
+          system_.add_system(event.name, fmt::format("Event {}, {}", event.id, to_text(event.severity)));
       Container container{.name = "event", .base = root_.event, .when = {apid(), {root_.event_id, number(event.id)}}};
       std::size_t octets = sizeof event.id;
       for (const auto& argument : event.arguments) {
@@ -71,9 +74,10 @@ class SubsystemReports {
     for (const auto& service : subsystem_.services)
       for (const auto& report : service.reports) {
         SpaceSystem& place = system_.add_system(report.name, fmt::format("TM[{},{}]", service.type, report.subtype));
-        Container container{.name = "report",
-                            .base = root_.telemetry,
-                            .when = {apid(), {root_.service, number(service.type)}, {root_.subtype, number(report.subtype)}}};
+        Container container{
+            .name = "report",
+            .base = root_.telemetry,
+            .when = {apid(), {root_.service, number(service.type)}, {root_.subtype, number(report.subtype)}}};
         for (const auto& field : report.fields) add_field(place, container, field);
         container.entries.push_back(entry_of(root_.crc));
         place.add_container(container);
@@ -93,8 +97,8 @@ class SubsystemReports {
   void add_field(SpaceSystem& place, Container& container, const descriptor::Function::Argument& field) {
     constexpr unsigned length_bits = 16;
     if (field.field.type == Type::Text) {
-      container.entries.push_back(entry_of(place.add_parameter(
-          field.field.name, types_.words_behind_length(length_bits, field.field.text_octets))));
+      container.entries.push_back(entry_of(
+          place.add_parameter(field.field.name, types_.words_behind_length(length_bits, field.field.text_octets))));
       return;
     }
     auto texts = field.texts.empty() ? catalogue_.texts_of(subsystem_, {}, field.field) : field.texts;

@@ -73,7 +73,8 @@ namespace hirosco::ground::testing {
 
 /// What somebody may have written to do harm, or by accident.
 [[nodiscard]] inline std::vector<std::string> hostile_names() {
-  return {"]]>", "<!--", "a&b;", "\"\n/><x y='", "../../etc", "{evil}", "a|b`c*d", "-", "\xE2\x80\xAE\xFF\x01", "$(exit 3)"};
+  return {"]]>",    "<!--",    "a&b;", "\"\n/><x y='",         "../../etc",
+          "{evil}", "a|b`c*d", "-",    "\xE2\x80\xAE\xFF\x01", "$(exit 3)"};
 }
 
 }  // namespace hirosco::ground::testing

@@ -26,8 +26,7 @@ constexpr const char* time_scale = "5.9604644775390625E-8";
 [[nodiscard]] Element encoding_of(Type type) {
   const std::string size = std::to_string(8 * octets_of(type));
   if (is_real(type)) return {"FloatDataEncoding", {{"sizeInBits", size}}};
-  return {"IntegerDataEncoding",
-          {{"sizeInBits", size}, {"encoding", is_signed(type) ? "twosComplement" : "unsigned"}}};
+  return {"IntegerDataEncoding", {{"sizeInBits", size}, {"encoding", is_signed(type) ? "twosComplement" : "unsigned"}}};
 }
 
 [[nodiscard]] Element fixed_value(const std::string& text) { return {.name = "FixedValue", .text = text}; }
@@ -102,9 +101,8 @@ Element TypeSet::text(std::string_view encoding, std::uint32_t octets) const {
   Element size{"SizeInBits",
                {},
                {{"Fixed", {}, {fixed_value(std::to_string(8 * octets))}}, {.name = "TerminationChar", .text = "00"}}};
-  return {tag("String"),
-          {},
-          {units(""), {"StringDataEncoding", {{"encoding", std::string{encoding}}}, {std::move(size)}}}};
+  return {
+      tag("String"), {}, {units(""), {"StringDataEncoding", {{"encoding", std::string{encoding}}}, {std::move(size)}}}};
 }
 
 Element TypeSet::scalar(const ValueKind& kind) const {
@@ -149,19 +147,18 @@ std::string TypeSet::crc() {
                {{.name = "Polynomial", .text = "1021"},
                 {.name = "InitRemainder", .text = "FFFF"},
                 {.name = "FinalXOR", .text = "0000"}}};
-  Element encoding{
-      "IntegerDataEncoding", {{"sizeInBits", "16"}}, {{"ErrorDetectCorrect", {}, {std::move(rule)}}}};
+  Element encoding{"IntegerDataEncoding", {{"sizeInBits", "16"}}, {{"ErrorDetectCorrect", {}, {std::move(rule)}}}};
   return keep("crc_16",
               {tag("Integer"), {{"sizeInBits", "16"}, {"signed", "false"}}, {units(""), std::move(encoding)}});
 }
 
 std::string TypeSet::time() {
-  return keep("onboard_time", {tag("AbsoluteTime"),
-                               {},
-                               {{"Encoding",
-                                 {{"units", "seconds"}, {"scale", time_scale}},
-                                 {{"IntegerDataEncoding", {{"sizeInBits", "56"}}}}},
-                                {"ReferenceTime", {}, {{.name = "Epoch", .text = "TAI"}}}}});
+  return keep(
+      "onboard_time",
+      {tag("AbsoluteTime"),
+       {},
+       {{"Encoding", {{"units", "seconds"}, {"scale", time_scale}}, {{"IntegerDataEncoding", {{"sizeInBits", "56"}}}}},
+        {"ReferenceTime", {}, {{.name = "Epoch", .text = "TAI"}}}}});
 }
 
 std::string TypeSet::octets_by(const std::string& parameter, int intercept_bits) {
@@ -173,9 +170,8 @@ std::string TypeSet::words_by(const std::string& parameter, int intercept_bits, 
   Element size{"Variable",
                {{"maxSizeInBits", std::to_string(8 * most_octets)}},
                {adjusted("ParameterInstanceRef", "parameterRef", parameter, 8, intercept_bits)}};
-  return keep("words", {tag("String"),
-                        {},
-                        {units(""), {"StringDataEncoding", {{"encoding", "UTF-8"}}, {std::move(size)}}}});
+  return keep("words",
+              {tag("String"), {}, {units(""), {"StringDataEncoding", {{"encoding", "UTF-8"}}, {std::move(size)}}}});
 }
 
 std::string TypeSet::words_behind_length(unsigned length_bits, std::uint32_t most_octets) {
@@ -188,9 +184,8 @@ std::string TypeSet::words_behind_length(unsigned length_bits, std::uint32_t mos
                {{"maxSizeInBits", std::to_string(8 * most_octets + length_bits)}},
                {{"DynamicValue", {}, {std::move(reference)}},
                 {"LeadingSize", {{"sizeInBitsOfSizeTag", std::to_string(length_bits)}}}}};
-  return keep("words", {tag("String"),
-                        {},
-                        {units(""), {"StringDataEncoding", {{"encoding", "UTF-8"}}, {std::move(size)}}}});
+  return keep("words",
+              {tag("String"), {}, {units(""), {"StringDataEncoding", {{"encoding", "UTF-8"}}, {std::move(size)}}}});
 }
 
 std::string TypeSet::list_by(const std::string& argument, const std::string& element_type) {
@@ -200,8 +195,7 @@ std::string TypeSet::list_by(const std::string& argument, const std::string& ele
 
 std::string TypeSet::aggregate(const std::vector<std::pair<std::string, std::string>>& members) {
   Element list{"MemberList"};
-  for (const auto& [name, type] : members)
-    list.children.push_back({"Member", {{"name", name}, {"typeRef", type}}});
+  for (const auto& [name, type] : members) list.children.push_back({"Member", {{"name", name}, {"typeRef", type}}});
   return keep("structure", {tag("Aggregate"), {}, {std::move(list)}});
 }
 

@@ -10,8 +10,9 @@ namespace hirosco::ground {
 Xtce xtce(const Catalogue& catalogue) {
   Xtce result;
   result.name = XtceNames{}.unique(catalogue.mission().name);
-  SpaceSystem system{result.name, "", "The mission " + catalogue.mission().name +
-                                          ", from its descriptors: export it again rather than change it"};
+  SpaceSystem system{
+      result.name, "",
+      "The mission " + catalogue.mission().name + ", from its descriptors: export it again rather than change it"};
   TypeSet types{TypeSet::Of::Parameters, system.path()};
   TypeSet argument_types{TypeSet::Of::Arguments, system.path()};
   const PacketRoot root = add_packet_root(system, types, catalogue);

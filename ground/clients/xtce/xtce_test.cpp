@@ -32,7 +32,8 @@ void collect(const xml::Element& element, const std::string& tag, const std::str
   if (element.name == tag && (name.empty() || attribute(element, "name") == name)) found.push_back(&element);
   for (const auto& child : element.children) collect(child, tag, name, found);
 }
-std::vector<const xml::Element*> all(const xml::Element& element, const std::string& tag, const std::string& name = {}) {
+std::vector<const xml::Element*> all(const xml::Element& element, const std::string& tag,
+                                     const std::string& name = {}) {
   std::vector<const xml::Element*> found;
   collect(element, tag, name, found);
   return found;

@@ -11,8 +11,9 @@
 namespace hirosco::ground {
 namespace {
 
-constexpr std::string_view licence =
-    "# SPDX-FileCopyrightText: 2026 The HIROSCO developers\n# SPDX-License-Identifier: Apache-2.0\n";
+constexpr std::string_view licence = R"(# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+)";
 
 constexpr const char* pom = R"(<?xml version="1.0" encoding="UTF-8"?>
 <!-- SPDX-FileCopyrightText: 2026 The HIROSCO developers -->
@@ -210,15 +211,16 @@ struct Address {
   const auto& supervisor = catalogue.mission().supervisor;
   const auto set_mode = database.commands.front().find("SET_MODE");
   if (set_mode == database.commands.front().end() || supervisor.find_parameter("MODE") == nullptr) return {};
-  std::vector<std::string> steps{command_step(
-      set_mode->second, fmt::format("{{\"name\": \"MODE\", \"value\": {}}}", json(mode.name)))};
+  std::vector<std::string> steps{
+      command_step(set_mode->second, fmt::format("{{\"name\": \"MODE\", \"value\": {}}}", json(mode.name)))};
   // Of another type than its argument: a plain number.
   steps.push_back(fmt::format(
       "    {{\"type\": \"verify\", \"timeout\": 80000, \"condition\": [{{\"parameter\": {}, \"operator\": \"eq\", "
       "\"value\": {}}}]}}",
       json("/" + database.name + "/" + XtceNames{}.unique(supervisor.name) + "/MODE"), mode.id));
   for (const CommandPaths& commands : database.commands)
-    if (const auto ping = commands.find("PING"); ping != commands.end()) steps.push_back(command_step(ping->second, ""));
+    if (const auto ping = commands.find("PING"); ping != commands.end())
+      steps.push_back(command_step(ping->second, ""));
   std::string list;
   for (const std::string& step : steps) list += (list.empty() ? "" : ",\n") + step;
   return "{\n  \"$schema\": \"https://yamcs.org/schema/stack.schema.json\",\n  \"advancement\": {\"acknowledgment\": "
@@ -232,7 +234,8 @@ YamcsProject yamcs_project(const Catalogue& catalogue) {
   const auto& mission = catalogue.mission();
   const Xtce database = xtce(catalogue);
   std::string name = database.name;
-  std::ranges::transform(name, name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::ranges::transform(name, name.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   const Address telemetry = address_of(mission.ground.telemetry), telecommand = address_of(mission.ground.telecommand);
   YamcsProject project{.name = name + "-yamcs", .files = {}};
   auto& files = project.files;
@@ -243,11 +246,11 @@ YamcsProject yamcs_project(const Catalogue& catalogue) {
   files["etc/yamcs.yaml"] = std::string{licence} + fmt::format(server, fmt::arg("instance", name),
                                                                fmt::arg("mission", json("HIROSCO " + mission.name)));
   files["etc/yamcs." + name + ".yaml"] =
-      std::string{licence} +
-      fmt::format(instance, fmt::arg("event_id", database.event_id), fmt::arg("name", database.name),
-                  fmt::arg("most", pus::max_telemetry_octets), fmt::arg("supervisor", mission.supervisor.id),
-                  fmt::arg("tm_host", telemetry.host), fmt::arg("tm_port", telemetry.port),
-                  fmt::arg("tc_host", telecommand.host), fmt::arg("tc_port", telecommand.port));
+      std::string{licence} + fmt::format(instance, fmt::arg("event_id", database.event_id),
+                                         fmt::arg("name", database.name), fmt::arg("most", pus::max_telemetry_octets),
+                                         fmt::arg("supervisor", mission.supervisor.id),
+                                         fmt::arg("tm_host", telemetry.host), fmt::arg("tm_port", telemetry.port),
+                                         fmt::arg("tc_host", telecommand.host), fmt::arg("tc_port", telecommand.port));
   files["README.md"] =
       fmt::format(read_me, fmt::arg("mission", printable_words(mission.name)), fmt::arg("instance", name),
                   fmt::arg("name", database.name), fmt::arg("source", exported_source),

@@ -12,7 +12,7 @@
 namespace hirosco::ground {
 
 struct YamcsProject {
-  std::string name;  ///< of the folder and of Yamcs' instance: "rokviss-yamcs" has the instance "rokviss"
+  std::string name;  ///< of the folder: that of Yamcs' instance, and "-yamcs"
   std::map<std::string, std::string> files;  ///< text by path below the folder
 };
 /// The same catalogue gives the same octets.

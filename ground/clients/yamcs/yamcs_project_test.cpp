@@ -35,7 +35,8 @@ TEST(YamcsProject, AnEventSaysWhoWhatAndItsArguments) {
 TEST(YamcsProject, AStackBringsTheCraftIntoAModeAndAsksWhoIsAlive) {
   const auto files = project_of(mission_with("ARM")).files;
   const std::string& stack = files.at("stacks/commission_ARM.ycs");
-  EXPECT_THAT(stack, HasSubstr(R"("name": "/ARM/SUPERVISOR/SET_MODE", "arguments": [{"name": "MODE", "value": "ARM"}])"));
+  EXPECT_THAT(stack,
+              HasSubstr(R"("name": "/ARM/SUPERVISOR/SET_MODE", "arguments": [{"name": "MODE", "value": "ARM"}])"));
   EXPECT_THAT(stack, HasSubstr(R"({"parameter": "/ARM/SUPERVISOR/MODE", "operator": "eq", "value": 3})"));
   EXPECT_THAT(stack, HasSubstr(R"("name": "/ARM/ARM/PING")"));
 }
