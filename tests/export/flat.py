@@ -14,7 +14,7 @@ class Flat:
     def __init__(self, document):
         self.types, self.parameters, self.containers, self.aliases = {}, {}, {}, {}
         self.choices = {}                  # container: {value that a packet had}
-        self.asked = {}                    # parameter: container that waits for its value
+        self.asked = {}                    # parameter: containers that wait for its value
         self.root = None
         self._read(document, "")
 
@@ -83,7 +83,7 @@ class Flat:
                     continue
                 asked = count.find(f"{Q}DynamicValue/{Q}ParameterInstanceRef").get("parameterRef") + suffix
                 answers = {value: self._times(item, value, suffix) for value in self.choices.get(name, ())}
-            self.asked[asked] = name
+            self.asked.setdefault(asked, []).append(name)
             for value, answer in answers.items():
                 self._add_container(f"{name}({value})", answer + entries, self._when(name, asked, value))
             return

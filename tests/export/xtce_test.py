@@ -62,10 +62,11 @@ class Decoder:
             if not told:
                 return values
             name = next(reversed(values))          # the last that it could read
-            container = self.flat.asked.get(name)
-            if container is None or values[name] in self.flat.choices.get(container, ()):
+            unanswered = [one for one in self.flat.asked.get(name, ()) if values[name] not in self.flat.choices.get(one, ())]
+            if not unanswered:
                 raise AssertionError(f"{packet.hex()}: {told[0].message}; the last was {name}")
-            self.flat.choices.setdefault(container, set()).add(values[name])
+            for container in unanswered:
+                self.flat.choices.setdefault(container, set()).add(values[name])
             self.definition = self._definition()
 
 

@@ -89,7 +89,6 @@ constexpr const char* instance = R"(services:
       # 5.13.2: with it the history of a whole array is answered by an error
       realtimeFiller: {{enabled: false}}
       backFiller: {{enabled: false}}
-  - class: org.yamcs.activities.ActivityService
   - class: org.yamcs.ProcessorCreatorService
     args: {{name: realtime, type: realtime}}
   - class: org.yamcs.pus.PusEventDecoder
