@@ -146,11 +146,11 @@ From the mission's descriptors, by `hirosco export yamcs`: export again rather t
 (AGPL-3.0) comes from its own publisher:
 
     mvn dependency:copy-dependencies -DoutputDirectory=lib
-    mkdir -p yamcs-data/{instance}
+    mkdir -p yamcs-data
     java -Xmx256m -cp 'lib/*' org.yamcs.YamcsServer --etc-dir etc --data-dir yamcs-data
 
 Fly first (`hirosco run`), or wait 10 s: Yamcs asks for the flight's ports, {telemetry} and {telecommand}, as often as that. Its page is at
-port 8090 of this computer alone. `--check` instead of the folders reads the database without a flight.
+port 8090 of this computer alone. `--check` in front of the folders reads all of it, without a flight, and ends.
 
 | file | what |
 |---|---|
