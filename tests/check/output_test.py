@@ -38,6 +38,12 @@ class Output(unittest.TestCase):
                 self.refused(ENVIRONMENT, "No space left on device", *words, to="/dev/full")
         self.refused(ENVIRONMENT, "No space left on device", "simulate", ROKVISS, "--for", "0.2s", "--trace", "/dev/full")
 
+    def test_an_export_that_cannot_be_written_is_no_success(self):
+        for what in ("python", "xtce", "yamcs", "icd"):
+            with self.subTest(what):
+                self.refused(ENVIRONMENT, "cannot be written", "export", what, ROKVISS, "--to", "/dev/null/here")
+        self.assertEqual(self.hirosco("export", "hieroglyphs", ROKVISS)[0], USAGE)
+
     def test_a_computer_without_memory_is_named(self):
         told = set()
         for megabytes in (12, 16, 20, 24, 28, 32, 36, 40, 60):
