@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+
+#include <array>
 #include <cstdio>
 #include <exception>
 
-#include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
-#include "hirosco/pus/st20_parameter/parameter_service.hpp"
+#include "hirosco/pus/requests.hpp"
 #include "simulation/scenarios/flight.hpp"
 
-// Flies rokviss on virtual time, asks it for a report of every kind that it has, and prints each packet that it routes to the ground, in
-// hexadecimal, a line each.
+// Flies a mission on virtual time, asks it for reports of every kind that it has, and prints each packet that it routes to the ground, in
+// hexadecimal, a line each: of rokviss what it has to tell, of others every request that has a name.
 namespace hirosco {
 namespace {
 
@@ -107,6 +108,29 @@ void fly(Flight& flight) {
   craft.run(5s);
 }
 
+[[nodiscard]] std::vector<Value> some_arguments(const descriptor::Function& function) {
+  std::vector<Value> values;
+  for (const auto& argument : function.arguments)
+    for (std::uint32_t i = 0; i < argument.field.values(); ++i) {
+      if (argument.field.type == Type::Text) values.emplace_back(std::string{"w"});
+      else if (!argument.texts.empty()) values.emplace_back(Number{argument.texts.front().value});
+      else values.emplace_back(argument.field.minimum.value_or(Number{1}));
+    }
+  return values;
+}
+
+void ask_by_name(Flight& flight) {
+  if (!flight.commission()) throw std::runtime_error{"the mission was not commissioned"};
+  std::vector<const descriptor::Subsystem*> all{&flight.mission().supervisor};
+  for (const auto& member : flight.mission().subsystems) all.push_back(&member.subsystem);
+  for (const auto* subsystem : all)
+    for (const auto& request : pus::requests_of(*subsystem)) {
+      const bool ends = request.name == "SHUTDOWN" || request.name == "SET_STATE" || request.name == "SET_MODE";
+      if (!ends) (void)flight.craft().command(subsystem->name, request.name, some_arguments(request), 2s);
+    }
+  flight.craft().run(5s);
+}
+
 }  // namespace
 }  // namespace hirosco
 
@@ -119,7 +143,8 @@ int main(int argc, char** argv) {
       for (const std::byte octet : told.packet()) fmt::print("{:02x}", std::to_integer<unsigned>(octet));
       fmt::print("\n");
     };
-    fly(flight);
+    if (flight.mission().name == "ROKVISS") fly(flight);
+    else ask_by_name(flight);
   } catch (const std::exception& error) {
     fmt::print(stderr, "packets_probe: {}\n", error.what());
     return 1;

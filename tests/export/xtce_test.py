@@ -34,9 +34,9 @@ def export(what, mission, folder):
     subprocess.run([HIROSCO, "export", what, str(mission), "--to", str(folder)], capture_output=True, timeout=60, check=True)
 
 
-def recorded():
-    """Packets of the flight, each kind that there is."""
-    done = subprocess.run([PROBE, str(ROKVISS)], capture_output=True, text=True, timeout=600, check=True)
+def recorded(mission):
+    """Packets of a flight."""
+    done = subprocess.run([PROBE, str(mission)], capture_output=True, text=True, timeout=600, check=True)
     return [bytes.fromhex(line) for line in done.stdout.split()]
 
 
@@ -81,6 +81,20 @@ class TheDocument(unittest.TestCase):
                 self.assertTrue(file.validate().is_valid, file.validate().summary()[:2000])
 
 
+    def test_every_packet_of_every_mission_is_read_to_its_last_bit(self):
+        for mission, own in (("missions/hello", 0), ("tests/typed", 1), ("tests/imager", 0), ("tests/loops", 0)):
+            with self.subTest(mission), tempfile.TemporaryDirectory() as folder:
+                export("xtce", REPOSITORY / mission / "mission.xml", folder)
+                (path,) = pathlib.Path(folder).glob("*.xml")
+                decoder, packets = Decoder(path), recorded(REPOSITORY / mission / "mission.xml")
+                for packet in packets:
+                    decoder.decode(packet)
+                kinds = collections.Counter((packet[7], packet[8]) for packet in packets)
+                print(f"{mission}: {len(packets)} packets: {dict(kinds)}")
+                self.assertGreater(len(packets), 30)
+                self.assertGreaterEqual(len({kind for kind in kinds if kind[0] >= 192}), own)
+
+
 class EveryPacket(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -90,7 +104,7 @@ class EveryPacket(unittest.TestCase):
         export("python", ROKVISS, folder.name)
         sys.path.insert(0, folder.name)
         cls.client = importlib.import_module("hirosco_rokviss")
-        cls.packets = recorded()
+        cls.packets = recorded(ROKVISS)
         cls.document = pathlib.Path(folder.name, "ROKVISS.xml")
         cls.decoder = Decoder(cls.document)
         cls.abouts = {part._about.apid: part._about for part in vars(cls.client).values()

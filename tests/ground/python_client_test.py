@@ -80,6 +80,26 @@ class OnAFlight(unittest.TestCase):
                 self.assertEqual(client.damaged, 0)
                 self.end(craft, client)
 
+    def test_a_client_goes_on_with_the_next_flight(self):
+        links = []
+        with flight.Flight() as craft:
+            craft.wait_commissioned()
+            client = self.rokviss.Spacecraft(reconnect=True)
+            self.addCleanup(client.close)
+            client.on_link(links.append)
+            client.wait_until(lambda: client.mode)
+        client.wait_until(lambda: not client.connected)
+        with self.assertRaises(self.rokviss.LinkLost):
+            client.manipulator.ping()
+        with flight.Flight() as craft:
+            craft.wait_commissioned()
+            client.wait_until(lambda: client.connected)
+            received = client.received
+            client.manipulator.ping()
+            client.manipulator.hk_4713()
+            self.assertGreater(client.received, received)
+            self.assertEqual(links, [False, True])
+
     def example(self, craft):
         plot = pathlib.Path(self.folder.name, "plot.svg")
         done = subprocess.run([sys.executable, "-B", str(EXAMPLE), str(plot)], capture_output=True, text=True,
