@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
@@ -125,7 +126,9 @@ void ask_by_name(Flight& flight) {
   for (const auto& member : flight.mission().subsystems) all.push_back(&member.subsystem);
   for (const auto* subsystem : all)
     for (const auto& request : pus::requests_of(*subsystem)) {
-      const bool ends = request.name == "SHUTDOWN" || request.name == "SET_STATE" || request.name == "SET_MODE";
+      // What ends the flight, or lets nothing through any more.
+      constexpr std::array left_out{"SHUTDOWN", "SAFE_ALL", "SET_STATE", "SET_MODE", "ENTER_MODE"};
+      const bool ends = std::ranges::find(left_out, request.name) != left_out.end();
       if (!ends) (void)flight.craft().command(subsystem->name, request.name, some_arguments(request), 2s);
     }
   flight.craft().run(5s);
