@@ -163,7 +163,7 @@ class OnAFlight(unittest.TestCase):
                     finding()
             recorder.close()
             yamcs.close()
-            problems = [line for line in yamcs.told.splitlines() if re.search(r"Exception|No template|CRC.* error|SEVERE", line)]
+            problems = [line for line in yamcs.told.splitlines() if re.search(r"Exception processing packet|No template|CRC.* error|SEVERE", line)]
             self.assertEqual(problems, [])
         with self.subTest("every packet"):
             self.every_packet_is_read_alike(recorder.packets)
