@@ -29,6 +29,7 @@ struct RunOptions {
   std::optional<Duration> run_for;
   bool quiet{false};
   bool json{false};
+  bool plain{false};                 ///< lines on a terminal, too, and no screen
   bool ground{true};                 ///< the ground station too
   bool tour{false};                  ///< its page opens with the guided tour
   bool threads{false};               ///< supervisor and subsystems as threads of one process (adr 0097)

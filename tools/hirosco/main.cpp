@@ -54,6 +54,7 @@ int read_and_do(int argc, char** argv) {
   run_command->add_option("--mode", run_options.mode, "Start in this mode of the mission");
   run_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
   run_command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");
+  run_command->add_flag("--plain", run_options.plain, "Lines, and no screen, on a terminal, too");
   bool no_ground = false;
   run_command->add_flag("--no-ground", no_ground, "Without the ground station and its page");
   run_command->add_flag("--json", run_options.json, "One JSON object a line");
@@ -64,6 +65,7 @@ int read_and_do(int argc, char** argv) {
   auto* tour_command = app.add_subcommand("tour", "Fly a mission and be shown around by its page, in eight steps");
   tour_command->add_option("mission", tour_mission, "Name or path of a mission; by default the usual one");
   tour_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
+  tour_command->add_flag("--plain", run_options.plain, "Lines, and no screen, on a terminal, too");
 
   CheckOptions check_options;
   auto* check_command = app.add_subcommand("check", "Check descriptors and missions, all problems at once");
