@@ -71,9 +71,8 @@ void Console::tell_held() {
 }
 
 std::string Console::held_text(const std::string& line) const {
-  return style_ == Style::Json || style_ == Style::Screen
-             ? fmt::format("{{\"held\":{}}}\n", json_string(line))
-                               : fmt::format("{:>12}{}\n", "", shown(line));
+  return style_ == Style::Json || style_ == Style::Screen ? fmt::format("{{\"held\":{}}}\n", json_string(line))
+                                                          : fmt::format("{:>12}{}\n", "", shown(line));
 }
 
 void Console::show(const Overview& overview, Duration since_start) {
@@ -136,9 +135,8 @@ void Console::ended() {
 std::string Console::status_json(const Overview& overview, Duration since_start) const {
   std::size_t up = 0;
   for (const Overview::Link& link : overview.links) up += link.up ? 1U : 0U;
-  std::string text =
-      fmt::format("{{\"up_s\":{:.3f},\"mode\":{},\"links_up\":{},\"links_defined\":{},\"subsystems\":[",
-                  seconds(since_start), json_string(overview.mode), up, overview.links.size());
+  std::string text = fmt::format("{{\"up_s\":{:.3f},\"mode\":{},\"links_up\":{},\"links_defined\":{},\"subsystems\":[",
+                                 seconds(since_start), json_string(overview.mode), up, overview.links.size());
   bool first = true;
   for (const Overview::Member& member : overview.members) {
     text += fmt::format("{}{{\"name\":{},\"state\":{}", first ? "" : ",", json_string(member.name),

@@ -24,7 +24,7 @@ class Console final : public Observer {
  public:
   /// Json: status every second, with all of housekeeping. Screen: four times a second, with what a screen shows.
   enum class Style : std::uint8_t { Text, Json, Quiet, Screen };
-  static constexpr std::size_t most_told = 200;    ///< lines of one speaker in a second; the others are counted
+  static constexpr std::size_t most_told = 200;  ///< lines of one speaker in a second; the others are counted
   static constexpr std::size_t most_lines = 4096;  ///< that wait for a terminal that stands still
   /// `terminal` outlives it.
   Console(const descriptor::Mission& mission, Style style, std::FILE* terminal = stdout);
@@ -52,7 +52,7 @@ class Console final : public Observer {
   Style style_;
   std::FILE* terminal_;
   OnboardTime first_{};
-  LineLimit limit_{most_told};       ///< of one speaker in a second
+  LineLimit limit_{most_told};  ///< of one speaker in a second
   Duration next_turn_{0}, next_counts_{0};
   std::map<std::string, Overview::Member> cycled_;  ///< the newest figures of each, by name
   std::map<std::string, std::string> standing_;  ///< what was told last, by what it is about

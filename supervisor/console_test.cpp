@@ -135,9 +135,10 @@ TEST_F(ConsoleOfCraft, TellsAScreenAllThatItShowsInOneLineEachTime) {
   });
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0], R"({"at_s":0.0000,"told":"ARM info \"X\""})");
-  EXPECT_THAT(lines[1], AllOf(HasSubstr(R"("mission":"PAIR","mode":"coupled")"),
-                              HasSubstr(R"({"name":"ARM","runs":true,"state":"Operational","wanted":"Operational")"),
-                              HasSubstr(R"({"id":1,"from":"ARM","to":"HAND","up":true,"wanted":true})"), EndsWith("}")));
+  EXPECT_THAT(lines[1],
+              AllOf(HasSubstr(R"("mission":"PAIR","mode":"coupled")"),
+                    HasSubstr(R"({"name":"ARM","runs":true,"state":"Operational","wanted":"Operational")"),
+                    HasSubstr(R"({"id":1,"from":"ARM","to":"HAND","up":true,"wanted":true})"), EndsWith("}")));
 }
 
 TEST_F(ConsoleTest, IsQuietIfToldTo) {

@@ -218,8 +218,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   if (!launcher.keep_with(keeper.store(), mission, std::move(inherited), &page)) page.alone.store(1);
   // What is told there steers nobody's terminal and gets in nobody's way, and a screen that is gone ends nobody.
   const auto close = [](std::FILE* file) { std::fclose(file); };
-  const std::unique_ptr<std::FILE, decltype(close)> screen{options.screen >= 0 ? ::fdopen(options.screen, "w") : nullptr,
-                                                           close};
+  const std::unique_ptr<std::FILE, decltype(close)> screen{
+      options.screen >= 0 ? ::fdopen(options.screen, "w") : nullptr, close};
   Console console{mission, screen ? Console::Style::Screen : options.style, screen ? screen.get() : stdout};
   UnprovokedReactions causes{clock, console};
   const auto begun = launcher.begin(mission);

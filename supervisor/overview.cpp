@@ -71,9 +71,10 @@ Overview overview_of(const descriptor::Mission& mission, const Supervisor& super
 
 std::string json_of(const Overview& overview, double up_s,
                     const std::vector<std::pair<std::string, std::string>>& values) {
-  std::string text = fmt::format(R"({{"up_s":{:.3f},"mission":{},"mode":{},"initial_mode":{},"usual_mode":{},"waits_for":{},"members":[)", up_s,
-                                 json_string(overview.mission), json_string(overview.mode),
-                                 json_string(overview.initial_mode), json_string(overview.usual_mode), json_string(overview.waits_for));
+  std::string text = fmt::format(
+      R"({{"up_s":{:.3f},"mission":{},"mode":{},"initial_mode":{},"usual_mode":{},"waits_for":{},"members":[)", up_s,
+      json_string(overview.mission), json_string(overview.mode), json_string(overview.initial_mode),
+      json_string(overview.usual_mode), json_string(overview.waits_for));
   bool first = true;
   for (const Overview::Member& member : overview.members) {
     text += fmt::format(R"({}{{"name":{},"runs":{},"state":{},"wanted":{})", first ? "" : ",", json_string(member.name),

@@ -18,8 +18,8 @@ struct Overview {
     std::string name;
     bool runs{false};
     std::string state{"not running"};
-    std::string wanted{};      ///< state in which the mode has it; empty: the mode says nothing of it
-    bool counted{false};       ///< the figures below were told
+    std::string wanted{};  ///< state in which the mode has it; empty: the mode says nothing of it
+    bool counted{false};  ///< the figures below were told
     bool cycling{false};
     bool realtime{false};
     std::uint32_t inhibited{0};  ///< bits of Inhibition
@@ -30,15 +30,15 @@ struct Overview {
   };
   struct Link {
     std::uint8_t id{};
-    std::string from, to;      ///< subsystems
+    std::string from, to;  ///< subsystems
     bool up{false};
-    bool wanted{false};        ///< the mode establishes it
+    bool wanted{false};  ///< the mode establishes it
   };
   std::string mission;
   std::string mode;
   std::string initial_mode{};  ///< before anybody is commissioned
-  std::string usual_mode{};    ///< in which a flight begins once it is commissioned; empty: it commissions nobody
-  std::string waits_for{};     ///< on the way up or down; empty: for nothing
+  std::string usual_mode{};  ///< in which a flight begins once it is commissioned; empty: it commissions nobody
+  std::string waits_for{};  ///< on the way up or down; empty: for nothing
   std::vector<Member> members;
   std::vector<Link> links;
 };

@@ -21,7 +21,8 @@ TEST(OverviewTest, KnowsWhomTheModeWantsWhereBeforeAnybodyRuns) {
   }
   descriptor::Mode mode;
   mode.name = "coupled";
-  mode.commission.push_back({.subsystem = "ARM", .configuration = {}, .state = descriptor::State::SafeOperational, .at = {}});
+  mode.commission.push_back(
+      {.subsystem = "ARM", .configuration = {}, .state = descriptor::State::SafeOperational, .at = {}});
   mode.establish = {2};
   const Overview overview = blank_overview(mission, mode);
   ASSERT_EQ(overview.members.size(), 2U);

@@ -18,7 +18,9 @@ TEST(Nearest, FindsAWordWithALetterChangedLeftOutAddedOrSwapped) {
     EXPECT_EQ(nearest(text, names), "MOVE_TO") << text;
 }
 
-TEST(Nearest, TakesTheFirstOfTwoThatAreAsNear) { EXPECT_EQ(nearest("HOXE", std::array<std::string_view, 2>{"HOPE", "HOME"}), "HOPE"); }
+TEST(Nearest, TakesTheFirstOfTwoThatAreAsNear) {
+  EXPECT_EQ(nearest("HOXE", std::array<std::string_view, 2>{"HOPE", "HOME"}), "HOPE");
+}
 
 TEST(Nearest, SaysNothingWhereMoreThanAThirdWouldHaveToChange) {
   EXPECT_EQ(nearest("FLY", names), "");

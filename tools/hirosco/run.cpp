@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -161,6 +162,10 @@ struct Locks {
 
 int run(const RunOptions& options) {
   hold_back_signals();
+  if (options.mission.empty()) {
+    fmt::print(stderr, "hirosco run: which mission? there are: {}\n", fmt::join(known_missions(), ", "));
+    return exit_usage;
+  }
   auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
   if (!options.mode.empty())

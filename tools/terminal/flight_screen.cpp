@@ -93,9 +93,9 @@ std::optional<FlightScreen> FlightScreen::start(const std::filesystem::path& log
   screen.unread_ = moved_up(std::move(others.read));
   screen.state_ = std::move(*state);
   std::fflush(stdout);
-  screen.process_ = spawn(program.string(),
-                          {program.string(), "--keeper", std::to_string(::getpid()), "--log", log.string()},
-                          told_read.get(), screen.unread_.get());
+  screen.process_ =
+      spawn(program.string(), {program.string(), "--keeper", std::to_string(::getpid()), "--log", log.string()},
+            told_read.get(), screen.unread_.get());
   if (screen.process_ < 0) return std::nullopt;
   screen.told_ = std::move(told.write);
   screen.others_ = std::move(others.write);

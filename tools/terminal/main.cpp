@@ -115,8 +115,9 @@ class Drawer {
                                  {gone_ ? -1 : terminal_.descriptor(),
                                   static_cast<short>(terminal_.pending() ? POLLIN | POLLOUT : POLLIN), 0}}};
     const auto due = std::chrono::duration_cast<std::chrono::milliseconds>(next_ - Steady::now());
-    const auto limit = changed_ && !terminal_.pending() ? std::max(due, std::chrono::milliseconds{0}) + std::chrono::milliseconds{1}
-                                                        : look_at_silence;
+    const auto limit = changed_ && !terminal_.pending()
+                           ? std::max(due, std::chrono::milliseconds{0}) + std::chrono::milliseconds{1}
+                           : look_at_silence;
     if (::poll(ready.data(), ready.size(), static_cast<int>(limit.count())) < 0) return;
     if (ready[2].revents != 0) take_signal(signals);
     if ((ready[3].revents & POLLIN) != 0) take_keys();
@@ -137,7 +138,11 @@ class Drawer {
       case SIGTERM: over_ = true; break;
       case SIGHUP: gone_ = true; break;
       case SIGCONT: terminal_.begin(); [[fallthrough]];
-      case SIGWINCH: last_ = {}; anew_ = true; changed_ = true; break;
+      case SIGWINCH:
+        last_ = {};
+        anew_ = true;
+        changed_ = true;
+        break;
       default: break;
     }
   }

@@ -79,7 +79,7 @@ class Drawing {
   [[nodiscard]] Picture picture() {
     if (size_.rows == 0 || size_.columns == 0) return {};
     Rows head{header()}, urls = url_rows(model_.url(), "page"), observer = url_rows(model_.observer_url(), "to look"),
-              table = member_rows(), findings = finding_rows(), links = link_rows(), values = value_rows();
+                         table = member_rows(), findings = finding_rows(), links = link_rows(), values = value_rows();
     // What a small screen does without, in this order.
     const auto height = [&] {
       return head.size() + urls.size() + observer.size() + table.size() + findings.size() + links.size() +
@@ -135,8 +135,7 @@ class Drawing {
   [[nodiscard]] Rows url_rows(const std::string& url, std::string_view label) const {
     if (url.empty()) return {};
     const std::string begin = " " + left(label, 8) + " ";
-    if (begin.size() + width_of(url) <= size_.columns)
-      return {row().add(begin, Look::Dim).add(url, Look::Bold).take()};
+    if (begin.size() + width_of(url) <= size_.columns) return {row().add(begin, Look::Dim).add(url, Look::Bold).take()};
     Rows rows;
     for (std::size_t at = 0; at < url.size(); at += size_.columns)
       rows.push_back(row().add(std::string_view{url}.substr(at, size_.columns), Look::Bold).take());
@@ -209,7 +208,8 @@ class Drawing {
     if (most > 0) kept.push_back(std::move(table.front()));
     for (const std::size_t i : order) kept.push_back(std::move(table[i + 1]));
     if (most > 1)
-      kept.push_back(row().add(fmt::format("   {} more", model_.overview().members.size() - order.size()), Look::Dim).take());
+      kept.push_back(
+          row().add(fmt::format("   {} more", model_.overview().members.size() - order.size()), Look::Dim).take());
     table = std::move(kept);
   }
 
@@ -341,9 +341,7 @@ class Drawing {
 
 }  // namespace
 
-Picture draw(const ScreenModel& model, Size size, double silent_s) {
-  return Drawing{model, size, silent_s}.picture();
-}
+Picture draw(const ScreenModel& model, Size size, double silent_s) { return Drawing{model, size, silent_s}.picture(); }
 
 std::vector<std::string> words_of(const Picture& picture) {
   std::vector<std::string> lines;
@@ -389,7 +387,8 @@ std::vector<std::string> farewell(const ScreenModel& model, const std::string& l
     lines.push_back(fmt::format("{} event{} of medium or high severity; {:.3f} s: {}", model.grave_events(),
                                 model.grave_events() == 1 ? "" : "s", model.gravest()->at_s.value_or(0.0),
                                 model.gravest()->text));
-  lines.push_back(model.gravest() ? "What stopped and why: hirosco why. All of it: hirosco log" + (log.empty() ? "" : " (" + log + ")")
+  lines.push_back(model.gravest() ? "What stopped and why: hirosco why. All of it: hirosco log" +
+                                        (log.empty() ? "" : " (" + log + ")")
                                   : "All of it: hirosco log" + (log.empty() ? "" : " (" + log + ")"));
   return lines;
 }

@@ -28,7 +28,7 @@ struct Span {
 using PictureRow = std::vector<Span>;
 struct Picture {
   std::vector<PictureRow> rows;  ///< as many as the screen has, none wider than it
-  std::size_t event_rows{0};     ///< room for events: a page of them
+  std::size_t event_rows{0};  ///< room for events: a page of them
 };
 
 /// `silent_s`: since when the supervisor has told nothing. Never more columns or rows than `size`; a URL is never cut.
@@ -38,7 +38,7 @@ struct Picture {
 
 /// How a terminal is written to.
 struct Palette {
-  bool colour{true};   ///< else weight alone (NO_COLOR)
+  bool colour{true};  ///< else weight alone (NO_COLOR)
   bool unicode{true};  ///< else ASCII
 };
 /// What makes a terminal that shows `last` show `next`: rows that differ. An empty `last`: all of them.

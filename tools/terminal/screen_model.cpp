@@ -82,11 +82,11 @@ template <class Number>
 
 Key take_key(std::string_view& octets) {
   constexpr std::array<std::pair<std::string_view, Key>, 6> sequences{{{"\x1b[A", Key::Up},
-                                                                        {"\x1b[B", Key::Down},
-                                                                        {"\x1b[5~", Key::PageUp},
-                                                                        {"\x1b[6~", Key::PageDown},
-                                                                        {"\x1b[F", Key::Newest},
-                                                                        {"\x1b[4~", Key::Newest}}};
+                                                                       {"\x1b[B", Key::Down},
+                                                                       {"\x1b[5~", Key::PageUp},
+                                                                       {"\x1b[6~", Key::PageDown},
+                                                                       {"\x1b[F", Key::Newest},
+                                                                       {"\x1b[4~", Key::Newest}}};
   for (const auto& [sequence, key] : sequences)
     if (octets.starts_with(sequence)) {
       octets.remove_prefix(sequence.size());
@@ -138,8 +138,7 @@ void ScreenModel::take(std::string_view line) {
     if (text == "shutdown") ends_ = true;  // whoever asked for it
     return add({.at_s = number_in<double>(told, "at_s"), .severity = severity_of(text), .text = text});
   }
-  if (told.contains("held"))
-    return add({.at_s = {}, .severity = Severity::Info, .text = text_in(told, "held")});
+  if (told.contains("held")) return add({.at_s = {}, .severity = Severity::Info, .text = text_in(told, "held")});
   if (told.contains("url")) {
     url_ = text_in(told, "url");
     observer_url_ = text_in(told, "observer_url");
@@ -162,8 +161,8 @@ Wish ScreenModel::press(Key key, std::size_t page_rows) {
     ends_ = true;
     return Wish::EndFlight;
   }
-  const auto seen = static_cast<std::size_t>(
-      std::ranges::count_if(events_, [&](const ScreenEvent& event) { return admits(event); }));
+  const auto seen =
+      static_cast<std::size_t>(std::ranges::count_if(events_, [&](const ScreenEvent& event) { return admits(event); }));
   const std::size_t furthest = seen - std::min(seen, page_rows);
   switch (key) {
     case Key::End: asks_ = !ends_; break;

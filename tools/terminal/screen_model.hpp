@@ -49,7 +49,9 @@ class ScreenModel {
   /// What processes said as errors, the newest: for whoever has no screen any more.
   [[nodiscard]] const std::deque<std::string>& errors() const noexcept { return errors_; }
   [[nodiscard]] std::size_t grave_events() const noexcept { return grave_; }  ///< of medium and high severity
-  [[nodiscard]] const std::optional<ScreenEvent>& gravest() const noexcept { return gravest_; }  ///< the newest of the gravest
+  [[nodiscard]] const std::optional<ScreenEvent>& gravest() const noexcept {
+    return gravest_;
+  }  ///< the newest of the gravest
   [[nodiscard]] bool only_low_and_up() const noexcept { return only_low_and_up_; }
   [[nodiscard]] std::size_t scrolled() const noexcept { return scrolled_; }  ///< events below the last that is seen
   [[nodiscard]] bool asks_for_end() const noexcept { return asks_; }

@@ -33,7 +33,8 @@ TEST(ScreenModelTest, KnowsWhatTheSupervisorSaysOfTheCraft) {
   EXPECT_EQ(known.members[0].name, "ARM");
   EXPECT_EQ(known.members[0].period_ns, 500'000U);
   EXPECT_EQ(known.members[0].execution_mean_ns, 20'000U);
-  EXPECT_TRUE(known.members[0].runs && known.members[0].cycling && known.members[0].realtime && known.members[0].counted);
+  EXPECT_TRUE(known.members[0].runs && known.members[0].cycling && known.members[0].realtime &&
+              known.members[0].counted);
   EXPECT_EQ(known.members[1].inhibited, 4U);
   EXPECT_EQ(known.members[1].missed, 7U);
   ASSERT_EQ(known.links.size(), 2U);
@@ -67,7 +68,8 @@ TEST(ScreenModelTest, IsBoundedWhateverIsToldAndKeepsTheNewest) {
   model.take(std::string(100'000, 'x'));
   EXPECT_EQ(model.events().size(), ScreenModel::most_events);
   EXPECT_EQ(model.events().back().text.size(), ScreenModel::longest_text);
-  EXPECT_EQ(model.events()[ScreenModel::most_events - 2].text, "line " + std::to_string(2 * ScreenModel::most_events - 1));
+  EXPECT_EQ(model.events()[ScreenModel::most_events - 2].text,
+            "line " + std::to_string(2 * ScreenModel::most_events - 1));
   for (int i = 0; i < 100; ++i) model.take("an error");
   EXPECT_EQ(model.errors().size(), ScreenModel::most_errors);
 }
@@ -78,9 +80,10 @@ TEST(ScreenModelTest, WhatIsGarbledOrOfAnotherFormChangesNothingAndSteersNothing
   for (const char* line : {"{", "{\"told\":", "{\"members\":[{\"na", "", "{}"}) model.take(line);
   EXPECT_EQ(model.events().size(), 0U);
   EXPECT_EQ(model.overview().members.size(), 2U);
-  for (const char* line : {R"({"members":7,"links":"x","values":{}})", R"({"members":[1,null,"a"],"links":[[]],"values":[1,[2]]})",
-                           R"({"members":[{"name":7,"runs":"yes","inhibited":"a"}],"up_s":"x"})", R"({"told":7,"at_s":"x"})",
-                           R"({"url":null})"})
+  for (const char* line :
+       {R"({"members":7,"links":"x","values":{}})", R"({"members":[1,null,"a"],"links":[[]],"values":[1,[2]]})",
+        R"({"members":[{"name":7,"runs":"yes","inhibited":"a"}],"up_s":"x"})", R"({"told":7,"at_s":"x"})",
+        R"({"url":null})"})
     model.take(line);
   model.take("\x1b[2J");
   EXPECT_EQ(model.events().back().text, "?[2J");
@@ -145,7 +148,9 @@ TEST(LinesTest, GivesLinesAsTheyAreWholeAndLeavesOutWhatIsTooLong) {
   const auto take = [&](std::string_view octets) {
     lines.take(octets, [&](std::string_view line) { whole.emplace_back(line); });
   };
-  for (const char* octets : {"o", "ne\ntw", "o\n\n", "much too long", " really\nthree", "\n", "12345678\n", "123456789\n4\n5"}) take(octets);
+  for (const char* octets :
+       {"o", "ne\ntw", "o\n\n", "much too long", " really\nthree", "\n", "12345678\n", "123456789\n4\n5"})
+    take(octets);
   EXPECT_EQ(whole, (std::vector<std::string>{"one", "two", "", "three", "12345678", "4"}));
 }
 

@@ -43,8 +43,8 @@ std::size_t judge_member(const Overview& overview, const Overview::Member& membe
                         fmt::format("{} is {}, the mode has it {}{}", member.name, state_words(member.state),
                                     state_words(member.wanted), because(member.inhibited))});
   else if (member.inhibited != 0)
-    findings.push_back({grave, member.name,
-                        fmt::format("{}: actuators inhibited{}", member.name, because(member.inhibited))});
+    findings.push_back(
+        {grave, member.name, fmt::format("{}: actuators inhibited{}", member.name, because(member.inhibited))});
   else return 0;
   return 1;
 }
@@ -93,11 +93,10 @@ Judgement judge(const Overview& overview) {
   const bool nobody = wanted == 0 && overview.mode == overview.initial_mode && !overview.usual_mode.empty() &&
                       overview.usual_mode != overview.mode;
   if (nobody && !waits)
-    judged.findings.push_back({Severity::High, "",
-                               fmt::format("mode {} has nobody up; the usual one is {}", overview.mode,
-                                           overview.usual_mode)});
-  if (reduced)
-    judged.findings.push_back({Severity::Info, "", "no real-time scheduling: the reduced limits hold"});
+    judged.findings.push_back(
+        {Severity::High, "",
+         fmt::format("mode {} has nobody up; the usual one is {}", overview.mode, overview.usual_mode)});
+  if (reduced) judged.findings.push_back({Severity::Info, "", "no real-time scheduling: the reduced limits hold"});
   std::ranges::stable_sort(judged.findings, std::ranges::greater{}, &Finding::severity);
   if (waits) {
     judged.verdict = Verdict::OnTheWay;

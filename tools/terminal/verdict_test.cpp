@@ -69,7 +69,8 @@ TEST(VerdictTest, WhoDoesNotRunALinkThatIsDownAndWhoStaysInTheInitialModeAreUnwe
   craft.members[0] = {.name = "ARM", .wanted = "Operational"};
   craft.links[1].up = false;
   EXPECT_EQ(judge(craft).line, "NOT WELL: 1 of 2 subsystems not as mode coupled has it, 1 link down");
-  EXPECT_THAT(texts(judge(craft)), ElementsAre("ARM does not run, the mode has it Operational", "link 2, HAND → ARM, is down"));
+  EXPECT_THAT(texts(judge(craft)),
+              ElementsAre("ARM does not run, the mode has it Operational", "link 2, HAND → ARM, is down"));
 
   Overview initial = testing::pair();
   initial.mode = "commissioning";

@@ -8,8 +8,12 @@
 namespace hirosco::terminal::testing {
 
 [[nodiscard]] inline supervisor::Overview pair() {
-  supervisor::Overview craft{
-      .mission = "PAIR", .mode = "coupled", .initial_mode = "commissioning", .usual_mode = "coupled", .members = {}, .links = {}};
+  supervisor::Overview craft{.mission = "PAIR",
+                             .mode = "coupled",
+                             .initial_mode = "commissioning",
+                             .usual_mode = "coupled",
+                             .members = {},
+                             .links = {}};
   for (const char* name : {"ARM", "HAND"})
     craft.members.push_back({.name = name,
                              .runs = true,
