@@ -157,6 +157,7 @@ struct GroundOptions {
   std::string archive;  ///< empty = beside the mission's log
   std::string page;  ///< folder; empty = the one that was built
   bool json{false};
+  bool markdown{false};  ///< of `why`: a report
 };
 int ground(const GroundOptions& options);
 /// The chain of causes of the last stop, from the ground station's archive.

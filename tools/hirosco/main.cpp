@@ -201,6 +201,7 @@ int read_and_do(int argc, char** argv) {
                           "Which one, of those that fly or have flown from here");
   why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");
   why_command->add_flag("--json", ground_options.json, "As JSON");
+  why_command->add_flag("--md", ground_options.markdown, "As a report in Markdown");
   ExportOptions export_options;
   auto* export_command = app.add_subcommand("export", "What other programs need of a mission");
   export_command->require_subcommand(1);

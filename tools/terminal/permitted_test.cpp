@@ -17,7 +17,7 @@ struct PermittedTest : ::testing::Test {
     move.name = "MOVE";
     move.service = 8;
     move.subtype = 1;
-    move.states = {descriptor::State::Operational};
+    move.states = 1U << static_cast<unsigned>(descriptor::State::Operational);
     member.subsystem.functions.push_back(move);
     for (const auto& [name, may] : {std::pair{"by_hand", true}, std::pair{"coupled", false}, std::pair{"alone", true}}) {
       auto& mode = mission.modes.emplace_back();
