@@ -97,7 +97,9 @@ struct Options {
     if (reactions.empty()) break;
     if (file.path().extension() != ".injected") continue;
     std::ifstream lines{file.path()};
-    for (std::int64_t at_ns = 0; lines >> at_ns;) {
+    // Its time, then what it was.
+    for (std::string line; std::getline(lines, line);) {
+      const std::int64_t at_ns = std::strtoll(line.c_str(), nullptr, 10);
       const TimePoint injected{Duration{at_ns}};
       std::erase_if(reactions,
                     [&](TimePoint at) { return at >= injected && at - injected <= UnprovokedReactions::limit; });

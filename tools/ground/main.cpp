@@ -23,6 +23,7 @@
 #include "hirosco/utilities/os/installation.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
 #include "simulation/devices/module.hpp"
+#include "tools/ground/injections.hpp"
 #include "tools/ground/why.hpp"
 #include "tools/hirosco/commands.hpp"
 
@@ -83,13 +84,11 @@ using Options = std::map<std::string, std::string>;
   Api api{session, {.token = "-", .observer_token = {}, .page = {}, .transitions = {}}};
   const HttpRequest request{"GET", "/api/why", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer -"}}, {}};
   const bool colour = ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-  const WhyStyle style = options.contains("--md") ? WhyStyle::Markdown
-                         : colour                 ? WhyStyle::Coloured
-                                                  : WhyStyle::Lines;
+  const WhyStyle style = options.contains("--md") ? WhyStyle::Markdown : colour ? WhyStyle::Coloured : WhyStyle::Lines;
   api.handle(request, [&](const HttpResponse& response) {
     if (options.contains("--json")) return fmt::print("{}\n", response.body);
-    fmt::print("{}", why_text(nlohmann::json::parse(response.body, nullptr, false),
-                              session.catalogue().mission().name, archive.string(), style));
+    fmt::print("{}", why_text(nlohmann::json::parse(response.body, nullptr, false), session.catalogue().mission().name,
+                              archive.string(), style));
   });
   return tools::exit_ok;
 }
@@ -130,6 +129,10 @@ constexpr std::uint16_t tried_ports = 20;
   outside.ask_device = [&](const std::string& device, const std::string& line, auto done) {
     shell.ask((devices / device).string(), line, std::move(done));
   };
+  std::vector<std::string> device_names;
+  for (const auto& device : mission.devices) device_names.push_back(device.name);
+  Injections injections{devices, std::move(device_names), clock};
+  outside.injected = [&] { return injections.poll(); };
   const auto process = static_cast<unsigned>(::getpid());
   Session session{{.catalogue = catalogue,
                    .archive = archive,

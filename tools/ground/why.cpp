@@ -45,11 +45,11 @@ using nlohmann::json;
 }
 
 [[nodiscard]] std::string markdown(const json& story, const std::string& mission, const std::string& archive) {
-  std::string text = fmt::format("# Why {} stopped\n\n**{}** {}\n\n", mission, words(story, "title"),
-                                 words(story, "detail"));
-  text += fmt::format("| | |\n|---|---|\n| when | {} |\n| mission | {}, mode {} |\n| severity | {} |\n",
-                      utc_text(story.value("t", 0.0)), cell(mission), cell(words(story, "mode")),
-                      words(story, "severity"));
+  std::string text =
+      fmt::format("# Why {} stopped\n\n**{}** {}\n\n", mission, words(story, "title"), words(story, "detail"));
+  text +=
+      fmt::format("| | |\n|---|---|\n| when | {} |\n| mission | {}, mode {} |\n| severity | {} |\n",
+                  utc_text(story.value("t", 0.0)), cell(mission), cell(words(story, "mode")), words(story, "severity"));
   if (const auto plan = words(story, "plan"); !plan.empty()) text += fmt::format("| plan | {} |\n", cell(plan));
   if (const auto stopped = listed(story, "stopped"); !stopped.empty())
     text += fmt::format("| stopped | {} |\n", cell(stopped));
@@ -97,9 +97,9 @@ std::string utc_text(double onboard_s) {
 
 std::string why_text(const json& story, const std::string& mission, const std::string& archive, WhyStyle style) {
   if (!story.is_object() || !story.contains("causes") || !story["causes"].is_array() || story["causes"].empty())
-    return style == WhyStyle::Markdown ? fmt::format("# Why {} stopped\n\nNothing has stopped, as far as {} tells.\n",
-                                                     mission, archive)
-                                       : fmt::format("nothing has stopped, as far as the archive {} tells\n", archive);
+    return style == WhyStyle::Markdown
+               ? fmt::format("# Why {} stopped\n\nNothing has stopped, as far as {} tells.\n", mission, archive)
+               : fmt::format("nothing has stopped, as far as the archive {} tells\n", archive);
   return style == WhyStyle::Markdown ? markdown(story, mission, archive)
                                      : lines(story, mission, style == WhyStyle::Coloured);
 }

@@ -22,7 +22,8 @@ void take_row(const descriptor::Mission& mission, const HeardValues& values, std
               supervisor::Overview& overview) {
   const auto* described = mission.find_subsystem(static_cast<std::uint16_t>(apid));
   if (described == nullptr) return;
-  const auto member = std::ranges::find(overview.members, described->subsystem.name, &supervisor::Overview::Member::name);
+  const auto member =
+      std::ranges::find(overview.members, described->subsystem.name, &supervisor::Overview::Member::name);
   if (member == overview.members.end()) return;
   const auto column = [&](const char* name) { return told(values, std::string{"SUBSYSTEMS."} + name, i).value_or(0); };
   const std::uint64_t state = told(values, "SUBSYSTEMS.STATE", i).value_or(255);
@@ -37,7 +38,8 @@ void take_row(const descriptor::Mission& mission, const HeardValues& values, std
   member->missed = column("MISSED");
   member->latency_max_ns = static_cast<std::uint32_t>(column("LATENCY_MAX"));
   member->execution_mean_ns = static_cast<std::uint32_t>(column("EXECUTION_MEAN"));
-  const auto* configuration = described->subsystem.find_configuration(static_cast<std::uint8_t>(column("CONFIGURATION")));
+  const auto* configuration =
+      described->subsystem.find_configuration(static_cast<std::uint8_t>(column("CONFIGURATION")));
   if (configuration == nullptr) return;
   member->cycling = true;
   member->period_ns = static_cast<std::uint64_t>(configuration->sampling.count());
@@ -55,7 +57,8 @@ std::optional<supervisor::Overview> heard_overview(const descriptor::Mission& mi
   for (std::size_t i = 0; const auto apid = told(supervisor, "SUBSYSTEMS.APID", i); ++i)
     if (*apid != 0) take_row(mission, supervisor, i, *apid, overview);
   for (std::size_t i = 0; const auto id = told(supervisor, "LINK_STATUS.LINK", i); ++i) {
-    const auto link = std::ranges::find(overview.links, static_cast<std::uint8_t>(*id), &supervisor::Overview::Link::id);
+    const auto link =
+        std::ranges::find(overview.links, static_cast<std::uint8_t>(*id), &supervisor::Overview::Link::id);
     if (link != overview.links.end()) link->up = told(supervisor, "LINK_STATUS.IS_UP", i).value_or(0) != 0;
   }
   return overview;

@@ -27,7 +27,8 @@ struct HeardTest : ::testing::Test {
     mode.id = 3;
     mode.establish = {1};
     for (const char* name : {"ARM", "HAND"})
-      mode.commission.push_back({.subsystem = name, .configuration = {}, .state = descriptor::State::Operational, .at = {}});
+      mode.commission.push_back(
+          {.subsystem = name, .configuration = {}, .state = descriptor::State::Operational, .at = {}});
     tell("MODE", {3});
     tell("SUBSYSTEMS.APID", {1, 10, 11, 0});
     tell("SUBSYSTEMS.STATE", {5, 5, 5, 0});
@@ -38,7 +39,9 @@ struct HeardTest : ::testing::Test {
     tell("LINK_STATUS.LINK", {1, 0});
     tell("LINK_STATUS.IS_UP", {1, 0});
   }
-  void tell(const std::string& name, std::vector<double> numbers) { values[name] = {.name = name, .unit = "", .values = std::move(numbers)}; }
+  void tell(const std::string& name, std::vector<double> numbers) {
+    values[name] = {.name = name, .unit = "", .values = std::move(numbers)};
+  }
 
   descriptor::Mission mission;
   HeardValues values;

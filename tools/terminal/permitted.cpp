@@ -35,7 +35,8 @@ std::string permitted_where(const descriptor::Mission& mission, const descriptor
     for (const auto& row : supervisor::permission_table(mission, mode)) {
       if (!row.origin.is_ground() || row.addressee->id != addressee.id || row.request != request || row.permitted == 0)
         continue;
-      const auto same = std::ranges::find(alike, row.permitted, &std::pair<std::uint16_t, std::vector<std::string>>::first);
+      const auto same =
+          std::ranges::find(alike, row.permitted, &std::pair<std::uint16_t, std::vector<std::string>>::first);
       if (same == alike.end()) alike.push_back({row.permitted, {mode.name}});
       else same->second.push_back(mode.name);
     }

@@ -19,11 +19,13 @@ struct PermittedTest : ::testing::Test {
     move.subtype = 1;
     move.states = 1U << static_cast<unsigned>(descriptor::State::Operational);
     member.subsystem.functions.push_back(move);
-    for (const auto& [name, may] : {std::pair{"by_hand", true}, std::pair{"coupled", false}, std::pair{"alone", true}}) {
+    for (const auto& [name, may] :
+         {std::pair{"by_hand", true}, std::pair{"coupled", false}, std::pair{"alone", true}}) {
       auto& mode = mission.modes.emplace_back();
       mode.name = name;
       mode.id = static_cast<std::uint8_t>(mission.modes.size());
-      if (may) mode.permits.push_back({.subsystem = "ARM", .functions = {"MOVE"}, .services = {}, .parameters = {}, .at = {}});
+      if (may)
+        mode.permits.push_back({.subsystem = "ARM", .functions = {"MOVE"}, .services = {}, .parameters = {}, .at = {}});
     }
   }
   descriptor::Mission mission;
