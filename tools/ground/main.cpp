@@ -162,7 +162,7 @@ constexpr std::uint16_t tried_ports = 20;
     fmt::print("{{\"url\":\"{}\",\"observer_url\":\"{}{}\"}}\n", url, page, observer);
   } else if (!options.contains("--quiet")) {
     fmt::print("{}: {}\n", tour ? "open this for the tour" : "ground station", url);
-    if (!tour) fmt::print("  to look only: {}{}\n", page, observer);
+    fmt::print("  to look only: {}{}\n", page, observer);
   }
   std::fflush(stdout);
   shell.run(api);

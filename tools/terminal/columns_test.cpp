@@ -23,10 +23,10 @@ TEST(Columns, WhatSteersATerminalOrIsNoTextIsAQuestionMark) {
 }
 
 TEST(Columns, CutsToItsWidthAndSaysSo) {
-  EXPECT_EQ(cut("MANIPULATOR", 11), "MANIPULATOR");
-  EXPECT_EQ(cut("MANIPULATOR", 10), "MANIPULAT…");
-  EXPECT_EQ(cut("MANIPULATOR", 1), "…");
-  EXPECT_EQ(cut("MANIPULATOR", 0), "");
+  EXPECT_EQ(cut("SOLAR_ARRAY", 11), "SOLAR_ARRAY");
+  EXPECT_EQ(cut("SOLAR_ARRAY", 10), "SOLAR_ARR…");
+  EXPECT_EQ(cut("SOLAR_ARRAY", 1), "…");
+  EXPECT_EQ(cut("SOLAR_ARRAY", 0), "");
   EXPECT_EQ(cut("", 0), "");
 }
 

@@ -46,7 +46,7 @@ TEST(ScreenModelTest, KnowsWhatTheSupervisorSaysOfTheCraft) {
 
 TEST(ScreenModelTest, TakesEventsWithTheirSeverityUrlsAndErrors) {
   ScreenModel model;
-  model.take(told(1.5, "ARM high ROBOT_LOST REASON=silent"));
+  model.take(told(1.5, "ARM high DEVICE_LOST REASON=silent"));
   model.take(told(1.6, "mode coupled"));
   model.take(R"({"url":"http://127.0.0.1:8080/#token=a","observer_url":"http://127.0.0.1:8080/#token=b"})");
   model.take("hirosco: the supervisor has died; another one goes on");
@@ -57,7 +57,7 @@ TEST(ScreenModelTest, TakesEventsWithTheirSeverityUrlsAndErrors) {
   EXPECT_EQ(model.events()[2].at_s, std::nullopt);
   EXPECT_EQ(model.errors().size(), 1U);
   EXPECT_EQ(model.grave_events(), 1U);
-  EXPECT_EQ(model.gravest()->text, "ARM high ROBOT_LOST REASON=silent");
+  EXPECT_EQ(model.gravest()->text, "ARM high DEVICE_LOST REASON=silent");
   EXPECT_EQ(model.url(), "http://127.0.0.1:8080/#token=a");
   EXPECT_EQ(model.observer_url(), "http://127.0.0.1:8080/#token=b");
 }

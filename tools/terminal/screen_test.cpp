@@ -145,12 +145,12 @@ TEST(ScreenTest, ScrollsBackAndFiltersEvents) {
 
 TEST(ScreenTest, CutsLongWordsButNoUrl) {
   Overview craft = testing::pair();
-  craft.members[0].name = "A_MANIPULATOR_OF_A_VERY_LONG_NAME_INDEED";
+  craft.members[0].name = "A_PROBE_OF_A_VERY_LONG_NAME_INDEED";
   craft.mode = std::string(100, 'm');
   ScreenModel model = known(craft);
   model.take("{\"at_s\":20,\"told\":\"" + std::string(300, 'y') + "\"}");
   const auto lines = words_of(draw(model, {80, 24}, 0));
-  EXPECT_THAT(lines[5], HasSubstr(" A_MANIPULATOR_OF_A_…  Operational"));
+  EXPECT_THAT(lines[5], HasSubstr(" A_PROBE_OF_A_VERY_L…  Operational"));
   EXPECT_THAT(whole(draw(model, {80, 24}, 0)), HasSubstr("yyy…\n"));
   const std::string narrow = whole(draw(model, {50, 40}, 0));
   std::string together = narrow;
