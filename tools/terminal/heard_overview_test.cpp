@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tools/terminal/verdict.hpp"
 
 namespace hirosco::terminal {

@@ -37,7 +37,7 @@ class ScreenModel {
 
   /// A line of the supervisor, or of another process of the flight: JSON as their --screen and --json say, else words, which are an error.
   void take(std::string_view line);
-  [[nodiscard]] Wish press(Key key, std::size_t page_rows);
+  Wish press(Key key, std::size_t page_rows);
   [[nodiscard]] bool heard() const noexcept { return heard_ != 0; }
   [[nodiscard]] std::uint64_t overviews() const noexcept { return heard_; }  ///< how many have come
   [[nodiscard]] const Overview& overview() const noexcept { return overview_; }

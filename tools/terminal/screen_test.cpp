@@ -193,7 +193,7 @@ TEST(ScreenTest, NeverIsWiderOrHigherThanTheTerminalWhateverItShows) {
                                .wanted = any(2) ? "Operational" : "",
                                .counted = any(2) != 0,
                                .cycling = any(2) != 0,
-                               .inhibited = random() % 256,
+                               .inhibited = static_cast<std::uint32_t>(random() % 256),
                                .period_ns = random(),
                                .missed = random()});
     for (int n = any(20); n > 0; --n)
@@ -208,7 +208,8 @@ TEST(ScreenTest, NeverIsWiderOrHigherThanTheTerminalWhateverItShows) {
     const Size size{static_cast<std::size_t>(any(140)), static_cast<std::size_t>(any(50))};
     const Picture picture = draw(model, size, any(10));
     ASSERT_LE(picture.rows.size(), size.rows);
-    if (size.columns != 0) ASSERT_EQ(picture.rows.size(), size.rows);
+    const std::size_t expected = size.columns == 0 ? 0 : size.rows;
+    ASSERT_EQ(picture.rows.size(), expected);
     ASSERT_LE(picture.event_rows, size.rows);
     for (const std::string& line : words_of(picture)) ASSERT_LE(width_of(line), size.columns) << line;
   }
