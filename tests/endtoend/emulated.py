@@ -22,12 +22,24 @@ except ImportError:
                              "python3-pyte"], check=False).returncode)
 
 
+TIOCGPTN = 0x80045430    # of which number the terminal behind is (ioctl_tty(2))
+
+
+class Screen(pyte.Screen):
+    """With an alternate screen, which pyte passes over: whoever leaves it finds an empty one here."""
+
+    def reset_mode(self, *modes, **more):
+        super().reset_mode(*modes, **more)
+        if more.get("private") and 1049 in modes:
+            self.reset()
+
+
 class Emulated:
     """`with Emulated(run) as terminal:` — `run()` is called in a process of its own that has the terminal, and does not return."""
 
     def __init__(self, run, columns=80, rows=24):
         self.run = run
-        self.screen = pyte.Screen(columns, rows)
+        self.screen = Screen(columns, rows)
         self.stream = pyte.ByteStream(self.screen)
         self.sent, self.reads, self.code = b"", threading.Event(), None
         self.lock = threading.Lock()
@@ -41,7 +53,8 @@ class Emulated:
             os.read(0, 1)
             self.run()
             os._exit(127)
-        self.slave = os.open(os.ptsname(self.master), os.O_RDWR | os.O_NOCTTY)    # its modes outlive the program
+        number, = struct.unpack("I", fcntl.ioctl(self.master, TIOCGPTN, bytes(4)))
+        self.slave = os.open(f"/dev/pts/{number}", os.O_RDWR | os.O_NOCTTY)    # its modes outlive the program
         self.before = termios.tcgetattr(self.slave)
         threading.Thread(target=self._read, daemon=True).start()
         self.press(b"\n")

@@ -231,8 +231,7 @@ int run(const RunOptions& options) {
   if (locks->log) plan.supervisor.inherited.push_back({locks->log.get(), first_lock + 2});
   if (options.json) plan.supervisor.arguments.emplace_back("--json");
   if (options.quiet) plan.supervisor.arguments.emplace_back("--quiet");
-  std::optional<terminal::FlightScreen> screen;
-  if (wants_screen) screen = terminal::FlightScreen::start(flight.log);
+  auto screen = wants_screen ? terminal::FlightScreen::start(flight.log) : std::nullopt;
   if (screen) {
     plan.beside = screen->process();
     plan.supervisor.inherited.push_back({screen->told(), first_lock + 3});
