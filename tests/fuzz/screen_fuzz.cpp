@@ -43,12 +43,14 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   }
   const Picture after = draw(model, room, data[1] % 5);
   if (room.columns != 0) demand(after.rows.size() == room.rows, "as many rows as there are");
-  for (const std::string& line : words_of(after)) demand(width_of(line) <= room.columns, "no row is wider than the terminal");
+  for (const std::string& line : words_of(after))
+    demand(width_of(line) <= room.columns, "no row is wider than the terminal");
   for (const char letter : paint(after, before, room, {.colour = false, .unicode = false}))
     demand(letter == '\x1b' || (letter >= ' ' && letter < 0x7F), "ASCII and sequences");
   for (const PictureRow& row : after.rows)
     for (const Span& span : row)
-      for (const char letter : span.text) demand(static_cast<unsigned char>(letter) >= ' ' && letter != 0x7F, "nothing of what was told steers");
+      for (const char letter : span.text)
+        demand(static_cast<unsigned char>(letter) >= ' ' && letter != 0x7F, "nothing of what was told steers");
   demand(farewell(model, "log").size() < 100, "a few words at the end");
   return 0;
 }

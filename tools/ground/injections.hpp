@@ -22,7 +22,9 @@ class Injections {
   [[nodiscard]] std::vector<StoredFault> poll();
 
  private:
-  [[nodiscard]] std::filesystem::path file_of(const std::string& device) const { return folder_ / (device + ".injected"); }
+  [[nodiscard]] std::filesystem::path file_of(const std::string& device) const {
+    return folder_ / (device + ".injected");
+  }
   std::filesystem::path folder_;
   std::map<std::string, std::uint64_t> read_;  ///< octets, by device
   const Clock& clock_;

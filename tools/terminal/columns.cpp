@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "hirosco/utilities/utf8.hpp"
@@ -43,6 +44,13 @@ class Unicode {
   return character;
 }
 
+/// Latin letters, and the marks and arrows of the screen itself: nobody has to be asked, which takes longer than all the rest.
+[[nodiscard]] constexpr bool is_surely_one_column(char32_t character) noexcept {
+  const auto between = [&](char32_t low, char32_t high) { return character >= low && character <= high; };
+  return between(0x20, 0x7E) || between(0xA1, 0xAC) || between(0xAE, 0x2FF) || between(0x2190, 0x21FF) ||
+         between(0x25A0, 0x25CF) || character == 0x2026;
+}
+
 /// Calls `with(octets of one character, its columns)` until that says no; those of no known width come as "?".
 template <class With>
 void each_character(std::string_view text, With&& with) {
@@ -52,11 +60,15 @@ void each_character(std::string_view text, With&& with) {
       if (!with(text.substr(i, 1), std::size_t{1})) return;
     return;
   }
-  const Unicode unicode;
+  std::optional<Unicode> unicode;
   const std::string words = printable_words(text);
   for (std::string_view rest = words; !rest.empty();) {
     const std::string_view octets = rest.substr(0, character_octets(rest));
-    const int columns = octets.size() == 1 ? 1 : unicode.width(decoded(octets));
+    int columns = 1;
+    if (!is_surely_one_column(decoded(octets))) {
+      if (!unicode) unicode.emplace();
+      columns = unicode->width(decoded(octets));
+    }
     if (!(columns < 0 ? with("?", std::size_t{1}) : with(octets, static_cast<std::size_t>(columns)))) return;
     rest.remove_prefix(octets.size());
   }

@@ -3,6 +3,8 @@
 #include "tools/terminal/columns.hpp"
 
 #include <gtest/gtest.h>
+#include <locale.h>
+#include <wchar.h>
 
 namespace hirosco::terminal {
 namespace {
@@ -14,6 +16,21 @@ TEST(Columns, AWideCharacterTakesTwoAndOneThatCombinesNone) {
   EXPECT_EQ(width_of("\xf0\x9f\x9b\xb0"), 1U);        // U+1F6F0, a satellite: neutral in Unicode
   EXPECT_EQ(width_of("\xf0\x9f\x9a\x80"), 2U);        // U+1F680, a rocket: wide
   EXPECT_EQ(width_of("a\xcc\x88"), 1U);               // a and a combining diaeresis
+}
+
+TEST(Columns, WhatTheScreenItselfShowsIsAsTheLibraryHasIt) {
+  const locale_t unicode = ::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
+  ASSERT_NE(unicode, nullptr);
+  const locale_t before = ::uselocale(unicode);
+  for (wchar_t letter = 0x21; letter < 0x3000; ++letter) {
+    std::string text(8, '\0');
+    text.resize(::wcrtomb(text.data(), letter, nullptr));
+    const int columns = ::wcwidth(letter);
+    EXPECT_EQ(width_of(text), columns < 0 ? 1U : static_cast<unsigned>(columns))
+        << std::hex << static_cast<int>(letter);
+  }
+  ::uselocale(before);
+  ::freelocale(unicode);
 }
 
 TEST(Columns, WhatSteersATerminalOrIsNoTextIsAQuestionMark) {

@@ -44,7 +44,7 @@ Overview stopped() {
 
 TEST(ScreenTest, ShowsACraftThatIsWellIn80Columns) {
   EXPECT_EQ(whole(draw(known(testing::pair()), {80, 24}, 0.1)),
-            R"( PAIR  coupled                                               ● well  0:12:34
+            R"( PAIR  coupled                                                 ● well  0:12:34
  page     http://127.0.0.1:8080/#token=0123456789abcdef0123456789abcdef
  to look  http://127.0.0.1:8080/#token=0123456789abcdef0123456789abcdef
 
@@ -80,7 +80,7 @@ TEST(ScreenTest, UsesTheWidthThatItHas) {
 
 TEST(ScreenTest, SaysWhatStoppedAboveTheEvents) {
   EXPECT_EQ(whole(draw(known(stopped()), {80, 24}, 0.1)),
-            R"( PAIR  coupled                                           ■ NOT WELL  0:12:34
+            R"( PAIR  coupled                                             ■ NOT WELL  0:12:34
  page     http://127.0.0.1:8080/#token=0123456789abcdef0123456789abcdef
  to look  http://127.0.0.1:8080/#token=0123456789abcdef0123456789abcdef
 
@@ -134,9 +134,10 @@ TEST(ScreenTest, ScrollsBackAndFiltersEvents) {
   EXPECT_THAT(whole(newest), HasSubstr("line 99\n"));
   model.press(Key::PageUp, newest.event_rows);
   const std::string back = whole(draw(model, {80, 24}, 0));
-  EXPECT_THAT(back, HasSubstr(" EVENTS  11 newer below"));
-  EXPECT_THAT(back, HasSubstr("line 88\n"));
-  EXPECT_THAT(back, Not(HasSubstr("line 89\n")));
+  ASSERT_EQ(newest.event_rows, 12U);
+  EXPECT_THAT(back, HasSubstr(" EVENTS  12 newer below"));
+  EXPECT_THAT(back, HasSubstr("line 87\n"));
+  EXPECT_THAT(back, Not(HasSubstr("line 88\n")));
   model.press(Key::Filter, newest.event_rows);
   const std::string grave = whole(draw(model, {80, 24}, 0));
   EXPECT_THAT(grave, HasSubstr("TEMPERATURE"));
@@ -179,7 +180,7 @@ TEST(ScreenTest, NeverIsWiderOrHigherThanTheTerminalWhateverItShows) {
   const std::vector<std::string> words{
       "ARM", "\xe6\x89\x8b\xe6\x89\x8b", std::string(90, 'z'), "", "m\xc3\xa4\xc3\x9f", "\x1b[2J", "a\xcc\x88"};
   const auto word = [&] { return words[static_cast<std::size_t>(any(static_cast<int>(words.size())))]; };
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     Overview craft{.mission = word(),
                    .mode = word(),
                    .usual_mode = word(),
