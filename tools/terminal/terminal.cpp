@@ -43,7 +43,10 @@ Result<TerminalState> TerminalState::of(int descriptor) {
 void TerminalState::restore(Duration patience, std::string_view words) const {
   const FileDescriptor mine = open_unblocked(path_);
   if (!mine) return;
-  ::tcflow(mine.get(), TCOON);
+  // Without these keys nothing is held by them any more.
+  termios flowing = modes_;
+  flowing.c_iflag &= ~static_cast<tcflag_t>(IXON);
+  ::tcsetattr(mine.get(), TCSANOW, &flowing);
   const auto until = std::chrono::steady_clock::now() + patience;
   const std::string whole = std::string{end_screen} + std::string{words};
   std::string_view left{whole};
