@@ -11,16 +11,9 @@ namespace hirosco::supervisor {
 namespace {
 
 constexpr Duration writer_patience = 500ms;
-
-/// Names and event texts come from descriptors: nothing but printable characters reaches the terminal or the JSON.
-[[nodiscard]] std::string json_string(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char letter : shown(text)) {
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    quoted += letter;
-  }
-  return quoted + "\"";
-}
+/// Of what one speaker may say, and of counts that rise all the time.
+constexpr Duration turn = 1s;
+constexpr Duration counts_turn = 10s;
 
 [[nodiscard]] std::string value_text(const pus::HousekeepingValue& value, int decimals) {
   std::string text;
@@ -55,7 +48,8 @@ void Console::told(OnboardTime when, std::string_view line) {
   if (first_ == OnboardTime{}) first_ = when;
   if (!limit_.admit(line.substr(0, line.find(' ')))) return;  // it is in the log
   const double at_s = seconds(when - first_);
-  if (style_ == Style::Json) print(fmt::format("{{\"at_s\":{:.4f},\"told\":{}}}\n", at_s, json_string(line)));
+  if (style_ == Style::Json || style_ == Style::Screen)
+    print(fmt::format("{{\"at_s\":{:.4f},\"told\":{}}}\n", at_s, json_string(line)));
   else print(fmt::format("{:9.4f} s  {}\n", at_s, shown(line)));
 }
 
@@ -77,55 +71,82 @@ void Console::tell_held() {
 }
 
 std::string Console::held_text(const std::string& line) const {
-  return style_ == Style::Json ? fmt::format("{{\"held\":{}}}\n", json_string(line))
-                               : fmt::format("{:>12}{}\n", "", shown(line));
+  return style_ == Style::Json || style_ == Style::Screen ? fmt::format("{{\"held\":{}}}\n", json_string(line))
+                                                          : fmt::format("{:>12}{}\n", "", shown(line));
 }
 
-void Console::show(const Supervisor& supervisor, Duration since_start) {
-  tell_held();
-  print(style_ == Style::Json ? status_json(supervisor, since_start) : status_text(supervisor, since_start));
-}
-
-std::string Console::status_text(const Supervisor& supervisor, Duration since_start) const {
-  std::string text = fmt::format("[{:6.1f} s] {}", seconds(since_start), supervisor.mode().name);
-  for (const Member& member : supervisor.members()) {
-    const auto state = member.state();
-    text += fmt::format(" | {} {}", shown(member.descriptor().name),
-                        member.alive() && state ? to_text(*state) : std::string_view{"not running"});
-    const auto counts = member.statistics();
-    if (!counts || !counts->cycling) continue;
-    text +=
-        fmt::format(" {:.0f} Hz exec {:.1f} us late max {:.0f} us overruns {} missed {}",
-                    1e9 / static_cast<double>(std::max<std::uint64_t>(counts->period_ns, 1)),
-                    counts->execution_mean_ns * 1e-3, counts->latency_max_ns * 1e-3, counts->overruns, counts->missed);
-    if (counts->inhibited != 0) text += " INHIBITED";
-    if (!counts->realtime) text += " (reduced promise: no real-time scheduling)";
+void Console::show(const Overview& overview, Duration since_start) {
+  if (since_start >= next_turn_) {
+    next_turn_ = since_start + turn;
+    tell_held();
   }
-  text += fmt::format(" | links {}/{}", supervisor.links().up_count(), supervisor.links().defined_count());
+  switch (style_) {
+    case Style::Json: return print(status_json(overview, since_start));
+    case Style::Screen: return print(json_of(overview, seconds(since_start), shown_values()) + "\n");
+    case Style::Text: return tell_changes(overview, since_start);
+    case Style::Quiet: return;
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> Console::shown_values() const {
+  std::vector<std::pair<std::string, std::string>> values;
   for (const auto& item : mission_.console)
     if (const auto value = values_.find(item.parameter); value != values_.end())
-      text += fmt::format(" | {} {}{}{}", shown(item.label), value_text(value->second, item.decimals),
-                          item.unit.empty() ? "" : " ", shown(item.unit));
-  if (const std::string waiting = supervisor.waiting_for(); !waiting.empty()) text += " | waits for " + shown(waiting);
-  return text + "\n";
+      values.emplace_back(item.label,
+                          value_text(value->second, item.decimals) + (item.unit.empty() ? "" : " " + item.unit));
+  return values;
 }
 
-std::string Console::status_json(const Supervisor& supervisor, Duration since_start) const {
+/// States, modes and links are told when they change, cycles that were missed or took too long in turns of their own.
+void Console::tell_changes(const Overview& overview, Duration since_start) {
+  std::string changes;
+  const auto change = [&](const std::string& what, std::string now) {
+    std::string& before = standing_[what];
+    if (before == now) return;
+    if (!now.empty()) changes += (changes.empty() ? "" : "; ") + now;
+    before = std::move(now);
+  };
+  change("mode", "mode " + std::string{shown(overview.mode)});
+  const bool counts = since_start >= next_counts_;
+  if (counts) next_counts_ = since_start + counts_turn;
+  std::size_t up = 0;
+  for (const Overview::Member& member : overview.members) {
+    const std::string name{shown(member.name)};
+    change(name, fmt::format("{} {}{}", name, member.state, member.inhibited != 0 ? ", inhibited" : ""));
+    if (member.counted && member.cycles != 0) cycled_[member.name] = member;
+    if (!counts || !member.counted) continue;
+    change(name + " missed", member.missed == 0 ? "" : fmt::format("{} missed {} cycles", name, member.missed));
+    change(name + " overruns", member.overruns == 0 ? "" : fmt::format("{} overran {} times", name, member.overruns));
+  }
+  for (const Overview::Link& link : overview.links) up += link.up ? 1U : 0U;
+  change("links", overview.links.empty() ? "" : fmt::format("links {}/{}", up, overview.links.size()));
+  change("waits", overview.waits_for.empty() ? "" : "waits for " + std::string{shown(overview.waits_for)});
+  if (!changes.empty()) print(fmt::format("[{:6.1f} s] {}\n", seconds(since_start), changes));
+}
+
+void Console::ended() {
+  if (style_ != Style::Text) return;
+  for (const auto& [name, member] : cycled_)
+    print(fmt::format("{}: {} cycles, {} missed, {} overran, {:.1f} us late at most{}\n", shown(name), member.cycles,
+                      member.missed, member.overruns, member.latency_max_ns * 1e-3,
+                      member.realtime ? "" : " (reduced promise: no real-time scheduling)"));
+}
+
+std::string Console::status_json(const Overview& overview, Duration since_start) const {
+  std::size_t up = 0;
+  for (const Overview::Link& link : overview.links) up += link.up ? 1U : 0U;
   std::string text = fmt::format("{{\"up_s\":{:.3f},\"mode\":{},\"links_up\":{},\"links_defined\":{},\"subsystems\":[",
-                                 seconds(since_start), json_string(supervisor.mode().name),
-                                 supervisor.links().up_count(), supervisor.links().defined_count());
+                                 seconds(since_start), json_string(overview.mode), up, overview.links.size());
   bool first = true;
-  for (const Member& member : supervisor.members()) {
-    const auto state = member.state();
-    const auto counts = member.statistics();
-    text += fmt::format("{}{{\"name\":{},\"state\":{}", first ? "" : ",", json_string(member.descriptor().name),
-                        json_string(member.alive() && state ? to_text(*state) : std::string_view{"not running"}));
-    if (counts)
+  for (const Overview::Member& member : overview.members) {
+    text += fmt::format("{}{{\"name\":{},\"state\":{}", first ? "" : ",", json_string(member.name),
+                        json_string(member.state));
+    if (member.counted)
       text += fmt::format(
           ",\"cycles\":{},\"overruns\":{},\"missed\":{},\"latency_max_ns\":{},\"execution_mean_ns\":{},\"inhibited\":{}"
           ",\"inhibited_at_cycle\":{},\"stopped_at_cycle\":{},\"realtime\":{}",
-          counts->cycles, counts->overruns, counts->missed, counts->latency_max_ns, counts->execution_mean_ns,
-          counts->inhibited, counts->inhibited_at_cycle, member.stopped_at_cycle(), counts->realtime ? 1 : 0);
+          member.cycles, member.overruns, member.missed, member.latency_max_ns, member.execution_mean_ns,
+          member.inhibited, member.inhibited_at_cycle, member.stopped_at_cycle, member.realtime ? 1 : 0);
     text += "}";
     first = false;
   }

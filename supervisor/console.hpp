@@ -12,16 +12,19 @@
 #include <vector>
 
 #include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
+#include "supervisor/overview.hpp"
 #include "supervisor/platform/launch/standard_error.hpp"
-#include "supervisor/supervisor.hpp"
+#include "supervisor/supervision/observer.hpp"
 
-/// What a person at the terminal sees: the story of commissioning and recovery, then a live line every second.
+/// What a flight tells its terminal: the story of commissioning and recovery and, in lines, what has changed; or as JSON, for programs and
+/// for the screen that another process draws (tools/terminal/).
 namespace hirosco::supervisor {
 
 class Console final : public Observer {
  public:
-  enum class Style : std::uint8_t { Text, Json, Quiet };
-  static constexpr std::size_t most_told = 200;    ///< lines of one speaker in a second; the others are counted
+  /// Json: status every second, with all of housekeeping. Screen: four times a second, with what a screen shows.
+  enum class Style : std::uint8_t { Text, Json, Quiet, Screen };
+  static constexpr std::size_t most_told = 200;  ///< lines of one speaker in a second; the others are counted
   static constexpr std::size_t most_lines = 4096;  ///< that wait for a terminal that stands still
   /// `terminal` outlives it.
   Console(const descriptor::Mission& mission, Style style, std::FILE* terminal = stdout);
@@ -29,22 +32,30 @@ class Console final : public Observer {
 
   void told(OnboardTime when, std::string_view line) override;
   void routed(const pus::TelemetryView& packet) override;
-  /// One live status line; call about once a second from the supervisor's thread.
-  void show(const Supervisor& supervisor, Duration since_start);
+  /// How often it wants to show().
+  [[nodiscard]] Duration period() const noexcept { return style_ == Style::Screen ? Duration{250ms} : Duration{1s}; }
+  /// Call about once in a period from the supervisor's thread.
+  void show(const Overview& overview, Duration since_start);
+  /// The flight is over: its figures, where people read lines.
+  void ended();
 
  private:
   void print(std::string line);
   void tell_held();
   [[nodiscard]] std::string held_text(const std::string& line) const;
   void write_lines();
-  [[nodiscard]] std::string status_text(const Supervisor& supervisor, Duration since_start) const;
-  [[nodiscard]] std::string status_json(const Supervisor& supervisor, Duration since_start) const;
+  void tell_changes(const Overview& overview, Duration since_start);
+  [[nodiscard]] std::string status_json(const Overview& overview, Duration since_start) const;
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> shown_values() const;
 
   const descriptor::Mission& mission_;
   Style style_;
   std::FILE* terminal_;
   OnboardTime first_{};
-  LineLimit limit_{most_told};       ///< of one speaker from status line to status line, once a second
+  LineLimit limit_{most_told};  ///< of one speaker in a second
+  Duration next_turn_{0}, next_counts_{0};
+  std::map<std::string, Overview::Member> cycled_;  ///< the newest figures of each, by name
+  std::map<std::string, std::string> standing_;  ///< what was told last, by what it is about
   std::map<std::uint16_t, pus::HousekeepingDecoder> decoders_;
   std::map<std::string, pus::HousekeepingValue> values_;  ///< newest, by "SUBSYSTEM.PARAMETER"
   // A stopped terminal must not stop the supervisor: lines wait here for a thread of their own, oldest out first.

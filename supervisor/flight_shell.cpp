@@ -46,7 +46,6 @@ constexpr int exit_internal = 4;
 constexpr int exit_unprovoked = 5;
 /// Below every cycle, above ordinary work.
 constexpr int supervisor_priority = 30;
-constexpr Duration status_period = 1s;
 constexpr Duration last_wait = 2s;
 constexpr Duration log_start_limit = 3s;
 
@@ -56,6 +55,7 @@ struct Options {
   std::filesystem::path runtime;     ///< folder of this flight: sockets, what was injected
   std::string mode;                  ///< to start in; empty = the mission's
   Console::Style style{Console::Style::Text};
+  int screen{-1};                    ///< descriptor that a screen reads from; -1: none
 };
 
 [[nodiscard]] Options read_options(int argc, char** argv) {
@@ -67,6 +67,7 @@ struct Options {
     else if (word == "--runtime" && i + 1 < argc) options.runtime = argv[++i];
     else if (word == "--mode" && i + 1 < argc) options.mode = argv[++i];
     else if (word == "--json") options.style = Console::Style::Json;
+    else if (word == "--screen" && i + 1 < argc) options.screen = std::atoi(argv[++i]);
     else if (word == "--quiet") options.style = Console::Style::Quiet;
   }
   return options;
@@ -96,7 +97,9 @@ struct Options {
     if (reactions.empty()) break;
     if (file.path().extension() != ".injected") continue;
     std::ifstream lines{file.path()};
-    for (std::int64_t at_ns = 0; lines >> at_ns;) {
+    // Its time, then what it was.
+    for (std::string line; std::getline(lines, line);) {
+      const std::int64_t at_ns = std::strtoll(line.c_str(), nullptr, 10);
       const TimePoint injected{Duration{at_ns}};
       std::erase_if(reactions,
                     [&](TimePoint at) { return at >= injected && at - injected <= UnprovokedReactions::limit; });
@@ -215,7 +218,11 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     return exit_environment;
   }
   if (!launcher.keep_with(keeper.store(), mission, std::move(inherited), &page)) page.alone.store(1);
-  Console console{mission, options.style};
+  // What is told there steers nobody's terminal and gets in nobody's way, and a screen that is gone ends nobody.
+  const auto close = [](std::FILE* file) { std::fclose(file); };
+  const std::unique_ptr<std::FILE, decltype(close)> screen{
+      options.screen >= 0 ? ::fdopen(options.screen, "w") : nullptr, close};
+  Console console{mission, screen ? Console::Style::Screen : options.style, screen ? screen.get() : stdout};
   UnprovokedReactions causes{clock, console};
   const auto begun = launcher.begin(mission);
   if (!begun) {
@@ -282,7 +289,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   Progress keeper_progress;
   bool keeper_still = false;
   const TimePoint started = clock.now();
-  TimePoint next_status = started + status_period;
+  TimePoint next_status = started + console.period();
   bool ends_as_a_whole = false;
   if (goes_on) {
     keeper.take_inhibits(clock);
@@ -327,9 +334,10 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     }
     epochs.keep_above(guard.highest_epoch());
     if (clock.now() < next_status) continue;
-    next_status += status_period;
-    console.show(supervisor, clock.now() - started);
+    next_status += console.period();
+    console.show(overview_of(mission, supervisor), clock.now() - started);
   }
+  console.ended();
   // The keeper looks on as long as this takes, too.
   const auto wait_for_ends = [&] {
     for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;) {

@@ -32,7 +32,7 @@ struct FlightParts {
 using MakeDeployment = std::function<Deployment(const FlightParts& parts)>;
 
 /// Flies a mission; returns the exit code. `arguments` are those of main(): --mission FILE [--log FILE] [--runtime FOLDER] [--mode NAME]
-/// [--json|--quiet].
+/// [--json|--quiet|--screen DESCRIPTOR].
 int fly(int argc, char** argv, const MakeDeployment& deploy);
 
 }  // namespace hirosco::supervisor

@@ -14,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr Duration housekeeping_period = 1s;
+constexpr Duration injections_period = 200ms;
 
 }  // namespace
 
@@ -94,6 +95,10 @@ void Session::tick() {
   const TimePoint now = parts_.clock.now();
   commands_.expire(now);
   for (const auto& client : clients_) client->tick(now);
+  if (now >= next_injections_) {
+    take_injections();
+    next_injections_ = now + injections_period;
+  }
   parts_.archive.commit();
   if (now >= next_housekeeping_) {
     parts_.archive.keep_within_limit();
@@ -148,15 +153,39 @@ void Session::fault(const json& body, std::function<void(Answered<json>)> done) 
   constexpr std::size_t longest_line = 255;
   if (line.empty() || line.size() > longest_line || std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' '; }))
     return done(refuse(400, "line: one line of text is wanted"));
-  parts_.outside.ask_device(
-      device, line, [this, device, line, done = std::move(done)](std::optional<std::string> answer) {
-        if (!answer) return done(refuse(503, "the device does not answer"));
-        const StoredFault fault{now(), device, line, *answer};
-        parts_.archive.add(fault);
-        broadcast(
-            {{"type", "fault"}, {"t", json_time(fault.t)}, {"device", device}, {"line", line}, {"answer", *answer}});
-        done(json{{"answer", *answer}});
-      });
+  constexpr std::size_t most_own = 100;
+  if (parts_.outside.injected) own_faults_.emplace_back(device, line);
+  if (own_faults_.size() > most_own) own_faults_.pop_front();
+  parts_.outside.ask_device(device, line,
+                            [this, device, line, done = std::move(done)](std::optional<std::string> answer) {
+                              if (answer != "ok")
+                                static_cast<void>(is_own_fault(device, line));  // nothing was injected
+                              if (!answer) return done(refuse(503, "the device does not answer"));
+                              tell_fault({now(), device, line, *answer});
+                              done(json{{"answer", *answer}});
+                            });
+}
+
+void Session::tell_fault(const StoredFault& fault) {
+  parts_.archive.add(fault);
+  broadcast({{"type", "fault"},
+             {"t", json_time(fault.t)},
+             {"device", fault.device},
+             {"line", fault.line},
+             {"answer", fault.answer}});
+}
+
+void Session::take_injections() {
+  if (!parts_.outside.injected) return;
+  for (const StoredFault& fault : parts_.outside.injected())
+    if (!is_own_fault(fault.device, fault.line)) tell_fault(fault);
+}
+
+bool Session::is_own_fault(const std::string& device, const std::string& line) {
+  const auto own = std::ranges::find(own_faults_, std::pair{device, line});
+  if (own == own_faults_.end()) return false;
+  own_faults_.erase(own);
+  return true;
 }
 
 json Session::link_json() const {

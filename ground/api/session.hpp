@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -30,6 +31,8 @@ struct Surroundings {
   std::function<void(const std::string& device, const std::string& line,
                      std::function<void(std::optional<std::string>)>)>
       ask_device;
+  /// What was injected into simulated devices since the last call, whoever did it; without it only what clients do here is known.
+  std::function<std::vector<StoredFault>()> injected{};
 };
 
 class Client;
@@ -91,6 +94,10 @@ class Session {
   void add_gap(OnboardTime from, OnboardTime to);
   void tell_command(const StoredCommand& command);
   void broadcast(const nlohmann::json& message);
+  void take_injections();
+  void tell_fault(const StoredFault& fault);
+  /// One that a client asked for here, and takes it off those that are known.
+  [[nodiscard]] bool is_own_fault(const std::string& device, const std::string& line);
 
   Parts parts_;
   Model model_;
@@ -102,6 +109,8 @@ class Session {
   std::vector<std::unique_ptr<Client>> clients_;
   std::uint64_t next_client_{1};
   TimePoint next_housekeeping_{};
+  TimePoint next_injections_{};
+  std::deque<std::pair<std::string, std::string>> own_faults_;  ///< device and line, until that tells of it, too
 };
 
 }  // namespace hirosco::ground

@@ -139,16 +139,16 @@ std::string text_of(const Error& error) {
   return fmt::format("{}: {} ({})", to_text(error.code), error.text, error.value);
 }
 
-/// Beside the control socket: when something was injected last. What a flight does within two seconds after it has a cause.
-void record_injection(const std::string& control) {
+/// Beside the control socket: what was injected, and when. What a flight does within two seconds after it has a cause.
+void record_injection(const std::string& control, std::string_view line) {
   const std::int64_t now_ns = SystemClock{}.now().time_since_epoch().count();
-  if (!control.empty()) std::ofstream{control + ".injected", std::ios::app} << now_ns << '\n';
+  if (!control.empty()) std::ofstream{control + ".injected", std::ios::app} << fmt::format("{} {}\n", now_ns, line);
 }
 
 std::string answer(SimulatedDevice& device, std::string_view line, const std::string& control) {
   if (Words{line}[0] == "truth") return "ok " + device.truth();
   const auto done = device.fault(line);
-  if (done) record_injection(control);
+  if (done) record_injection(control, line);
   return done ? "ok" : "error " + text_of(done.error());
 }
 

@@ -93,12 +93,12 @@ void each_child(With&& with) {
 }
 
 /// Subsystems whose supervisor died come to us: they make themselves safe and end, and who spins instead is ended.
-void end_orphans(const std::vector<Process>& devices, const sigset_t& set, const Clock& clock) {
+void end_orphans(const std::vector<Process>& devices, int beside, const sigset_t& set, const Clock& clock) {
   const TimePoint limit = clock.now() + orphan_grace;
   for (bool left = true; left;) {
     left = false;
     each_child([&](int pid) {
-      if (std::ranges::find(devices, pid, &Process::pid) != devices.end()) return;
+      if (pid == beside || std::ranges::find(devices, pid, &Process::pid) != devices.end()) return;
       if (::waitpid(pid, nullptr, WNOHANG) != 0) return;  // it has ended and is reaped
       left = true;
       if (clock.now() > limit) ::kill(pid, SIGKILL);  // ours until it is reaped: nobody else has its number
@@ -232,7 +232,7 @@ class Flight {
     each_child([&](int pid) {
       const bool ours = std::ranges::find(devices_, pid, &Process::pid) != devices_.end();
       int status = 0;
-      if (ours || pid == supervisor_->pid() || ::waitpid(pid, &status, WNOHANG) != pid) return;
+      if (ours || pid == plan_.beside || pid == supervisor_->pid() || ::waitpid(pid, &status, WNOHANG) != pid) return;
       const int how = WIFSIGNALED(status) ? static_cast<int>(ended_by_signal) + WTERMSIG(status) : WEXITSTATUS(status);
       page_.tell_end(static_cast<std::uint32_t>(pid), static_cast<std::uint32_t>(how));
     });
@@ -319,7 +319,7 @@ int keep(KeeperPlan plan) {
   }
   static_cast<void>(set_ordinary_scheduling());
   shared.store->clear();
-  end_orphans(devices, set, clock);
+  end_orphans(devices, plan.beside, set, clock);
   end_devices(devices, set, clock);
   return code;
 }

@@ -18,6 +18,7 @@ struct KeeperPlan {
   ProcessStart supervisor;
   std::vector<ProcessStart> devices;
   std::optional<Duration> run_for;  ///< end in order after this time
+  int beside{-1};  ///< a child of this process that is none of the flight's; -1: there is none
   std::vector<FlowAddress> inhibits;  ///< second inhibits of the mission's devices, in the order of kept_endnodes()
 };
 

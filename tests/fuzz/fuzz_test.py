@@ -19,8 +19,10 @@ DICTIONARY = "hirosco/parameter/dictionary.cpp"
 PARAMETERS = "hirosco/pus/st20_parameter/parameter_service.cpp"
 URDF = "robotics/urdf/read.cpp"
 URDF_TREE = "robotics/urdf/connect.cpp"
+SCREEN = "tools/terminal/screen.cpp"
+SCREEN_MODEL = "tools/terminal/screen_model.cpp"
 # What a target needs of the system besides the C++ library.
-SYSTEM = {"urdf": ["-isystem", "/usr/include/eigen3", "-lexpat"]}
+SYSTEM = {"urdf": ["-isystem", "/usr/include/eigen3", "-lexpat"], "screen": ["-lfmt"]}
 # The files of a target, and its defects: what stands in a file, and what does in its place.
 TARGETS = {"arguments": (
     [ARGUMENTS, "hirosco/pus/st08_function/function_service.cpp", "hirosco/pus/st01_verification/verification.cpp",
@@ -79,7 +81,15 @@ TARGETS = {"arguments": (
      "a mimic joint follows the first joint, whomever it names":
          (URDF_TREE, "whole.joint = found->second;", "whole.joint = 0;"),
      "a second link of a name is taken":
-         (URDF_TREE, "if (!is_new)", "if (!is_new && list.size() > 9)")})}
+         (URDF_TREE, "if (!is_new)", "if (!is_new && list.size() > 9)")}),
+    "screen": (
+    [SCREEN, SCREEN_MODEL, "tools/terminal/columns.cpp", "tools/terminal/verdict.cpp"],
+    {"a row may be wider than the terminal":
+         (SCREEN, "cut(text, columns_ - used_)", "cut(text, columns_)"),
+     "a value may be of any kind":
+         (SCREEN_MODEL, "one.size() == 2 && one[0].is_string() && one[1].is_string()", "one.size() == 2"),
+     "a key that is none takes nothing":
+         (SCREEN_MODEL, "  octets.remove_prefix(1);\n  switch (first) {", "  if (first != 'x') octets.remove_prefix(1);\n  switch (first) {")})}
 
 
 def compiler():

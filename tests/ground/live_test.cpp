@@ -359,6 +359,25 @@ TEST_F(GroundStation, WhyTellsTheCauseFirstThenWhatItBroughtAbout) {
   EXPECT_EQ(station.get("/api/why?to=1")["causes"].size(), 0U) << "a replay of before knows nothing of it";
 }
 
+TEST_F(GroundStation, WhyKnowsWhatWasInjectedPastTheStationAndCountsOnceWhatWasInjectedHere) {
+  commission();
+  EXPECT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "delay 1"}})["answer"], "ok");
+  EXPECT_NE(station.post("/api/faults", {{"device", "joystick"}, {"line", "no such thing"}})["answer"], "ok");
+  station.run(3s);  // what was done longer ago than 2 s before a stop is not its cause
+  const auto told = [&] {
+    std::string all;
+    for (const auto& fault : station.session().archive().faults({{}, OnboardTime::max()}))
+      all += fault.line + " " + fault.answer.substr(0, 2) + "; ";
+    return all;
+  };
+  EXPECT_NE(told().find("delay 1 ok; "), std::string::npos);
+  EXPECT_EQ(told().find("delay 1 ok; "), told().rfind("delay 1 ok; ")) << told();
+  ASSERT_TRUE(station.inject("joystick", "unplug"));
+  station.run(2s);
+  EXPECT_NE(told().find("unplug ok; "), std::string::npos) << told();
+  EXPECT_EQ(station.get("/api/why")["causes"][0]["text"], "Fault injected: joystick unplug");
+}
+
 TEST_F(GroundStation, WhyNamesWhoLostItsDeviceAndNotWhoSawTheEffectInTheSameInstant) {
   const auto event = [](std::uint16_t id) {
     std::vector<std::byte> data(40);

@@ -3,6 +3,7 @@
 #include "tests/ground/station.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace hirosco::testing {
 
@@ -17,9 +18,10 @@ Station::Station(simulation::Flight& flight, const std::string& archive)
     return linked_;
   };
   outside.ask_device = [this](const std::string& device, const std::string& line, const auto& done) {
-    const auto result = flight_.craft().device(device)->fault(line);
+    const auto result = inject(device, line);
     done(result ? std::string{"ok"} : std::string{result.error().text});
   };
+  outside.injected = [this] { return std::exchange(injected_, {}); };
   session_ = std::make_unique<ground::Session>(ground::Session::Parts{
       .catalogue = catalogue_, .archive = *archive_, .clock = clock_, .outside = std::move(outside)});
   ground::Api::Options options;
@@ -28,6 +30,12 @@ Station::Station(simulation::Flight& flight, const std::string& archive)
   options.page = "no/such/folder";
   api_ = std::make_unique<ground::Api>(*session_, options);
   join_link();
+}
+
+Result<> Station::inject(const std::string& device, const std::string& line) {
+  auto done = flight_.craft().device(device)->fault(line);
+  if (done) injected_.push_back({clock_.onboard(), device, line, "ok"});
+  return done;
 }
 
 Station::~Station() { flight_.craft().ground().on_telemetry({}); }

@@ -65,6 +65,8 @@ class Station {
   bool run_until(const std::function<bool()>& condition, Duration limit = 10s);
   void cut_link();
   void join_link();
+  /// Into a simulated device, past the station, which is told of it as by the file that each device writes.
+  Result<> inject(const std::string& device, const std::string& line);
   /// The answer to a request as `who`; runs until it has come.
   ground::HttpResponse ask(const std::string& method, const std::string& target, const json& body = {},
                            std::map<std::string, std::string> headers = {});
@@ -95,6 +97,7 @@ class Station {
   std::unique_ptr<ground::Archive> archive_;
   std::unique_ptr<ground::Session> session_;
   std::unique_ptr<ground::Api> api_;
+  std::vector<ground::StoredFault> injected_;  ///< that the station has not been told of yet
   bool linked_{false};
 };
 

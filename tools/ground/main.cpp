@@ -23,6 +23,8 @@
 #include "hirosco/utilities/os/installation.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
 #include "simulation/devices/module.hpp"
+#include "tools/ground/injections.hpp"
+#include "tools/ground/why.hpp"
 #include "tools/hirosco/commands.hpp"
 
 /// `hirosco-ground`: the process behind `hirosco ground` and `hirosco why`, which check the command line. Options in
@@ -78,21 +80,15 @@ using Options = std::map<std::string, std::string>;
   return {};
 }
 
-[[nodiscard]] int print_why(Session& session, bool json) {
+[[nodiscard]] int print_why(Session& session, const Options& options, const fs::path& archive) {
   Api api{session, {.token = "-", .observer_token = {}, .page = {}, .transitions = {}}};
   const HttpRequest request{"GET", "/api/why", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer -"}}, {}};
+  const bool colour = ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  const WhyStyle style = options.contains("--md") ? WhyStyle::Markdown : colour ? WhyStyle::Coloured : WhyStyle::Lines;
   api.handle(request, [&](const HttpResponse& response) {
-    if (json) return fmt::print("{}\n", response.body);
-    const auto story = nlohmann::json::parse(response.body);
-    if (story["causes"].empty()) return fmt::print("nothing has stopped, as far as the archive tells\n");
-    const auto words = [&](const char* name) { return tools::json_text(story[name].get<std::string>()); };
-    fmt::print("{}\n{}\n\n", words("title"), words("detail"));
-    for (const auto& cause : story["causes"]) {
-      const bool timed = cause["after_ms"].is_number();
-      fmt::print("{:>12}  {:6}  {}\n", timed ? fmt::format("{:+.1f} ms", cause["after_ms"].get<double>()) : "before",
-                 cause["severity"].get<std::string>(), tools::json_text(cause["text"].get<std::string>()));
-    }
-    fmt::print("\nWhat to do: {}\n", words("advice"));
+    if (options.contains("--json")) return fmt::print("{}\n", response.body);
+    fmt::print("{}", why_text(nlohmann::json::parse(response.body, nullptr, false), session.catalogue().mission().name,
+                              archive.string(), style));
   });
   return tools::exit_ok;
 }
@@ -133,6 +129,10 @@ constexpr std::uint16_t tried_ports = 20;
   outside.ask_device = [&](const std::string& device, const std::string& line, auto done) {
     shell.ask((devices / device).string(), line, std::move(done));
   };
+  std::vector<std::string> device_names;
+  for (const auto& device : mission.devices) device_names.push_back(device.name);
+  Injections injections{devices, std::move(device_names), clock};
+  outside.injected = [&] { return injections.poll(); };
   const auto process = static_cast<unsigned>(::getpid());
   Session session{{.catalogue = catalogue,
                    .archive = archive,
@@ -162,7 +162,7 @@ constexpr std::uint16_t tried_ports = 20;
     fmt::print("{{\"url\":\"{}\",\"observer_url\":\"{}{}\"}}\n", url, page, observer);
   } else if (!options.contains("--quiet")) {
     fmt::print("{}: {}\n", tour ? "open this for the tour" : "ground station", url);
-    if (!tour) fmt::print("  to look only: {}{}\n", page, observer);
+    fmt::print("  to look only: {}{}\n", page, observer);
   }
   std::fflush(stdout);
   shell.run(api);
@@ -174,7 +174,7 @@ constexpr std::uint16_t tried_ports = 20;
 int main(int argc, char** argv) {
   hirosco::say_last_words("hirosco-ground");
   Options options;
-  const std::set<std::string> flags{"--child", "--json", "--quiet", "--why", "--tour", "--openapi"};
+  const std::set<std::string> flags{"--child", "--json", "--quiet", "--why", "--md", "--tour", "--openapi"};
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
     if (flags.contains(name)) options[name] = "";
@@ -206,5 +206,5 @@ int main(int argc, char** argv) {
   if (serves) return serve(options, *mission, catalogue, **archive);
   const SystemClock clock;
   Session session{{.catalogue = catalogue, .archive = **archive, .clock = clock, .outside = {}}};
-  return print_why(session, options.contains("--json"));
+  return print_why(session, options, path);
 }

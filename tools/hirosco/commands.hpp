@@ -29,6 +29,7 @@ struct RunOptions {
   std::optional<Duration> run_for;
   bool quiet{false};
   bool json{false};
+  bool plain{false};                 ///< lines on a terminal, too, and no screen
   bool ground{true};                 ///< the ground station too
   bool tour{false};                  ///< its page opens with the guided tour
   bool threads{false};               ///< supervisor and subsystems as threads of one process (adr 0097)
@@ -98,7 +99,12 @@ struct TelecommandOptions {
   Duration limit{std::chrono::seconds{70}};
 };
 int telecommand(const TelecommandOptions& options);
-int status(const Connection& connection);
+struct StatusOptions {
+  Connection connection;
+  bool all{false};  ///< the newest housekeeping of every subsystem besides
+};
+/// Is it well? 0: yes, 1: no, 3: nobody answers.
+int status(const StatusOptions& options);
 
 struct ModeOptions {
   Connection connection;
@@ -117,6 +123,7 @@ struct LogOptions {
   std::optional<std::uint8_t> service;
   std::string text;
   std::size_t last{40};
+  bool housekeeping{false};  ///< with TM[3,25], which is left out where nobody asks for it
   bool json{false};
 };
 int log(const LogOptions& options);
@@ -150,6 +157,7 @@ struct GroundOptions {
   std::string archive;  ///< empty = beside the mission's log
   std::string page;  ///< folder; empty = the one that was built
   bool json{false};
+  bool markdown{false};  ///< of `why`: a report
 };
 int ground(const GroundOptions& options);
 /// The chain of causes of the last stop, from the ground station's archive.
@@ -183,6 +191,10 @@ int export_mission(const ExportOptions& options);
 [[nodiscard]] std::string instance_of_folder(const std::filesystem::path& folder);
 /// The ground station's archive, beside the log that the supervisor writes.
 [[nodiscard]] std::filesystem::path archive_beside(const std::filesystem::path& log);
+/// "; did you mean 'x'?" for the name that is nearest to `text`, or nothing when none is.
+[[nodiscard]] std::string did_you_mean(std::string_view text, const std::vector<std::string>& names);
+/// Names by which missions can be flown from here.
+[[nodiscard]] std::vector<std::string> known_missions();
 /// The inside of a JSON string: quotes and backslashes escaped, control characters as spaces.
 [[nodiscard]] std::string json_text(std::string_view text);
 

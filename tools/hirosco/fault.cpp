@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "simulation/devices/module.hpp"
@@ -21,17 +23,33 @@ namespace {
 constexpr int answer_limit_ms = 2000;
 /// A device's control socket closes on whoever sends more.
 constexpr std::size_t longest_line = 255;
-constexpr const char* lines_of_every_device =
-    "every device takes: unplug, plug, silent, stall MS, freeze MS, delay MS, corrupt FRAMES, heal, truth\n";
 
-/// What it takes besides, as its module tells; nothing where that is not here.
-void print_lines_of(const descriptor::Mission& mission, const std::string& name) {
-  fmt::print(stderr, "{}", lines_of_every_device);
+/// What it takes: what every device does, and besides what its module tells, if that is here.
+void print_lines_of(const descriptor::Mission& mission, const std::string& name, std::FILE* to) {
+  const auto print = [&](std::span<const simulation::FaultLine> lines) {
+    for (const auto& fault : lines) fmt::print(to, "  {:<28} {}\n", fault.line, fault.text);
+  };
+  fmt::print(to, "{} takes:\n", name);
+  print(simulation::SimulatedDevice::common_fault_lines);
   const auto device = std::ranges::find(mission.devices, name, &descriptor::SimulatedDevice::name);
   if (device == mission.devices.end()) return;
-  const auto module = simulation::load_device(device->executable);
-  if (!module) return;
-  for (const auto& fault : (*module)->faults) fmt::print(stderr, "{} besides: {} ({})\n", name, fault.line, fault.text);
+  if (const auto module = simulation::load_device(device->executable)) print((*module)->faults);
+}
+
+/// First words of those lines.
+[[nodiscard]] std::vector<std::string> first_words(const descriptor::Mission& mission, const std::string& name) {
+  std::vector<std::string> words;
+  const auto add = [&](std::span<const simulation::FaultLine> lines) {
+    for (const auto& fault : lines) {
+      const std::string line{fault.line};
+      words.push_back(line.substr(0, line.find(' ')));
+    }
+  };
+  add(simulation::SimulatedDevice::common_fault_lines);
+  const auto device = std::ranges::find(mission.devices, name, &descriptor::SimulatedDevice::name);
+  if (device != mission.devices.end())
+    if (const auto module = simulation::load_device(device->executable)) add((*module)->faults);
+  return words;
 }
 
 /// Asks a device's control socket one line; empty when nobody answers.
@@ -65,6 +83,22 @@ int fault(const FaultOptions& options) {
   const auto found = find_flight("fault", options.mission, options.instance);
   if (!found) return found.error();
   const descriptor::Mission& mission = found->mission;
+  std::vector<std::string> devices;
+  for (const auto& device : mission.devices) devices.push_back(device.name);
+  if (options.device.empty()) {
+    for (const std::string& device : devices) print_lines_of(mission, device, stdout);
+    if (devices.empty()) fmt::print("mission {} has no simulated device\n", mission.name);
+    return exit_ok;
+  }
+  if (std::ranges::find(devices, options.device) == devices.end()) {
+    fmt::print(stderr, "hirosco fault: mission {} has no simulated device '{}'{}; there are: {}\n", mission.name,
+               options.device, did_you_mean(options.device, devices), fmt::join(devices, ", "));
+    return exit_usage;
+  }
+  if (options.words.empty()) {
+    print_lines_of(mission, options.device, stdout);
+    return exit_ok;
+  }
   std::string line;
   for (const std::string& word : options.words) line += (line.empty() ? "" : " ") + word;
   if (line.size() > longest_line || line.find('\n') != std::string::npos) {
@@ -74,10 +108,8 @@ int fault(const FaultOptions& options) {
   const auto answer =
       ask((found->flight ? found->flight->folder : runtime_folder(mission.name)) / options.device, line);
   if (!answer) {
-    fmt::print(stderr, "hirosco fault: no simulated device '{}' answers; does {} run? Devices:", options.device,
+    fmt::print(stderr, "hirosco fault: simulated device '{}' does not answer; does {} run?\n", options.device,
                found->flight ? found->flight->instance : mission.name);
-    for (const auto& device : mission.devices) fmt::print(stderr, " {}", device.name);
-    fmt::print(stderr, "\n");
     return exit_environment;
   }
   if (answer->empty()) {
@@ -85,7 +117,11 @@ int fault(const FaultOptions& options) {
     return exit_finding;
   }
   fmt::print("{}\n", *answer);
-  if (answer->find("unknown fault") != std::string::npos) print_lines_of(mission, options.device);
+  if (answer->find("unknown fault") != std::string::npos) {
+    fmt::print(stderr, "hirosco fault: '{}'{}\n", line,
+               did_you_mean(options.words.front(), first_words(mission, options.device)));
+    print_lines_of(mission, options.device, stderr);
+  }
   return answer->starts_with("ok") ? exit_ok : exit_finding;
 }
 

@@ -62,6 +62,7 @@ int ground(const GroundOptions& options) {
 int why(const GroundOptions& options) {
   std::vector<std::string> arguments{"--why"};
   if (options.json) arguments.emplace_back("--json");
+  if (options.markdown) arguments.emplace_back("--md");
   if (!options.archive.empty()) {
     const auto found = only_mission(options.mission);
     if (!found) return found.error();

@@ -41,10 +41,14 @@ int log(const LogOptions& options) {
     return text;
   };
   // What is searched is what is shown.
-  const auto page = supervisor::read_log(
-      path,
-      {.apid = options.apid, .service = options.service, .text = options.text, .words = text_of, .last = options.last},
-      beside);
+  const auto page = supervisor::read_log(path,
+                                         {.apid = options.apid,
+                                          .service = options.service,
+                                          .housekeeping = options.housekeeping || options.json || options.service,
+                                          .text = options.text,
+                                          .words = text_of,
+                                          .last = options.last},
+                                         beside);
   if (!page) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
     return exit_environment;

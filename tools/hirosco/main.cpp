@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 
@@ -31,12 +32,13 @@ void add_connection(CLI::App& command, Connection& connection) {
 /// A first word that is no command: says which there are.
 [[nodiscard]] bool unknown_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return false;
-  std::string names;
+  std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     if (command->get_name() == argv[1]) return false;
-    names += (names.empty() ? "" : ", ") + command->get_name();
+    names.push_back(command->get_name());
   }
-  fmt::print(stderr, "hirosco: no command '{}'; there are: {}\n", argv[1], names);
+  fmt::print(stderr, "hirosco: no command '{}'{}; there are: {}\n", argv[1], did_you_mean(argv[1], names),
+             fmt::join(names, ", "));
   return true;
 }
 
@@ -48,12 +50,13 @@ int read_and_do(int argc, char** argv) {
   RunOptions run_options;
   std::string run_for;
   auto* run_command = app.add_subcommand("run", "Fly a mission with real processes until Ctrl-C");
-  run_command->add_option("mission", run_options.mission, "Name or path of a mission")->required();
+  run_command->add_option("mission", run_options.mission, "Name or path of a mission; without one, they are listed");
   run_command->add_option("--instance", run_options.instance,
                           "A name of its own for this flight: log, ports, sockets and devices of its own, too");
   run_command->add_option("--mode", run_options.mode, "Start in this mode of the mission");
   run_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
   run_command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");
+  run_command->add_flag("--plain", run_options.plain, "Lines, and no screen, on a terminal, too");
   bool no_ground = false;
   run_command->add_flag("--no-ground", no_ground, "Without the ground station and its page");
   run_command->add_flag("--json", run_options.json, "One JSON object a line");
@@ -64,6 +67,7 @@ int read_and_do(int argc, char** argv) {
   auto* tour_command = app.add_subcommand("tour", "Fly a mission and be shown around by its page, in eight steps");
   tour_command->add_option("mission", tour_mission, "Name or path of a mission; by default the usual one");
   tour_command->add_option("--for", run_for, "Shut down in order after this time (60s, 10min)");
+  tour_command->add_flag("--plain", run_options.plain, "Lines, and no screen, on a terminal, too");
 
   CheckOptions check_options;
   auto* check_command = app.add_subcommand("check", "Check descriptors and missions, all problems at once");
@@ -100,8 +104,9 @@ int read_and_do(int argc, char** argv) {
   TelecommandOptions tc_options;
   std::string tc_limit = "70s";
   auto* tc_command = app.add_subcommand("tc", "Send a telecommand by name and wait for its verification reports");
-  tc_command->add_option("subsystem", tc_options.subsystem, "Name of the subsystem")->required();
-  tc_command->add_option("function", tc_options.function, "Name of the function, or ping")->required();
+  tc_command->add_option("subsystem", tc_options.subsystem, "Name of the subsystem; without one, they are listed");
+  tc_command->add_option("function", tc_options.function,
+                         "Name of the function, or ping; without one, those that it has are listed");
   tc_command->add_option("arguments", tc_options.arguments, "Values in order, or NAME=VALUE")->allow_extra_args();
   tc_command->add_option("--limit", tc_limit, "How long to wait for the end")->capture_default_str();
   add_connection(*tc_command, tc_options.connection);
@@ -137,9 +142,11 @@ int read_and_do(int argc, char** argv) {
   mode_command->add_option("--limit", mode_limit, "How long to wait for the end")->capture_default_str();
   add_connection(*mode_command, mode_options.connection);
 
-  Connection status_options;
-  auto* status_command = app.add_subcommand("status", "Newest housekeeping of every subsystem");
-  add_connection(*status_command, status_options);
+  StatusOptions status_options;
+  auto* status_command =
+      app.add_subcommand("status", "Is it well? One line and what deviates; ends with 1 when it is not");
+  status_command->add_flag("--all", status_options.all, "The newest housekeeping of every subsystem besides");
+  add_connection(*status_command, status_options.connection);
 
   LogOptions log_options;
   auto* log_command = app.add_subcommand("log", "Read the supervisor's log");
@@ -151,14 +158,18 @@ int read_and_do(int argc, char** argv) {
   log_command->add_option("--service", log_options.service, "Only this service");
   log_command->add_option("--text", log_options.text, "Only lines with this text");
   log_command->add_option("--last", log_options.last, "So many of the newest")->capture_default_str();
+  log_command->add_flag("--housekeeping", log_options.housekeeping,
+                        "Housekeeping, too, which is left out by itself (--service 3 and --json have it)");
   log_command->add_flag("--json", log_options.json, "One JSON object a line");
 
   FaultOptions fault_options;
   auto* fault_command =
       app.add_subcommand("fault", "Inject a fault into a simulated device, or move the operator's hand");
-  fault_command->add_option("device", fault_options.device, "Name of the device")->required();
-  fault_command->add_option("line", fault_options.words, "unplug, plug, freeze MS, corrupt N, hand wander, ...")
-      ->required()
+  fault_command->add_option("device", fault_options.device,
+                            "Name of the device; without one, all are listed with what they take");
+  fault_command
+      ->add_option("line", fault_options.words,
+                   "unplug, plug, freeze MS, corrupt N, hand wander, ...; without one, they are listed")
       ->allow_extra_args();
   fault_command->add_option("--mission", fault_options.mission, "Mission that runs; by default the one that flies");
   add_instance(*fault_command, fault_options.instance);
@@ -190,6 +201,7 @@ int read_and_do(int argc, char** argv) {
                           "Which one, of those that fly or have flown from here");
   why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");
   why_command->add_flag("--json", ground_options.json, "As JSON");
+  why_command->add_flag("--md", ground_options.markdown, "As a report in Markdown");
   ExportOptions export_options;
   auto* export_command = app.add_subcommand("export", "What other programs need of a mission");
   export_command->require_subcommand(1);

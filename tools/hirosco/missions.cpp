@@ -9,6 +9,7 @@
 #include <set>
 
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/utilities/nearest.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "tools/hirosco/commands.hpp"
 
@@ -30,17 +31,22 @@ namespace {
   return roots;
 }
 
-/// Names by which missions can be flown from here.
-[[nodiscard]] std::set<std::string> known_missions() {
+}  // namespace
+
+std::vector<std::string> known_missions() {
   std::set<std::string> names;
   std::error_code failed;
   for (const fs::path& root : mission_roots())
     for (const auto& entry : fs::directory_iterator{root / "missions", failed})
       if (fs::is_regular_file(entry.path() / "mission.xml", failed)) names.insert(entry.path().filename().string());
-  return names;
+  return {names.begin(), names.end()};
 }
 
-}  // namespace
+std::string did_you_mean(std::string_view text, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> candidates{names.begin(), names.end()};
+  const std::string_view found = nearest(text, candidates);
+  return found.empty() ? std::string{} : fmt::format("; did you mean '{}'?", found);
+}
 
 fs::path find_mission(const std::string& name_or_path) {
   std::error_code failed;
@@ -67,12 +73,12 @@ std::string usual_mission() {
 std::optional<descriptor::Mission> load_mission(const std::string& name_or_path) {
   const fs::path file = find_mission(name_or_path);
   if (file.empty()) {
+    const auto known = known_missions();
     fmt::print(
         stderr,
-        "hirosco: no mission '{}': neither a file nor missions/{}/mission.xml here, above, or with this program\n",
-        name_or_path, name_or_path);
-    if (const auto known = known_missions(); !known.empty())
-      fmt::print(stderr, "there are: {}\n", fmt::join(known, ", "));
+        "hirosco: no mission '{}': neither a file nor missions/{}/mission.xml here, above, or with this program{}\n",
+        name_or_path, name_or_path, did_you_mean(name_or_path, known));
+    if (!known.empty()) fmt::print(stderr, "there are: {}\n", fmt::join(known, ", "));
     return std::nullopt;
   }
   const auto source = descriptor::file_system();

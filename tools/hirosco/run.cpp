@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/readiness.hpp"
+#include "tools/terminal/flight_screen.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -160,6 +162,10 @@ struct Locks {
 
 int run(const RunOptions& options) {
   hold_back_signals();
+  if (options.mission.empty()) {
+    fmt::print(stderr, "hirosco run: which mission? there are: {}\n", fmt::join(known_missions(), ", "));
+    return exit_usage;
+  }
   auto mission = load_mission(options.mission);
   if (!mission) return exit_finding;
   if (!options.mode.empty())
@@ -188,6 +194,8 @@ int run(const RunOptions& options) {
     if (!start) return exit_environment;
     plan.devices.push_back(std::move(*start));
   }
+  const bool wants_screen = !options.plain && !options.json && !options.quiet &&
+                            !find_program("hirosco-screen").empty() && terminal::FlightScreen::possible();
   // Not everybody builds it, and no flight needs it but the tour.
   const auto station = find_program("hirosco-ground");
   if (options.tour && station.empty()) {
@@ -201,7 +209,7 @@ int run(const RunOptions& options) {
     if (!flight.telemetry.empty()) start.arguments.insert(start.arguments.end(), {"--telemetry", flight.telemetry});
     if (flight.named())
       start.arguments.insert(start.arguments.end(), {"--archive", archive_beside(flight.log).string()});
-    if (options.json) start.arguments.emplace_back("--json");
+    if (options.json || wants_screen) start.arguments.emplace_back("--json");
     if (options.quiet) start.arguments.emplace_back("--quiet");
     if (options.tour) start.arguments.emplace_back("--tour");
     plan.devices.push_back(std::move(start));
@@ -223,7 +231,14 @@ int run(const RunOptions& options) {
   if (locks->log) plan.supervisor.inherited.push_back({locks->log.get(), first_lock + 2});
   if (options.json) plan.supervisor.arguments.emplace_back("--json");
   if (options.quiet) plan.supervisor.arguments.emplace_back("--quiet");
+  auto screen = wants_screen ? terminal::FlightScreen::start(flight.log) : std::nullopt;
+  if (screen) {
+    plan.beside = screen->process();
+    plan.supervisor.inherited.push_back({screen->told(), first_lock + 3});
+    plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--screen", std::to_string(first_lock + 3)});
+  }
   const int code = supervisor::keep(std::move(plan));
+  screen.reset();
   clear_sockets(*mission, folder);
   return code;
 }

@@ -1,14 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <map>
 
 #include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/terminal/columns.hpp"
+#include "tools/terminal/heard_overview.hpp"
+#include "tools/terminal/terminal.hpp"
+#include "tools/terminal/verdict.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -17,9 +23,34 @@ namespace {
 constexpr Duration listening = 1500ms;
 
 struct Listened {
-  std::map<std::uint16_t, std::map<std::string, pus::HousekeepingValue>> values;
+  std::map<std::uint16_t, terminal::HeardValues> values;
   std::map<std::uint16_t, std::size_t> packets;
 };
+
+/// Until the time is over or `enough` says so. False: the link is closed.
+template <class Enough>
+[[nodiscard]] bool listen(const descriptor::Mission& mission, GroundConnection& link, Listened& listened,
+                          Enough&& enough) {
+  std::map<std::uint16_t, pus::HousekeepingDecoder> decoders;
+  decoders.emplace(mission.supervisor.id, pus::HousekeepingDecoder{mission.supervisor});
+  for (const auto& member : mission.subsystems)
+    decoders.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
+  const auto end = std::chrono::steady_clock::now() + listening;
+  while (std::chrono::steady_clock::now() < end && !enough()) {
+    const auto left = std::chrono::duration_cast<Duration>(end - std::chrono::steady_clock::now());
+    const auto packet = link.receive(std::max(left, Duration{0}));
+    if (!packet) return false;
+    if (!*packet) break;
+    const auto report = pus::TelemetryView::parse(**packet);
+    if (!report) continue;
+    ++listened.packets[report->apid()];
+    const auto decoder = decoders.find(report->apid());
+    if (report->service() != 3 || report->subtype() != 25 || decoder == decoders.end()) continue;
+    if (const auto values = decoder->second.decode(report->source_data()))
+      for (const auto& value : *values) listened.values[report->apid()][value.name] = value;
+  }
+  return true;
+}
 
 void print_text(const descriptor::Subsystem& subsystem, Listened& listened) {
   fmt::print("{} (APID {}): {} packets in {} s\n", subsystem.name, subsystem.id, listened.packets[subsystem.id],
@@ -42,9 +73,38 @@ void print_json(const descriptor::Subsystem& subsystem, Listened& listened) {
   fmt::print("}}}}\n");
 }
 
+/// Where a person reads it: no wider than 80 columns, and in letters that the terminal has.
+void print_line(std::string_view text, std::string_view look) {
+  constexpr std::size_t columns = 80;
+  const bool shown = ::isatty(STDOUT_FILENO) != 0;
+  std::string line = terminal::cut(text, columns);
+  if (shown && !terminal::takes_unicode(std::getenv("LC_ALL"), std::getenv("LC_CTYPE"), std::getenv("LANG")))
+    line = terminal::ascii(line);
+  const bool coloured = shown && !look.empty() && std::getenv("NO_COLOR") == nullptr;
+  fmt::print("{}{}{}\n", coloured ? look : "", line, coloured ? "\x1b[0m" : "");
+}
+
+[[nodiscard]] std::string_view look_of(descriptor::Severity severity) {
+  if (severity == descriptor::Severity::High) return "\x1b[1;31m";
+  return severity == descriptor::Severity::Medium ? "\x1b[33m" : "";
+}
+
+void print_verdict(const supervisor::Overview& overview, const terminal::Judgement& judged) {
+  const bool unwell = judged.verdict != terminal::Verdict::Well;
+  print_line(judged.line, unwell ? look_of(descriptor::Severity::High) : "");
+  for (const auto& finding : judged.findings)
+    print_line(fmt::format("  {:<6} {}", to_text(finding.severity), finding.text), look_of(finding.severity));
+  if (!unwell) return;
+  const std::string mode = overview.mode == overview.initial_mode ? overview.usual_mode : overview.mode;
+  print_line("What stopped it: hirosco why" +
+                 (mode.empty() ? std::string{} : fmt::format(". Up again: hirosco mode {}", mode)),
+             "");
+}
+
 }  // namespace
 
-int status(const Connection& connection) {
+int status(const StatusOptions& options) {
+  const Connection& connection = options.connection;
   const auto place = find_ground_link("status", connection);
   if (!place) return place.error();
   const descriptor::Mission& mission = place->mission;
@@ -53,29 +113,29 @@ int status(const Connection& connection) {
     fmt::print(stderr, "hirosco status: {}:{}: {}\n", place->host, place->port, link.error().text);
     return exit_environment;
   }
-  std::map<std::uint16_t, pus::HousekeepingDecoder> decoders;
-  decoders.emplace(mission.supervisor.id, pus::HousekeepingDecoder{mission.supervisor});
-  for (const auto& member : mission.subsystems)
-    decoders.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
   Listened listened;
-  const auto end = std::chrono::steady_clock::now() + listening;
-  while (std::chrono::steady_clock::now() < end) {
-    const auto left = std::chrono::duration_cast<Duration>(end - std::chrono::steady_clock::now());
-    const auto packet = link->receive(std::max(left, Duration{0}));
-    if (!packet) return exit_environment;
-    if (!*packet) break;
-    const auto report = pus::TelemetryView::parse(**packet);
-    if (!report) continue;
-    ++listened.packets[report->apid()];
-    const auto decoder = decoders.find(report->apid());
-    if (report->service() != 3 || report->subtype() != 25 || decoder == decoders.end()) continue;
-    if (const auto values = decoder->second.decode(report->source_data()))
-      for (const auto& value : *values) listened.values[report->apid()][value.name] = value;
+  const bool everything = options.all || connection.json;
+  const auto known = [&] { return terminal::heard_overview(mission, listened.values[mission.supervisor.id]); };
+  if (!listen(mission, *link, listened, [&] { return !everything && known(); })) {
+    fmt::print(stderr, "hirosco status: the ground link was closed\n");
+    return exit_environment;
   }
-  const auto print = connection.json ? print_json : print_text;
-  print(mission.supervisor, listened);
-  for (const auto& member : mission.subsystems) print(member.subsystem, listened);
-  return exit_ok;
+  if (everything) {
+    const auto print = connection.json ? print_json : print_text;
+    print(mission.supervisor, listened);
+    for (const auto& member : mission.subsystems) print(member.subsystem, listened);
+  }
+  const auto overview = known();
+  if (!overview) {
+    if (!connection.json)
+      print_line(fmt::format("NOT WELL: {} answers, and its supervisor has told nothing for {} s", mission.name,
+                             seconds(listening)),
+                 look_of(descriptor::Severity::High));
+    return exit_finding;
+  }
+  const terminal::Judgement judged = terminal::judge(*overview);
+  if (!connection.json) print_verdict(*overview, judged);
+  return judged.verdict == terminal::Verdict::Well ? exit_ok : exit_finding;
 }
 
 }  // namespace hirosco::tools

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/terminal/permitted.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -69,9 +71,11 @@ namespace {
   if (wanted == lower_case(mission.supervisor.name)) return &mission.supervisor;
   for (const auto& member : mission.subsystems)
     if (lower_case(member.subsystem.name) == wanted) return &member.subsystem;
-  fmt::print(stderr, "hirosco tc: no subsystem '{}'; the mission has {}", name, mission.supervisor.name);
-  for (const auto& member : mission.subsystems) fmt::print(stderr, ", {}", member.subsystem.name);
-  fmt::print(stderr, "\n");
+  std::vector<std::string> names{mission.supervisor.name};
+  for (const auto& member : mission.subsystems) names.push_back(member.subsystem.name);
+  if (name.empty()) fmt::print(stderr, "hirosco tc: of which subsystem?");
+  else fmt::print(stderr, "hirosco tc: no subsystem '{}'{}", name, did_you_mean(name, names));
+  fmt::print(stderr, " the mission has {}\n", fmt::join(names, ", "));
   return nullptr;
 }
 
@@ -93,7 +97,12 @@ struct Encoded {
   const auto function = std::ranges::find_if(
       functions, [&](const auto& f) { return lower_case(f.name) == lower_case(options.function); });
   if (function == functions.end()) {
-    fmt::print(stderr, "hirosco tc: {} has no function '{}'; it has\n", subsystem.name, options.function);
+    std::vector<std::string> names;
+    for (const auto& known : functions) names.push_back(known.name);
+    if (options.function.empty()) fmt::print(stderr, "hirosco tc: which function? {} has\n", subsystem.name);
+    else
+      fmt::print(stderr, "hirosco tc: {} has no function '{}'{}; it has\n", subsystem.name, options.function,
+                 did_you_mean(options.function, names));
     for (const auto& known : functions) print_usage(known);
     return std::nullopt;
   }
@@ -130,6 +139,19 @@ struct Encoded {
   std::string text = pus::text_of(std::as_bytes(std::span{reason.text}));
   std::ranges::replace_if(text, [](char c) { return c == '"' || c == '\\'; }, '\'');
   return reason.number == 0 ? text : fmt::format("{} {}", text, reason.number);
+}
+
+/// Where a request that was refused by mode or state would be permitted; empty: refused for another reason.
+[[nodiscard]] std::string way_out(const pus::TelemetryView& report, const descriptor::Mission& mission,
+                                  const descriptor::Subsystem& subsystem, const Encoded& encoded) {
+  OctetReader reader{report.source_data()};
+  static_cast<void>(reader.get<std::uint32_t>());
+  const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
+  if (report.subtype() != 2 || (code != pus::FailureCode::WrongMode && code != pus::FailureCode::WrongState)) return {};
+  std::string request = encoded.request.name;
+  if (request == "SET_STATE" && !encoded.data.empty())
+    request += fmt::format(" {}", to_text(static_cast<descriptor::State>(encoded.data.back())));
+  return terminal::permitted_where(mission, subsystem, request);
 }
 
 /// Prints one verification report; true when it was the last of the request.
@@ -223,7 +245,10 @@ int telecommand(const TelecommandOptions& options) {
     if (OctetReader{report->source_data()}.get<std::uint32_t>() != id) continue;
     const double after_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     bool success = false;
-    if (print_report(*report, after_ms, options.connection.json, success)) return success ? exit_ok : exit_finding;
+    if (!print_report(*report, after_ms, options.connection.json, success)) continue;
+    if (const auto where = way_out(*report, mission, *subsystem, *encoded); !where.empty() && !options.connection.json)
+      fmt::print("              permitted in {}\n", where);
+    return success ? exit_ok : exit_finding;
   }
 }
 

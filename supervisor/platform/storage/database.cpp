@@ -106,6 +106,8 @@ bool matches(const LogRecord& record, const LogQuery& query) {
       (record.packet.empty() || label.apid != *query.apid))
     return false;
   if (query.service && (record.packet.empty() || label.service != *query.service)) return false;
+  const bool housekeeping = !record.packet.empty() && !label.telecommand && label.service == 3 && label.subtype == 25;
+  if (housekeeping && !query.housekeeping) return false;
   if (query.text.empty()) return true;
   const std::string words = query.words ? query.words(record) : describe(record);
   return lower_case(words).find(lower_case(query.text)) != std::string::npos;

@@ -89,6 +89,7 @@ enum class LogEnd : std::uint8_t { Newest, Oldest };
 struct LogQuery {
   std::optional<std::uint16_t> apid{};  ///< source, peer or the packet's own APID
   std::optional<std::uint8_t> service{};
+  bool housekeeping{true};  ///< false: without TM[3,25]
   std::string text{};  ///< part of `words`, whatever the case of its letters
   std::function<std::string(const LogRecord&)> words{};  ///< of a record; empty = `describe`
   std::uint64_t since{0};  ///< numbers from here on

@@ -10,42 +10,23 @@
 #include <span>
 #include <tuple>
 
+#include "hirosco/utilities/nearest.hpp"
+
 namespace hirosco::descriptor::detail {
 namespace {
 
 constexpr std::size_t max_quoted = 64;
 constexpr std::size_t max_name = 64;
-/// Longer words and further candidates get no hint: it is for people, and its time is bounded.
-constexpr std::size_t max_hinted = 32;
-constexpr std::size_t max_candidates = 2000;
 
 constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 constexpr bool is_upper(char c) noexcept { return c >= 'A' && c <= 'Z'; }
 constexpr bool is_letter(char c) noexcept { return is_upper(c) || (c >= 'a' && c <= 'z'); }
-
 constexpr char lower(char c) noexcept { return is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c; }
 
 std::size_t characters(std::string_view text) noexcept {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-/// Edit distance with swaps of neighbours (optimal string alignment); upper and lower case count as equal.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const bool same = lower(a[i - 1]) == lower(b[j - 1]);
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0U : 1U)});
-      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]))
-        row[j] = std::min(row[j], before[j - 2] + 1);
-    }
-    before = std::exchange(last, row);
-  }
-  return last[b.size()];
 }
 
 std::string_view describe(NameKind kind) noexcept {
@@ -89,18 +70,8 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string did_you_mean(std::string_view text, const std::vector<std::string_view>& candidates) {
-  if (text.empty() || text.size() > max_hinted) return {};
-  const std::size_t limit = std::max<std::size_t>(1, text.size() / 3);
-  std::size_t best = limit + 1;
-  std::string_view nearest;
-  for (const std::string_view candidate : std::span{candidates}.first(std::min(candidates.size(), max_candidates))) {
-    if (candidate.size() > text.size() + limit || text.size() > candidate.size() + limit) continue;
-    if (const std::size_t edits = distance(text, candidate); edits < best) {
-      best = edits;
-      nearest = candidate;
-    }
-  }
-  return nearest.empty() ? std::string{} : fmt::format("did you mean '{}'?", nearest);
+  const std::string_view found = nearest(text, candidates);
+  return found.empty() ? std::string{} : fmt::format("did you mean '{}'?", found);
 }
 
 std::optional<double> to_double(std::string_view text) noexcept {

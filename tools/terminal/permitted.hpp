@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "hirosco/descriptor/model/mission.hpp"
+
+namespace hirosco::terminal {
+
+/// Where the ground may ask this of a subsystem: "mode standalone while it is Operational; mode safe in any state". `request` as the
+/// table of permission has it: "MOVE_TO", "SET_STATE Operational". Empty: nowhere.
+[[nodiscard]] std::string permitted_where(const descriptor::Mission& mission, const descriptor::Subsystem& addressee,
+                                          std::string_view request);
+
+}  // namespace hirosco::terminal

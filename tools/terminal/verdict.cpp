@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/terminal/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hirosco::terminal {
+namespace {
+
+/// By bit of Inhibition; the page has the same words (ground/web/page/stop.js).
+constexpr std::array<std::string_view, 7> inhibitions{"stopped by SAFE ALL or by the supervisor",
+                                                      "a link that it requires is missing",
+                                                      "its device is lost",
+                                                      "its own protection tripped",
+                                                      "its cycle failed",
+                                                      "the supervisor does not answer",
+                                                      "an endnode of its device went over to a fall-back"};
+
+[[nodiscard]] std::string because(std::uint32_t inhibited) {
+  const std::string words = inhibition_words(inhibited);
+  return words.empty() ? words : ": " + words;
+}
+
+/// 0 where it is as it should be, else 1.
+std::size_t judge_member(const Overview& overview, const Overview::Member& member, std::vector<Finding>& findings) {
+  const bool waits = !overview.waits_for.empty();
+  if (member.missed != 0)
+    findings.push_back({Severity::Low, member.name,
+                        fmt::format("{} missed {} of {} cycles", member.name, member.missed, member.cycles)});
+  if (member.overruns != 0)
+    findings.push_back({Severity::Low, member.name,
+                        fmt::format("{}: {} cycles took longer than they may", member.name, member.overruns)});
+  if (member.wanted.empty()) return 0;
+  const Severity grave = waits ? Severity::Info : Severity::High;
+  if (!member.runs)
+    findings.push_back({grave, member.name,
+                        fmt::format("{} does not run, the mode has it {}", member.name, state_words(member.wanted))});
+  else if (member.state != member.wanted)
+    findings.push_back({grave, member.name,
+                        fmt::format("{} is {}, the mode has it {}{}", member.name, state_words(member.state),
+                                    state_words(member.wanted), because(member.inhibited))});
+  else if (member.inhibited != 0)
+    findings.push_back(
+        {grave, member.name, fmt::format("{}: actuators inhibited{}", member.name, because(member.inhibited))});
+  else return 0;
+  return 1;
+}
+
+[[nodiscard]] std::string counted(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string state_words(std::string_view state) {
+  std::string words;
+  char before = ' ';
+  for (const char letter : state) {
+    if (letter >= 'A' && letter <= 'Z' && before >= 'a' && before <= 'z') words += '-';
+    words += letter;
+    before = letter;
+  }
+  return words;
+}
+
+std::string inhibition_words(std::uint32_t inhibited) {
+  std::string words;
+  for (std::size_t bit = 0; bit < inhibitions.size(); ++bit)
+    if ((inhibited >> bit & 1) != 0) words += fmt::format("{}{}", words.empty() ? "" : ", ", inhibitions[bit]);
+  return words;
+}
+
+Judgement judge(const Overview& overview) {
+  Judgement judged;
+  std::size_t wanted = 0, astray = 0, links = 0, down = 0;
+  bool reduced = false;
+  for (const Overview::Member& member : overview.members) {
+    wanted += member.wanted.empty() ? 0U : 1U;
+    astray += judge_member(overview, member, judged.findings);
+    reduced = reduced || (member.cycling && !member.realtime);
+  }
+  const bool waits = !overview.waits_for.empty();
+  for (const Overview::Link& link : overview.links) {
+    links += link.wanted ? 1U : 0U;
+    if (!link.wanted || link.up) continue;
+    ++down;
+    judged.findings.push_back({waits ? Severity::Info : Severity::High, "",
+                               fmt::format("link {}, {} → {}, is down", link.id, link.from, link.to)});
+  }
+  const bool nobody = wanted == 0 && overview.mode == overview.initial_mode && !overview.usual_mode.empty() &&
+                      overview.usual_mode != overview.mode;
+  if (nobody && !waits)
+    judged.findings.push_back(
+        {Severity::High, "",
+         fmt::format("mode {} has nobody up; the usual one is {}", overview.mode, overview.usual_mode)});
+  if (reduced) judged.findings.push_back({Severity::Info, "", "no real-time scheduling: the reduced limits hold"});
+  std::ranges::stable_sort(judged.findings, std::ranges::greater{}, &Finding::severity);
+  if (waits) {
+    judged.verdict = Verdict::OnTheWay;
+    judged.line = "on the way: waits for " + overview.waits_for;
+  } else if (astray + down != 0) {
+    judged.verdict = Verdict::NotWell;
+    judged.line = "NOT WELL: ";
+    if (astray != 0)
+      judged.line += fmt::format("{} of {} not as mode {} has {}", astray, counted(wanted, "subsystem"), overview.mode,
+                                 astray == 1 ? "it" : "them");
+    if (down != 0) judged.line += fmt::format("{}{} down", astray != 0 ? ", " : "", counted(down, "link"));
+  } else if (nobody) {
+    judged.verdict = Verdict::NotWell;
+    judged.line = fmt::format("NOT WELL: nobody is up in mode {}", overview.mode);
+  } else {
+    judged.verdict = Verdict::Well;
+    judged.line = fmt::format("well: mode {}, {} as it has them{}", overview.mode, counted(wanted, "subsystem"),
+                              links == 0 ? "" : ", " + counted(links, "link") + " up");
+  }
+  return judged;
+}
+
+}  // namespace hirosco::terminal

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hirosco/descriptor/model/subsystem.hpp"
+#include "supervisor/overview.hpp"
+
+/// Is it well? The same answer for `hirosco status` and for the screen of `hirosco run`.
+namespace hirosco::terminal {
+
+using descriptor::Severity;
+using supervisor::Overview;
+
+enum class Verdict : std::uint8_t {
+  Well,     ///< everybody is where the mode has him, its links are up, nobody who works is inhibited
+  OnTheWay, ///< commissioning, a change or an end is under way
+  NotWell,
+};
+
+/// One thing that is not as it should be. High: it makes the craft unwell; lower: it is said, too.
+struct Finding {
+  Severity severity{};
+  std::string subject;  ///< a subsystem; empty: a link or the craft
+  std::string text;     ///< without end of sentence
+};
+
+struct Judgement {
+  Verdict verdict{};
+  std::string line;     ///< the verdict in a sentence of at most 80 columns, as far as names allow
+  std::vector<Finding> findings{};  ///< the gravest first
+};
+[[nodiscard]] Judgement judge(const Overview& overview);
+
+/// Why actuators are inhibited, in the words of the page; empty when they are not.
+[[nodiscard]] std::string inhibition_words(std::uint32_t inhibited);
+/// "Safe-Operational", as the paper writes the states.
+[[nodiscard]] std::string state_words(std::string_view state);
+
+}  // namespace hirosco::terminal
