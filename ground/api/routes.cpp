@@ -222,7 +222,7 @@ constexpr std::array table{
           {},
           "AlarmRequest",
           200,
-          "Alarm",
+          "Alarms",
           unknown_or_not_this_one,
           post_alarm},
     Route{"/api/authority", get, "Who commands, and who asks for it", {}, "", 200, "Authority", {}, get_authority},

@@ -265,9 +265,11 @@ void add_people(const Basic& is, json& into) {
                           {"calls", described(is.yes_or_no, "fresh, and not shelved")},
                           {"acknowledged", act},
                           {"shelved", act}});
-  into["Alarms"] = object({{"alarms", described(list_of(refers("Alarm")), "those that call first")}});
-  into["AlarmRequest"] = object({{"subsystem", is.text},
-                                 {"event", described(is.text, "its name")},
+  into["Alarms"] =
+      object({{"alarms", described(list_of(refers("Alarm")), "those that call first")},
+              {"seen_until", described(nullable(is.time), "when somebody acknowledged all, the last stop too")}});
+  into["AlarmRequest"] = object({{"subsystem", described(is.text, "its name; * acknowledges all")},
+                                 {"event", described(is.text, "its name"), May::BeAbsent},
                                  {"action", one_of({"acknowledge", "shelve", "unshelve"})},
                                  {"for_s", described(is.real, "of shelve: 1 to 86400"), May::BeAbsent},
                                  {"note", described(is.text, "at most 200 characters"), May::BeAbsent},

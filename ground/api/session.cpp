@@ -197,9 +197,12 @@ Answered<json> Session::authority(const json& body) {
 }
 
 Answered<json> Session::alarm(const json& body) {
-  auto alarm = alarms_.act(body, seat_of(body).name, now());
-  if (alarm) tell_alarm(*alarm);
-  return alarm;
+  auto done = alarms_.act(body, seat_of(body).name, now());
+  if (!done) return done;
+  json message = *done;
+  message["type"] = message.contains("alarms") ? "alarms" : "alarm";
+  broadcast(message);
+  return alarms_.list();
 }
 
 Answered<json> Session::name_flight(const json& body) { return flights_.name(body, seat_of(body).name, now()); }

@@ -14,6 +14,9 @@ namespace {
 
 using nlohmann::json;
 
+/// Instead of one alarm.
+constexpr const char* everything = "*";
+
 [[nodiscard]] std::string name_of(std::uint16_t apid, std::uint16_t event) {
   return std::to_string(apid) + "/" + std::to_string(event);
 }
@@ -45,6 +48,7 @@ Alarms::Alarms(Archive& archive, OnboardTime began) : archive_{archive} { begin(
 
 void Alarms::begin(OnboardTime began) {
   alarms_.clear();
+  seen_until_ = {};
   constexpr std::size_t most_events = 100'000;
   const auto events = archive_.events({.span = {.from = began},
                                        .severity = lowest_severity,
@@ -71,13 +75,22 @@ void Alarms::note(const StoredEvent& event) {
 }
 
 void Alarms::apply(const StoredMark& mark) {
+  const Act act{.t = mark.t, .who = mark.who, .note = mark.note, .until = mark.until};
+  if (mark.name == everything) {
+    seen_until_ = mark.t;
+    for (auto& [key, alarm] : alarms_) {
+      if (alarm.fresh == 0) continue;
+      alarm.fresh = 0;
+      alarm.acknowledged = act;
+    }
+    return;
+  }
   const auto slash = mark.name.find('/');
   if (slash == std::string::npos) return;
   const auto found = alarms_.find({static_cast<std::uint16_t>(std::atoi(mark.name.c_str())),
                                    static_cast<std::uint16_t>(std::atoi(mark.name.c_str() + slash + 1))});
   if (found == alarms_.end()) return;
   Alarm& alarm = found->second;
-  const Act act{.t = mark.t, .who = mark.who, .note = mark.note, .until = mark.until};
   if (mark.action == "acknowledge") {
     alarm.fresh = 0;
     alarm.acknowledged = act;
@@ -98,12 +111,18 @@ Answered<json> Alarms::act(const json& body, const std::string& who, OnboardTime
   const std::string action = text_of(body, "action");
   if (action != "acknowledge" && action != "shelve" && action != "unshelve")
     return refuse(400, "action: acknowledge, shelve or unshelve is wanted");
+  const bool all = subsystem == everything;
+  if (all && action != "acknowledge") return refuse(400, "action: all are acknowledged, or nothing else");
   const auto found = std::ranges::find_if(alarms_, [&](const auto& entry) {
     return entry.second.newest.subsystem == subsystem && entry.second.newest.name == event;
   });
-  if (found == alarms_.end()) return refuse(404, "no alarm " + event + " of '" + subsystem + "' in this flight");
-  StoredMark mark{.t = now, .kind = "alarm", .name = name_of(found->first.first, found->first.second), .action = action,
-                  .who = who, .note = text_of(body, "note")};
+  if (found == alarms_.end() && !all) return refuse(404, "no alarm " + event + " of '" + subsystem + "' in this flight");
+  StoredMark mark{.t = now,
+                  .kind = "alarm",
+                  .name = all ? everything : name_of(found->first.first, found->first.second),
+                  .action = action,
+                  .who = who,
+                  .note = text_of(body, "note")};
   if (mark.note.size() > longest_note) return refuse(400, "note: at most 200 characters are wanted");
   if (action == "shelve") {
     const auto given = body.find("for_s");
@@ -115,7 +134,7 @@ Answered<json> Alarms::act(const json& body, const std::string& who, OnboardTime
   archive_.add(mark);
   archive_.commit();
   apply(mark);
-  return alarm_json(found->second);
+  return all ? list() : alarm_json(found->second);
 }
 
 std::vector<json> Alarms::expire(OnboardTime now) {
@@ -144,7 +163,8 @@ json Alarms::list() const {
   });
   json alarms = json::array();
   for (const Alarm* alarm : sorted) alarms.push_back(alarm_json(*alarm));
-  return {{"alarms", std::move(alarms)}};
+  return {{"alarms", std::move(alarms)},
+          {"seen_until", seen_until_ != OnboardTime{} ? json(json_time(seen_until_)) : json(nullptr)}};
 }
 
 }  // namespace hirosco::ground

@@ -46,12 +46,13 @@ class Alarms {
   /// Nothing when the event is none, else the alarm as it is now.
   std::optional<nlohmann::json> hear(const StoredEvent& event);
   /// {subsystem, event, action: acknowledge, shelve or unshelve, note, for_s} by `who`; the alarm as it is now. 404: there is none.
+  /// Subsystem "*" acknowledges all that there is, and the last stop: the whole list.
   [[nodiscard]] Answered<nlohmann::json> act(const nlohmann::json& body, const std::string& who, OnboardTime now);
   /// Those whose shelf is over, as they are now.
   [[nodiscard]] std::vector<nlohmann::json> expire(OnboardTime now);
   /// Another flight begins: nothing of the one before.
   void begin(OnboardTime began);
-  /// Those that call first.
+  /// {alarms, seen_until}: those that call first; when somebody acknowledged all.
   [[nodiscard]] nlohmann::json list() const;
 
  private:
@@ -61,6 +62,7 @@ class Alarms {
 
   Archive& archive_;
   std::map<Key, Alarm> alarms_;
+  OnboardTime seen_until_{};
 };
 
 }  // namespace hirosco::ground

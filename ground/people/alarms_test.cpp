@@ -112,6 +112,20 @@ TEST_F(AnOperator, HasNothingOfTheFlightBefore) {
   EXPECT_TRUE(first_of(alarms)["acknowledged"].is_null());
 }
 
+TEST_F(AnOperator, AcknowledgesAllOfItAtOnceButNotWhatComesAfter) {
+  happens(event(noon + 1s));
+  happens(event(noon + 2s, 3, 8));
+  EXPECT_TRUE(alarms.list()["seen_until"].is_null());
+  const auto done = alarms.act({{"subsystem", "*"}, {"action", "acknowledge"}, {"note", "seen"}}, "anna", noon + 3s);
+  ASSERT_TRUE(done);
+  for (const json& one : (*done)["alarms"]) EXPECT_EQ(one["acknowledged"]["note"], "seen");
+  EXPECT_EQ((*done)["seen_until"], 2'145'916'903);
+  happens(event(noon + 4s));
+  EXPECT_EQ(first_of(alarms)["calls"], true);
+  EXPECT_EQ(Alarms(*archive, noon).list(), alarms.list());
+  EXPECT_EQ(alarms.act({{"subsystem", "*"}, {"action", "shelve"}, {"for_s", 60}}, "a", noon).error().status, 400U);
+}
+
 TEST_F(AnOperator, IsRefusedWhatThereIsNot) {
   happens(event(noon + 1s));
   EXPECT_EQ(alarms.act({{"subsystem", "ROBOT"}, {"event", "LOST"}, {"action", "acknowledge"}}, "a", noon).error().status,

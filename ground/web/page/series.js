@@ -148,3 +148,30 @@ export function aligned(list, from, to) {
   });
   return rows;
 }
+
+/// The newest sample up to `t`; undefined where there is none.
+export function value_at(name, t) {
+  const series = known.get(name);
+  if (!series || !Number.isFinite(t)) return undefined;
+  let low = 0, high = series.t.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (series.t[middle] <= t) low = middle + 1; else high = middle;
+  }
+  return low > 0 ? series.v[low - 1] ?? undefined : undefined;
+}
+
+/// {count, min, mean, max} of the samples in [from, to]; null where there are none. Of buckets their own ends count.
+export function statistics(name, from, to) {
+  const series = known.get(name);
+  let count = 0, sum = 0, min = Infinity, max = -Infinity;
+  for (let i = 0; i < (series?.t.length ?? 0); ++i) {
+    const v = series.v[i];
+    if (series.t[i] < from || series.t[i] > to || v === null) continue;
+    ++count;
+    sum += v;
+    min = Math.min(min, series.low[i] ?? v);
+    max = Math.max(max, series.high[i] ?? v);
+  }
+  return count ? {count, min, mean: sum / count, max} : null;
+}

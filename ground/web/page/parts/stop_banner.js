@@ -34,7 +34,7 @@ export function StopBanner() {
     <a class="out" href="#/events" data-test="stop-why">Why</a>
     <button class="out" onClick=${replay_it} data-test="stop-replay">Replay 5 s before</button>
     <a class="out" href=${plots.length ? `#/plots?p=${plots.map(encodeURIComponent).join('+')}` : '#/plots'} data-test="stop-plot">Plot</a>
-    <button class="out" onClick=${acknowledge} data-test="stop-acknowledge">Acknowledge</button>
+    ${operator.value ? html`<button class="out" onClick=${() => acknowledge()} data-test="stop-acknowledge">Acknowledge</button>` : null}
     ${operator.value && mode ? html`<button class="way_out" data-test="stop-bring-up" disabled=${rising.value?.running || link.value.state !== 'up'}
       onClick=${bring_up_again}>Bring ${mode} up</button>` : null}
   </section>`;
