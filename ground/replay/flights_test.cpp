@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr OnboardTime noon{std::chrono::seconds{2'145'916'900}};
+constexpr OnboardTime take_off{std::chrono::seconds{2'145'916'900}};
 
 [[nodiscard]] descriptor::Mission hello() {
   const auto file = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/hello/mission.xml";
@@ -82,7 +82,7 @@ class AnArchiveOfFlights : public ::testing::Test {
 
 TEST_F(AnArchiveOfFlights, HasOneForAFlightThatGoesOn) {
   Listener station{*archive};
-  EXPECT_EQ(station.listen(noon, 60, 500, 300), 1);
+  EXPECT_EQ(station.listen(take_off, 60, 500, 300), 1);
   EXPECT_EQ(count(station), 1U);
   const json flight = station.flights.list()["flights"][0];
   EXPECT_NEAR(flight["from"].get<double>(), 2'145'916'900.0 - 5.0 - 2.0, 1e-3) << "500 cycles and the way up before";
@@ -91,8 +91,8 @@ TEST_F(AnArchiveOfFlights, HasOneForAFlightThatGoesOn) {
 
 TEST_F(AnArchiveOfFlights, TellsTheNextOneByCyclesThatBeginAnew) {
   Listener station{*archive};
-  ASSERT_EQ(station.listen(noon, 60, 500, 300), 1);
-  EXPECT_EQ(station.listen(noon + 100s, 60, 200, 100), 1);
+  ASSERT_EQ(station.listen(take_off, 60, 500, 300), 1);
+  EXPECT_EQ(station.listen(take_off + 100s, 60, 200, 100), 1);
   EXPECT_EQ(count(station), 2U);
   EXPECT_NEAR(json_time(station.flights.began()), 2'145'916'996.0, 1e-3);
 }
@@ -100,53 +100,53 @@ TEST_F(AnArchiveOfFlights, TellsTheNextOneByCyclesThatBeginAnew) {
 TEST_F(AnArchiveOfFlights, TellsTheNextOneFromAStationThatComesLateToIt) {
   {
     Listener station{*archive};
-    ASSERT_EQ(station.listen(noon, 60, 500, 300), 1);
+    ASSERT_EQ(station.listen(take_off, 60, 500, 300), 1);
   }
   // It has flown longer than the one before: counting on would be less.
   Listener later{*archive};
-  EXPECT_EQ(later.listen(noon + 1000s, 5, 60'000, 60'000), 1);
+  EXPECT_EQ(later.listen(take_off + 1000s, 5, 60'000, 60'000), 1);
   EXPECT_EQ(count(later), 2U);
 }
 
 TEST_F(AnArchiveOfFlights, KnowsAFlightAgainAfterTheStationWasAway) {
   {
     Listener station{*archive};
-    ASSERT_EQ(station.listen(noon, 60, 500, 300), 1);
+    ASSERT_EQ(station.listen(take_off, 60, 500, 300), 1);
   }
   Listener again{*archive};
-  EXPECT_EQ(again.listen(noon + 300s, 5, 500 + 30'000, 300 + 30'000), 0);
+  EXPECT_EQ(again.listen(take_off + 300s, 5, 500 + 30'000, 300 + 30'000), 0);
   EXPECT_EQ(count(again), 1U);
 }
 
 TEST_F(AnArchiveOfFlights, IsTheSameWhenOnlyTheSupervisorBeganAnew) {
   Listener station{*archive};
-  ASSERT_EQ(station.listen(noon, 60, 500, 300), 1);
-  EXPECT_EQ(station.listen(noon + 62s, 60, 10, 300 + 6'200), 0);
+  ASSERT_EQ(station.listen(take_off, 60, 500, 300), 1);
+  EXPECT_EQ(station.listen(take_off + 62s, 60, 10, 300 + 6'200), 0);
   EXPECT_EQ(count(station), 1U);
 }
 
 TEST_F(AnArchiveOfFlights, TellsTheNextOneByAClockThatWentBack) {
   Listener station{*archive};
-  ASSERT_EQ(station.listen(noon, 60, 500, 300), 1);
-  EXPECT_EQ(station.listen(noon - 1000s, 5, 700, 700), 1);
+  ASSERT_EQ(station.listen(take_off, 60, 500, 300), 1);
+  EXPECT_EQ(station.listen(take_off - 1000s, 5, 700, 700), 1);
   EXPECT_EQ(count(station), 2U);
 }
 
 TEST_F(AnArchiveOfFlights, NamesThemAndCountsWhatWasInEach) {
   Listener station{*archive};
-  ASSERT_EQ(station.listen(noon, 10, 500, 300), 1);
+  ASSERT_EQ(station.listen(take_off, 10, 500, 300), 1);
   const auto event = [&](OnboardTime t, int severity) {
-    archive->add(StoredEvent{.t = t, .apid = 1, .name = "A", .severity = severity, .text = "", .values = "{}"});
+    archive->add(StoredEvent{.t = t, .apid = 1, .subsystem = "S", .id = 1, .name = "A", .severity = severity, .text = "", .values = "{}"});
   };
-  event(noon + 1s, 4);
-  event(noon + 2s, 3);
-  event(noon + 3s, 3);
-  event(noon + 4s, 2);
-  ASSERT_EQ(station.listen(noon + 100s, 5, 200, 100), 1);
-  event(noon + 101s, 4);
-  EXPECT_EQ(station.flights.name({{"flight", 1}, {"name", "the wall"}}, "anna", noon).value()["name"], "the wall");
-  EXPECT_EQ(station.flights.name({{"flight", 3}, {"name", "x"}}, "anna", noon).error().status, 404U);
-  EXPECT_EQ(station.flights.name({{"flight", 1}, {"name", std::string(81, 'x')}}, "anna", noon).error().status, 400U);
+  event(take_off + 1s, 4);
+  event(take_off + 2s, 3);
+  event(take_off + 3s, 3);
+  event(take_off + 4s, 2);
+  ASSERT_EQ(station.listen(take_off + 100s, 5, 200, 100), 1);
+  event(take_off + 101s, 4);
+  EXPECT_EQ(station.flights.name({{"flight", 1}, {"name", "the wall"}}, "anna", take_off).value()["name"], "the wall");
+  EXPECT_EQ(station.flights.name({{"flight", 3}, {"name", "x"}}, "anna", take_off).error().status, 404U);
+  EXPECT_EQ(station.flights.name({{"flight", 1}, {"name", std::string(81, 'x')}}, "anna", take_off).error().status, 400U);
   const json list = station.flights.list()["flights"];
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[1]["name"], "the wall");
