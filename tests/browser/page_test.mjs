@@ -9,7 +9,7 @@ import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
 import {gzipSync} from 'node:zlib';
-import {go, holds, open_browser, open_page, patience_ms, serious_findings, until, views} from './browser.mjs';
+import {go, holds, open_browser, open_page, patience_ms, serious_findings, take_hold, until, views} from './browser.mjs';
 
 const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
 
@@ -55,35 +55,16 @@ describe('a flight that means well', () => {
     await holds(page, () => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
   });
 
-  for (const [what, from, to] of [['the handle of the joystick', -0.02, 0.2], ['the fingertip', 0.58, 0.75]]) {
+  for (const [what, from, to] of [['the handle of the joystick', 0, 0.21], ['the fingertip', 0.55, 0.78]]) {
     it(`moves the simulated hand when ${what} is dragged`, async () => {
       await go(page, 'overview');
       await page.waitForSelector('[data-test=robot][data-loaded]');
-      const canvas = page.locator('[data-test=robot] canvas');
-      const cursor = () => canvas.evaluate((node) => node.style.cursor);
-      const box = await canvas.boundingBox();
-      const search = async () => {
-        for (let y = box.y + 44; y < box.y + box.height - 30; y += 7) {
-          for (let x = box.x + box.width * from + 20; x < box.x + box.width * to - 20; x += 11) {
-            await page.mouse.move(x, y);
-            if (await cursor() === 'grab') return [x, y];
-          }
-        }
-        return null;
-      };
       const hand_lines = () => page.evaluate(async () => {
         const answer = await fetch('/api/timeline?from=0&to=9e9', {headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}});
         return (await answer.json()).faults.map((one) => one.line).filter((line) => line.startsWith('hand target'));
       });
       const before = (await hand_lines()).length;
-      // The robot moves meanwhile: a hand that closes on nothing reaches again.
-      let grip;
-      for (let reaches = 0; await cursor() !== 'grabbing'; ++reaches) {
-        assert.ok(reaches < 20, 'gripped nothing in 20 reaches');
-        await page.mouse.up();
-        grip = await search();
-        if (grip) await page.mouse.down();
-      }
+      const grip = await take_hold(page, from, to, (places) => places[places.length >> 1]);
       await page.mouse.move(grip[0] + 30, grip[1] + 4, {steps: 5});
       await until('a line of the hand', async () => (await hand_lines()).length > before);
       // However far up or down the shaft it was taken: the first move is no leap.

@@ -110,7 +110,7 @@ export function Lanes({window_s = 120, end = null, on_view = null, big = false, 
     if (!on_view) return;
     const turn = (event) => {
       event.preventDefault();
-      on_view(turned(event, time_at(event), {from, to, now: now_s()}));
+      on_view(turned(event, time_at(event), {from, to, wide_s: end === null ? window_s : to - from, now: now_s()}));
     };
     const svg = node.current;
     svg.addEventListener('wheel', turn, {passive: false});
@@ -203,13 +203,14 @@ function time_ticks(from, to, count) {
 }
 
 /// What a wheel makes of a view: nearer or further about the time under the mouse, along it with Shift or a wheel that turns sideways.
-export function turned({deltaX, deltaY, shiftKey}, at, {from, to, now}) {
+/// `wide_s`: what was asked for, where a flight is shorter than that.
+export function turned({deltaX, deltaY, shiftKey}, at, {from, to, wide_s, now}) {
   const span_s = to - from;
   if (shiftKey || Math.abs(deltaX) > Math.abs(deltaY)) {
     const end = to + span_s * 0.15 * Math.sign(deltaX || deltaY);
     return {span_s, end: end >= now ? null : end};
   }
-  const wanted = Math.max(shortest_span_s, Math.min(longest_span_s, span_s * (deltaY > 0 ? 1.4 : 1 / 1.4)));
+  const wanted = Math.max(shortest_span_s, Math.min(longest_span_s, deltaY > 0 ? 1.4 * Math.max(span_s, wide_s) : span_s / 1.4));
   const end = at + (to - at) * wanted / span_s;
   return {span_s: wanted, end: end >= now ? null : end};
 }
