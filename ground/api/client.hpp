@@ -22,7 +22,7 @@ class Client {
   static constexpr std::size_t busy_octets = std::size_t{64} << 10;
 
   struct Who {
-    std::string id;    ///< of this connection
+    std::string id;  ///< of this connection
     std::string seat;  ///< as in Authority, "" = none
     bool is_operator{false};
   };

@@ -283,27 +283,25 @@ void add_people(const Basic& is, json& into) {
   into["AuthorityRequest"] = object({{"action", one_of({"take", "keep", "hand_over"})},
                                      {"seat", described(is.text, "1 to 64 characters that nobody else has")},
                                      {"sender", is.text, May::BeAbsent}});
-  into["Flights"] = object({{"flights",
-                             list_of(object({{"id", is.whole},
-                                             {"from", is.time},
-                                             {"to", is.time},
-                                             {"name", is.text},
-                                             {"named_by", is.text},
-                                             {"high", described(is.whole, "events of this severity")},
-                                             {"medium", is.whole},
-                                             {"commands", is.whole}}))}});
+  into["Flights"] = object({{"flights", list_of(object({{"id", is.whole},
+                                                        {"from", is.time},
+                                                        {"to", is.time},
+                                                        {"name", is.text},
+                                                        {"named_by", is.text},
+                                                        {"high", described(is.whole, "events of this severity")},
+                                                        {"medium", is.whole},
+                                                        {"commands", is.whole}}))}});
   into["FlightRequest"] = object({{"flight", described(is.whole, "its id")},
                                   {"name", described(is.text, "at most 80 characters")},
                                   {"sender", is.text, May::BeAbsent}});
   into["FlightName"] = object({{"flight", is.whole}, {"name", is.text}});
-  into["Marks"] = object({{"marks",
-                           list_of(object({{"t", is.time},
-                                           {"kind", one_of({"alarm", "authority", "flight"})},
-                                           {"name", is.text},
-                                           {"action", is.text},
-                                           {"who", is.text},
-                                           {"note", is.text},
-                                           {"until", nullable(is.time)}}))}});
+  into["Marks"] = object({{"marks", list_of(object({{"t", is.time},
+                                                    {"kind", one_of({"alarm", "authority", "flight"})},
+                                                    {"name", is.text},
+                                                    {"action", is.text},
+                                                    {"who", is.text},
+                                                    {"note", is.text},
+                                                    {"until", nullable(is.time)}}))}});
 }
 
 void add_story(const Basic& is, json& into) {

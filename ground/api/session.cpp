@@ -145,7 +145,9 @@ std::string Session::opened(Peer& peer, bool is_operator, const std::string& sea
   std::string id = "c" + std::to_string(next_client_++);
   // An observer's page cannot hold what it cannot take.
   clients_.push_back(std::make_unique<Client>(
-      *this, peer, Client::Who{.id = id, .seat = is_operator ? seat.substr(0, Authority::longest_seat) : "", .is_operator = is_operator}));
+      *this, peer,
+      Client::Who{
+          .id = id, .seat = is_operator ? seat.substr(0, Authority::longest_seat) : "", .is_operator = is_operator}));
   return id;
 }
 
@@ -177,8 +179,7 @@ Answered<json> Session::command(const json& body) {
     const bool is_confirmed = confirmed != body.end() && confirmed->is_boolean() && confirmed->get<bool>();
     if (request->confirm && !is_confirmed)
       return refuse(409, request->function + " is to be confirmed: send it once more with confirmed: true");
-    if (const auto may = authority_.may_command(seat_of(body), both_times()); !may)
-      return std::unexpected{may.error()};
+    if (const auto may = authority_.may_command(seat_of(body), both_times()); !may) return std::unexpected{may.error()};
   }
   return commands_.send(body);
 }

@@ -173,9 +173,8 @@ void Archive::add(const StoredFault& fault) {
 }
 
 std::int64_t Archive::add(const StoredMark& mark) {
-  const bool added =
-      store("INSERT INTO marks(t, kind, name, action, who, note, until) VALUES(?,?,?,?,?,?,?)", mark.t, mark.kind,
-            mark.name, mark.action, mark.who, mark.note, mark.until);
+  const bool added = store("INSERT INTO marks(t, kind, name, action, who, note, until) VALUES(?,?,?,?,?,?,?)", mark.t,
+                           mark.kind, mark.name, mark.action, mark.who, mark.note, mark.until);
   return added ? database_->getLastInsertRowid() : 0;
 }
 

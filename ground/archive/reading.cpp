@@ -173,8 +173,7 @@ std::int64_t Archive::count_events(const Span& span, int severity) {
 std::int64_t Archive::count_commands(const Span& span) {
   std::int64_t count = 0;
   counted([&] {
-    auto find =
-        statement(*database_, "SELECT count(*) FROM commands WHERE t >= ? AND t <= ?", span.from, span.to);
+    auto find = statement(*database_, "SELECT count(*) FROM commands WHERE t >= ? AND t <= ?", span.from, span.to);
     if (find.executeStep()) count = find.getColumn(0).getInt64();
   });
   return count;

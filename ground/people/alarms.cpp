@@ -50,11 +50,8 @@ void Alarms::begin(OnboardTime began) {
   alarms_.clear();
   seen_until_ = {};
   constexpr std::size_t most_events = 100'000;
-  const auto events = archive_.events({.span = {.from = began},
-                                       .severity = lowest_severity,
-                                       .text = {},
-                                       .limit = most_events,
-                                       .newest_first = true});
+  const auto events = archive_.events(
+      {.span = {.from = began}, .severity = lowest_severity, .text = {}, .limit = most_events, .newest_first = true});
   const auto marks = archive_.marks("alarm", {.from = began});
   auto mark = marks.begin();
   for (const StoredEvent& event : events | std::views::reverse) {
@@ -116,7 +113,8 @@ Answered<json> Alarms::act(const json& body, const std::string& who, OnboardTime
   const auto found = std::ranges::find_if(alarms_, [&](const auto& entry) {
     return entry.second.newest.subsystem == subsystem && entry.second.newest.name == event;
   });
-  if (found == alarms_.end() && !all) return refuse(404, "no alarm " + event + " of '" + subsystem + "' in this flight");
+  if (found == alarms_.end() && !all)
+    return refuse(404, "no alarm " + event + " of '" + subsystem + "' in this flight");
   StoredMark mark{.t = now,
                   .kind = "alarm",
                   .name = all ? everything : name_of(found->first.first, found->first.second),

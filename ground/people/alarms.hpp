@@ -35,8 +35,8 @@ class Alarms {
   struct Alarm {
     StoredEvent newest;
     OnboardTime first{};
-    std::uint64_t count{0};      ///< how often in this flight
-    std::uint64_t fresh{0};      ///< of these since the last acknowledgement
+    std::uint64_t count{0};  ///< how often in this flight
+    std::uint64_t fresh{0};  ///< of these since the last acknowledgement
     std::optional<Act> acknowledged;
     std::optional<Act> shelved;
   };

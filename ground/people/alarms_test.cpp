@@ -14,11 +14,17 @@ using nlohmann::json;
 constexpr OnboardTime noon{std::chrono::seconds{2'145'916'900}};
 
 [[nodiscard]] StoredEvent event(OnboardTime t, int severity = 4, std::uint16_t id = 7) {
-  return {.t = t, .apid = 11, .subsystem = "JOYSTICK", .id = id, .name = id == 7 ? "LOST" : "OTHER", .severity = severity,
-          .text = "", .values = "{}"};
+  return {.t = t,
+          .apid = 11,
+          .subsystem = "CAMERA",
+          .id = id,
+          .name = id == 7 ? "LOST" : "OTHER",
+          .severity = severity,
+          .text = "",
+          .values = "{}"};
 }
 [[nodiscard]] json request(const char* action) {
-  return {{"subsystem", "JOYSTICK"}, {"event", "LOST"}, {"action", action}, {"note", "cable"}};
+  return {{"subsystem", "CAMERA"}, {"event", "LOST"}, {"action", action}, {"note", "cable"}};
 }
 
 class AnOperator : public ::testing::Test {
@@ -128,7 +134,7 @@ TEST_F(AnOperator, AcknowledgesAllOfItAtOnceButNotWhatComesAfter) {
 
 TEST_F(AnOperator, IsRefusedWhatThereIsNot) {
   happens(event(noon + 1s));
-  EXPECT_EQ(alarms.act({{"subsystem", "ROBOT"}, {"event", "LOST"}, {"action", "acknowledge"}}, "a", noon).error().status,
+  EXPECT_EQ(alarms.act({{"subsystem", "LAMP"}, {"event", "LOST"}, {"action", "acknowledge"}}, "a", noon).error().status,
             404U);
   EXPECT_EQ(alarms.act(request("delete"), "a", noon).error().status, 400U);
   json longer = request("acknowledge");

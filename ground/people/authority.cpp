@@ -105,10 +105,9 @@ nlohmann::json Authority::json(TimePoint now) const {
   if (holder_)
     result["holder"] = {{"seat", holder_->seat.id}, {"name", holder_->seat.name}, {"since", json_time(holder_->since)}};
   if (asking_)
-    result["asking"] = {
-        {"seat", asking_->seat.id},
-        {"name", asking_->seat.name},
-        {"answer_s", std::max(0.0, seconds(answer_limit - (now - asking_->since)))}};
+    result["asking"] = {{"seat", asking_->seat.id},
+                        {"name", asking_->seat.name},
+                        {"answer_s", std::max(0.0, seconds(answer_limit - (now - asking_->since)))}};
   return result;
 }
 

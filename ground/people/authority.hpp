@@ -21,14 +21,14 @@ namespace hirosco::ground {
 /// Thread: one.
 class Authority {
  public:
-  static constexpr Duration idle_limit = 15min;    ///< without a telecommand
-  static constexpr Duration absence_limit = 30s;   ///< without a page of the seat, and without a telecommand
-  static constexpr Duration answer_limit = 30s;    ///< to who asks for it
+  static constexpr Duration idle_limit = 15min;  ///< without a telecommand
+  static constexpr Duration absence_limit = 30s;  ///< without a page of the seat, and without a telecommand
+  static constexpr Duration answer_limit = 30s;  ///< to who asks for it
   static constexpr std::size_t longest_seat = 64;
   static constexpr std::size_t longest_name = 32;
 
   struct Seat {
-    std::string id;    ///< "" = who has none
+    std::string id;  ///< "" = who has none
     std::string name;  ///< in words, for others
   };
   struct Now {

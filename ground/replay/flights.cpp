@@ -99,8 +99,7 @@ bool Flights::hear(const Model& model) {
 
 void Flights::begin(OnboardTime t) {
   const auto marks = archive_.marks("flight", {});
-  for (const StoredMark& mark : marks)
-    number_ = std::max<std::int64_t>(number_, std::atoll(mark.name.c_str()));
+  for (const StoredMark& mark : marks) number_ = std::max<std::int64_t>(number_, std::atoll(mark.name.c_str()));
   ++number_;
   began_ = std::max(t, OnboardTime{});
   archive_.add(StoredMark{
@@ -143,13 +142,12 @@ Answered<json> Flights::name(const json& body, const std::string& who, OnboardTi
   const std::string number =
       given != body.end() && given->is_number_integer() ? std::to_string(given->get<std::int64_t>()) : "";
   const auto marks = archive_.marks("flight", {});
-  const bool known = std::ranges::any_of(
-      marks, [&](const StoredMark& mark) { return mark.action == "began" && mark.name == number; });
+  const bool known =
+      std::ranges::any_of(marks, [&](const StoredMark& mark) { return mark.action == "began" && mark.name == number; });
   if (!known) return refuse(404, "flight: there is none of this number");
   const std::string words = text_of(body, "name");
   if (words.size() > longest_name) return refuse(400, "name: at most 80 characters are wanted");
-  archive_.add(
-      StoredMark{.t = now, .kind = "flight", .name = number, .action = "named", .who = who, .note = words});
+  archive_.add(StoredMark{.t = now, .kind = "flight", .name = number, .action = "named", .who = who, .note = words});
   archive_.commit();
   return json{{"flight", std::atoll(number.c_str())}, {"name", words}};
 }

@@ -18,9 +18,20 @@ using nlohmann::json;
 
 constexpr OnboardTime take_off{std::chrono::seconds{2'145'916'900}};
 
-[[nodiscard]] descriptor::Mission hello() {
-  const auto file = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/hello/mission.xml";
-  return descriptor::read_mission(file, descriptor::file_system()).value.value_or(descriptor::Mission{});
+/// One lamp, which cycles at 100 Hz as the supervisor does.
+[[nodiscard]] descriptor::Mission mission_of_a_lamp() {
+  const descriptor::FileSource source = [](const std::filesystem::path& file) -> Result<std::string> {
+    if (file.filename() == "mission.xml")
+      return R"(<Mission name="NIGHT" id="9"><Supervisor descriptor="supervisor.xml"/>
+<Subsystem executable="lamp" descriptor="lamp.xml"/><Modes initial="dark" start="dark"><Mode name="dark">
+<Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode></Modes></Mission>)";
+    if (file.filename() == "lamp.xml")
+      return R"(<Subsystem name="LAMP" id="11"><Configuration name="ON" id="1" priority="80" sampling_us="10000"/></Subsystem>)";
+    return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / "supervisor" / file.filename());
+  };
+  auto reading = descriptor::read_mission("mission.xml", source);
+  for (const auto& problem : reading.problems) ADD_FAILURE() << descriptor::render(problem, source, false);
+  return reading.value.value_or(descriptor::Mission{});
 }
 
 /// A station that hears the supervisor's report of everybody, each second.
@@ -66,7 +77,7 @@ class Listener {
     return flights.hear(model_);
   }
 
-  Catalogue catalogue_{hello()};
+  Catalogue catalogue_{mission_of_a_lamp()};
   Archive& archive_;
   Model model_{catalogue_};
 
@@ -136,7 +147,8 @@ TEST_F(AnArchiveOfFlights, NamesThemAndCountsWhatWasInEach) {
   Listener station{*archive};
   ASSERT_EQ(station.listen(take_off, 10, 500, 300), 1);
   const auto event = [&](OnboardTime t, int severity) {
-    archive->add(StoredEvent{.t = t, .apid = 1, .subsystem = "S", .id = 1, .name = "A", .severity = severity, .text = "", .values = "{}"});
+    archive->add(StoredEvent{
+        .t = t, .apid = 1, .subsystem = "S", .id = 1, .name = "A", .severity = severity, .text = "", .values = "{}"});
   };
   event(take_off + 1s, 4);
   event(take_off + 2s, 3);
@@ -146,7 +158,8 @@ TEST_F(AnArchiveOfFlights, NamesThemAndCountsWhatWasInEach) {
   event(take_off + 101s, 4);
   EXPECT_EQ(station.flights.name({{"flight", 1}, {"name", "the wall"}}, "anna", take_off).value()["name"], "the wall");
   EXPECT_EQ(station.flights.name({{"flight", 3}, {"name", "x"}}, "anna", take_off).error().status, 404U);
-  EXPECT_EQ(station.flights.name({{"flight", 1}, {"name", std::string(81, 'x')}}, "anna", take_off).error().status, 400U);
+  EXPECT_EQ(station.flights.name({{"flight", 1}, {"name", std::string(81, 'x')}}, "anna", take_off).error().status,
+            400U);
   const json list = station.flights.list()["flights"];
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[1]["name"], "the wall");

@@ -233,6 +233,16 @@ describe('a flight that means well', () => {
     await page.waitForSelector('[data-test=favourites]', {state: 'detached'});
   });
 
+  it('calls values by their names in the history, and puts them back into the form', async () => {
+    await go(page, 'commands/JOYSTICK/CONFIGURE');
+    await page.click('[data-test=send]');
+    const sent = page.locator('[data-test=history] > li', {hasText: 'JOYSTICK CONFIGURE'});
+    await until('its name', async () => /CONFIGURATION STANDALONE/.test(await sent.first().textContent()));
+    await page.selectOption('[data-test=field-CONFIGURATION]', {index: 1});
+    await sent.first().locator('button', {hasText: 'edit'}).click();
+    await holds(page, () => document.querySelector('[data-test=field-CONFIGURATION]').value === '1');
+  });
+
   it('wants a second click where the descriptor does', async () => {
     await go(page, 'commands/SUPERVISOR/SHUTDOWN');
     const sent = () => page.locator('[data-test=history] b', {hasText: 'SUPERVISOR SHUTDOWN'}).count();

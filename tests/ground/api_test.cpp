@@ -166,8 +166,8 @@ TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
   ASSERT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}})["answer"], "ok");
   ASSERT_TRUE(station.run_until([&] { return !station.get("/api/alarms")["alarms"].empty(); }));
   const json alarm = station.get("/api/alarms")["alarms"][0];
-  const json body{{"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"},
-                  {"mode", "telepresence"}};
+  const json body{
+      {"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"}, {"mode", "telepresence"}};
   /// What each path is sent that wants more than that.
   const std::map<std::string, json> bodies{
       {"/api/alarms", {{"subsystem", alarm["subsystem"]}, {"event", alarm["name"]}, {"action", "acknowledge"}}},
@@ -206,9 +206,14 @@ TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
 
 /// Sends as a page of somebody would.
 struct TwoPeople : GroundStation {
-  unsigned send(const std::string& seat, const std::string& subsystem, const std::string& function, json arguments = json::object()) {
-    const auto answer = station.ask("POST", "/api/commands", {{"subsystem", subsystem}, {"function", function},
-                                    {"arguments", std::move(arguments)}, {"seat", seat}, {"sender", seat}});
+  unsigned send(const std::string& seat, const std::string& subsystem, const std::string& function,
+                json arguments = json::object()) {
+    const auto answer = station.ask("POST", "/api/commands",
+                                    {{"subsystem", subsystem},
+                                     {"function", function},
+                                     {"arguments", std::move(arguments)},
+                                     {"seat", seat},
+                                     {"sender", seat}});
     told = json::parse(answer.body).value("error", "");
     return answer.status;
   }
@@ -233,7 +238,8 @@ TEST_F(TwoPeople, OneCommandsAndTheOtherIsRefusedByTheStationUntilItIsHandedOver
   std::vector<std::string> log;
   const json marks = station.get("/api/marks")["marks"];
   for (const json& mark : marks)
-    if (mark["kind"] == "authority") log.push_back(mark["who"].get<std::string>() + " " + mark["action"].get<std::string>());
+    if (mark["kind"] == "authority")
+      log.push_back(mark["who"].get<std::string>() + " " + mark["action"].get<std::string>());
   EXPECT_EQ(log, (std::vector<std::string>{"ben was handed", "ben asked", "anna took"}));
   station.session().closed(page);
   station.run(40s);
@@ -280,9 +286,13 @@ TEST_F(TwoPeople, AlarmsAreAcknowledgedForEverybodyAndKeptByTheStation) {
   ASSERT_TRUE(station.run_until([&] { return !page.of_type("alarm").empty(); }));
   const json alarm = page.last("alarm");
   EXPECT_EQ(alarm["calls"], true);
-  const json done = station.post("/api/alarms", {{"subsystem", alarm["subsystem"]}, {"event", alarm["name"]},
-                                 {"action", "acknowledge"}, {"sender", "anna"}, {"note", "was me"}});
-  const auto acknowledged = std::ranges::find_if(done["alarms"], [&](const json& one) { return one["name"] == alarm["name"]; });
+  const json done = station.post("/api/alarms", {{"subsystem", alarm["subsystem"]},
+                                                 {"event", alarm["name"]},
+                                                 {"action", "acknowledge"},
+                                                 {"sender", "anna"},
+                                                 {"note", "was me"}});
+  const auto acknowledged =
+      std::ranges::find_if(done["alarms"], [&](const json& one) { return one["name"] == alarm["name"]; });
   ASSERT_NE(acknowledged, done["alarms"].end());
   EXPECT_EQ((*acknowledged)["acknowledged"]["who"], "anna");
   EXPECT_EQ(page.last("alarm")["acknowledged"]["note"], "was me");
@@ -290,8 +300,9 @@ TEST_F(TwoPeople, AlarmsAreAcknowledgedForEverybodyAndKeptByTheStation) {
   station.post("/api/alarms", {{"subsystem", "*"}, {"action", "acknowledge"}, {"sender", "ben"}});
   for (const json& one : page.last("alarms")["alarms"]) EXPECT_EQ(one["calls"], false);
   EXPECT_EQ(station.get("/api/alarms")["seen_until"], page.last("alarms")["seen_until"]);
-  EXPECT_EQ(station.ask("POST", "/api/alarms", {{"action", "acknowledge"}}, {{"authorization", "Bearer looker"}}).status,
-            403U);
+  EXPECT_EQ(
+      station.ask("POST", "/api/alarms", {{"action", "acknowledge"}}, {{"authorization", "Bearer looker"}}).status,
+      403U);
 }
 
 TEST_F(GroundStation, OnlyWhoKnowsTheTokenFromThisComputerMayAskAndObserversMayNotCommand) {

@@ -9,7 +9,7 @@ import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} fr
 import {html} from '../html.js';
 import {commands, mission, mode_of, operator, outcome_of, replay, slow, status_of, subsystem_of, values} from '../store.js';
 import {command_is, commander, i_ask, may_send, take_command} from '../people.js';
-import {arguments_text} from './arguments.js';
+import {arguments_text, choices_of} from './arguments.js';
 import {as_python, as_tc, is_favourite, toggle_favourite} from './favourites.js';
 import {mode_wanted} from './mode_menu.js';
 import {scene_of_mission} from './scene_file.js';
@@ -62,21 +62,6 @@ function judged_one(argument, text) {
   const [low, high] = range_of(argument);
   if (!(value >= low && value <= high)) return {error: `outside ${range_text(argument)} ${unit_text(argument.unit)}`.trim()};
   return {value: is_wide(argument) ? sent_whole(value) : value};
-}
-
-/// The mission knows more names for values than a descriptor: modes, links, configurations.
-function choices_of(subsystem, action, argument) {
-  if ((argument.count ?? 1) > 1) return [];
-  if (argument.enumeration?.length) return argument.enumeration;
-  const known = mission.value;
-  const named = (list, label = (one) => one.name) => list?.map((one) => ({value: one.id, name: label(one)}));
-  if (argument.name === 'MODE' && (action.name === 'SET_MODE' || action.name === 'ENTER_MODE')) return named(known?.modes);
-  if (argument.name === 'LINK') return named(known?.links, (one) => `${one.id}: ${one.from} → ${one.to}`);
-  if (argument.name === 'CONFIGURATION' && action.name === 'CONFIGURE') return named(subsystem_of(subsystem)?.configurations);
-  if (argument.name === 'STATE' && action.name === 'SET_STATE') {
-    return subsystem_of(subsystem)?.states?.map((name, value) => ({value, name: state_text(name)}));
-  }
-  return [];
 }
 
 const first_text = (argument, choices) => {
@@ -193,12 +178,19 @@ function led_by(subsystem, action) {
   return Object.fromEntries(Object.entries(robot?.goal.joints ?? {}).map(([joint, argument]) => [argument, robot.joints[joint]]));
 }
 
+/// Back into its form, as it was sent.
+export function edit(one) {
+  const action = subsystem_of(one.subsystem)?.functions.find((known) => known.name === one.function);
+  const text = ([name, value]) => [name, String(choices_of(one.subsystem, action ?? {}, {...action?.arguments.find((known) => known.name === name), name}).find((choice) => choice.name === value)?.value ?? [value].flat().join(' '))];
+  fill_form(one.subsystem, one.function, Object.fromEntries(Object.entries(one.arguments ?? {}).map(text)));
+  location.hash = `#/commands/${one.subsystem}/${one.function}`;
+}
+
 /// Once more as it was; what is to be confirmed goes back into its form instead.
 export function again(one) {
   const action = subsystem_of(one.subsystem)?.functions.find((known) => known.name === one.function);
   if (!action?.confirm) return send_and_say(one.subsystem, one.function, one.arguments);
-  fill_form(one.subsystem, one.function, Object.fromEntries(Object.entries(one.arguments ?? {}).map(([name, value]) => [name, String(value)])));
-  location.hash = `#/commands/${one.subsystem}/${one.function}`;
+  return edit(one);
 }
 
 /// What was sent last, to be sent again with one click: its words go back into the form, or at once where it has none.

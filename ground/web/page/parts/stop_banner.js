@@ -42,5 +42,5 @@ export function StopBanner() {
 
 /// The chain of a story: the cause first, then what it brought about, by milliseconds.
 export const Chain = ({causes}) => html`<ol class="why" data-test="why">${causes.map((cause) => html`<li class=${cause.severity ?? 'info'}>
-  <span class="time" title=${clock_text(cause.t, 4)}>${Number.isFinite(cause.after_ms) ? `+${cause.after_ms.toFixed(1)} ms` : 'before'}</span>
+  <button class="time" title=${`${clock_text(cause.t, 4)}: replay from a second before`} onClick=${() => replay_from(cause.t - 1, 1)}>${Number.isFinite(cause.after_ms) ? `+${cause.after_ms.toFixed(1)} ms` : 'before'}</button>
   <${Severity} severity=${cause.severity ?? 'info'} /><span>${cause.text}</span></li>`)}</ol>`;

@@ -5,7 +5,7 @@ import {clock_text, state_text} from '../format.js';
 import {name_operator, operator_name} from '../commanding.js';
 import {html} from '../html.js';
 import {arguments_text} from '../parts/arguments.js';
-import {again, CommandForm, VerdictChain} from '../parts/command_form.js';
+import {again, CommandForm, edit, VerdictChain} from '../parts/command_form.js';
 import {favourite_text, favourites, toggle_favourite} from '../parts/favourites.js';
 import {Panel} from '../parts/panel.js';
 import {fill_form} from '../parts/typed.js';
@@ -71,7 +71,7 @@ function History() {
     const outcome = outcome_of(command);
     return html`<li key=${command.id} class=${outcome.stage}>
       <div class="row"><span class="time">${clock_text(command.t, 1)}</span><b>${command.subsystem} ${command.function}</b>
-        ${operator.value && !replay.value && command.function !== '?' ? html`<button class="again" onClick=${() => again(command)}>again</button>` : null}
+        ${operator.value && !replay.value && command.function !== '?' ? html`<button class="again" onClick=${() => again(command)}>again</button><button class="again" onClick=${() => edit(command)}>edit</button>` : null}
         <small class="sender">${command.sender ?? ''}${command.mine ? ' (this page)' : ''}</small></div>
       ${arguments_text(command) ? html`<div class="words">${arguments_text(command)}</div>` : null}
       <${VerdictChain} command=${command} /></li>`;
