@@ -3,7 +3,7 @@
 //
 // Samples of the parameters that are drawn: the past from the archive, then what the feed brings. Shared between plots.
 import {get} from './api.js';
-import {gateway, newest_s, now_s, on_values, replay} from './store.js';
+import {flight, gateway, newest_s, now_s, on_values, replay} from './store.js';
 
 const most_samples = 40000;
 const longest_window_s = 3600;
@@ -80,7 +80,9 @@ export function use_series(name, window_s) {
 
 export function extend(series, window_s) {
   const newest = newest_s();
-  if (Number.isFinite(newest)) series.fetch(newest - Math.min(longest_window_s, window_s) - 1);
+  // Nothing of an earlier flight, but in a replay of it.
+  const began = replay.value ? -Infinity : flight.value?.from ?? -Infinity;
+  if (Number.isFinite(newest)) series.fetch(Math.max(began, newest - Math.min(longest_window_s, window_s) - 1));
 }
 
 export function drop_series(series) {
@@ -109,6 +111,12 @@ gateway.subscribe(({connected}) => {
     }
   }
   was_connected = connected;
+});
+
+let flown = null;
+flight.subscribe((value) => {
+  if (flown !== null && value && value.id !== flown && !replay.peek()) for (const series of known.values()) series.forget();
+  flown = value?.id ?? flown;
 });
 
 let was = null;

@@ -173,9 +173,9 @@ export function Lanes({window_s = 120, end = null, on_view = null, big = false, 
         <title>no telemetry came</title></rect>`)}
       ${stop.value && stop.value.t > from ? html`<line class="stopped" x1=${x(stop.value.t)} x2=${x(stop.value.t)} y1="0" y2=${height - 16} />` : null}
       ${replay.value ? html`<g class="now replay"><line x1=${x(now)} x2=${x(now)} y1="0" y2=${height - 16} /></g>` :
-        html`<g class="now"><line x1=${x(to)} x2=${x(to)} y1="0" y2=${height - 16} /></g>`}
+        end !== null ? null : html`<g class="now"><line x1=${x(to)} x2=${x(to)} y1="0" y2=${height - 16} /></g>`}
       ${hint !== null && hint >= begin && hint <= to ? html`<g class="hint"><line x1=${x(hint)} x2=${x(hint)} y1="0" y2=${height - 16} />
-        <text x=${Math.min(x(hint) + 6, width - 150)} y=${height - (small ? 5 : 22)}>replay from ${clock_text(hint)}</text></g>` : null}
+        <text x=${Math.min(x(hint) + 6, width - 150)} y=${height - (small ? 5 : 22)}>replay from ${clock_text(hint, Math.max(1, ticks.digits))}</text></g>` : null}
     </svg></div>`;
 }
 
