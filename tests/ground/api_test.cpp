@@ -166,7 +166,7 @@ TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
   ASSERT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}})["answer"], "ok");
   ASSERT_TRUE(station.run_until([&] { return !station.get("/api/alarms")["alarms"].empty(); }));
   const json alarm = station.get("/api/alarms")["alarms"][0];
-  const json body{
+  const json usual{
       {"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"}, {"mode", "telepresence"}};
   /// What each path is sent that wants more than that.
   const std::map<std::string, json> bodies{
@@ -179,7 +179,7 @@ TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
       SCOPED_TRACE(method + " " + path);
       ++asked;
       const bool posts = method == "post";
-      const json& command = bodies.contains(path) ? bodies.at(path) : body;
+      const json& command = bodies.contains(path) ? bodies.at(path) : usual;
       const json& responses = operation["responses"];
       const auto ask = [&](std::map<std::string, std::string> headers, const json& body, bool all = false) {
         const auto answer =
