@@ -16,7 +16,7 @@ system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|s
 include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
 def rank(path):
     return libraries.index(name) if (name := pathlib.Path(path).parts[1].split(".")[0]) in libraries else -1
-station = ["archive", "model", "link", "commands", "replay", "api", "shell"]  # of ground/, lowest first
+station = ["archive", "model", "link", "commands", "replay", "people", "api", "shell"]  # of ground/, lowest first
 generic = ["author", "pages", "cycle", "service_loop", "process"]  # of hirosco/subsystem/, lowest first; example and testing/ know all
 def height(path):
     name = pathlib.Path(path).parts[2]

@@ -118,7 +118,8 @@ std::optional<HttpResponse> Api::refuse_socket(const HttpRequest& request) {
 
 void Api::opened(const HttpRequest& request, Peer& peer) {
   const auto target = read_target(request.target);
-  static_cast<void>(session_.opened(peer, target && role_of(request, *target) == Role::Operator));
+  static_cast<void>(session_.opened(peer, target && role_of(request, *target) == Role::Operator,
+                                    target ? target->text("seat").value_or("") : std::string{}));
 }
 
 // --- the page --------------------------------------------------------------------------------------------------------

@@ -16,14 +16,15 @@ constexpr std::uint16_t try_again_later = 1013;
 
 }  // namespace
 
-Client::Client(Session& session, Peer& peer, std::string id, bool is_operator)
-    : session_{session}, peer_{peer}, id_{std::move(id)} {
+Client::Client(Session& session, Peer& peer, Who who) : session_{session}, peer_{peer}, who_{std::move(who)} {
   const auto extent = session_.archive().extent();
   send({{"type", "hello"},
         {"t", json_time(session_.now())},
         {"version", std::string{version}},
-        {"client", id_},
-        {"operator", is_operator},
+        {"client", who_.id},
+        {"operator", who_.is_operator},
+        {"authority", session_.authority()},
+        {"flight", session_.flights().present()},
         {"archive_from", extent ? json(json_time(extent->from)) : json(nullptr)}});
   tick(session_.clock().now());
 }

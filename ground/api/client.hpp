@@ -21,9 +21,15 @@ class Client {
   /// Above this, housekeeping waits.
   static constexpr std::size_t busy_octets = std::size_t{64} << 10;
 
-  Client(Session& session, Peer& peer, std::string id, bool is_operator);
+  struct Who {
+    std::string id;  ///< of this connection
+    std::string seat;  ///< as in Authority, "" = none
+    bool is_operator{false};
+  };
+  Client(Session& session, Peer& peer, Who who);
   [[nodiscard]] const Peer& peer() const noexcept { return peer_; }
-  [[nodiscard]] const std::string& id() const noexcept { return id_; }
+  [[nodiscard]] const std::string& id() const noexcept { return who_.id; }
+  [[nodiscard]] const std::string& seat() const noexcept { return who_.seat; }
   [[nodiscard]] bool in_replay() const noexcept { return replay_.has_value(); }
   void received(const std::string& text);
   /// A message of the live view that must not be lost.
@@ -39,7 +45,7 @@ class Client {
 
   Session& session_;
   Peer& peer_;
-  std::string id_;
+  Who who_;
   bool closing_{false};
   std::uint64_t values_told_{0};
   std::uint64_t status_told_{0};

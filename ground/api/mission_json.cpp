@@ -9,9 +9,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Since 2017; on board nobody counts leap seconds.
-constexpr std::int64_t tai_minus_utc_s = 37;
-
 template <class Texts>
 [[nodiscard]] json texts_json(const Texts& texts) {
   json list = json::array();
@@ -46,6 +43,7 @@ template <class Texts>
                     {"service", function.service},
                     {"subtype", function.subtype},
                     {"essential", function.essential},
+                    {"confirm", function.confirm},
                     {"states", std::move(states)},
                     {"arguments", std::move(arguments)}});
   }

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
 #include <utility>
 
 #include "ground/api/openapi.hpp"
 #include "ground/model/json.hpp"
+#include "ground/model/views.hpp"
 #include "ground/replay/history.hpp"
 #include "ground/replay/log_search.hpp"
 #include "ground/replay/story.hpp"
@@ -111,6 +113,30 @@ void get_log(const Question& asked, const Respond& respond) {
   respond(answer(search_log(asked.session.catalogue(), asked.session.archive(), query)));
 }
 
+void get_alarms(const Question& asked, const Respond& respond) { respond(answer(asked.session.alarms().list())); }
+
+void post_alarm(const Question& asked, const Respond& respond) { respond(outcome(asked.session.alarm(asked.body))); }
+
+void get_authority(const Question& asked, const Respond& respond) { respond(answer(asked.session.authority())); }
+
+void post_authority(const Question& asked, const Respond& respond) {
+  respond(outcome(asked.session.authority(asked.body)));
+}
+
+void get_flights(const Question& asked, const Respond& respond) { respond(answer(asked.session.flights().list())); }
+
+void post_flight(const Question& asked, const Respond& respond) {
+  respond(outcome(asked.session.name_flight(asked.body)));
+}
+
+void get_marks(const Question& asked, const Respond& respond) {
+  const auto filter = filter_of(asked.target);
+  nlohmann::json marks = nlohmann::json::array();
+  for (const auto& mark : asked.session.archive().marks("", filter.span, filter.limit) | std::views::reverse)
+    marks.push_back(mark_json(mark));
+  respond(answer({{"marks", std::move(marks)}}));
+}
+
 void post_command(const Question& asked, const Respond& respond) {
   constexpr unsigned accepted = 202;
   respond(outcome(asked.session.command(asked.body), accepted));
@@ -150,11 +176,14 @@ constexpr std::array of_csv{parameters, from, to, last};
 constexpr std::array of_events{from, to, severity, any_text, limit};
 constexpr std::array of_commands{from, to, any_text, limit};
 constexpr std::array of_timeline{from, to, last};
+constexpr std::array of_marks{from, to, limit};
 constexpr std::array of_why{to};
 constexpr std::array of_log{words, to, before, housekeeping, lines};
 
 constexpr std::array<unsigned, 1> unknown{404};
 constexpr std::array<unsigned, 2> unknown_or_much{404, 413};
+constexpr std::array<unsigned, 2> not_this_one{409, 413};
+constexpr std::array<unsigned, 3> unknown_or_not_this_one{404, 409, 413};
 constexpr std::array<unsigned, 3> not_now{409, 413, 503};
 constexpr std::array<unsigned, 4> unknown_or_not_now{404, 409, 413, 503};
 
@@ -186,6 +215,38 @@ constexpr std::array table{
           "Log",
           {},
           get_log},
+    Route{"/api/alarms", get, "What deviated in this flight, who has seen it", {}, "", 200, "Alarms", {}, get_alarms},
+    Route{"/api/alarms",
+          post,
+          "Acknowledge an alarm, shelve it for a time, or take it off the shelf",
+          {},
+          "AlarmRequest",
+          200,
+          "Alarms",
+          unknown_or_not_this_one,
+          post_alarm},
+    Route{"/api/authority", get, "Who commands, and who asks for it", {}, "", 200, "Authority", {}, get_authority},
+    Route{"/api/authority",
+          post,
+          "Take the command, keep it from who asks, or hand it over",
+          {},
+          "AuthorityRequest",
+          200,
+          "Authority",
+          not_this_one,
+          post_authority},
+    Route{"/api/flights", get, "The flights of the archive, newest first", {}, "", 200, "Flights", {}, get_flights},
+    Route{"/api/flights",
+          post,
+          "Give a flight a name",
+          {},
+          "FlightRequest",
+          200,
+          "FlightName",
+          unknown_or_not_this_one,
+          post_flight},
+    Route{
+        "/api/marks", get, "What people did at this station, newest first", of_marks, "", 200, "Marks", {}, get_marks},
     Route{"/api/commands",
           get,
           "Telecommands with their reports, newest first",

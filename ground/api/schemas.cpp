@@ -106,6 +106,7 @@ void add_mission(const Basic& is, json& into) {
                              {"service", is.whole},
                              {"subtype", is.whole},
                              {"essential", is.yes_or_no},
+                             {"confirm", described(is.yes_or_no, "sent only with confirmed: true")},
                              {"states", is.texts},
                              {"arguments", fields}});
   into["Subsystem"] = object(
@@ -245,6 +246,64 @@ void add_past(const Basic& is, json& into) {
                         {"before", described(nullable(is.whole), "where to go on; null: nothing is older")}});
 }
 
+void add_people(const Basic& is, json& into) {
+  const json act = nullable(object({{"t", is.time},
+                                    {"who", is.text},
+                                    {"note", is.text},
+                                    {"until", described(is.time, "of a shelf"), May::BeAbsent}}));
+  into["Alarm"] = object({{"t", described(is.time, "of the newest")},
+                          {"first", is.time},
+                          {"apid", is.whole},
+                          {"subsystem", is.text},
+                          {"id", is.whole},
+                          {"name", is.text},
+                          {"severity", is.severity},
+                          {"text", is.text},
+                          {"values", map_of(is.anything)},
+                          {"count", described(is.whole, "how often in this flight")},
+                          {"fresh", described(is.whole, "of these since the last acknowledgement")},
+                          {"calls", described(is.yes_or_no, "fresh, and not shelved")},
+                          {"acknowledged", act},
+                          {"shelved", act}});
+  into["Alarms"] =
+      object({{"alarms", described(list_of(refers("Alarm")), "those that call first")},
+              {"seen_until", described(nullable(is.time), "when somebody acknowledged all, the last stop too")}});
+  into["AlarmRequest"] = object({{"subsystem", described(is.text, "its name; * acknowledges all")},
+                                 {"event", described(is.text, "its name"), May::BeAbsent},
+                                 {"action", one_of({"acknowledge", "shelve", "unshelve"})},
+                                 {"for_s", described(is.real, "of shelve: 1 to 86400"), May::BeAbsent},
+                                 {"note", described(is.text, "at most 200 characters"), May::BeAbsent},
+                                 {"sender", is.text, May::BeAbsent}});
+  into["Authority"] = object(
+      {{"holder", nullable(object({{"seat", is.text}, {"name", is.text}, {"since", is.time}}))},
+       {"asking",
+        nullable(object({{"seat", is.text},
+                         {"name", is.text},
+                         {"answer_s", described(is.real, "until it goes over when the holder says nothing")}}))}});
+  into["AuthorityRequest"] = object({{"action", one_of({"take", "keep", "hand_over"})},
+                                     {"seat", described(is.text, "1 to 64 characters that nobody else has")},
+                                     {"sender", is.text, May::BeAbsent}});
+  into["Flights"] = object({{"flights", list_of(object({{"id", is.whole},
+                                                        {"from", is.time},
+                                                        {"to", is.time},
+                                                        {"name", is.text},
+                                                        {"named_by", is.text},
+                                                        {"high", described(is.whole, "events of this severity")},
+                                                        {"medium", is.whole},
+                                                        {"commands", is.whole}}))}});
+  into["FlightRequest"] = object({{"flight", described(is.whole, "its id")},
+                                  {"name", described(is.text, "at most 80 characters")},
+                                  {"sender", is.text, May::BeAbsent}});
+  into["FlightName"] = object({{"flight", is.whole}, {"name", is.text}});
+  into["Marks"] = object({{"marks", list_of(object({{"t", is.time},
+                                                    {"kind", one_of({"alarm", "authority", "flight"})},
+                                                    {"name", is.text},
+                                                    {"action", is.text},
+                                                    {"who", is.text},
+                                                    {"note", is.text},
+                                                    {"until", nullable(is.time)}}))}});
+}
+
 void add_story(const Basic& is, json& into) {
   const json cause = object(
       {{"t", is.time},
@@ -272,7 +331,9 @@ void add_requests(const Basic& is, json& into) {
                          "name: number (of UINT64 and INT64 also a text of its digits), name of an enumeration entry, "
                          "true or false of BOOL, words of TEXT, or a list of these"),
                May::BeAbsent},
-              {"sender", is.text, May::BeAbsent}});
+              {"sender", is.text, May::BeAbsent},
+              {"seat", described(is.text, "who commands, as in AuthorityRequest"), May::BeAbsent},
+              {"confirmed", described(is.yes_or_no, "of what is to be confirmed"), May::BeAbsent}});
   into["Sent"] = object({{"id", is.whole},
                          {"apid", is.whole},
                          {"count", is.whole},
@@ -304,6 +365,7 @@ json schemas() {
   add_status(basic, all);
   add_past(basic, all);
   add_story(basic, all);
+  add_people(basic, all);
   add_requests(basic, all);
   return all;
 }

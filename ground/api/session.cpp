@@ -16,6 +16,12 @@ using nlohmann::json;
 constexpr Duration housekeeping_period = 1s;
 constexpr Duration injections_period = 200ms;
 
+/// Who a client says that it is.
+[[nodiscard]] Authority::Seat seat_of(const json& body) {
+  std::string name = text_of(body, "sender").substr(0, Authority::longest_name);
+  return {.id = text_of(body, "seat").substr(0, Authority::longest_seat), .name = name.empty() ? "operator" : name};
+}
+
 }  // namespace
 
 Session::Session(Parts parts)
@@ -32,7 +38,10 @@ Session::Session(Parts parts)
                  .send = parts_.outside.send,
                  .tell = [this](const StoredCommand& command) { tell_command(command); },
                  .source = parts_.source,
-                 .first_count = parts_.first_count}} {
+                 .first_count = parts_.first_count}},
+      flights_{parts_.catalogue, parts_.archive},
+      alarms_{parts_.archive, flights_.began()},
+      authority_{[this](const StoredMark& mark) { keep(mark); }} {
   if (const auto extent = parts_.archive.extent()) archived_until_ = extent->to;
 }
 
@@ -76,8 +85,33 @@ void Session::take(const pus::TelemetryView& packet, Octets octets) {
     json message = event_json(*heard.event);
     message["type"] = "event";
     broadcast(message);
+    if (auto alarm = alarms_.hear(*heard.event)) tell_alarm(std::move(*alarm));
   }
+  if (flights_.hear(model_)) begin_flight();
   commands_.hear(heard, packet.time());
+}
+
+void Session::begin_flight() {
+  alarms_.begin(flights_.began());
+  json message = flights_.present();
+  message["type"] = "flight";
+  broadcast(message);
+}
+
+void Session::keep(const StoredMark& mark) {
+  parts_.archive.add(mark);
+  parts_.archive.commit();
+  json message = authority();
+  message["type"] = "authority";
+  message["did"] = mark_json(mark);
+  broadcast(message);
+}
+
+Authority::Now Session::both_times() const { return {.ground = parts_.clock.now(), .onboard = now()}; }
+
+void Session::tell_alarm(json alarm) {
+  alarm["type"] = "alarm";
+  broadcast(alarm);
 }
 
 void Session::add_gap(OnboardTime from, OnboardTime to) {
@@ -102,15 +136,23 @@ void Session::tick() {
   parts_.archive.commit();
   if (now >= next_housekeeping_) {
     parts_.archive.keep_within_limit();
+    std::set<std::string> present;
+    for (const auto& client : clients_) present.insert(client->seat());
+    authority_.see(std::move(present), both_times());
+    for (json& alarm : alarms_.expire(this->now())) tell_alarm(std::move(alarm));
     next_housekeeping_ = now + housekeeping_period;
   }
 }
 
 // --- clients ---------------------------------------------------------------------------------------------------------
 
-std::string Session::opened(Peer& peer, bool is_operator) {
+std::string Session::opened(Peer& peer, bool is_operator, const std::string& seat) {
   std::string id = "c" + std::to_string(next_client_++);
-  clients_.push_back(std::make_unique<Client>(*this, peer, id, is_operator));
+  // An observer's page cannot hold what it cannot take.
+  clients_.push_back(std::make_unique<Client>(
+      *this, peer,
+      Client::Who{
+          .id = id, .seat = is_operator ? seat.substr(0, Authority::longest_seat) : "", .is_operator = is_operator}));
   return id;
 }
 
@@ -133,7 +175,43 @@ void Session::broadcast(const json& message) {
 
 // --- requests --------------------------------------------------------------------------------------------------------
 
-Answered<json> Session::command(const json& body) { return commands_.send(body); }
+Answered<json> Session::command(const json& body) {
+  const auto request = request_of(parts_.catalogue, body);
+  if (!request) return std::unexpected{request.error()};
+  // What leads towards safety is refused to nobody, and waits for nobody.
+  if (!request->essential) {
+    const auto confirmed = body.find("confirmed");
+    const bool is_confirmed = confirmed != body.end() && confirmed->is_boolean() && confirmed->get<bool>();
+    if (request->confirm && !is_confirmed)
+      return refuse(409, request->function + " is to be confirmed: send it once more with confirmed: true");
+    if (const auto may = authority_.may_command(seat_of(body), both_times()); !may) return std::unexpected{may.error()};
+  }
+  return commands_.send(body);
+}
+
+json Session::authority() const { return authority_.json(parts_.clock.now()); }
+
+Answered<json> Session::authority(const json& body) {
+  const std::string action = text_of(body, "action");
+  const Authority::Seat seat = seat_of(body);
+  Answered<void> done = refuse(400, "action: take, keep or hand_over is wanted");
+  if (action == "take") done = authority_.take(seat, both_times());
+  if (action == "keep") done = authority_.keep(seat, both_times());
+  if (action == "hand_over") done = authority_.hand_over(seat, both_times());
+  if (!done) return std::unexpected{done.error()};
+  return authority();
+}
+
+Answered<json> Session::alarm(const json& body) {
+  auto done = alarms_.act(body, seat_of(body).name, now());
+  if (!done) return done;
+  json message = *done;
+  message["type"] = message.contains("alarms") ? "alarms" : "alarm";
+  broadcast(message);
+  return alarms_.list();
+}
+
+Answered<json> Session::name_flight(const json& body) { return flights_.name(body, seat_of(body).name, now()); }
 
 void Session::mode_preview(const json& body, std::function<void(Answered<json>)> done) {
   commands_.mode_preview(body, std::move(done));

@@ -18,6 +18,9 @@
 #include "ground/link/downlink.hpp"
 #include "ground/model/catalogue.hpp"
 #include "ground/model/model.hpp"
+#include "ground/people/alarms.hpp"
+#include "ground/people/authority.hpp"
+#include "ground/replay/flights.hpp"
 
 /// The ground station without sockets: takes octets and points in time, says what to send. Thread: one.
 namespace hirosco::ground {
@@ -63,15 +66,21 @@ class Session {
   void tick();
 
   // --- clients ------------------------------------------------------------------------------------------------------
-  /// Client::id of a new client; it is told everything at once. `peer` lives until closed().
-  std::string opened(Peer& peer, bool is_operator);
+  /// Client::id of a new client; it is told everything at once. `peer` lives until closed(); `seat` as in Authority, "" = none.
+  std::string opened(Peer& peer, bool is_operator, const std::string& seat = {});
   void received(const Peer& peer, const std::string& text);
   void closed(const Peer& peer);
   /// Whether this client looks at the past: its commands are refused.
   [[nodiscard]] bool in_replay(const std::string& client) const;
 
   // --- requests (bodies as in ground/api/README.md) -----------------------------------------------------------------
+  /// Of who commands, unless it is essential; what the descriptor marks only when it is confirmed.
   [[nodiscard]] Answered<nlohmann::json> command(const nlohmann::json& body);
+  /// Who commands, and who asks for it.
+  [[nodiscard]] nlohmann::json authority() const;
+  [[nodiscard]] Answered<nlohmann::json> authority(const nlohmann::json& body);
+  [[nodiscard]] Answered<nlohmann::json> alarm(const nlohmann::json& body);
+  [[nodiscard]] Answered<nlohmann::json> name_flight(const nlohmann::json& body);
   /// Answers through `done`, at the latest after 2 s.
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   void mode_preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
@@ -83,6 +92,8 @@ class Session {
   [[nodiscard]] const Catalogue& catalogue() const noexcept { return parts_.catalogue; }
   [[nodiscard]] Archive& archive() const noexcept { return parts_.archive; }
   [[nodiscard]] const Model& model() const noexcept { return model_; }
+  [[nodiscard]] const Alarms& alarms() const noexcept { return alarms_; }
+  [[nodiscard]] const Flights& flights() const noexcept { return flights_; }
   [[nodiscard]] const Clock& clock() const noexcept { return parts_.clock; }
   [[nodiscard]] bool connected() const noexcept { return connected_; }
   /// On-board time now as far as the ground can tell.
@@ -93,6 +104,10 @@ class Session {
   void take(const pus::TelemetryView& packet, Octets octets);
   void add_gap(OnboardTime from, OnboardTime to);
   void tell_command(const StoredCommand& command);
+  void tell_alarm(nlohmann::json alarm);
+  void begin_flight();
+  void keep(const StoredMark& mark);
+  [[nodiscard]] Authority::Now both_times() const;
   void broadcast(const nlohmann::json& message);
   void take_injections();
   void tell_fault(const StoredFault& fault);
@@ -103,6 +118,9 @@ class Session {
   Model model_;
   Downlink downlink_;
   Commands commands_;
+  Flights flights_;
+  Alarms alarms_;
+  Authority authority_;
   bool connected_{false};
   TimePoint newest_received_{};
   std::optional<OnboardTime> archived_until_;  ///< by those before this process

@@ -39,6 +39,9 @@ constexpr const char* schema = R"(
   CREATE TABLE IF NOT EXISTS gaps(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, until INTEGER NOT NULL);
   CREATE TABLE IF NOT EXISTS faults(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, device TEXT NOT NULL,
     line TEXT NOT NULL, answer TEXT NOT NULL);
+  CREATE TABLE IF NOT EXISTS marks(id INTEGER PRIMARY KEY, t INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL,
+    action TEXT NOT NULL, who TEXT NOT NULL, note TEXT NOT NULL, until INTEGER NOT NULL);
+  CREATE INDEX IF NOT EXISTS marks_by_time ON marks(t);
 )";
 /// Written once, so that nobody's other file is filled and no other version is misread.
 constexpr const char* mark = "PRAGMA application_id = 1213417281; PRAGMA user_version = 1";
@@ -111,7 +114,7 @@ void Archive::keep_within_limit() {
   };
   const std::int64_t packets = size("packets").second;
   const std::int64_t removed = std::min(most_packets, packets / 10 + 1);
-  for (const char* table : {"packets", "events", "commands", "reports", "changes", "gaps", "faults"}) {
+  for (const char* table : {"packets", "events", "commands", "reports", "changes", "gaps", "faults", "marks"}) {
     const auto [oldest, count] = size(table);
     store("DELETE FROM " + std::string{table} + " WHERE id < ?",
           oldest + static_cast<std::int64_t>(static_cast<double>(count) * static_cast<double>(removed) /
@@ -167,6 +170,12 @@ void Archive::add(const StoredGap& gap) { store("INSERT INTO gaps(t, until) VALU
 
 void Archive::add(const StoredFault& fault) {
   store("INSERT INTO faults(t, device, line, answer) VALUES(?,?,?,?)", fault.t, fault.device, fault.line, fault.answer);
+}
+
+std::int64_t Archive::add(const StoredMark& mark) {
+  const bool added = store("INSERT INTO marks(t, kind, name, action, who, note, until) VALUES(?,?,?,?,?,?,?)", mark.t,
+                           mark.kind, mark.name, mark.action, mark.who, mark.note, mark.until);
+  return added ? database_->getLastInsertRowid() : 0;
 }
 
 }  // namespace hirosco::ground

@@ -51,6 +51,8 @@ class Archive {
   void add(const StoredChange& change);
   void add(const StoredGap& gap);
   void add(const StoredFault& fault);
+  /// Its number; 0 when the disk refused it.
+  std::int64_t add(const StoredMark& mark);
 
   /// Times of the oldest and newest packet.
   [[nodiscard]] std::optional<Span> extent();
@@ -73,6 +75,9 @@ class Archive {
     bool newest_first{true};
   };
   [[nodiscard]] std::vector<StoredEvent> events(const Filter& filter);
+  /// How many of this severity and above; telecommands, likewise.
+  [[nodiscard]] std::int64_t count_events(const Span& span, int severity);
+  [[nodiscard]] std::int64_t count_commands(const Span& span);
   [[nodiscard]] std::vector<StoredCommand> commands(const Filter& filter);
   [[nodiscard]] std::optional<StoredCommand> command(std::int64_t number);
   [[nodiscard]] std::vector<StoredReport> reports(std::int64_t command);
@@ -82,6 +87,8 @@ class Archive {
   [[nodiscard]] std::vector<StoredChange> changes(Span span);
   [[nodiscard]] std::vector<StoredGap> gaps(const Span& span);
   [[nodiscard]] std::vector<StoredFault> faults(const Span& span);
+  /// The newest `limit` of a kind, "" = of every one, oldest first.
+  [[nodiscard]] std::vector<StoredMark> marks(const std::string& kind, const Span& span, std::size_t limit = 10'000);
 
  private:
   explicit Archive(const std::string& path, std::int64_t limit_octets);

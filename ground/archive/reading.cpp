@@ -160,6 +160,25 @@ std::vector<StoredEvent> Archive::events(const Filter& filter) {
   return events;
 }
 
+std::int64_t Archive::count_events(const Span& span, int severity) {
+  std::int64_t count = 0;
+  counted([&] {
+    auto find = statement(*database_, "SELECT count(*) FROM events WHERE t >= ? AND t <= ? AND severity >= ?",
+                          span.from, span.to, severity);
+    if (find.executeStep()) count = find.getColumn(0).getInt64();
+  });
+  return count;
+}
+
+std::int64_t Archive::count_commands(const Span& span) {
+  std::int64_t count = 0;
+  counted([&] {
+    auto find = statement(*database_, "SELECT count(*) FROM commands WHERE t >= ? AND t <= ?", span.from, span.to);
+    if (find.executeStep()) count = find.getColumn(0).getInt64();
+  });
+  return count;
+}
+
 std::vector<StoredCommand> Archive::commands(const Filter& filter) {
   const char* sql = filter.newest_first
                         ? "SELECT id, t, sender, apid, subsystem, function, arguments, stage, code, reason FROM "
@@ -262,6 +281,25 @@ std::vector<StoredFault> Archive::faults(const Span& span) {
                         .answer = find.getColumn(3)});
   });
   return faults;
+}
+
+std::vector<StoredMark> Archive::marks(const std::string& kind, const Span& span, std::size_t limit) {
+  std::vector<StoredMark> marks;
+  counted([&] {
+    auto find = statement(*database_,
+                          "SELECT t, kind, name, action, who, note, until FROM (SELECT * FROM marks WHERE t >= ? AND "
+                          "t <= ? AND (? = '' OR kind = ?) ORDER BY id DESC LIMIT ?) ORDER BY id",
+                          span.from, span.to, kind, kind, static_cast<std::int64_t>(limit));
+    while (find.executeStep())
+      marks.push_back({.t = time_of(find.getColumn(0)),
+                       .kind = find.getColumn(1),
+                       .name = find.getColumn(2),
+                       .action = find.getColumn(3),
+                       .who = find.getColumn(4),
+                       .note = find.getColumn(5),
+                       .until = time_of(find.getColumn(6))});
+  });
+  return marks;
 }
 
 }  // namespace hirosco::ground

@@ -117,6 +117,8 @@ Answered<Request> request_of(const Catalogue& catalogue, const json& body) {
   auto data = pus::encode_request(*function, values);
   if (!data) return refuse(400, wanted + ": " + data.error().text);
   request.data = std::move(*data);
+  request.essential = function->essential;
+  request.confirm = function->confirm;
   if (pus::goes_alone(*function)) request.way = Way::Alone;
   return request;
 }

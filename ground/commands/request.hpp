@@ -20,6 +20,8 @@ struct Request {
   std::uint8_t service{};
   std::uint8_t subtype{};
   Way way{Way::InTurn};
+  bool essential{false};
+  bool confirm{false};               ///< a person is asked once more
   std::string arguments;             ///< a JSON object with the values that are sent
   std::vector<std::byte> data;
 };

@@ -40,6 +40,9 @@ namespace hirosco::ground {
   return json_number(std::get<Number>(value));
 }
 
+/// Since 2017; on board nobody counts leap seconds.
+inline constexpr std::int64_t tai_minus_utc_s = 37;
+
 [[nodiscard]] inline double json_time(OnboardTime t) { return seconds(t.time_since_epoch()); }
 
 /// Times that do not fit become the nearest that does.

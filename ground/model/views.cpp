@@ -40,6 +40,16 @@ json report_json(const StoredReport& report) {
           {"reason", report.reason.empty() ? json(nullptr) : json(report.reason)}};
 }
 
+json mark_json(const StoredMark& mark) {
+  return {{"t", json_time(mark.t)},
+          {"kind", mark.kind},
+          {"name", mark.name},
+          {"action", mark.action},
+          {"who", mark.who},
+          {"note", mark.note},
+          {"until", mark.until != OnboardTime{} ? json(json_time(mark.until)) : json(nullptr)}};
+}
+
 json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now) {
   constexpr std::array<const char*, 7> reasons{"stop",    "link",       "device",   "author",
                                                "failure", "supervisor", "fall_back"};

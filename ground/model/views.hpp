@@ -15,6 +15,7 @@ namespace hirosco::ground {
 [[nodiscard]] nlohmann::json event_json(const StoredEvent& event);
 [[nodiscard]] nlohmann::json command_json(const StoredCommand& command);
 [[nodiscard]] nlohmann::json report_json(const StoredReport& report);
+[[nodiscard]] nlohmann::json mark_json(const StoredMark& mark);
 /// What a model says of mode, subsystems and links at a time; without `link` and `values`.
 [[nodiscard]] nlohmann::json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now);
 /// A number, true or false, or words.

@@ -24,6 +24,21 @@ constexpr std::size_t most_samples = 1'000'000;
 constexpr std::size_t most_csv_octets = std::size_t{64} << 20;
 constexpr std::size_t most_csv_cells = 4'000'000;
 
+/// "2026-11-24T13:20:47.123456Z"; "" before 1990, where missions on virtual time begin.
+[[nodiscard]] std::string utc_text(OnboardTime t) {
+  namespace chrono = std::chrono;
+  constexpr OnboardTime calendar_from{chrono::seconds{1'000'000'000}};
+  if (t < calendar_from) return {};
+  const chrono::sys_time<Duration> utc{t.time_since_epoch() -
+                                       chrono::seconds{onboard_epoch_to_unix_s + tai_minus_utc_s}};
+  const auto day = chrono::floor<chrono::days>(utc);
+  const chrono::year_month_day date{day};
+  const chrono::hh_mm_ss time{chrono::floor<chrono::microseconds>(utc - day)};
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), time.hours().count(),
+                     time.minutes().count(), time.seconds().count(), time.subseconds().count());
+}
+
 /// Min and max of each of `points` equal parts of a span: long histories at the cost of short ones.
 class Buckets {
  public:
@@ -127,7 +142,7 @@ Answered<std::string> history_csv(const Catalogue& catalogue, Archive& archive,
     return refuse(400, "parameter: 1 to 64 of them are wanted");
   std::map<OnboardTime, std::vector<std::optional<double>>> rows;
   std::size_t samples_left = most_samples;
-  std::string body = "t";
+  std::string body = "t,utc";
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto column = catalogue.find_column(parameters[i]);
     if (!column) return refuse(404, "no parameter '" + parameters[i] + "'");
@@ -147,7 +162,7 @@ Answered<std::string> history_csv(const Catalogue& catalogue, Archive& archive,
   }
   body += "\n";
   for (const auto& [t, row] : rows) {
-    body += fmt::format("{:.6f}", json_time(t));
+    body += fmt::format("{:.6f},{}", json_time(t), utc_text(t));
     for (const auto& value : row) body += value ? fmt::format(",{}", *value) : ",";
     body += "\n";
     if (body.size() > most_csv_octets) return refuse(413, "more than 64 MiB: ask for a shorter span");

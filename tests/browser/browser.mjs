@@ -86,6 +86,36 @@ export async function bring_up(page, mode) {
   assert.match(await end.textContent(), /is up$/);
 }
 
+/// Every place in a part of the robot's picture where the cursor says "grab", from above to below: asked without moving the mouse.
+export async function grips(page, from, to) {
+  const found = await page.evaluate(([left, right]) => {
+    const canvas = document.querySelector('[data-test=robot] canvas');
+    const box = canvas.getBoundingClientRect();
+    const places = [];
+    for (let y = box.y + 50; y < box.bottom - 40; y += 5) {
+      for (let x = box.x + box.width * left; x < box.x + box.width * right; x += 5) {
+        canvas.dispatchEvent(new PointerEvent('pointermove', {clientX: x, clientY: y, buttons: 0}));
+        if (canvas.style.cursor === 'grab') places.push([x, y]);
+      }
+    }
+    return places;
+  }, [from, to]);
+  assert.ok(found.length > 0, 'there is something to take');
+  return found;
+}
+
+/// Takes hold of something there; the arm moves meanwhile: a hand that closes on nothing reaches again.
+export async function take_hold(page, from, to, choose) {
+  for (let reaches = 0; reaches < 20; ++reaches) {
+    const place = choose(await grips(page, from, to));
+    await page.mouse.move(...place);
+    await page.mouse.down();
+    if (await page.evaluate(() => document.querySelector('[data-test=robot] canvas').style.cursor) === 'grabbing') return place;
+    await page.mouse.up();
+  }
+  return assert.fail('took hold of nothing in 20 reaches');
+}
+
 /// Waits until `is_so` answers true; a wait that leads nowhere says what for.
 export async function until(what, is_so, limit_s = patience_ms / 1000) {
   for (const end = performance.now() + limit_s * 1000; !await is_so(); await sleep(20)) {

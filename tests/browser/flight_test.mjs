@@ -5,7 +5,7 @@
 // move the arm, unplug the joystick, read why, replay.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {bring_up, go, holds, open_browser, open_page, small} from './browser.mjs';
+import {bring_up, go, holds, open_browser, open_page, small, until} from './browser.mjs';
 import {fly} from './flight.mjs';
 
 describe('the page on a real flight', () => {
@@ -51,6 +51,28 @@ describe('the page on a real flight', () => {
     await page.waitForSelector('[data-test=permission].no');
     await page.click('[data-test=send]');
     await page.waitForSelector('[data-test=verdict].failed');
+  });
+
+  it('lets one page command at a time: the other is refused by the station, asks, and is handed it', async () => {
+    const {page: other} = await open_page(browser.context, flight.url, small);
+    const word = (where) => where.textContent('[data-test=commander] b');
+    await until('who sent first commands', async () => await word(page) === 'you' && await word(other) === 'operator');
+    await go(other, 'commands/MANIPULATOR/MOVE_TO');
+    await other.waitForSelector('[data-test=not-commanding]');
+    assert.ok(await other.locator('[data-test=send]').isDisabled());
+    const refused = await other.evaluate(async () => {
+      const answer = await fetch('/api/commands', {method: 'POST', headers: {'Content-Type': 'application/json', Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`},
+        body: JSON.stringify({subsystem: 'JOYSTICK', function: 'SET_FORCE_SCALE', arguments: {SCALE: 0.02}, seat: sessionStorage.getItem('hirosco-seat')})});
+      return [answer.status, (await answer.json()).error];
+    });
+    assert.deepEqual(refused, [409, 'operator commands: ask for the command, or wait until it is handed over']);
+    await other.click('[data-test=ask-command]');
+    await page.click('[data-test=command-hand-over]');
+    await until('it is handed over', async () => await word(other) === 'you' && await word(page) === 'operator');
+    await other.click('[data-test=commander]');
+    await other.click('[data-test=command-hand-over]');
+    await until('nobody commands', async () => await word(page) === 'nobody');
+    await other.close();
   });
 
   it('brings the standalone network up by one button, step by step', async () => {

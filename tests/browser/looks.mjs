@@ -70,6 +70,8 @@ export function overlapping_texts() {
   for (let i = 0; i < boxes.length; ++i) {
     for (let j = i + 1; j < boxes.length; ++j) {
       const a = boxes[i], b = boxes[j];
+      // What is opened covers a part of what is behind.
+      if (a.parent.closest('[role=dialog]') !== b.parent.closest('[role=dialog]')) continue;
       const wide = Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left), tall = Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top);
       if (wide > 2 && tall > 4 && a.parent !== b.parent && !a.parent.contains(b.parent) && !b.parent.contains(a.parent)) found.push(`“${a.text.slice(0, 30)}” on “${b.text.slice(0, 30)}”`);
     }
@@ -106,6 +108,15 @@ export function faint_texts() {
     if (ratio < 4.5) found.push(`${ratio.toFixed(1)}: “${node.textContent.trim().slice(0, 30)}” .${node.className}`);
   }
   return [...new Set(found)];
+}
+
+/// Words in a colour that calls, where none should: red, orange, amber, but for SAFE ALL, what happened, and the robot.
+export function loud_texts() {
+  return [...document.querySelectorAll('main *, header *')].filter((node) => !node.closest('.robot, .safe_all, .count, [data-test=events]')).flatMap((node) => {
+    const [r, g, b] = getComputedStyle(node).color.match(/[\d.]+/g).map(Number);
+    const own = [...node.childNodes].some((one) => one.nodeType === Node.TEXT_NODE && one.textContent.trim());
+    return own && r > 200 && Math.max(g, b) < 190 && r - Math.min(g, b) > 70 ? [`${node.className}: ${node.textContent.slice(0, 30)}`] : [];
+  });
 }
 
 /// The typefaces that the browser really draws what is shown with, and which characters it had to take from others.

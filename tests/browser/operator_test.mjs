@@ -115,7 +115,9 @@ describe('an operator with nothing but the page', () => {
     await command('SUPERVISOR', 'SET_MODE', {MODE: 'safe'});
     await go(page, 'commands/SUPERVISOR/SHUTDOWN');
     await page.waitForSelector('[data-test=permission].yes');
+    // It wants a second click.
     await page.click('[data-test=send]');
+    await page.click('[data-test=send].sure');
     assert.equal(await flight.gone, 0);
   });
 });

@@ -9,7 +9,7 @@ import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
 import {gzipSync} from 'node:zlib';
-import {go, holds, open_browser, open_page, patience_ms, serious_findings, until, views} from './browser.mjs';
+import {go, holds, open_browser, open_page, patience_ms, serious_findings, take_hold, until, views} from './browser.mjs';
 
 const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
 
@@ -55,35 +55,16 @@ describe('a flight that means well', () => {
     await holds(page, () => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
   });
 
-  for (const [what, from, to] of [['the handle of the joystick', -0.02, 0.2], ['the fingertip', 0.58, 0.75]]) {
+  for (const [what, from, to] of [['the handle of the joystick', 0, 0.21], ['the fingertip', 0.55, 0.78]]) {
     it(`moves the simulated hand when ${what} is dragged`, async () => {
       await go(page, 'overview');
       await page.waitForSelector('[data-test=robot][data-loaded]');
-      const canvas = page.locator('[data-test=robot] canvas');
-      const cursor = () => canvas.evaluate((node) => node.style.cursor);
-      const box = await canvas.boundingBox();
-      const search = async () => {
-        for (let y = box.y + 44; y < box.y + box.height - 30; y += 7) {
-          for (let x = box.x + box.width * from + 20; x < box.x + box.width * to - 20; x += 11) {
-            await page.mouse.move(x, y);
-            if (await cursor() === 'grab') return [x, y];
-          }
-        }
-        return null;
-      };
       const hand_lines = () => page.evaluate(async () => {
         const answer = await fetch('/api/timeline?from=0&to=9e9', {headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}});
         return (await answer.json()).faults.map((one) => one.line).filter((line) => line.startsWith('hand target'));
       });
       const before = (await hand_lines()).length;
-      // The robot moves meanwhile: a hand that closes on nothing reaches again.
-      let grip;
-      for (let reaches = 0; await cursor() !== 'grabbing'; ++reaches) {
-        assert.ok(reaches < 20, 'gripped nothing in 20 reaches');
-        await page.mouse.up();
-        grip = await search();
-        if (grip) await page.mouse.down();
-      }
+      const grip = await take_hold(page, from, to, (places) => places[places.length >> 1]);
       await page.mouse.move(grip[0] + 30, grip[1] + 4, {steps: 5});
       await until('a line of the hand', async () => (await hand_lines()).length > before);
       // However far up or down the shaft it was taken: the first move is no leap.
@@ -172,6 +153,120 @@ describe('a flight that means well', () => {
     await page.click('[data-test=live]');
     await page.waitForSelector('[data-test=replay-bar]', {state: 'detached'});
     await page.waitForSelector('[data-test=link].good');
+  });
+
+  it('tells the values under the mouse, and what lies between two cursors', async () => {
+    await go(page, 'plots?p=MANIPULATOR.CUR_VALUES.POSITION%5B0%5D&w=30');
+    await page.click('[data-test=pause]');
+    const over = page.locator('.u-over');
+    await holds(page, () => document.querySelector('.legend .statistics'));
+    const box = await over.boundingBox();
+    const told = () => page.evaluate(() => Number(/(−?[\d.]+)/.exec(document.querySelector('.legend .at b').textContent)[1].replace('−', '-')));
+    const values = [];
+    for (const part of [0.35, 0.6]) {
+      await page.mouse.move(box.x + part * box.width, box.y + box.height / 2);
+      await page.waitForSelector('.legend .at');
+      await page.mouse.down();
+      await page.mouse.up();
+      values.push(await told());
+    }
+    await page.waitForSelector('[data-test=delta]');
+    const apart = Number((await page.textContent('[data-test=delta]')).replace('Δ ', '').replace('−', '-'));
+    assert.ok(Math.abs(apart - (values[1] - values[0])) < 0.0021, `${apart}, of ${values}`);
+    assert.match(await page.textContent('[data-test=cursors]'), /, 7\.\d{3} s/);
+    await page.mouse.dblclick(box.x + box.width / 2, box.y + box.height / 2);
+  });
+
+  it('zooms the heights of a plot by the wheel, and shows all of them again', async () => {
+    const axis = () => page.evaluate(() => document.querySelector('.legend .statistics') && document.querySelector('.plot .uplot') !== null);
+    await holds(page, () => document.querySelector('.u-over'));
+    assert.ok(await axis());
+    const picture = () => page.locator('.plot canvas').first().evaluate((node) => node.toDataURL().length);
+    const before = await picture(), box = await page.locator('.u-over').boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    for (let i = 0; i < 6; ++i) await page.mouse.wheel(0, -100);
+    await until('another picture', async () => await picture() !== before);
+    await page.mouse.dblclick(box.x + box.width / 2, box.y + box.height / 2);
+    await page.click('[data-test=pause]');
+  });
+
+  it('shows what has names for its values as words, not as heights', async () => {
+    await go(page, 'plots?p=MANIPULATOR.PHASE&w=60');
+    await holds(page, () => /REST/.test(document.querySelector('[data-test=state-lanes]')?.textContent));
+    assert.equal(await page.locator('.u-over').count(), 0);
+  });
+
+  it('goes from minutes to milliseconds by the wheel on the timeline, and back to now', async () => {
+    await go(page, 'timeline');
+    const lanes = await page.locator('[data-test=timeline] svg').boundingBox();
+    await page.mouse.move(lanes.x + lanes.width * 0.6, lanes.y + 30);
+    const span = () => page.textContent('[data-test=span]');
+    for (let i = 0; i < 60 && await span() !== '1 ms'; ++i) await page.mouse.wheel(0, -100);
+    assert.equal(await span(), '1 ms');
+    await holds(page, () => [...document.querySelectorAll('[data-test=timeline] .tick text')].some((node) => /\.\d{4}$/.test(node.textContent)));
+    for (let i = 0; i < 80 && await span() !== '24 h'; ++i) await page.mouse.wheel(0, 100);
+    assert.equal(await span(), '24 h');
+    if (await page.locator('[data-test=follow]').count()) await page.click('[data-test=follow]');
+  });
+
+  it('goes to the moment of an address', async () => {
+    const at = await page.evaluate(async () => {
+      const answer = await fetch('/api/status', {headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}});
+      return (await answer.json()).t - 20;
+    });
+    await page.evaluate((t) => { location.hash = `#/overview?at=${t.toFixed(3)}`; }, at);
+    await page.waitForSelector('[data-test=replay-bar]');
+    await page.click('[data-test=live]');
+    await page.waitForSelector('[data-test=replay-bar]', {state: 'detached'});
+  });
+
+  it('writes a telecommand for the terminal and for Python, and keeps it at hand', async () => {
+    await go(page, 'commands/MANIPULATOR/MOVE_TO');
+    for (const [field, text] of Object.entries({Q1: '-1.5', Q2: '0.5', STEPS: '3'})) await page.fill(`[data-test=field-${field}]`, text);
+    assert.equal(await page.getAttribute('[data-test=copy-tc]', 'title'), 'hirosco tc MANIPULATOR MOVE_TO Q1=-1.5 Q2=0.5 STEPS=3');
+    assert.equal(await page.getAttribute('[data-test=copy-python]', 'title'), 'craft.manipulator.move_to(q1=-1.5, q2=0.5, steps=3)');
+    await page.click('[data-test=favourite]');
+    await page.fill('[data-test=field-Q1]', '0');
+    await page.click('[data-test=favourites] a');
+    await holds(page, () => document.querySelector('[data-test=field-Q1]').value === '-1.5');
+    await page.click('[data-test=favourite]');
+    await page.waitForSelector('[data-test=favourites]', {state: 'detached'});
+  });
+
+  it('calls values by their names in the history, and puts them back into the form', async () => {
+    await go(page, 'commands/JOYSTICK/CONFIGURE');
+    await page.click('[data-test=send]');
+    const sent = page.locator('[data-test=history] > li', {hasText: 'JOYSTICK CONFIGURE'});
+    await until('its name', async () => /CONFIGURATION STANDALONE/.test(await sent.first().textContent()));
+    await page.selectOption('[data-test=field-CONFIGURATION]', {index: 1});
+    await sent.first().locator('button', {hasText: 'edit'}).click();
+    await holds(page, () => document.querySelector('[data-test=field-CONFIGURATION]').value === '1');
+  });
+
+  it('wants a second click where the descriptor does', async () => {
+    await go(page, 'commands/SUPERVISOR/SHUTDOWN');
+    const sent = () => page.locator('[data-test=history] b', {hasText: 'SUPERVISOR SHUTDOWN'}).count();
+    await page.click('[data-test=send]');
+    await page.waitForSelector('[data-test=send].sure');
+    assert.equal(await sent(), 0);
+    await page.click('[data-test=send]');
+    await until('sent', async () => await sent() === 1);
+  });
+
+  it('acknowledges an alarm for everybody, with a note, and over a reload', async () => {
+    const calling = (where) => where.textContent('[data-test=alarms-high] b');
+    await go(page, 'events');
+    await page.waitForSelector('[data-test=alarm-LOST].calls');
+    const {page: other} = await open_page(browser.context, served.url);
+    await until('the other page is called', async () => await calling(other) === '1');
+    await page.fill('[data-test=alarm-note]', 'the cable');
+    await page.click('[data-test=acknowledge]');
+    await until('the other page is told', async () => await calling(other) === '0');
+    await go(other, 'events');
+    assert.match(await other.textContent('[data-test=alarm-LOST]'), /acknowledged by operator at [\d:]+: the cable/);
+    await other.reload();
+    await other.waitForSelector('[data-test=alarm-LOST]:not(.calls)');
+    await other.close();
   });
 
   it('keeps SAFE ALL in sight in every window, and Send beside the robot', async () => {

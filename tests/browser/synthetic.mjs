@@ -30,13 +30,13 @@ function mission(hostile) {
   const both = (name, unit) => [0, 1].map((i) => column(`${name}[${i}]`, 'DOUBLE', unit));
   return {name: hostile ? markup : 'ROKVISS', id: 1, simulated: true, epoch_unix_s: 0, start_mode: 'telepresence',
     subsystems: [
-      subsystem(1, 'SUPERVISOR', ['NOMINAL'], [{name: 'SET_MODE', arguments: [argument('MODE', 'UINT8')]}, {name: 'SAFE_ALL', essential: true},
+      subsystem(1, 'SUPERVISOR', ['NOMINAL'], [{name: 'SET_MODE', arguments: [argument('MODE', 'UINT8')]}, {name: 'SAFE_ALL', essential: true}, {name: 'SHUTDOWN', essential: true, confirm: true},
         {name: 'LINK', arguments: [argument('LINK', 'UINT8', {min: 1})]}], [column('MODE', 'UINT8')]),
       subsystem(10, 'MANIPULATOR', ['STANDALONE', 'COUPLED'], [{name: 'MOVE_TO', description: hostile ? markup : 'Moves both joints', arguments: [
         argument('Q1', 'DOUBLE', {unit: 'rad', min: -2, max: 1}), argument('Q2', 'DOUBLE', {unit: 'rad', min: 0.2, max: 2.6}),
         argument('STEPS', 'UINT16')]}, {name: 'HOLD'}],
       [...both('CUR_VALUES.POSITION', 'rad'), ...both('CUR_VALUES.TORQUE', 'N m'), ...both('DES_POSITION', 'rad'), ...both('TIP_FORCE', 'N'),
-        column(hostile ? `${markup}` : 'TEMPERATURE', 'FLOAT', hostile ? markup : 'degC', {min: 0, max: 80})]),
+        column('PHASE', 'UINT8', '', {enumeration: [{value: 0, name: hostile ? markup : 'REST'}, {value: 1, name: 'PUSH'}]}), column(hostile ? `${markup}` : 'TEMPERATURE', 'FLOAT', hostile ? markup : 'degC', {min: 0, max: 80})]),
       subsystem(11, 'JOYSTICK', ['STANDALONE', 'COUPLED'], [{name: 'PASSIVITY', arguments: [argument('ON', 'UINT8', {min: 0, max: 1})]}],
         [...both('CUR_VALUES.POSITION', 'rad'), ...both('CUR_VALUES.TORQUE', 'N m')], hostile ? 'x'.repeat(65536) : 'Joystick'),
     ],
@@ -57,7 +57,7 @@ function sample(t, hostile) {
     'MANIPULATOR.DES_POSITION[0]': -0.8 + 1.04 * a, 'MANIPULATOR.DES_POSITION[1]': 1.6 + 1.04 * b, 'MANIPULATOR.CUR_VALUES.TORQUE[0]': push * 0.05,
     'MANIPULATOR.CUR_VALUES.TORQUE[1]': hostile ? 'NaN' : -push * 0.08, 'MANIPULATOR.TIP_FORCE[0]': -push, 'MANIPULATOR.TIP_FORCE[1]': hostile ? 'Infinity' : 0,
     'JOYSTICK.CUR_VALUES.POSITION[0]': a, 'JOYSTICK.CUR_VALUES.POSITION[1]': b, 'JOYSTICK.CUR_VALUES.TORQUE[0]': push * 0.001, 'JOYSTICK.CUR_VALUES.TORQUE[1]': 0,
-    [hostile ? `MANIPULATOR.${markup}` : 'MANIPULATOR.TEMPERATURE']: hostile ? markup : 20 + 0.05 * t};
+    'MANIPULATOR.PHASE': push > 0 ? 1 : 0, [hostile ? `MANIPULATOR.${markup}` : 'MANIPULATOR.TEMPERATURE']: hostile ? markup : 20 + 0.05 * t};
 }
 
 /// What the gateway would tell of a stop: the answer of /api/why but its times.

@@ -8,7 +8,7 @@ import {rmSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
 import {setTimeout as sleep} from 'node:timers/promises';
-import {bring_up, coupled, go, holds, inject, open_browser, open_page} from './browser.mjs';
+import {bring_up, coupled, go, holds, inject, open_browser, open_page, take_hold} from './browser.mjs';
 import {fly, free_port, ground} from './flight.mjs';
 
 describe('a visitor', () => {
@@ -39,34 +39,7 @@ describe('a visitor', () => {
     await coupled(page);
   }
 
-  /// Every place in a part of the picture where the cursor says "grab", from above to below: asked without moving the mouse.
-  async function grips(from, to) {
-    const found = await page.evaluate(([left, right]) => {
-      const canvas = document.querySelector('[data-test=robot] canvas');
-      const box = canvas.getBoundingClientRect();
-      const places = [];
-      for (let y = box.y + 50; y < box.bottom - 40; y += 5) {
-        for (let x = box.x + box.width * left; x < box.x + box.width * right; x += 5) {
-          canvas.dispatchEvent(new PointerEvent('pointermove', {clientX: x, clientY: y, buttons: 0}));
-          if (canvas.style.cursor === 'grab') places.push([x, y]);
-        }
-      }
-      return places;
-    }, [from, to]);
-    assert.ok(found.length > 0, 'there is something to take');
-    return found;
-  }
-  /// Takes hold of something there; the arm moves meanwhile: a hand that closes on nothing reaches again.
-  async function take(from, to, choose) {
-    for (let reaches = 0; reaches < 20; ++reaches) {
-      const place = choose(await grips(from, to));
-      await page.mouse.move(...place);
-      await page.mouse.down();
-      if (await page.evaluate(() => document.querySelector('[data-test=robot] canvas').style.cursor) === 'grabbing') return place;
-      await page.mouse.up();
-    }
-    return assert.fail('took hold of nothing in 20 reaches');
-  }
+  const take = (from, to, choose) => take_hold(page, from, to, choose);
   /// The arm rests and touches nothing: the readout, told five times a second, has said the same for a second.
   const at_rest = () => holds(page, () => {
     const told = [...document.querySelectorAll('.readout b')].map((one) => Number(one.textContent.replace('−', '-')).toFixed(2)).join(' ');

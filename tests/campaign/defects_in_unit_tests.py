@@ -352,8 +352,8 @@ DEFECTS = [
            "platform_test", "LogSearch.FindsWhatIsShownWhateverItsCase"),
     # SHUTDOWN waited for a stalled log and was then refused.
     Defect("SF12 SHUTDOWN waits for the disk", "supervisor/supervisor.xml",
-           '<Function name="SHUTDOWN" states="PreOperational SafeOperational Operational ErrorOperational" essential="yes">',
-           '<Function name="SHUTDOWN" states="PreOperational SafeOperational Operational ErrorOperational">',
+           '<Function name="SHUTDOWN" states="PreOperational SafeOperational Operational ErrorOperational" essential="yes" confirm="yes">',
+           '<Function name="SHUTDOWN" states="PreOperational SafeOperational Operational ErrorOperational" confirm="yes">',
            "descriptor_test", "ShippedMissions.WhatStopsOrEndsTheFlightOrReplacesTheLogWaitsForNoDisk"),
     # Numbers of a programme had no range: 1e300 was accepted.
     Defect("SF24 number without a range", "subsystems/manipulator/manipulator.xml",

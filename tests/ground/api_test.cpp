@@ -162,14 +162,24 @@ void expect_described(const json& document, const json& part, const json& answer
 TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
   commission();
   const json document = station.get("/api/openapi.json");
-  const json command{
+  // Something to be acknowledged.
+  ASSERT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}})["answer"], "ok");
+  ASSERT_TRUE(station.run_until([&] { return !station.get("/api/alarms")["alarms"].empty(); }));
+  const json alarm = station.get("/api/alarms")["alarms"][0];
+  const json usual{
       {"subsystem", "JOYSTICK"}, {"function", "PING"}, {"device", "robot"}, {"line", "heal"}, {"mode", "telepresence"}};
+  /// What each path is sent that wants more than that.
+  const std::map<std::string, json> bodies{
+      {"/api/alarms", {{"subsystem", alarm["subsystem"]}, {"event", alarm["name"]}, {"action", "acknowledge"}}},
+      {"/api/authority", {{"action", "take"}, {"seat", "a"}}},
+      {"/api/flights", {{"flight", 1}, {"name", "a name"}}}};
   std::size_t asked = 0;
   for (const auto& [path, methods] : document["paths"].items())
     for (const auto& [method, operation] : methods.items()) {
       SCOPED_TRACE(method + " " + path);
       ++asked;
       const bool posts = method == "post";
+      const json& command = bodies.contains(path) ? bodies.at(path) : usual;
       const json& responses = operation["responses"];
       const auto ask = [&](std::map<std::string, std::string> headers, const json& body, bool all = false) {
         const auto answer =
@@ -192,6 +202,107 @@ TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
       }
     }
   EXPECT_EQ(asked, ground::routes().size());
+}
+
+/// Sends as a page of somebody would.
+struct TwoPeople : GroundStation {
+  unsigned send(const std::string& seat, const std::string& subsystem, const std::string& function,
+                json arguments = json::object()) {
+    const auto answer = station.ask("POST", "/api/commands",
+                                    {{"subsystem", subsystem},
+                                     {"function", function},
+                                     {"arguments", std::move(arguments)},
+                                     {"seat", seat},
+                                     {"sender", seat}});
+    told = json::parse(answer.body).value("error", "");
+    return answer.status;
+  }
+  json authority(const std::string& seat, const std::string& action) {
+    return station.post("/api/authority", {{"seat", seat}, {"sender", seat}, {"action", action}});
+  }
+  std::string told;
+};
+
+TEST_F(TwoPeople, OneCommandsAndTheOtherIsRefusedByTheStationUntilItIsHandedOver) {
+  commission();
+  Page page;
+  static_cast<void>(station.session().opened(page, true, "ben"));
+  EXPECT_EQ(send("anna", "JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.01}}), 202U);
+  EXPECT_EQ(send("ben", "JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.02}}), 409U);
+  EXPECT_EQ(told, "anna commands: ask for the command, or wait until it is handed over");
+  EXPECT_EQ(page.last("authority")["holder"]["name"], "anna") << "every page is told";
+  EXPECT_EQ(authority("ben", "take")["asking"]["name"], "ben");
+  EXPECT_EQ(authority("anna", "hand_over")["holder"]["name"], "ben");
+  EXPECT_EQ(send("anna", "JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.01}}), 409U);
+  EXPECT_EQ(send("ben", "JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.02}}), 202U);
+  std::vector<std::string> log;
+  const json marks = station.get("/api/marks")["marks"];
+  for (const json& mark : marks)
+    if (mark["kind"] == "authority")
+      log.push_back(mark["who"].get<std::string>() + " " + mark["action"].get<std::string>());
+  EXPECT_EQ(log, (std::vector<std::string>{"ben was handed", "ben asked", "anna took"}));
+  station.session().closed(page);
+  station.run(40s);
+  EXPECT_TRUE(station.get("/api/authority")["holder"].is_null()) << "nobody is there any more";
+}
+
+/// Of every function of every subsystem, so of those of a new one, too.
+TEST_F(TwoPeople, WhatIsEssentialIsRefusedToNobodyAndNeedsNoConfirmation) {
+  commission();
+  ASSERT_EQ(authority("anna", "take")["holder"]["name"], "anna");
+  int essential = 0, others = 0;
+  const json mission = station.get("/api/mission");
+  for (const json& subsystem : mission["subsystems"])
+    for (const json& function : subsystem["functions"]) {
+      if (!function["arguments"].empty() || function["name"] == "SHUTDOWN") continue;
+      const unsigned status = send("ben", subsystem["name"], function["name"]);
+      const bool is_essential = function["essential"];
+      EXPECT_EQ(status, is_essential ? 202U : 409U) << subsystem["name"] << function["name"];
+      (is_essential ? essential : others) += 1;
+    }
+  EXPECT_GT(essential, 3);
+  EXPECT_GT(others, 3);
+  EXPECT_EQ(send("ben", "SUPERVISOR", "SHUTDOWN"), 202U) << "marked for people, and towards safety all the same";
+}
+
+TEST_F(TwoPeople, WhatTheDescriptorMarksIsSentOnlyWhenItIsConfirmed) {
+  commission();
+  json body{{"subsystem", "SUPERVISOR"}, {"function", "TAKE_BACK"}, {"arguments", {{"APID", 10}}}, {"seat", "anna"}};
+  for (const json& no : {json(nullptr), json(false), json("true"), json(1)}) {
+    body["confirmed"] = no;
+    const auto answer = station.ask("POST", "/api/commands", body);
+    EXPECT_EQ(answer.status, 409U);
+    EXPECT_THAT(answer.body, HasSubstr("to be confirmed"));
+  }
+  body["confirmed"] = true;
+  EXPECT_EQ(station.ask("POST", "/api/commands", body).status, 202U);
+}
+
+TEST_F(TwoPeople, AlarmsAreAcknowledgedForEverybodyAndKeptByTheStation) {
+  commission();
+  Page page;
+  static_cast<void>(station.session().opened(page, true, "ben"));
+  station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}});
+  ASSERT_TRUE(station.run_until([&] { return !page.of_type("alarm").empty(); }));
+  const json alarm = page.last("alarm");
+  EXPECT_EQ(alarm["calls"], true);
+  const json done = station.post("/api/alarms", {{"subsystem", alarm["subsystem"]},
+                                                 {"event", alarm["name"]},
+                                                 {"action", "acknowledge"},
+                                                 {"sender", "anna"},
+                                                 {"note", "was me"}});
+  const auto acknowledged =
+      std::ranges::find_if(done["alarms"], [&](const json& one) { return one["name"] == alarm["name"]; });
+  ASSERT_NE(acknowledged, done["alarms"].end());
+  EXPECT_EQ((*acknowledged)["acknowledged"]["who"], "anna");
+  EXPECT_EQ(page.last("alarm")["acknowledged"]["note"], "was me");
+  station.run(1s);
+  station.post("/api/alarms", {{"subsystem", "*"}, {"action", "acknowledge"}, {"sender", "ben"}});
+  for (const json& one : page.last("alarms")["alarms"]) EXPECT_EQ(one["calls"], false);
+  EXPECT_EQ(station.get("/api/alarms")["seen_until"], page.last("alarms")["seen_until"]);
+  EXPECT_EQ(
+      station.ask("POST", "/api/alarms", {{"action", "acknowledge"}}, {{"authorization", "Bearer looker"}}).status,
+      403U);
 }
 
 TEST_F(GroundStation, OnlyWhoKnowsTheTokenFromThisComputerMayAskAndObserversMayNotCommand) {

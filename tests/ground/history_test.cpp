@@ -219,6 +219,10 @@ TEST_F(GroundStation, AnExportThatWouldHoldUpTheLiveViewIsRefused) {
       station.ask("GET", "/api/export.csv?from=2145916800&to=2145917200&parameter=" + std::string{first_joint});
   EXPECT_EQ(one.status, 200U);
   EXPECT_EQ(std::ranges::count(one.body, '\n'), 20'001);
+  // 1958-01-01 TAI and 37 leap seconds: by Python's datetime.
+  EXPECT_TRUE(
+      one.body.starts_with("t,utc," + std::string{first_joint} + "\n2145916900.000000,2026-01-01T00:01:03.000000Z,1\n"))
+      << one.body.substr(0, 200);
 }
 
 }  // namespace

@@ -41,6 +41,39 @@ const states = new Map();
 let commands = [];
 let injections = [];
 let next_id = 1;
+// What people at the station share, as the gateway has it: here only as far as one page needs.
+const authority = {holder: null, asking: null};
+const acts = new Map();
+let seen_until = null, marks = [];
+const flight_of_now = {id: 2, from: first_t};
+
+function alarms() {
+  const found = new Map();
+  for (const one of archive.filter((message) => message.type === 'event' && ['high', 'medium'].includes(message.severity))) {
+    const key = `${one.apid}/${one.id}`, before = found.get(key), act = acts.get(key) ?? {};
+    const fresh = one.t > (act.acknowledged?.t ?? -Infinity);
+    found.set(key, {...one, first: before?.first ?? one.t, count: (before?.count ?? 0) + 1, fresh: (before?.fresh ?? 0) + (fresh ? 1 : 0), calls: false,
+      acknowledged: act.acknowledged ?? null, shelved: act.shelved?.until > now ? act.shelved : null});
+  }
+  return {alarms: [...found.values()].map((one) => ({...one, calls: one.fresh > 0 && !one.shelved})), seen_until};
+}
+
+function act_on_alarm({subsystem, event, action, note = '', for_s, sender = 'operator'}) {
+  for (const one of alarms().alarms.filter((known) => subsystem === '*' || (known.subsystem === subsystem && known.name === event))) {
+    const key = `${one.apid}/${one.id}`, act = {t: now, who: sender, note};
+    acts.set(key, {...acts.get(key), ...(action === 'acknowledge' ? {acknowledged: act} : {shelved: action === 'shelve' ? {...act, until: now + for_s} : null})});
+  }
+  if (subsystem === '*') seen_until = now;
+  marks = [{t: now, kind: 'alarm', name: '*', action, who: sender, note, until: null}, ...marks];
+  tell({type: 'alarms', ...alarms()});
+  return alarms();
+}
+
+function act_on_authority({action, seat, sender = 'operator'}) {
+  authority.holder = action === 'hand_over' ? null : {seat, name: sender, since: now};
+  tell({type: 'authority', ...authority});
+  return authority;
+}
 
 function take(message) {
   archive.push(message);
@@ -119,6 +152,7 @@ function tell(message) {
 }
 
 function command(body) {
+  if (body.seat && !authority.holder) act_on_authority({action: 'take', seat: body.seat, sender: body.sender});
   const one = {id: next_id++, t: now, sender: 'operator', subsystem: body.subsystem, function: body.function, arguments: body.arguments, reports: []};
   commands = [one, ...commands];
   const refused = body.function === 'MOVE_TO';
@@ -160,6 +194,11 @@ const server = createServer(async (request, response) => {
     '/api/modes/preview': () => ({mode: body.mode, against: [], steps: (flight.mission.modes.find((one) => one.name === body.mode)?.commission ?? [])
         .flatMap((one, i) => [['configured as', one.configuration], ['to', one.state]].map(([word, what]) => ({stage: i + 1, subsystem: one.subsystem, what: `${word} ${what}`})))}),
     '/api/timeline': () => timeline(query),
+    '/api/alarms': () => request.method === 'POST' ? act_on_alarm(body) : state === 'fresh' ? {alarms: [], seen_until: null} : alarms(),
+    '/api/authority': () => request.method === 'POST' ? act_on_authority(body) : authority,
+    '/api/marks': () => ({marks}),
+    '/api/flights': () => request.method === 'POST' ? {flight: body.flight, name: body.name} : {flights: state === 'fresh' ? [] : [{id: 2, from: first_t, to: now, name: '', named_by: '', high: 0, medium: 0, commands: commands.length},
+      {id: 1, from: first_t - 4000, to: first_t - 600, name: 'first light', named_by: 'anna', high: 2, medium: 1, commands: 14}]},
     '/api/log': () => {
       const lines = archive.filter((one) => one.type === 'event').reverse().map((one, i) => ({number: archive.length - i, t: one.t, apid: one.apid,
         subsystem: one.subsystem, service: 5, subtype: 1, text: `TM[5,1] ${one.subsystem} ${one.name} ${one.text}`}));
@@ -182,7 +221,7 @@ const server = createServer(async (request, response) => {
 
 const sockets = new WebSocketServer({server, path: '/ws', verifyClient: ({req}) => new URL(req.url, 'http://x').searchParams.get('token') === token});
 sockets.on('connection', (socket) => {
-  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: 'c1', operator: state !== 'observer', archive_from: first_t}));
+  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: 'c1', operator: state !== 'observer', archive_from: first_t, authority, flight: flight_of_now}));
   socket.on('message', (data) => {
     const message = JSON.parse(data);
     socket.replay = message.type === 'replay' ? {at: message.at, speed: message.speed, next: archive.findIndex((one) => one.t >= message.at)} : null;

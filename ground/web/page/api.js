@@ -14,12 +14,20 @@ export function take_token() {
     } catch (error) {
       if (!(error instanceof URIError)) throw error;  // no token of ours: asked for as if there were none
     }
-    history.replaceState(null, '', '#/overview');
+    // What else stands there stays: a view, a moment.
+    const rest = location.hash.replace(/token=[^&]+&?/, '').replace(/[?&]$/, '');
+    const at = /[#&?](at=[\d.]+)/.exec(rest)?.[1];
+    history.replaceState(null, '', rest.startsWith('#/') ? rest : `#/overview${at ? `?${at}` : ''}`);
   }
   return token();
 }
 
 export const token = () => sessionStorage.getItem(stored) ?? '';
+
+/// Who this page is to the station when it asks who commands: the same after a reload, another one in another tab.
+const seat_stored = 'hirosco-seat';
+export const seat = sessionStorage.getItem(seat_stored) ?? crypto.randomUUID();
+sessionStorage.setItem(seat_stored, seat);
 
 export class RequestError extends Error {
   constructor(status, message) {

@@ -3,7 +3,7 @@
 //
 // Everything that goes up passes here: telecommands by the supervisor, faults by the simulated devices' own sockets.
 import {signal} from '@preact/signals';
-import {get, post} from './api.js';
+import {get, post, seat} from './api.js';
 import {commands, mission, now_s, outcome_of, replay, status, status_of, subsystem_of, with_report} from './store.js';
 
 /// Short words at the lower edge for what was sent without a form.
@@ -15,6 +15,8 @@ export function say(text, kind = 'info') {
   setTimeout(() => { toasts.value = toasts.value.filter((other) => other !== one); }, kind === 'bad' ? 9000 : 4000);
 }
 
+export const copy = (text, words) => navigator.clipboard?.writeText(text).then(() => say(words), () => say('the browser does not let this page copy', 'bad'));
+
 const name_kept = 'hirosco-operator';
 /// What the others see as sender; the gateway has a name of its own for who gives none.
 export const operator_name = signal(localStorage.getItem(name_kept) ?? '');
@@ -23,10 +25,14 @@ export function name_operator(name) {
   localStorage.setItem(name_kept, operator_name.value);
 }
 
-export async function send(subsystem, function_name, values = {}) {
+/// How this page is told to others.
+export const signed = () => ({seat, sender: operator_name.value || undefined});
+
+/// `confirmed`: somebody was asked once more, as the descriptor wants it of some.
+export async function send(subsystem, function_name, values = {}, confirmed = false) {
   if (replay.value) throw new Error('This is a replay: telecommands are locked.');
-  const answer = await post('/api/commands', {subsystem, function: function_name, arguments: values,
-    sender: operator_name.value || undefined});
+  const answer = await post('/api/commands', {subsystem, function: function_name, arguments: values, ...signed(),
+    ...(confirmed ? {confirmed} : {})});
   commands.value = with_report(commands.value, {id: answer.id, subsystem, function: function_name, arguments: values,
     octets: answer.octets, mine: true});
   return answer.id;

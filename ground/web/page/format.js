@@ -21,6 +21,11 @@ export function date_text(t) {
   return t >= calendar_from_s ? new Date(epoch_ms + t * 1000).toISOString().slice(0, 10) : '';
 }
 
+/// On board nobody counts leap seconds: since 2017 its clock is as much ahead of UTC.
+const tai_minus_utc_s = 37;
+/// "2026-11-24T13:20:47.123Z"; empty where missions on virtual time begin.
+export const iso_text = (t) => t >= calendar_from_s ? new Date(epoch_ms + (t - tai_minus_utc_s) * 1000).toISOString() : '';
+
 /// To the browser's own Date seconds, for axis labels.
 export const axis_seconds = (t) => t >= calendar_from_s ? t + epoch_ms / 1000 : t;
 

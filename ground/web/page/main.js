@@ -12,7 +12,7 @@ import {Header} from './parts/header.js';
 import {Icon} from './parts/icons.js';
 import {ReplayBar} from './parts/replay_bar.js';
 import {StopBanner} from './parts/stop_banner.js';
-import {live, mission, now_s, problem, start, unseen} from './store.js';
+import {calling, live, mission, now_s, problem, replay_from, start} from './store.js';
 import {switch_theme, theme} from './theme.js';
 import {Tour, tour_from_url} from './tour.js';
 import {Commands} from './views/commands.js';
@@ -41,7 +41,15 @@ function parsed_route() {
 const tour_asked = /[#&?]tour\b/.test(location.hash);
 const token_first = take_token();
 const route = signal(parsed_route());
-addEventListener('hashchange', () => { route.value = parsed_route(); });
+addEventListener('hashchange', () => {
+  route.value = parsed_route();
+  to_moment();
+});
+/// An address with a moment in it is a replay from there.
+function to_moment() {
+  const at = Number(route.value.query.get_raw('at'));
+  if (at > 0 && Number.isFinite(at)) replay_from(at, 1);
+}
 const faults_open = signal(false);
 const paused = signal(null);
 
@@ -81,7 +89,7 @@ function Page() {
     <${StopBanner} />
     <nav aria-label="views">${Object.entries(views).map(([name, [title]]) => html`<a href=${`#/${name}`} class=${name === view ? 'on' : ''}
       aria-current=${name === view ? 'page' : undefined} title=${title}><${Icon} name=${name} /><span>${title}</span>${
-      name === 'events' && unseen.value.high + unseen.value.medium ? html`<i class="news">${unseen.value.high + unseen.value.medium}</i>` : null}</a>${
+      name === 'events' && calling.value.high + calling.value.medium ? html`<i class="news">${calling.value.high + calling.value.medium}</i>` : null}</a>${
       name === 'timeline' ? html`<button class="theme" data-test="theme" onClick=${switch_theme}><${Icon} name="theme" /><span>${theme.value === 'light' ? 'Dark' : 'Light'}</span></button>` : null}`)}</nav>
     ${problem.value ? html`<p class="problem" role="alert">${problem.value}</p>` : null}
     ${mission.value ? html`<${View} key=${view} rest=${rest} query=${query} paused=${paused.value} set_paused=${(t) => { paused.value = t; }} />` :
@@ -96,4 +104,5 @@ root.textContent = '';
 render(html`<${Page} />`, root);
 if (!token_first) problem.value = 'Open the URL that `hirosco run` printed: it carries the token.';
 start();
+to_moment();
 if (tour_asked) tour_from_url();

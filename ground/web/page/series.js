@@ -3,7 +3,7 @@
 //
 // Samples of the parameters that are drawn: the past from the archive, then what the feed brings. Shared between plots.
 import {get} from './api.js';
-import {gateway, newest_s, now_s, on_values, replay} from './store.js';
+import {flight, gateway, newest_s, now_s, on_values, replay} from './store.js';
 
 const most_samples = 40000;
 const longest_window_s = 3600;
@@ -80,7 +80,9 @@ export function use_series(name, window_s) {
 
 export function extend(series, window_s) {
   const newest = newest_s();
-  if (Number.isFinite(newest)) series.fetch(newest - Math.min(longest_window_s, window_s) - 1);
+  // Nothing of an earlier flight, but in a replay of it.
+  const began = replay.value ? -Infinity : flight.value?.from ?? -Infinity;
+  if (Number.isFinite(newest)) series.fetch(Math.max(began, newest - Math.min(longest_window_s, window_s) - 1));
 }
 
 export function drop_series(series) {
@@ -109,6 +111,12 @@ gateway.subscribe(({connected}) => {
     }
   }
   was_connected = connected;
+});
+
+let flown = null;
+flight.subscribe((value) => {
+  if (flown !== null && value && value.id !== flown && !replay.peek()) for (const series of known.values()) series.forget();
+  flown = value?.id ?? flown;
 });
 
 let was = null;
@@ -147,4 +155,31 @@ export function aligned(list, from, to) {
     rows.push(v, low, high);
   });
   return rows;
+}
+
+/// The newest sample up to `t`; undefined where there is none.
+export function value_at(name, t) {
+  const series = known.get(name);
+  if (!series || !Number.isFinite(t)) return undefined;
+  let low = 0, high = series.t.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (series.t[middle] <= t) low = middle + 1; else high = middle;
+  }
+  return low > 0 ? series.v[low - 1] ?? undefined : undefined;
+}
+
+/// {count, min, mean, max} of the samples in [from, to]; null where there are none. Of buckets their own ends count.
+export function statistics(name, from, to) {
+  const series = known.get(name);
+  let count = 0, sum = 0, min = Infinity, max = -Infinity;
+  for (let i = 0; i < (series?.t.length ?? 0); ++i) {
+    const v = series.v[i];
+    if (series.t[i] < from || series.t[i] > to || v === null) continue;
+    ++count;
+    sum += v;
+    min = Math.min(min, series.low[i] ?? v);
+    max = Math.max(max, series.high[i] ?? v);
+  }
+  return count ? {count, min, mean: sum / count, max} : null;
 }

@@ -5,31 +5,19 @@
 import {computed, effect, signal} from '@preact/signals';
 import {get} from './api.js';
 import {bring_up, state_name} from './commanding.js';
-import {commands, events, gateway, mission, mode_of, replay, status, status_of, subsystem_of} from './store.js';
+import {acknowledge_all} from './people.js';
+import {commands, events, flight, gateway, mission, mode_of, replay, seen_until, status, status_of, subsystem_of} from './store.js';
 
 /// The newest story, whatever became of it since; null while none is known.
 export const story = signal(null);
 
-const kept = 'hirosco-stop-acknowledged';
-const seen_until = signal(Number(sessionStorage.getItem(kept) ?? -Infinity));
-export function acknowledge() {
-  if (!story.value) return;
-  seen_until.value = story.value.t;
-  sessionStorage.setItem(kept, String(story.value.t));
-}
-
-/// When this flight began, by the cycles of its supervisor: what an earlier one left in the archive stops nobody.
-function flight_began_s() {
-  const supervisor = mission.value?.subsystems.find((one) => one.id === 1);
-  const now = supervisor && status_of(supervisor.name);
-  const rate_hz = supervisor?.configurations.find((one) => one.name === now?.configuration)?.sampling_hz ?? supervisor?.configurations[0]?.sampling_hz;
-  return now?.cycles && rate_hz ? status.value.t - now.cycles / rate_hz - 2 : -Infinity;
-}
+/// For everybody: the station keeps it, with the name of who did.
+export const acknowledge = (note = '') => acknowledge_all(note);
 
 /// The story that nobody has acknowledged yet; null in a replay, which has its own time.
 export const stop = computed(() => {
   const told = story.value;
-  if (!told || replay.value || !(told.t > seen_until.value) || told.t < flight_began_s()) return null;
+  if (!told || replay.value || told.t <= (seen_until.value ?? -Infinity) || told.t < (flight.value?.from ?? -Infinity)) return null;
   return told.stopped?.length || told.severity === 'high' ? told : null;
 });
 
@@ -101,7 +89,7 @@ export async function bring_up_again() {
   const failed = steps.find((step) => step.stage === 'failed');
   rising.value = {running: false, steps, failed, mode: mode.name};
   if (failed) return;
-  acknowledge();
+  await acknowledge(`brought ${mode.name} up`);
   rising.value = null;
 }
 

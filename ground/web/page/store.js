@@ -4,7 +4,7 @@
 // What the page knows, as signals: the mission's descriptors, the newest status and values, events, command reports, and
 // whether all this is live or from the archive. One source at a time: going to a replay and back empties what depends on time.
 import {batch, computed, effect, signal} from '@preact/signals';
-import {get, introduce, token} from './api.js';
+import {get, introduce, seat, token} from './api.js';
 
 const most_events = 10000;
 const most_commands = 500;
@@ -22,6 +22,14 @@ export const problem = signal('');
 /// False for an observer: reads everything, commands nothing.
 export const operator = signal(true);
 export const injections = signal([]);
+/// As GET /api/alarms has them, and when somebody acknowledged all of it; kept by the station.
+export const alarms = signal([]);
+export const seen_until = signal(null);
+/// {holder, asking, at_ms}: who commands, as the station says; null while that is not known.
+export const authority = signal(null);
+/// {id, from} of the flight that is flown now, and all that the archive has.
+export const flight = signal(null);
+export const flights = signal([]);
 /// Counts batches of values; a view that draws at telemetry rate reads it.
 export const fast = signal(0);
 /// The same at 5 Hz, for numbers that people read, and for ages.
@@ -107,24 +115,14 @@ export const link = computed(() => {
     archive_failures: reported.archive_failures ?? 0};
 });
 
-function counted_since(from) {
+const counted = (list) => {
   const found = {high: 0, medium: 0, low: 0, info: 0};
-  for (const event of events.value) if (event.severity in found && event.t > from) ++found[event.severity];
+  for (const {severity} of list) if (severity in found) ++found[severity];
   return found;
-}
-export const counts = computed(() => counted_since(-Infinity));
-
-const seen_kept = 'hirosco-seen-until';
-const seen_until = signal(Number(localStorage.getItem(seen_kept) ?? 0));
-/// What the header counts: the last hour's events that the operator has not looked at. A new flight in virtual time begins anew.
-export const unseen = computed(() => {
-  const newest = events.value[0]?.t ?? 0;
-  return counted_since(Math.max(seen_until.value <= newest + 1 ? seen_until.value : 0, newest - 3600));
-});
-export function see_events() {
-  seen_until.value = now_s();
-  localStorage.setItem(seen_kept, String(seen_until.value));
-}
+};
+export const counts = computed(() => counted(events.value));
+/// Alarms that call somebody: neither acknowledged nor shelved.
+export const calling = computed(() => counted(alarms.value.filter((one) => one.calls)));
 
 const number_of = (value) => value === 'NaN' ? NaN : value === 'Infinity' ? Infinity : value === '-Infinity' ? -Infinity : value;
 
@@ -161,7 +159,7 @@ export const outcome_of = (command) => {
 };
 
 let mission_text = '';
-let counted = 0;
+let batches = 0;
 
 /// A key for what a browser lists; archive rows and messages of the same event must agree.
 const event_key = (event) => `${event.t}/${event.apid ?? event.subsystem}/${event.id}/${event.text}`;
@@ -177,7 +175,13 @@ function take(list) {
     if (message.type === 'hello') {
       introduce(message.client);
       operator.value = message.operator !== false;
+      if (message.authority) take_authority(message.authority);
+      if (message.flight) take_flight(message.flight);
     }
+    if (message.type === 'authority') take_authority(message);
+    if (message.type === 'alarm') alarms.value = [message, ...alarms.value.filter((one) => one.id !== message.id || one.apid !== message.apid)];
+    if (message.type === 'alarms') take_alarms(message);
+    if (message.type === 'flight' && take_flight(message)) begin_anew();
     if (message.type === 'values') {
       heard(message.t);
       take_values(message.set, message.t);
@@ -203,20 +207,47 @@ function take(list) {
   }
   batch(() => {
     if (newest_status) status.value = newest_status;
-    if (values_came) fast.value = ++counted;
+    if (values_came) fast.value = ++batches;
     if (fresh_events.length) events.value = [...fresh_events.reverse(), ...events.value].slice(0, most_events);
     if (reports !== commands.value) commands.value = reports;
   });
+}
+
+const take_authority = ({holder, asking}) => { authority.value = {holder, asking, at_ms: performance.now()}; };
+function take_alarms(answer) {
+  alarms.value = answer.alarms ?? [];
+  seen_until.value = answer.seen_until ?? null;
+}
+/// True when it is another one than before.
+function take_flight({id, from}) {
+  const before = flight.value;
+  if (id) flight.value = {id, from};
+  return Boolean(before && id && before.id !== id);
+}
+/// Another flight: nothing of the one before stays in the page.
+function begin_anew() {
+  batch(() => {
+    if (!replay.value) forget_time();
+    injections.value = [];
+    gaps.value = [];
+    alarms.value = [];
+    seen_until.value = null;
+  });
+  fetch_present();
 }
 
 const rows = (answer, name) => Array.isArray(answer) ? answer : answer?.[name] ?? [];
 
 const refused = 'The gateway refuses this page: open the URL that `hirosco run` printed last, with its token.';
 
-/// What happened before the page came, so that it opens with a past.
+/// When the flight began that flew at `t`; undefined where nobody knows.
+const began_before = (t) => flights.value.find((one) => one.from <= t)?.from;
+
+/// What happened in this flight, or in the one that is replayed, before the page came, so that it opens with a past.
 async function fetch_past(until) {
+  const from = until === undefined ? flight.value?.from : began_before(until);
   const [event_rows, command_rows] = await Promise.all([
-    get('/api/events', {limit: 500, to: until}).catch(() => []), get('/api/commands', {limit: 100, to: until}).catch(() => [])]);
+    get('/api/events', {limit: 500, from, to: until}).catch(() => []), get('/api/commands', {limit: 100, from, to: until}).catch(() => [])]);
   const past = rows(event_rows, 'events').map((event) => ({...event, key: event_key(event)}));
   past.sort((a, b) => b.t - a.t);
   let reports = commands.value;
@@ -254,10 +285,17 @@ async function really_fetch_present() {
       batch(() => {
         status.value = rest;
         take_values(set ?? {}, rest.t);
-        fast.value = ++counted;
+        fast.value = ++batches;
       });
     }
     problem.value = '';
+    const [alarm_rows, now_commands, known_flights] = await Promise.all(['alarms', 'authority', 'flights'].map((name) => get(`/api/${name}`).catch(() => null)));
+    if (alarm_rows) take_alarms(alarm_rows);
+    if (now_commands) take_authority(now_commands);
+    if (known_flights) {
+      flights.value = known_flights.flights;
+      if (flights.value[0]) take_flight(flights.value[0]);
+    }
     await fetch_past(replay.value?.at);
   } catch (error) {
     problem.value = error.status === 401 || error.status === 403 ? refused : error.status === 0 ? '' : String(error.message);
@@ -301,6 +339,7 @@ export function start() {
   const url = new URL('ws', document.baseURI);
   url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
   url.searchParams.set('token', token());
+  url.searchParams.set('seat', seat);
   worker.postMessage({kind: 'connect', url: url.href});
   setInterval(() => { if (!document.hidden) slow.value = slow.peek() + 1; }, slow_period_ms);
   // Without an answer there is no socket either: say why.
@@ -325,6 +364,13 @@ export function replay_from(at, speed = replay.value?.speed ?? 1) {
   clock.at_ms = performance.now();
   send_to_gateway({type: 'replay', at, speed});
   fetch_past(at);
+}
+
+/// The address of what is shown now, as it is now: whoever opens it in a page of this station sees it as a replay. No token is in it.
+export function moment_link() {
+  const [path, query = ''] = location.hash.split('?');
+  const words = [...query.split('&').filter((one) => one && !one.startsWith('at=')), `at=${now_s().toFixed(3)}`];
+  return `${location.origin}${location.pathname}${path || '#/overview'}?${words.join('&')}`;
 }
 
 export function live() {

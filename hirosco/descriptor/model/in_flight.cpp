@@ -135,7 +135,8 @@ class Comparison {
         });
   }
   void function(const Function& flown, const Function& fresh, const std::string& kind) {
-    [[maybe_unused]] const auto& [name, service, subtype, states, essential, arguments_, description, at] = fresh;
+    [[maybe_unused]] const auto& [name, service, subtype, states, essential, confirm, arguments_, description, at] =
+        fresh;
     const std::string what = kind + name;
     unless(flown.service == service && flown.subtype == subtype, at, what + ": its type", code_why);
     unless(flown.states == states && flown.essential == essential, at, what + ": when it is permitted", safety_why);

@@ -142,6 +142,7 @@ struct Function {
   std::uint8_t subtype{1};
   std::uint16_t states{0};  ///< bit n set: permitted in State n
   bool essential{false};  ///< forwarded before it is logged (decision 24)
+  bool confirm{false};  ///< a person at a ground station is asked once more (docs/adr/0105)
   struct Argument {
     Field field;
     std::string of;  ///< parameter that gave type, unit, enumeration and range; empty = its own

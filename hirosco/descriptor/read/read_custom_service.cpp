@@ -45,6 +45,7 @@ void SubsystemReader::read_request(const xml::Element& element, CustomService& s
   request.service = service.type;
   request.subtype = attributes.required_integer<std::uint8_t>("subtype", 1, 255);
   request.essential = attributes.yes("essential", false);
+  request.confirm = attributes.yes("confirm", false);
   request.states =
       read_states(attributes, "states",
                   {State::PreOperational, State::SafeOperational, State::Operational, State::ErrorOperational});

@@ -148,6 +148,7 @@ void SubsystemReader::read_function(const xml::Element& element, const Services&
   function.at = place(element.at);
   function.name = attributes.name("name", NameKind::Function);
   function.essential = attributes.yes("essential", false);
+  function.confirm = attributes.yes("confirm", false);
   function.states = read_states(attributes, "states", {State::Operational});
   if (const auto* at = attributes.optional("id"); at != nullptr)
     problems_.not_built_in(*at, "leave it out: a function is called by its name");

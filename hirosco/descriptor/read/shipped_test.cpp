@@ -72,6 +72,18 @@ TEST(ShippedMissions, WhatStopsOrEndsTheFlightOrReplacesTheLogWaitsForNoDisk) {
     }
 }
 
+/// What a person is asked once more, and what never: nobody is to be held up on the way to safety (docs/adr/0105).
+TEST(ShippedMissions, WhatEndsTheFlightOrReplacesAProgramIsConfirmedAndWhatStopsIsNot) {
+  for (const auto& [file, mission] : shipped_missions()) {
+    for (const char* name : {"SHUTDOWN", "REPLACE", "TAKE_BACK"})
+      EXPECT_TRUE(mission.supervisor.find_function(name)->confirm) << file << " " << name;
+    EXPECT_FALSE(mission.supervisor.find_function("SAFE_ALL")->confirm) << file;
+    for (const auto& member : mission.subsystems)
+      for (const Function& function : member.subsystem.functions)
+        EXPECT_FALSE(function.confirm && function.essential) << member.subsystem.name << " " << function.name;
+  }
+}
+
 TEST(ShippedMissions, AProtectionIsSetByOneFunctionAtMostAndByNoTelecommandForParameters) {
   for (const auto& [file, mission] : shipped_missions())
     for (const auto& member : mission.subsystems)

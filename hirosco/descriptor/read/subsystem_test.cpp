@@ -99,6 +99,8 @@ TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
   EXPECT_EQ(move->description, "Moves on a straight line in joint space");
   EXPECT_TRUE(robot.find_function("HOLD")->permitted_in(State::SafeOperational));
   EXPECT_TRUE(robot.find_function("HOLD")->essential);
+  EXPECT_FALSE(robot.find_function("HOLD")->confirm);
+  EXPECT_TRUE(robot.find_function("RELEASE")->confirm);
   const auto only = read_subsystem(data / "hello.xml", file_system());
   ASSERT_TRUE(only.value) << rendered(only.problems, file_system());
   EXPECT_NE(only.value->find_function("MOVE_TO"), nullptr) << "it stands in the only configuration";

@@ -4,11 +4,14 @@
 // A telecommand from its descriptor: one field for each argument, judged while it is typed, the octets and the supervisor's
 // answer to "permitted now?" before sending, the chain of verdicts after.
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {preview, send, send_and_say} from '../commanding.js';
+import {copy, preview, send, send_and_say, state_name} from '../commanding.js';
 import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, mission, mode_of, operator, outcome_of, replay, slow, status_of, subsystem_of, values} from '../store.js';
-import {arguments_text} from './arguments.js';
+import {command_is, commander, i_ask, may_send, take_command} from '../people.js';
+import {arguments_text, choices_of} from './arguments.js';
+import {as_python, as_tc, is_favourite, toggle_favourite} from './favourites.js';
+import {mode_wanted} from './mode_menu.js';
 import {scene_of_mission} from './scene_file.js';
 import {fill_form, kept_texts, typed} from './typed.js';
 
@@ -59,21 +62,6 @@ function judged_one(argument, text) {
   const [low, high] = range_of(argument);
   if (!(value >= low && value <= high)) return {error: `outside ${range_text(argument)} ${unit_text(argument.unit)}`.trim()};
   return {value: is_wide(argument) ? sent_whole(value) : value};
-}
-
-/// The mission knows more names for values than a descriptor: modes, links, configurations.
-function choices_of(subsystem, action, argument) {
-  if ((argument.count ?? 1) > 1) return [];
-  if (argument.enumeration?.length) return argument.enumeration;
-  const known = mission.value;
-  const named = (list, label = (one) => one.name) => list?.map((one) => ({value: one.id, name: label(one)}));
-  if (argument.name === 'MODE' && (action.name === 'SET_MODE' || action.name === 'ENTER_MODE')) return named(known?.modes);
-  if (argument.name === 'LINK') return named(known?.links, (one) => `${one.id}: ${one.from} → ${one.to}`);
-  if (argument.name === 'CONFIGURATION' && action.name === 'CONFIGURE') return named(subsystem_of(subsystem)?.configurations);
-  if (argument.name === 'STATE' && action.name === 'SET_STATE') {
-    return subsystem_of(subsystem)?.states?.map((name, value) => ({value, name: state_text(name)}));
-  }
-  return [];
 }
 
 const first_text = (argument, choices) => {
@@ -143,10 +131,30 @@ function Permission({answer, problem, subsystem, action}) {
   const modes = modes_that_permit(subsystem, action).map((mode) => mode.name);
   const states = (action.states ?? []).map(state_text);
   return html`<p class="permission no" data-test="permission"><${Lock} /><b>Not now:</b> ${answer.reason ?? `code ${answer.code}`}.
-    ${modes.length ? html` Permitted in ${modes.slice(0, 3).join(', ')}${states.length ? `, ${states.join(' or ')}` : ''}.` : states.length ? html` Taken in ${states.join(' and ')}.` : null}</p>`;
+    ${modes.length ? html` Permitted in ${modes.slice(0, 3).join(', ')}${states.length ? `, ${states.join(' or ')}` : ''}.` : states.length ? html` Taken in ${states.join(' and ')}.` : null}
+    ${modes.length && operator.value ? html`<button type="button" class="link" data-test="permit-mode" onClick=${() => { mode_wanted.value = modes[0]; }}>Go ${modes[0]} …</button>` : null}
+    ${in_wrong_state(subsystem, action) ? html`<a class="link" data-test="permit-state" href=${`#/subsystems/${subsystem}`}>Bring ${subsystem} there …</a>` : null}</p>`;
 }
 
-const preview_after_ms = 180;
+const in_wrong_state = (subsystem, action) => action.states?.length > 0 && !action.states.includes(state_name(status_of(subsystem)?.state));
+
+/// Another page commands: who, and how to get it. What is essential asks nobody.
+function Authority({action}) {
+  if (!operator.value || action.essential || command_is.value !== 'other') return null;
+  return html`<p class="permission no" data-test="not-commanding"><b>${commander.value} commands.</b> <button type="button" class="link" data-test="ask-command" disabled=${i_ask.value}
+    onClick=${take_command}>${i_ask.value ? 'asked' : `Ask ${commander.value} for it`}</button></p>`;
+}
+
+/// Kept at hand, and as it is written elsewhere.
+function Words({subsystem, action, texts, values}) {
+  if (!values) return null;
+  const one = {subsystem, function: action.name, texts};
+  return html`<p class="words_of"><button type="button" class="link" data-test="favourite" aria-pressed=${is_favourite(one)} onClick=${() => toggle_favourite(one)}>${is_favourite(one) ? 'kept at hand ✓' : 'keep at hand'}</button>
+    <button type="button" class="link" data-test="copy-tc" title=${as_tc(subsystem, action.name, values)} onClick=${() => copy(as_tc(subsystem, action.name, values), 'copied for the terminal')}>copy as hirosco tc</button>
+    <button type="button" class="link" data-test="copy-python" title=${as_python(subsystem, action.name, values)} onClick=${() => copy(as_python(subsystem, action.name, values), 'copied for Python')}>as Python</button></p>`;
+}
+
+const preview_after_ms = 180, confirm_within_ms = 6000;
 
 function usePreview(subsystem, action, values) {
   const [answer, set_answer] = useState(null);
@@ -170,13 +178,28 @@ function led_by(subsystem, action) {
   return Object.fromEntries(Object.entries(robot?.goal.joints ?? {}).map(([joint, argument]) => [argument, robot.joints[joint]]));
 }
 
+/// Back into its form, as it was sent.
+export function edit(one) {
+  const action = subsystem_of(one.subsystem)?.functions.find((known) => known.name === one.function);
+  const text = ([name, value]) => [name, String(choices_of(one.subsystem, action ?? {}, {...action?.arguments.find((known) => known.name === name), name}).find((choice) => choice.name === value)?.value ?? [value].flat().join(' '))];
+  fill_form(one.subsystem, one.function, Object.fromEntries(Object.entries(one.arguments ?? {}).map(text)));
+  location.hash = `#/commands/${one.subsystem}/${one.function}`;
+}
+
+/// Once more as it was; what is to be confirmed goes back into its form instead.
+export function again(one) {
+  const action = subsystem_of(one.subsystem)?.functions.find((known) => known.name === one.function);
+  if (!action?.confirm) return send_and_say(one.subsystem, one.function, one.arguments);
+  return edit(one);
+}
+
 /// What was sent last, to be sent again with one click: its words go back into the form, or at once where it has none.
 function Recent({subsystem}) {
   const seen = new Set();
   const list = commands.value.filter((one) => one.subsystem === subsystem && one.function !== '?' && !seen.has(`${one.function} ${arguments_text(one)}`) && seen.add(`${one.function} ${arguments_text(one)}`)).slice(0, 3);
   if (!list.length) return null;
   return html`<ul class="recent">${list.map((one) => html`<li key=${one.id}><b>${one.function} ${arguments_text(one)}</b>${operator.value && !replay.value ? html`<button type="button"
-    onClick=${() => send_and_say(one.subsystem, one.function, one.arguments)}>again</button>` : html`<span />`}<span>${outcome_of(one).stage === 'failed' ? 'refused' : outcome_of(one).stage}</span><span>${clock_text(one.t, 0)}</span></li>`)}</ul>`;
+    onClick=${() => again(one)}>again</button>` : html`<span />`}<span>${outcome_of(one).stage === 'failed' ? 'refused' : outcome_of(one).stage}</span><span>${clock_text(one.t, 0)}</span></li>`)}</ul>`;
 }
 
 export function CommandForm({subsystem, action, given = {}, focus = false, recent = false}) {
@@ -184,6 +207,7 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
   const texts = kept_texts.value[key] ?? {};
   const [sent, set_sent] = useState(null);
   const [problem, set_problem] = useState('');
+  const [asked, set_asked] = useState(false);
   const form = useRef(null);
   const list = action.arguments ?? [];
   const text_of = (argument) => texts[argument.name] ?? given[argument.name] ??
@@ -201,10 +225,17 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
 
   const submit = async (event) => {
     event.preventDefault();
-    if (wrong || replay.value || !operator.value) return;
+    if (wrong || !may_send(action)) return;
     set_problem('');
+    // The descriptor wants a second thought of some.
+    if (action.confirm && !asked) {
+      set_asked(true);
+      setTimeout(() => set_asked(false), confirm_within_ms);
+      return;
+    }
+    set_asked(false);
     try {
-      set_sent(await send(subsystem, action.name, sent_values));
+      set_sent(await send(subsystem, action.name, sent_values, Boolean(action.confirm)));
     } catch (error) {
       set_problem(error.message);
     }
@@ -214,13 +245,15 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
     ${list.map((argument, i) => html`<${Field} key=${argument.name} subsystem=${subsystem} action=${action}
       argument=${argument} text=${text_of(argument)} result=${results[i]} focus=${focus && i === 0} now=${now[argument.name]}
       on_text=${(text) => fill_form(subsystem, action.name, {[argument.name]: text})} />`)}
+    ${operator.value ? html`<${Words} subsystem=${subsystem} action=${action} texts=${Object.fromEntries(list.map((argument) => [argument.name, text_of(argument)]))} values=${sent_values} />` : null}
     ${recent ? html`<${Recent} subsystem=${subsystem} />` : null}
     <div class="foot"><p class="octets" title="the telecommand packet" data-test="octets">${sent_values ? hex_text(answer?.octets) || '…' : ''}</p>
     ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` :
       !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : sent_values ?
       html`<${Permission} answer=${answer} problem=${answer?.problem} subsystem=${subsystem} action=${action} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
-    ${operator.value ? html`<button class="primary" type="submit" disabled=${wrong > 0 || Boolean(replay.value) || !operator.value} data-test="send">
-      ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : `Send ${action.name}`}</button>` : null}
+    <${Authority} action=${action} />
+    ${operator.value ? html`<button class=${`primary ${asked ? 'sure' : ''}`} type="submit" disabled=${wrong > 0 || !may_send(action)} data-test="send">
+      ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : asked ? `Really ${action.name}? Once more` : `Send ${action.name}`}</button>` : null}
     ${problem ? html`<p class="permission no">${problem}</p>` : null}
     ${mine ? html`<div class=${`verdict ${outcome_of(mine).stage}`} data-test="verdict">
       <small>${clock_text(mine.t, 3)}</small><${VerdictChain} command=${mine} /></div>` : null}</div>

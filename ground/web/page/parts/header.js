@@ -4,7 +4,8 @@ import {useRef, useState} from 'preact/hooks';
 import {say, send_and_say} from '../commanding.js';
 import {age_text, clock_text, date_text} from '../format.js';
 import {html} from '../html.js';
-import {link, mission, now_s, operator, replay, see_events, slow, subsystem_of, unseen} from '../store.js';
+import {calling, link, mission, now_s, operator, replay, slow, subsystem_of} from '../store.js';
+import {Commander} from './commander.js';
 import {Severity} from './icons.js';
 import {Mode} from './mode_menu.js';
 
@@ -70,17 +71,18 @@ const Mark = () => html`<svg width="24" height="24" viewBox="0 0 24 24" fill="no
   stroke-linejoin="round" role="img" aria-label="HIROSCO"><path d="M4 20h7M7.5 20v-5.5L14 8l5 4.5M19 12.5l1.5 2.6M19 12.5l-2 2.3" /><circle cx="7.5" cy="13" r="1.9" /><circle cx="14" cy="7.6" r="1.9" /></svg>`;
 
 export function Header({on_faults, faults_open}) {
-  const {high, medium} = unseen.value;
+  const {high, medium} = calling.value;
   return html`<header>
     <a class="brand" href="#/overview"><${Mark} /><span>HIROSCO</span></a>
     <span class="pill mission"><b>${mission.value?.name ?? '…'}</b>${
       mission.value?.simulated ? html`<small class="simulated">simulated</small>` : null}</span>
     <${Mode} />
+    <${Commander} />
     <${LinkState} />
     <${Clock} />
     <span class="space" />
     ${[['high', high], ['medium', medium]].map(([severity, count]) => html`<a class=${`pill count ${severity} ${count ? 'has' : ''}`}
-      href=${`#/events?severity=${severity}`} onClick=${see_events} title="not looked at in the last hour; a click shows them">
+      href="#/events" data-test=${`alarms-${severity}`} title="alarms that nobody has acknowledged or shelved; a click shows them">
       <${Severity} severity=${severity} /><b>${count}</b><span class="word">${severity}</span></a>`)}
     ${operator.value ? null : html`<span class="pill" title="this token reads everything and commands nothing">observer</span>`}
     ${operator.value && mission.value?.simulated && mission.value.devices?.length ? html`

@@ -8,12 +8,13 @@ import {get} from '../api.js';
 import {state_name} from '../commanding.js';
 import {clock_text, state_text} from '../format.js';
 import {html} from '../html.js';
-import {commands, events, mission, mode_of, newest_s, now_s, outcome_of, replay, replay_from, slow} from '../store.js';
+import {commands, events, flight, mission, mode_of, newest_s, now_s, outcome_of, replay, replay_from, slow} from '../store.js';
 import {fallen, stop} from '../stop.js';
 import {is_wanted} from './link_graph.js';
 import {is_known, state_look} from './subsystem_card.js';
 
-const refresh_ms = 2000;
+const refresh_ms = 2000, zoomed_ms = 120;
+const shortest_span_s = 0.001, longest_span_s = 86400;
 const usual_label_width = 118;
 const longest_ahead_s = 30;
 const shortest_s = 20;
@@ -21,29 +22,33 @@ const shortest_s = 20;
 /// The newest on-board time that the ground knows, also while a replay shows an older one.
 export const end_of_time = signal(NaN);
 
-function useTimeline(window_s) {
-  const [data, set_data] = useState({modes: [], states: [], links: [], commands: [], events: [], gaps: [], from: 0, to: 0});
+const nothing = {modes: [], states: [], links: [], commands: [], events: [], gaps: [], faults: []};
+/// What happened in the last `window_s`, or in those before `end`: asked again while it may change.
+function useTimeline(window_s, end) {
+  const [data, set_data] = useState({...nothing, from: 0, to: 0});
   useEffect(() => {
     let over = false;
     const fetch_again = async () => {
       if (!replay.peek() && Number.isFinite(now_s())) end_of_time.value = now_s();
-      const to = replay.peek() ? Math.max(end_of_time.peek() || 0, now_s() + Math.min(longest_ahead_s, window_s / 4)) : now_s();
+      const to = end ?? (replay.peek() ? Math.max(end_of_time.peek() || 0, now_s() + Math.min(longest_ahead_s, window_s / 4)) : now_s());
       if (!Number.isFinite(to) || document.hidden) return;
-      const from = replay.peek() ? Math.min(to - window_s, now_s() - window_s / 4) : to - window_s;
+      const from = end === null && replay.peek() ? Math.min(to - window_s, now_s() - window_s / 4) : to - window_s;
       try {
         const found = await get('/api/timeline', {from, to});
-        if (!over) set_data({modes: [], states: [], links: [], commands: [], events: [], gaps: [], faults: [], ...found, from, to});
+        if (!over) set_data({...nothing, ...found, from, to});
       } catch {
         // The header says that the gateway is gone; the last picture stays.
       }
     };
-    fetch_again();
-    const timer = setInterval(fetch_again, refresh_ms);
+    // A wheel turns on: what it stops at is asked for.
+    const first = end === null ? fetch_again() : setTimeout(fetch_again, zoomed_ms);
+    const timer = setInterval(fetch_again, end === null ? refresh_ms : 5 * refresh_ms);
     return () => {
       over = true;
+      clearTimeout(first);
       clearInterval(timer);
     };
-  }, [window_s, replay.value === null]);
+  }, [window_s, end, replay.value === null, flight.value?.id]);
   return data;
 }
 
@@ -71,11 +76,12 @@ function boot_of(data, from) {
   return end - first < longest_boot_s && end > first ? {from: first, to: end + (end - first) * 0.05} : null;
 }
 
-export function Lanes({window_s = 120, big = false, small = false}) {
+/// `end` null follows the newest; `on_view({span_s, end})` hears of the wheel: with it, one looks from 1 ms to a day.
+export function Lanes({window_s = 120, end = null, on_view = null, big = false, small = false}) {
   const node = useRef(null);
   const [width, set_width] = useState(900);
   const [hint, set_hint] = useState(null);
-  const data = useTimeline(window_s);
+  const data = useTimeline(window_s, end);
   slow.value;
   useLayoutEffect(() => {
     const observer = new ResizeObserver(() => set_width(Math.max(300, node.current.clientWidth)));
@@ -83,13 +89,15 @@ export function Lanes({window_s = 120, big = false, small = false}) {
     return () => observer.disconnect();
   }, []);
   const now = now_s();
-  const to = replay.value ? Math.max(data.to, now) : Number.isFinite(now) ? now : data.to;
+  const to = end ?? (replay.value ? Math.max(data.to, now) : Number.isFinite(now) ? now : data.to);
   // Before the flight began there was nothing: an empty stretch would say that nobody knows.
   const names = (mission.value?.subsystems ?? []).map((one) => one.name);
   const label_width = usual_label_width, lane_height = small ? Math.max(9, Math.min(15, 84 / (names.length + 2))) : 20, foot = small ? 18 : 22;
-  const earliest = to - Math.max(window_s, data.to - data.from);
+  // Nothing of an earlier flight, unless somebody looks there.
+  const began = end === null && !replay.value ? flight.value?.from ?? -Infinity : -Infinity;
+  const earliest = end !== null ? to - window_s : Math.max(began, to - Math.max(window_s, replay.value ? data.to - data.from : 0));
   const boot = small ? boot_of(data, earliest) : null;
-  const from = boot ? boot.to : Math.max(earliest, Math.min(first_s(data) - 1, to - shortest_s));
+  const from = boot ? boot.to : end !== null || window_s < shortest_s ? earliest : Math.max(earliest, Math.min(first_s(data) - 1, to - shortest_s));
   const left = label_width + (boot ? boot_px + break_px : 0), plot_width = width - left - 14;
   const x = (t) => boot && t < boot.to ? label_width + Math.max(0, (t - boot.from) / (boot.to - boot.from)) * boot_px :
     left + Math.max(0, Math.min(1, (t - from) / (to - from))) * plot_width;
@@ -98,6 +106,16 @@ export function Lanes({window_s = 120, big = false, small = false}) {
     return boot && at < left ? boot.from + (at - label_width) / boot_px * (boot.to - boot.from) : from + (at - left) / plot_width * (to - from);
   };
   const begin = boot ? boot.from : from;
+  useEffect(() => {
+    if (!on_view) return;
+    const turn = (event) => {
+      event.preventDefault();
+      on_view(turned(event, time_at(event), {from, to, wide_s: end === null ? window_s : to - from, now: now_s()}));
+    };
+    const svg = node.current;
+    svg.addEventListener('wheel', turn, {passive: false});
+    return () => svg.removeEventListener('wheel', turn);
+  });
 
   const lanes = [];
   // What nobody tells any more is not drawn on.
@@ -148,16 +166,16 @@ export function Lanes({window_s = 120, big = false, small = false}) {
     <svg width=${width} height=${height} onPointerMove=${(event) => set_hint(time_at(event))} onPointerLeave=${() => set_hint(null)}
       onClick=${(event) => { const at = time_at(event); if (at >= begin && at <= to) replay_from(at); }} role="img"
       aria-label="timeline; a click replays from there">
-      ${ticks.map((t) => html`<g class="tick"><line x1=${x(t)} x2=${x(t)} y1="0" y2=${height - 18} /><text x=${Math.min(x(t), width - 34)} y=${height - 5}>${clock_text(t, 0)}</text></g>`)}
+      ${ticks.map((t) => html`<g class="tick"><line x1=${x(t)} x2=${x(t)} y1="0" y2=${height - 18} /><text x=${Math.min(x(t), width - 34)} y=${height - 5}>${clock_text(t, ticks.digits)}</text></g>`)}
       ${boot ? html`<${Boot} boot=${boot} x=${x} height=${height} left=${left} />` : null}
       ${lanes.map((lane, i) => html`<g transform=${`translate(0 ${i * lane_height})`}><text class=${`label ${fallen.value.some((one) => one.subsystem === lane.label) ? 'bad' : ''}`} x="12" y=${lane_height / 2 + 4}>${lane.label.slice(0, 15)}</text>${lane.body}</g>`)}
       ${data.gaps.map((gap) => html`<rect class="gap" x=${x(gap.from)} y="0" width=${Math.max(1, x(gap.to) - x(gap.from))} height=${height - 20}>
         <title>no telemetry came</title></rect>`)}
       ${stop.value && stop.value.t > from ? html`<line class="stopped" x1=${x(stop.value.t)} x2=${x(stop.value.t)} y1="0" y2=${height - 16} />` : null}
       ${replay.value ? html`<g class="now replay"><line x1=${x(now)} x2=${x(now)} y1="0" y2=${height - 16} /></g>` :
-        html`<g class="now"><line x1=${x(to)} x2=${x(to)} y1="0" y2=${height - 16} /></g>`}
+        end !== null ? null : html`<g class="now"><line x1=${x(to)} x2=${x(to)} y1="0" y2=${height - 16} /></g>`}
       ${hint !== null && hint >= begin && hint <= to ? html`<g class="hint"><line x1=${x(hint)} x2=${x(hint)} y1="0" y2=${height - 16} />
-        <text x=${Math.min(x(hint) + 6, width - 150)} y=${height - (small ? 5 : 22)}>replay from ${clock_text(hint)}</text></g>` : null}
+        <text x=${Math.min(x(hint) + 6, width - 150)} y=${height - (small ? 5 : 22)}>replay from ${clock_text(hint, Math.max(1, ticks.digits))}</text></g>` : null}
     </svg></div>`;
 }
 
@@ -175,9 +193,24 @@ function merged(archive, fresh, key = (one) => one.id) {
   return [...fresh, ...archive.filter((one) => !known.has(key(one)))];
 }
 
+const tick_steps = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 21600];
 function time_ticks(from, to, count) {
-  const step = [1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600].find((one) => one >= (to - from) / count) ?? 7200;
+  const step = tick_steps.find((one) => one >= (to - from) / count) ?? 43200;
   const ticks = [];
   for (let t = Math.ceil(from / step) * step; t < to; t += step) if (ticks.length < 60) ticks.push(t);
+  ticks.digits = step >= 1 ? 0 : Math.ceil(-Math.log10(step) - 1e-9);
   return ticks;
+}
+
+/// What a wheel makes of a view: nearer or further about the time under the mouse, along it with Shift or a wheel that turns sideways.
+/// `wide_s`: what was asked for, where a flight is shorter than that.
+export function turned({deltaX, deltaY, shiftKey}, at, {from, to, wide_s, now}) {
+  const span_s = to - from;
+  if (shiftKey || Math.abs(deltaX) > Math.abs(deltaY)) {
+    const end = to + span_s * 0.15 * Math.sign(deltaX || deltaY);
+    return {span_s, end: end >= now ? null : end};
+  }
+  const wanted = Math.max(shortest_span_s, Math.min(longest_span_s, deltaY > 0 ? 1.4 * Math.max(span_s, wide_s) : span_s / 1.4));
+  const end = at + (to - at) * wanted / span_s;
+  return {span_s: wanted, end: end >= now ? null : end};
 }

@@ -3,16 +3,20 @@
 //
 // The mode, where it is changed: a click opens the modes and what the supervisor would do for the chosen one (TC[129,4]), a second goes.
 import {signal} from '@preact/signals';
-import {useEffect, useRef, useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {mode_preview} from '../api.js';
 import {finished, send} from '../commanding.js';
 import {state_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, link, mission, mode_of, operator, outcome_of, replay} from '../store.js';
 import {fallen} from '../stop.js';
+import {usePopup} from './popup.js';
 
 /// What the supervisor is told to change to: {name, id (of the telecommand), steps, failed}; null when nothing is under way.
 const changing = signal(null);
+
+/// The name of a mode that somebody elsewhere in the page would go to: the menu opens with it.
+export const mode_wanted = signal('');
 
 /// What a mode is for, in the words that its descriptor has: who works in it.
 function about(mode, now) {
@@ -64,7 +68,7 @@ function Steps({answer}) {
 
 function Menu({on_close}) {
   const modes = mission.value?.modes ?? [];
-  const [chosen, set_chosen] = useState(modes.find((one) => one.name !== mode_of.value.name && one.commission?.length) ?? modes[0]);
+  const [chosen, set_chosen] = useState(modes.find((one) => one.name === mode_wanted.value) ?? modes.find((one) => one.name !== mode_of.value.name && one.commission?.length) ?? modes[0]);
   const answer = usePreview(chosen);
   const refused = !answer || answer.problem || answer.reasons.length > 0;
   return html`<div class="menu" role="dialog" aria-label="change the mode" data-test="mode-menu">
@@ -78,17 +82,13 @@ function Menu({on_close}) {
 
 /// The mode, and whether it is true: what its members have fallen from is no telepresence any more.
 export function Mode() {
-  const [open, set_open] = useState(false);
-  const node = useRef(null);
-  useEffect(() => {
-    if (!open) return;
-    const close = (event) => {
-      if (event.type === 'keydown' ? event.key === 'Escape' : !node.current?.contains(event.target)) set_open(false);
-    };
-    addEventListener('pointerdown', close);
-    addEventListener('keydown', close);
-    return () => { removeEventListener('pointerdown', close); removeEventListener('keydown', close); };
-  }, [open]);
+  const [opened, set_opened] = useState(false);
+  const open = opened || mode_wanted.value !== '';
+  const set_open = (value) => {
+    set_opened(value);
+    if (!value) mode_wanted.value = '';
+  };
+  const node = usePopup(open, set_open);
   const down = fallen.value, under_way = changing.value;
   const words = down.map((one) => `${one.subsystem} is ${state_text(one.state)}`).join(', ');
   return html`<div class="mode_pill" ref=${node}>
@@ -98,5 +98,5 @@ export function Mode() {
         under_way ? html`<span data-test="mode-progress">→ ${under_way.name} ${progress()}</span>` :
           down.length ? html`<em data-test="mode-stopped">stopped</em>` : null}
       <svg viewBox="0 0 10 6" aria-hidden="true"><path d="M1 1l4 4 4-4" fill="none" stroke="currentColor" stroke-width="1.6" /></svg></button>
-    ${open ? html`<${Menu} on_close=${() => set_open(false)} />` : null}</div>`;
+    ${open ? html`<${Menu} key=${mode_wanted.value} on_close=${() => set_open(false)} />` : null}</div>`;
 }

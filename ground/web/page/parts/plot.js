@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import uPlot from 'uplot';
-import {brief_text, clock_text, quantity_text, unit_text} from '../format.js';
+import {brief_text, clock_text, quantity_text, unit_text, value_text} from '../format.js';
 import {html} from '../html.js';
-import {aligned, drop_series, extend, use_series} from '../series.js';
-import {stop} from '../stop.js';
-import {columns, freshness, gaps, now_s, replay, slow, values} from '../store.js';
+import {aligned, drop_series, extend, statistics, use_series, value_at} from '../series.js';
+import {columns, freshness, now_s, replay, slow, values} from '../store.js';
 import {colour, theme} from '../theme.js';
+import {cursor_t, look_at, pin, pins, unpin} from './plot_cursor.js';
+import {event_marks, gap_shade, gauge, limit_bands, marks_in, pinned_cursors, stop_mark} from './plot_layers.js';
+import {is_named, StateLanes} from './state_lanes.js';
 
 /// Of curves that have no meaning of their own; what is measured, set, touched or felt has the colour of that everywhere.
 const palette = {dark: ['#6cb0ff', '#ffc06a', '#46d6c8', '#ff8fb8', '#b9a2ff', '#8bd17c', '#ffe27a', '#ff9a7a'],
@@ -36,65 +38,6 @@ function axis_of(unit, index, relative) {
     values: (_, splits) => splits.map((value) => brief_text(+value.toPrecision(6)))};
 }
 
-/// Gaps of the archive stand grey behind the curves: a line through them would be a lie.
-const gap_shade = {hooks: {drawClear: (plot) => {
-  const {ctx, bbox} = plot;
-  ctx.save();
-  ctx.fillStyle = 'rgba(142, 154, 179, 0.12)';
-  for (const gap of gaps.peek()) {
-    const left = Math.max(bbox.left, plot.valToPos(gap.from, 'x', true));
-    const right = Math.min(bbox.left + bbox.width, plot.valToPos(gap.to, 'x', true));
-    if (right > left) ctx.fillRect(left, bbox.top, right - left, bbox.height);
-  }
-  ctx.restore();
-}}};
-
-/// A line and a red field from the moment on at which something stopped.
-const stop_mark = {hooks: {draw: (plot) => {
-  const told = stop.peek();
-  if (!told) return;
-  const {ctx, bbox} = plot, x = plot.valToPos(told.t, 'x', true);
-  if (!(x >= bbox.left && x <= bbox.left + bbox.width)) return;
-  ctx.save();
-  ctx.fillStyle = 'rgba(255, 90, 80, .10)';
-  ctx.fillRect(x, bbox.top, bbox.left + bbox.width - x, bbox.height);
-  ctx.fillStyle = colour('red');
-  ctx.fillRect(x - 1, bbox.top, 2, bbox.height);
-  ctx.restore();
-}}};
-
-/// The whole range of a parameter beside its curve: where its ends are, what part the plot shows, where it stands now.
-const gauge = ([low, high], name) => ({hooks: {draw: (plot) => {
-  const {ctx, bbox} = plot, ratio = devicePixelRatio || 1;
-  const scale = plot.scales[plot.series[1].scale];
-  const x = bbox.left + bbox.width + 24 * ratio, wide = 6 * ratio, tall = bbox.height;
-  const y = (value) => bbox.top + tall * (1 - Math.max(0, Math.min(1, (value - low) / (high - low))));
-  const now = values.get(name)?.v, end = (high - low) * 0.05;
-  const near = Number.isFinite(now) && (now - low < end || high - now < end);
-  ctx.save();
-  ctx.fillStyle = colour('come');
-  ctx.fillRect(x - wide / 2, bbox.top, wide, tall);
-  ctx.fillStyle = colour(near ? 'amber' : 'ochre');
-  ctx.fillRect(x - wide / 2, bbox.top, wide, tall * 0.05);
-  ctx.fillRect(x - wide / 2, bbox.top + tall * 0.95, wide, tall * 0.05);
-  ctx.fillStyle = colour('edge');
-  ctx.fillRect(x - wide / 2, y(scale.max), wide, Math.max(2, y(scale.min) - y(scale.max)));
-  if (Number.isFinite(now)) {
-    ctx.fillStyle = colour(near ? 'amber' : 'measured');
-    ctx.beginPath();
-    ctx.moveTo(x - 4 * ratio, y(now));
-    ctx.lineTo(x - 10 * ratio, y(now) - 4 * ratio);
-    ctx.lineTo(x - 10 * ratio, y(now) + 4 * ratio);
-    ctx.fill();
-  }
-  ctx.fillStyle = colour('faint');
-  ctx.font = `${11 * ratio}px Inter`;
-  ctx.textAlign = 'center';
-  ctx.fillText(brief_text(high), x, bbox.top - 4 * ratio);
-  ctx.fillText(brief_text(low), x, bbox.top + tall + 13 * ratio);
-  ctx.restore();
-}}});
-
 const sync = uPlot.sync('hirosco');
 
 /// A curve that is to be `times` as large has the same axis, divided: curves that lie on each other are as they should be. Never narrower
@@ -108,6 +51,16 @@ function scales_of(units, about) {
   };
   return Object.fromEntries(units.map((unit) => [unit, unit.startsWith('times ') ?
     {from: first, dir: Math.sign(Number(unit.slice(6))), range: (_, low, high) => [low, high].map((value) => value / Number(unit.slice(6))).sort((a, b) => a - b)} : about.least || about.range ? {range} : {}]));
+}
+
+/// Heights that somebody has zoomed into stay, whatever the samples do.
+function zoomable(scales) {
+  return Object.fromEntries(Object.entries(scales).map(([unit, scale]) => [unit, {...scale, range: (plot, low, high, key) => {
+    if (plot.zoomed?.[unit]) return plot.zoomed[unit];
+    if (scale.range) return scale.range(plot, low, high, key);
+    if (!Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+    return uPlot.rangeNum(low, high, 0.1, true);
+  }}]));
 }
 
 function options_of(names, size, on_zoom, about) {
@@ -125,14 +78,51 @@ function options_of(names, size, on_zoom, about) {
     bands.push({series: [3 * i + 3, 3 * i + 2], fill: () => `${stroke()}33`});
   });
   return {...size, series, bands, legend: {show: false}, padding: [about.range ? 18 : 8, about.range ? 44 : units.length > 1 ? 0 : 30, 0, 0],
-    scales: {x: {time: false}, ...scales_of(units, about)}, plugins: [gap_shade, stop_mark, ...(about.range ? [gauge(about.range, names[0])] : [])],
+    scales: {x: {time: false}, ...zoomable(scales_of(units, about))}, plugins: [gap_shade, limit_bands(names), event_marks, stop_mark, pinned_cursors, ...(about.range ? [gauge(about.range, names[0])] : [])],
     axes: [axis_of_time(about.relative), ...units.map((unit, i) => axis_of(unit, i, about.relative))],
-    cursor: {sync: {key: sync.key, scales: ['x', null]}, drag: {x: true, y: false, setScale: false}, points: {size: 6}},
-    hooks: {setSelect: [(plot) => {
-      if (plot.select.width < 4) return;
-      on_zoom([plot.posToVal(plot.select.left, 'x'), plot.posToVal(plot.select.left + plot.select.width, 'x')]);
-      plot.setSelect({left: 0, top: 0, width: 0, height: 0}, false);
-    }]}};
+    cursor: {sync: {key: sync.key, scales: ['x', null]}, drag: {x: true, y: true, uni: 24, setScale: false}, points: {size: 6}},
+    hooks: {
+      setCursor: [(plot) => { if (plot.over.matches(':hover')) look_at(plot.cursor.left >= 0 ? plot.posToVal(plot.cursor.left, 'x') : null); }],
+      ready: [(plot) => watch_mouse(plot)],
+      // Along the time a span of it, upwards a part of the heights.
+      setSelect: [(plot) => {
+        const {left, top, width, height} = plot.select, tall = plot.over.clientHeight;
+        if (width < 4 && height < 4) return;
+        if (height > 4 && height < tall - 1) units.forEach((unit) => { plot.zoomed[unit] = [plot.posToVal(top + height, unit), plot.posToVal(top, unit)]; });
+        if (width > 4 && width < plot.over.clientWidth - 1) on_zoom([plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x')]);
+        plot.setSelect({left: 0, top: 0, width: 0, height: 0}, false);
+        plot.redraw();
+      }]}};
+}
+
+const click_px = 3;
+/// A click pins the cursor; the wheel zooms the heights about the mouse; a double click shows all of them again.
+function watch_mouse(plot) {
+  const {over} = plot;
+  let down = null;
+  over.addEventListener('pointerdown', (event) => { down = [event.clientX, event.clientY]; });
+  over.addEventListener('pointerup', (event) => {
+    if (down && event.button === 0 && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < click_px) {
+      pin(plot.posToVal(event.clientX - over.getBoundingClientRect().left, 'x'));
+    }
+    down = null;
+  });
+  over.addEventListener('pointerleave', () => look_at(null));
+  over.addEventListener('dblclick', () => {
+    plot.zoomed = {};
+    unpin();
+    plot.redraw();
+  });
+  over.addEventListener('wheel', (event) => {
+    event.preventDefault();
+    const at = event.clientY - over.getBoundingClientRect().top, times = event.deltaY > 0 ? 1.25 : 0.8;
+    for (const unit of new Set(plot.series.slice(1).map((one) => one.scale))) {
+      const {min, max} = plot.scales[unit], middle = plot.posToVal(at, unit);
+      if (!Number.isFinite(min)) continue;
+      plot.zoomed[unit] = [middle + (min - middle) * times, middle + (max - middle) * times];
+    }
+    plot.redraw();
+  }, {passive: false});
 }
 
 function useSize(node) {
@@ -150,7 +140,8 @@ function useSize(node) {
 
 /// Curves of parameters over time. `range` null follows the newest sample; else it shows [from, to].
 const nothing = {};
-export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}, plot_ref, about = nothing}) {
+export function TimePlot({names: all_names, window_s = 60, range = null, on_zoom = () => {}, plot_ref, about = nothing}) {
+  const names = all_names.filter((name) => !is_named(name)), named = all_names.filter(is_named);
   const node = useRef(null);
   const drawn = useRef({});
   const size = useSize(node);
@@ -166,9 +157,10 @@ export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}
     [window_s, range?.[0], Number.isFinite(now_s())]);
 
   useEffect(() => {
-    if (!size || !columns.value.size) return;
+    if (!size || !columns.value.size || !names.length) return;
     const plot = new uPlot(options_of(names, size, (span) => drawn.current.on_zoom(span), about),
       Array.from({length: 1 + 3 * names.length}, () => []), node.current);
+    plot.zoomed = {};
     drawn.current.plot = plot;
     if (plot_ref) plot_ref.current = {plot, list: drawn.current.list};
     draw();
@@ -190,21 +182,46 @@ export function TimePlot({names, window_s = 60, range = null, on_zoom = () => {}
   drawn.current.on_zoom = on_zoom;
   slow.value;
   useEffect(draw);
-  return html`<div class="plot" ref=${node} data-test="plot" />`;
+  useEffect(() => pins.subscribe(() => drawn.current.plot?.redraw(false)), []);
+  const edges = drawn.current.plot?.bbox, ratio = devicePixelRatio || 1;
+  return html`<div class="plot" ref=${node} data-test="plot" style=${names.length ? undefined : {display: 'none'}} />
+    ${named.length ? html`<${StateLanes} names=${named} window_s=${window_s} range=${range} left=${edges ? edges.left / ratio : 110}
+      right=${edges ? (size?.width ?? 0) - (edges.left + edges.width) / ratio : 12} />` : null}`;
 }
 
-/// What the curves are, with their newest values; stale ones are grey.
-export function Legend({names, brief, on_remove, about = nothing}) {
+/// What the curves are, with their newest values, or those under the mouse; stale ones are grey. With `window` ([from, to]) also what the
+/// samples in it, or between two pinned cursors, have in common.
+export function Legend({names, brief, on_remove, about = nothing, window = null}) {
   slow.value;
-  return html`<div class=${`legend ${brief ? 'brief' : ''}`}>${names.map((name, i) => {
+  const at = cursor_t.value, [first, last] = pins.value;
+  const span = last !== undefined ? [first, last] : window;
+  const curves = names.filter((name) => !is_named(name));
+  return html`<div class=${`legend ${brief ? 'brief' : ''}`} data-test="legend">${names.map((name, place) => {
+    const i = is_named(name) ? place : curves.indexOf(name);
     const column = columns.value.get(name);
     const {stale} = freshness(name);
     const look = looks[about.looks?.[i]];
-    const text = quantity_text(values.get(name)?.v, column?.unit);
-    return html`<span class=${stale ? 'stale' : ''} title=${name}><svg viewBox="0 0 12 6" aria-hidden="true"><path d="M0 3h12" stroke=${curve_colour(i, about.looks?.[i])}
-      stroke-width="2" stroke-dasharray=${look?.dash ? '3 2' : undefined} /></svg>${about.labels?.[i] ?? (brief ? name.split('.').at(-1) : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`)} <b>${text}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
+    const words = (value) => is_named(name) ? value_text(column?.type === 'BOOL' ? value === 1 || value === true : value, column) : quantity_text(value, column?.unit);
+    const under = at === null ? undefined : value_at(name, at);
+    const told = span && !brief && !is_named(name) ? statistics(name, ...span) : null;
+    const apart = last !== undefined && !is_named(name) ? value_at(name, last) - value_at(name, first) : NaN;
+    return html`<span class=${under !== undefined ? 'at' : stale ? 'stale' : ''} title=${name}><svg viewBox="0 0 12 6" aria-hidden="true"><path d="M0 3h12" stroke=${curve_colour(i, about.looks?.[i])}
+      stroke-width="2" stroke-dasharray=${look?.dash ? '3 2' : undefined} /></svg>${about.labels?.[i] ?? (brief ? name.split('.').at(-1) : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`)} <b>${
+      words(under ?? values.get(name)?.v)}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
+      ${Number.isFinite(apart) ? html` <span data-test="delta">Δ ${quantity_text(apart, column?.unit)}</span>` : null}
+      ${told ? html` <span class="statistics">${quantity_text(told.min, column?.unit)} … ${quantity_text(told.max, column?.unit)}, mean ${quantity_text(told.mean, column?.unit)}</span>` : null}
       ${on_remove ? html`<button class="tiny" title=${`take ${name} out`} onClick=${() => on_remove(name)}>×</button>` : null}</span>`;
   })}</div>`;
+}
+
+/// When, how far apart, and what happened there: for all plots of a view.
+export function Cursors() {
+  const at = cursor_t.value, [first, last] = pins.value;
+  if (at === null && first === undefined) return html`<span class="cursors">click: a cursor, a second one: what lies between; drag: zoom, wheel: heights, double click: all</span>`;
+  const near = at === null ? null : marks_in(at - 0.15, at + 0.15).sort((a, b) => Math.abs(a.t - at) - Math.abs(b.t - at))[0];
+  return html`<span class="cursors" data-test="cursors">${at !== null ? clock_text(at, 3) : ''}${first !== undefined ? html` from <b>${clock_text(first, 3)}</b>` : null}${
+    last !== undefined ? html` to <b>${clock_text(last, 3)}</b>, ${(last - first).toFixed(3)} s` : null}${near ? html` · ${near.words}` : null}
+    ${first !== undefined ? html`<button class="tiny" aria-label="take the cursors away" onClick=${unpin}>×</button>` : null}</span>`;
 }
 
 /// One parameter over another, newest samples brightest.

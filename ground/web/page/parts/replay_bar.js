@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {clock_text} from '../format.js';
 import {html} from '../html.js';
-import {live, now_s, replay, replay_from, slow} from '../store.js';
+import {copy} from '../commanding.js';
+import {live, moment_link, now_s, replay, replay_from, slow} from '../store.js';
 
 export const speeds = [0.1, 0.5, 1, 2, 5, 10, 100];
 
@@ -18,5 +19,6 @@ export function ReplayBar() {
     <button onClick=${() => replay_from(now_s() + 10)}>+10 s</button>
     <span class="speeds">${speeds.map((one) => html`<button class=${one === speed ? 'on' : ''} onClick=${() => replay_from(now_s(), one)}>${one}×</button>`)}</span>
     <span class="words">telecommands are locked</span>
+    <button data-test="copy-moment" title="who opens it in a page of this station sees this moment" onClick=${() => copy(moment_link(), 'link to this moment copied; no token is in it')}>copy link</button>
     <button class="back" onClick=${live} data-test="live">back to LIVE</button></div>`;
 }

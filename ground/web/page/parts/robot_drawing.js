@@ -24,7 +24,7 @@ import {module_of, module_places, usual_surroundings} from '../scene/usual.js';
 import {surface_x_m} from './hand.js';
 import {typed} from './typed.js';
 
-const quick_ms = 10, software_period_ms = 45;
+const quick_ms = 10, software_period_ms = 47, tick_ms = 1000 / 60;
 const trail_points = 300, trail_step_m2 = 4e-6;
 const least_force_n = 0.5;
 const words_ms = 200, still_after_ms = 250;
@@ -362,13 +362,22 @@ export class RobotView {
   /// For half as long as a picture took, the page is everybody else's, and without a graphics card half of a processor is.
   rest(took_ms) {
     if (this.closed) return;
-    const pause_ms = took_ms < quick_ms && !this.software ? 0 : this.software ? Math.max(took_ms / 2, software_period_ms - took_ms) : took_ms / 2;
+    const pause_ms = took_ms < quick_ms && !this.software ? 0 : this.software ? this.pause_to_period(took_ms) : took_ms / 2;
     this.pause = setTimeout(() => {
       this.resting = false;
       if (!this.wanted_again) return;
       this.wanted_again = false;
       this.draw_soon();
     }, pause_ms);
+  }
+
+  /// A browser begins a picture at its next tick only, half a tick after a pause in the mean: without that in the count, pictures of
+  /// 47 ms would come each 50 or 66. What one came late, the next one comes earlier.
+  pause_to_period(took_ms) {
+    const now_ms = performance.now();
+    this.due_ms = Math.max(now_ms + took_ms / 2, (this.due_ms ?? now_ms) + software_period_ms);
+    if (this.due_ms > now_ms + software_period_ms) this.due_ms = now_ms + Math.max(took_ms / 2, software_period_ms - took_ms);
+    return Math.max(0, this.due_ms - now_ms - tick_ms / 2);
   }
 
   at_px(point) {

@@ -34,7 +34,7 @@ export function StopBanner() {
     <a class="out" href="#/events" data-test="stop-why">Why</a>
     <button class="out" onClick=${replay_it} data-test="stop-replay">Replay 5 s before</button>
     <a class="out" href=${plots.length ? `#/plots?p=${plots.map(encodeURIComponent).join('+')}` : '#/plots'} data-test="stop-plot">Plot</a>
-    <button class="out" onClick=${acknowledge} data-test="stop-acknowledge">Acknowledge</button>
+    ${operator.value ? html`<button class="out" onClick=${() => acknowledge()} data-test="stop-acknowledge">Acknowledge</button>` : null}
     ${operator.value && mode ? html`<button class="way_out" data-test="stop-bring-up" disabled=${rising.value?.running || link.value.state !== 'up'}
       onClick=${bring_up_again}>Bring ${mode} up</button>` : null}
   </section>`;
@@ -42,5 +42,5 @@ export function StopBanner() {
 
 /// The chain of a story: the cause first, then what it brought about, by milliseconds.
 export const Chain = ({causes}) => html`<ol class="why" data-test="why">${causes.map((cause) => html`<li class=${cause.severity ?? 'info'}>
-  <span class="time" title=${clock_text(cause.t, 4)}>${Number.isFinite(cause.after_ms) ? `+${cause.after_ms.toFixed(1)} ms` : 'before'}</span>
+  <button class="time" title=${`${clock_text(cause.t, 4)}: replay from a second before`} onClick=${() => replay_from(cause.t - 1, 1)}>${Number.isFinite(cause.after_ms) ? `+${cause.after_ms.toFixed(1)} ms` : 'before'}</button>
   <${Severity} severity=${cause.severity ?? 'info'} /><span>${cause.text}</span></li>`)}</ol>`;

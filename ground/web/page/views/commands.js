@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useState} from 'preact/hooks';
 import {clock_text, state_text} from '../format.js';
-import {name_operator, operator_name, send_and_say} from '../commanding.js';
+import {name_operator, operator_name} from '../commanding.js';
 import {html} from '../html.js';
 import {arguments_text} from '../parts/arguments.js';
-import {CommandForm, VerdictChain} from '../parts/command_form.js';
+import {again, CommandForm, edit, VerdictChain} from '../parts/command_form.js';
+import {favourite_text, favourites, toggle_favourite} from '../parts/favourites.js';
 import {Panel} from '../parts/panel.js';
+import {fill_form} from '../parts/typed.js';
 import {commands, mission, mode_of, operator, outcome_of, replay} from '../store.js';
 
 /// Whether the mode's list permits it at all; the supervisor's own answer stands in the form.
@@ -35,6 +37,7 @@ export function Commands({rest}) {
       <input class="search" type="search" placeholder="search  /" aria-label="search telecommands" value=${search} data-search
         onInput=${(event) => set_search(event.currentTarget.value)}
         onKeyDown=${(event) => { if (event.key === 'Enter' && found[0]) location.hash = `#/commands/${found[0].subsystem.name}/${found[0].action.name}`; }} />
+      <${Favourites} />
       ${list.map((subsystem) => {
         const own = found.filter((one) => one.subsystem === subsystem);
         return own.length ? html`<div class="group" key=${subsystem.name}><h3>${subsystem.name}</h3>${own.map(({action}) => html`
@@ -53,13 +56,22 @@ export function Commands({rest}) {
   </main>`;
 }
 
+/// Kept by this browser: a click fills the form.
+function Favourites() {
+  const list = favourites();
+  if (!list.length) return null;
+  return html`<div class="group" data-test="favourites"><h3>Kept at hand</h3>${list.map((one) => html`<div class="row"><a class="action" href=${`#/commands/${one.subsystem}/${one.function}`}
+    onClick=${() => fill_form(one.subsystem, one.function, one.texts)}><span>${favourite_text(one)}</span><small>${one.subsystem}</small></a>
+    <button class="tiny" aria-label=${`no longer keep ${favourite_text(one)}`} onClick=${() => toggle_favourite(one)}>×</button></div>`)}</div>`;
+}
+
 function History() {
   const list = commands.value.slice(0, 150);
   return html`<ol class="history" data-test="history">${list.map((command) => {
     const outcome = outcome_of(command);
     return html`<li key=${command.id} class=${outcome.stage}>
       <div class="row"><span class="time">${clock_text(command.t, 1)}</span><b>${command.subsystem} ${command.function}</b>
-        ${operator.value && !replay.value && command.function !== '?' ? html`<button class="again" onClick=${() => send_and_say(command.subsystem, command.function, command.arguments)}>again</button>` : null}
+        ${operator.value && !replay.value && command.function !== '?' ? html`<button class="again" onClick=${() => again(command)}>again</button><button class="again" onClick=${() => edit(command)}>edit</button>` : null}
         <small class="sender">${command.sender ?? ''}${command.mine ? ' (this page)' : ''}</small></div>
       ${arguments_text(command) ? html`<div class="words">${arguments_text(command)}</div>` : null}
       <${VerdictChain} command=${command} /></li>`;

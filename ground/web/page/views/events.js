@@ -4,6 +4,7 @@ import {useState} from 'preact/hooks';
 import {get} from '../api.js';
 import {clock_text} from '../format.js';
 import {html} from '../html.js';
+import {Alarms} from '../parts/alarms.js';
 import {EventTable, event_text} from '../parts/event_list.js';
 import {Severity} from '../parts/icons.js';
 import {LogSearch} from '../parts/log_search.js';
@@ -39,6 +40,7 @@ export function Events({query}) {
     set_archive((found.events ?? found).map((event, i) => ({...event, key: i})));
   };
   return html`<main class="event_view">
+    <${Alarms} />
     <${Panel} title="Events" area="events" hint=${archive ? `archive, ${list.length} found` : `${list.length} of ${events.value.length}`}>
       <div class="toolbar">
         ${severities.map((one) => html`<button class=${`chip ${wanted.includes(one) ? 'on' : ''}`} aria-pressed=${wanted.includes(one)}

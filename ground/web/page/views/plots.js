@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useRef, useState} from 'preact/hooks';
 import {token} from '../api.js';
-import {say} from '../commanding.js';
-import {clock_text, unit_text} from '../format.js';
+import {copy, say} from '../commanding.js';
+import {clock_text, iso_text, unit_text} from '../format.js';
 import {html} from '../html.js';
 import {Panel} from '../parts/panel.js';
-import {Legend, TimePlot, XyPlot} from '../parts/plot.js';
+import {Cursors, curve_colour, Legend, TimePlot, XyPlot} from '../parts/plot.js';
+import {is_named} from '../parts/state_lanes.js';
 import {aligned} from '../series.js';
 import {columns, mission, now_s} from '../store.js';
+import {colour} from '../theme.js';
 import {first_plots, plot_title} from './overview.js';
 
 const windows = [[10, '10 s'], [30, '30 s'], [60, '1 min'], [300, '5 min'], [900, '15 min'], [3600, '1 h']];
@@ -32,34 +34,42 @@ function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-function save_png(plot, names) {
-  const source = plot.ctx.canvas;
+/// The picture with what it is of: mission, day, the names of the curves in their colours.
+function save_png(plot, names, [from, to]) {
+  const source = plot.ctx.canvas, ratio = devicePixelRatio || 1, line = 18 * ratio;
   const canvas = document.createElement('canvas');
-  const line = 18 * devicePixelRatio;
   canvas.width = source.width;
-  canvas.height = source.height + 2 * line;
+  canvas.height = source.height + (2.5 + names.length) * line;
   const ctx = canvas.getContext('2d');
-  ctx.fillStyle = '#0f1420';
+  ctx.fillStyle = colour('panel');
   ctx.fillRect(0, 0, canvas.width, canvas.height);
-  ctx.fillStyle = '#e7ecf5';
-  ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
-  ctx.fillText(`${mission.peek().name}: ${names.join(', ')}`, 10, line);
+  ctx.font = `${12 * ratio}px Inter`;
+  ctx.fillStyle = colour('text');
+  ctx.fillText(`${mission.peek().name}, ${iso_text(from) || clock_text(from, 3)} to ${iso_text(to) || clock_text(to, 3)}`, 10 * ratio, line);
   ctx.drawImage(source, 0, 1.5 * line);
+  names.forEach((name, i) => {
+    const y = source.height + (2 + i) * line + 0.5 * line;
+    ctx.fillStyle = curve_colour(i);
+    ctx.fillRect(10 * ratio, y - 4 * ratio, 16 * ratio, 2 * ratio);
+    ctx.fillStyle = colour('text');
+    ctx.fillText(`${name} ${unit_text(columns.peek().get(name)?.unit)}`, 34 * ratio, y);
+  });
   canvas.toBlob((blob) => save(`${names[0]}.png`, blob));
 }
 
 function save_csv(list, names, range) {
   const rows = aligned(list, ...range);
   const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
-  const lines = [['t_s', ...names].map(quoted).join(',')];
+  const lines = [['t', 'utc', ...names].map(quoted).join(',')];
   for (let i = 0; i < rows[0].length; ++i) {
-    lines.push([rows[0][i].toFixed(6), ...names.map((_, k) => rows[1 + 3 * k][i] ?? '')].join(','));
+    lines.push([rows[0][i].toFixed(6), iso_text(rows[0][i]), ...names.map((_, k) => rows[1 + 3 * k][i] ?? '')].join(','));
   }
   save(`${names[0]}.csv`, new Blob([lines.join('\n'), '\n'], {type: 'text/csv'}));
 }
 
 function PlotPanel({names, window_s, range, xy, on_zoom, on_remove, on_xy, on_drop}) {
   const plot_ref = useRef(null);
+  const curves = names.filter((name) => !is_named(name));
   const shown = range ?? [now_s() - window_s, now_s()];
   const whole = `/api/export.csv?${names.map((name) => `parameter=${encodeURIComponent(name)}`).join('&')}&from=${shown[0]}&to=${shown[1]}`;
   const fetch_whole = async () => {
@@ -73,12 +83,12 @@ function PlotPanel({names, window_s, range, xy, on_zoom, on_remove, on_xy, on_dr
   };
   const tools = html`
     <button class=${`chip ${xy ? 'on' : ''}`} disabled=${names.length < 2} title="the second parameter over the first" onClick=${on_xy}>x-y</button>
-    <button class="chip" disabled=${xy} onClick=${() => plot_ref.current && save_png(plot_ref.current.plot, names)}>PNG</button>
-    <button class="chip" disabled=${xy} title="the samples shown" onClick=${() => plot_ref.current && save_csv(plot_ref.current.list, names, shown)}>CSV</button>
+    <button class="chip" disabled=${xy} onClick=${() => plot_ref.current && save_png(plot_ref.current.plot, curves, shown)}>PNG</button>
+    <button class="chip" disabled=${xy} title="the samples shown" onClick=${() => plot_ref.current && save_csv(plot_ref.current.list, curves, shown)}>CSV</button>
     <button class="chip" title="every sample of the archive" onClick=${fetch_whole}>archive CSV</button>
     <button class="tiny" title="close this plot" aria-label="close this plot" onClick=${on_drop}>×</button>`;
   return html`<${Panel} title=${plot_title(names)} bare tools=${tools}>
-    <${Legend} names=${names} on_remove=${on_remove} />
+    <${Legend} names=${names} on_remove=${on_remove} window=${shown} />
     ${xy ? html`<${XyPlot} names=${names} window_s=${window_s} range=${range} />` :
       html`<${TimePlot} names=${names} window_s=${window_s} range=${range} on_zoom=${on_zoom} plot_ref=${plot_ref} />`}</${Panel}>`;
 }
@@ -133,8 +143,8 @@ export function Plots({query, paused, set_paused}) {
         <button class=${`chip ${paused !== null ? 'on' : ''}`} title="Space" data-test="pause" onClick=${() => set_paused(paused === null ? now_s() : null)}>
           ${paused !== null ? 'paused' : 'pause'}</button>
         ${zoom || paused !== null ? html`<button class="chip" onClick=${() => { set_zoom(null); set_paused(null); }}>follow</button>` : null}
-        <span class="space" /><small>${zoom ? `${clock_text(zoom[0])} … ${clock_text(zoom[1])}` : 'drag to zoom, cursor is shared'}</small>
-        <button class="chip" onClick=${() => navigator.clipboard?.writeText(location.href).then(() => say('address copied'))}>copy address</button>
+        <span class="space" />${zoom ? html`<small>${clock_text(zoom[0], 3)} … ${clock_text(zoom[1], 3)}</small>` : null}<${Cursors} />
+        <button class="chip" onClick=${() => copy(location.href, 'address copied')}>copy address</button>
       </div>
       ${state.groups.map((names, i) => html`<${PlotPanel} key=${`${i}/${names.join()}`} names=${names} window_s=${state.window_s} range=${range}
         xy=${state.xy.has(i)} on_zoom=${set_zoom}
