@@ -8,7 +8,7 @@
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/utilities/lower_case.hpp"
-#include "supervisor/supervision/event_handling/dry_run.hpp"
+#include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/preview.hpp"
