@@ -30,15 +30,16 @@ class Exhausted(unittest.TestCase):
         octets, descriptors = held(pid)
         limits = {"memory": (resource.RLIMIT_AS, octets), "descriptors": (resource.RLIMIT_NOFILE, descriptors)}
         which, limit = limits[what]
-        resource.prlimit(pid, which, (limit, limit))
+        # The soft limit bites; the hard one stays, or nobody could take it back.
+        resource.prlimit(pid, which, (limit, resource.prlimit(pid, which)[1]))
         return pid
 
     def feed(self, pid):
         """Whoever was starved and lives may have everything again."""
         for which in (resource.RLIMIT_AS, resource.RLIMIT_NOFILE):
             with contextlib.suppress(ProcessLookupError):
-                soft = 4096 if which == resource.RLIMIT_NOFILE else resource.RLIM_INFINITY
-                resource.prlimit(pid, which, (soft, soft))
+                hard = resource.prlimit(pid, which)[1]
+                resource.prlimit(pid, which, (hard, hard))
 
     def want_much(self, craft):
         """Whatever of its work wants memory and descriptors: packets, connections, processes, pages, links, files."""
@@ -65,6 +66,7 @@ class Exhausted(unittest.TestCase):
             self.assertEqual((truth["motor_1"], truth["motor_2"]), (0.0, 0.0))
             flight.measure(f"without {what}: stopped {time.monotonic() - asked:.2f} s after it was asked, "
                            f"{'the same supervisor' if rokviss.pid_of('hirosco-supervisor') == pid else 'another supervisor'}")
+            rokviss.wait_told("cannot start JOYSTICK", 1.0, begin)     # it bites
             said = [line.told for line in rokviss.told(begin)] + rokviss.errors
             self.assertFalse([line for line in said if "terminate called" in line and "what()" not in "\n".join(said)], said)
             self.feed(rokviss.pid_of("hirosco-supervisor"))
