@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-// How late a periodic loop wakes up: ours (with one link written and read in each cycle) against a bare absolute sleep
-// and cyclictest, in turns.
+// How late a periodic loop wakes up: ours (with one link written and read in each cycle), once as every cycle rests and once as a precise one
+// does (docs/adr/0104), against a bare absolute sleep and cyclictest, in turns.
 #include <fcntl.h>
 #include <time.h>
 #include <unistd.h>
@@ -15,6 +15,7 @@
 #include "bench/figures.hpp"
 #include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
+#include "hirosco/subsystem/process/cycle_rest.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -26,8 +27,11 @@ constexpr Duration period = 500us;
 constexpr int priority = 80;
 constexpr std::uint32_t payload_octets = 256;
 
-/// Ours: Clock, sleep_until and a link, as a subsystem's cycle uses them.
-Figures measure_ours(const Clock& clock, int cycles) {
+/// Of a precise cycle: more than wake-ups take but for one in a thousand, less than half of the period.
+constexpr Duration spin = 200us;
+
+/// Ours: what a subsystem's cycle rests by, its clock and a link.
+Figures measure_ours(const Clock& clock, int cycles, const CycleWait& wait) {
   HeapMemory provider;
   const LinkLayout layout{1, payload_octets, 1, period};
   const Mapping memory =
@@ -39,7 +43,7 @@ Figures measure_ours(const Clock& clock, int cycles) {
   late.reserve(static_cast<std::size_t>(cycles));
   TimePoint wake = clock.now() + period;
   for (int i = 0; i < cycles; ++i) {
-    sleep_until(wake);
+    static_cast<void>(rest_until(wake, wait, clock));
     const TimePoint now = clock.now();
     late.push_back((now - wake).count());
     writer.write(payload, now, LinkStatus::Valid);
@@ -105,10 +109,12 @@ int run(int repeats, int cycles) {
   (void)pin_to_cpu(0);
   const bool realtime = set_fifo_priority(priority).has_value();
   Series ours{"ours", {}};
+  Series precise{"ours, precise", {}};
   Series bare{"bare", {}};
   Series cyclictest{"cyclictest", {}};
   for (int repeat = 0; repeat < repeats; ++repeat) {
-    ours.repeats.push_back(measure_ours(clock, cycles));
+    ours.repeats.push_back(measure_ours(clock, cycles, {}));
+    precise.repeats.push_back(measure_ours(clock, cycles, {.spin = spin}));
     bare.repeats.push_back(measure_bare(cycles));
     if (const Figures figures = measure_cyclictest(cycles, realtime); figures.max > 0)
       cyclictest.repeats.push_back(figures);
@@ -116,6 +122,7 @@ int run(int repeats, int cycles) {
   std::printf("Lateness of a 500 us loop, %d cycles, median of %d repeats, %s%s\n", cycles, repeats,
               realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)", awake ? ", no deep idle" : "");
   ours.print("us");
+  precise.print("us");
   bare.print("us");
   ours.print_ratio(bare);
   if (cyclictest.repeats.empty()) {
@@ -124,6 +131,7 @@ int run(int repeats, int cycles) {
   }
   cyclictest.print("us");
   ours.print_ratio(cyclictest);
+  cyclictest.print_ratio(precise);
   return EXIT_SUCCESS;
 }
 

@@ -175,7 +175,9 @@ void add_status(const Basic& is, json& into) {
                                {"samples", count},
                                {"lost", count},
                                {"latency_mean_ns", nullable(is.real)},
-                               {"latency_max_ns", nullable(is.real)}});
+                               {"latency_max_ns", nullable(is.real)},
+                               {"jitter_ns", nullable(is.real)},
+                               {"age_at_use_us", nullable(is.real)}});
   into["GroundLinkStatus"] = object({{"connected", is.yes_or_no},
                                      {"age_s", nullable(is.real)},
                                      {"rx", is.whole},

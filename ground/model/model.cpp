@@ -76,6 +76,8 @@ Model::Model(const Catalogue& catalogue)
   overview_.lost = column("LINK_STATUS.LOST");
   overview_.link_latency_mean = column("LINK_STATUS.LATENCY_MEAN");
   overview_.link_latency_max = column("LINK_STATUS.LATENCY_MAX");
+  overview_.jitter = column("LINK_QUALITY.JITTER");
+  overview_.age_at_use = column("LINK_QUALITY.AGE_AT_USE");
 }
 
 Heard Model::take(const pus::TelemetryView& packet) {
@@ -210,6 +212,8 @@ void Model::take_links(OnboardTime t, Duration since, Heard& heard) {
     view.lost = by_consumer(overview_.lost);
     view.latency_mean_ns = by_consumer(overview_.link_latency_mean);
     view.latency_max_ns = by_consumer(overview_.link_latency_max);
+    view.jitter_ns = by_consumer(overview_.jitter);
+    view.age_at_use_us = by_consumer(overview_.age_at_use);
     view.known = true;
     view.up = up;
     view.samples = samples;

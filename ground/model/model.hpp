@@ -47,6 +47,8 @@ struct LinkView {
   // As the consumer tells while the link is up; empty = it cannot.
   std::optional<double> lost;        ///< samples that it never saw
   std::optional<double> latency_mean_ns, latency_max_ns;  ///< from the instant of a sample to its first use
+  std::optional<double> jitter_ns;  ///< mean distance of two latencies in a row
+  std::optional<double> age_at_use_us;  ///< of the newest sample, in the consumer's newest cycle
 };
 
 /// A report of ST[01] in words.
@@ -128,7 +130,7 @@ class Model {
   struct OverviewColumns {
     std::optional<std::size_t> mode, apid, state, configuration, inhibited, cycles, overruns, missed, latency,
         execution, memory;
-    std::optional<std::size_t> link, up, samples, age, lost, link_latency_mean, link_latency_max;
+    std::optional<std::size_t> link, up, samples, age, lost, link_latency_mean, link_latency_max, jitter, age_at_use;
   };
   OverviewColumns overview_;
   std::size_t subsystem_rows_{0}, link_rows_{0};

@@ -55,8 +55,9 @@ byte_order="native" kind="latest"><Field name="LEVEL" type="DOUBLE"/></Requires>
 }
 
 /// The supervisor's report of everybody, with values by the names of columns; all others are 0.
-std::vector<std::byte> report_with(const Catalogue& catalogue, const std::map<std::string, std::uint32_t>& values) {
-  const auto apid = catalogue.supervisor_column("SUBSYSTEMS.APID");
+std::vector<std::byte> report_with(const Catalogue& catalogue, const std::map<std::string, std::uint32_t>& values,
+                                   std::string_view of = "SUBSYSTEMS.APID") {
+  const auto apid = catalogue.supervisor_column(of);
   for (const Report& report : catalogue.reports()) {
     if (std::ranges::find(report.places, apid.value_or(0), &Place::column) == report.places.end()) continue;
     std::vector<std::byte> data(report.octets);
@@ -92,6 +93,8 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
     told["LINK_STATUS.IS_UP" + index] = 1;
     told["LINK_STATUS.SAMPLES" + index] = 500 + row;
     told["LINK_STATUS.LOST" + index] = row;
+    told["LINK_QUALITY.JITTER" + index] = 70 + row;
+    told["LINK_QUALITY.AGE_AT_USE" + index] = 90 + row;
   }
   told["LINK_STATUS.LOST[18]"] = 0xFFFF'FFFF;  // its consumer has no room to tell
   told["LINK_STATUS.SAMPLES[3]"] = told["LINK_STATUS.AGE[3]"] = 0xFFFF'FFFF;  // they pass nobody else
@@ -101,6 +104,11 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
   const auto packet = pus::write_telemetry(buffer, {.apid = 1, .service = 3, .subtype = 25, .time = t}, data);
   ASSERT_TRUE(packet);
   Model model{catalogue};
+  std::array<std::byte, pus::max_telemetry_octets> quality_buffer;
+  const auto quality = pus::write_telemetry(quality_buffer, {.apid = 1, .service = 3, .subtype = 25, .time = t},
+                                            report_with(catalogue, told, "LINK_QUALITY.LINK"));
+  ASSERT_TRUE(quality);
+  static_cast<void>(model.take(*pus::TelemetryView::parse(*quality)));
   static_cast<void>(model.take(*pus::TelemetryView::parse(*packet)));
 
   const json status = status_json(catalogue, model, t);
@@ -113,6 +121,8 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
   for (std::size_t row = 0; row < crowd; ++row) {
     EXPECT_EQ(status["links"][row]["id"], row + 1);
     EXPECT_EQ(status["links"][row]["up"], true) << row;
+    EXPECT_EQ(status["links"][row]["jitter_ns"], 70 + row);
+    EXPECT_EQ(status["links"][row]["age_at_use_us"], 90 + row);
     if (row == 3) {
       EXPECT_TRUE(status["links"][row]["samples"].is_null());
       EXPECT_TRUE(status["links"][row]["age_cycles"].is_null());

@@ -88,7 +88,9 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
                      {"samples", view.known && view.samples ? json(*view.samples) : json(nullptr)},
                      {"lost", while_up(view.lost)},
                      {"latency_mean_ns", while_up(view.latency_mean_ns)},
-                     {"latency_max_ns", while_up(view.latency_max_ns)}});
+                     {"latency_max_ns", while_up(view.latency_max_ns)},
+                     {"jitter_ns", while_up(view.jitter_ns)},
+                     {"age_at_use_us", while_up(view.age_at_use_us)}});
   }
   return {{"t", json_time(now)},
           {"mode", model.mode().empty() ? json(nullptr) : json(model.mode())},

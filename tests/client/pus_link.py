@@ -235,6 +235,8 @@ class GroundLink:
 # What every subsystem has without declaring it; members are known by their full names only (docs/adr/0056).
 BUILT_IN = {"CYCLE_STATS": (("OVERRUNS", "UINT32", 1), ("MAX_US", "FLOAT", 1), ("AVG_US", "FLOAT", 1)),
             "CYCLE_BUDGET": (("BUDGET_US", "FLOAT", 1), ("LONGEST_US", "FLOAT", 1), ("EXCEEDED", "UINT32", 1)),
+            "CYCLE_SPIN": (("SPIN_US", "FLOAT", 1), ("LONGEST_US", "FLOAT", 1), ("EXCEEDED", "UINT64", 1)),
+            "LOOP_STATS": (("BUDGET_US", "FLOAT", 8), ("LONGEST_US", "FLOAT", 8), ("EXCEEDED", "UINT64", 8), ("MISSED", "UINT64", 8)),
             "CYCLE_TIMES": (("EXECUTION", "UINT32", 16), ("LATENCY", "UINT32", 16)),
             "RESOURCE_STATS": tuple((name, "UINT32", 8 if name in ("POOL_USED", "POOL_HIGH") else 1) for name in
                                     ("MEMORY", "MEMORY_HIGH", "DESCRIPTORS", "DESCRIPTORS_HIGH", "THREADS", "THREADS_HIGH", "POOL_USED",

@@ -41,8 +41,11 @@ TEST_F(GroundStation, TellsLossAndLatencyOfEachLinkThatIsUp) {
   // Both cycle at the same instants: who comes first waits a period for what the other writes then.
   EXPECT_EQ(links[0]["latency_mean_ns"].get<double>() + links[1]["latency_mean_ns"].get<double>(), 500'000);
   EXPECT_EQ(links[0]["latency_max_ns"], links[0]["latency_mean_ns"]);
+  EXPECT_EQ(links[0]["jitter_ns"], 0) << "all samples take the same time here";
+  EXPECT_EQ(links[0]["age_at_use_us"].get<double>() * 1e3, links[0]["latency_mean_ns"].get<double>());
   EXPECT_TRUE(links[2]["lost"].is_null()) << "not up in this mode";
   EXPECT_TRUE(links[2]["latency_mean_ns"].is_null());
+  EXPECT_TRUE(links[2]["jitter_ns"].is_null());
   EXPECT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}})["answer"], "ok");
   station.run(3s);
   EXPECT_TRUE(station.get("/api/status")["links"][0]["lost"].is_null()) << "what is down loses nothing";

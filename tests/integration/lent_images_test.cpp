@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "tests/integration/flight.hpp"
+#include "tests/integration/two_ends.hpp"
 
 /// A camera lends images of a mebioctet to a viewer, 30 a second, in a whole spacecraft: supervisor, handshake, cycles, death.
 namespace hirosco::testing {
@@ -28,29 +28,6 @@ std::string descriptor_of(std::string_view name, int id, std::string_view set) {
   text.append(set).append(image_fields).append(set.starts_with("<Provides") ? "</Provides>" : "</Requires>");
   return text + "</RealTimeLinkService></Configuration></Subsystem>";
 }
-
-constexpr auto mission_text = R"(<Mission name="IMAGES" id="78">
-  <Supervisor descriptor="../../supervisor/supervisor.xml">
-    <Database strategy="sqlite" path="log/images.db"/>
-    <Ground subsystem="COMMUNICATION" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>
-  </Supervisor>
-  <Subsystem executable="hirosco-communication" descriptor="../../subsystems/communication/communication.xml"/>
-  <Subsystem executable="images-camera" descriptor="images-camera.xml"/>
-  <Subsystem executable="images-viewer" descriptor="images-viewer.xml"/>
-  <Links><Link id="1" from="CAMERA.IMAGE" to="VIEWER.VIEW"/></Links>
-  <Modes initial="commissioning" start="operation">
-    <Mode name="commissioning"><Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode>
-    <Mode name="operation">
-      <Commission subsystem="COMMUNICATION" configuration="NOMINAL" state="Operational"/>
-      <Commission subsystem="CAMERA" configuration="IMAGES" state="Operational"/>
-      <Commission subsystem="VIEWER" configuration="IMAGES" state="Operational"/>
-      <Establish link="1"/>
-      <Permit subsystem="SUPERVISOR" functions="SET_MODE SHUTDOWN"/>
-      <Permit subsystem="VIEWER" functions="SET_STATE"/>
-    </Mode>
-  </Modes>
-  <Recovery><Plan name="ground-lost"><When event="GROUND_LINK_LOST"/><Do action="log"/></Plan></Recovery>
-</Mission>)";
 
 /// Makes an image row by row: 33 cycles for 1024 rows.
 struct Camera final : Subsystem {
@@ -123,21 +100,12 @@ struct Viewer final : Subsystem {
 struct LentImages : ::testing::Test {
   Camera* camera{nullptr};
   Viewer* viewer{nullptr};
-  template <class Author>
-  std::function<std::unique_ptr<Subsystem>()> making(Author*& made) {
-    return [&made] {
-      auto author = std::make_unique<Author>();
-      made = author.get();
-      return author;
-    };
-  }
   Flight flight{
-      {.mission = "hello",
-       .subsystems = {{"images-camera", making(camera)}, {"images-viewer", making(viewer)}},
-       .files = {
-           {"mission.xml", mission_text},
-           {"images-camera.xml", descriptor_of("CAMERA", 20, R"(<Provides name="IMAGE" kind="loaned">)")},
-           {"images-viewer.xml", descriptor_of("VIEWER", 21, R"(<Requires name="VIEW" kind="loaned" age="100">)")}}}};
+      two_ends({"CAMERA", "IMAGES", "IMAGE", descriptor_of("CAMERA", 20, R"(<Provides name="IMAGE" kind="loaned">)"),
+                making(camera)},
+               {"VIEWER", "IMAGES", "VIEW",
+                descriptor_of("VIEWER", 21, R"(<Requires name="VIEW" kind="loaned" age="100">)"), making(viewer)},
+               "", R"(<Permit subsystem="VIEWER" functions="SET_STATE"/>)")};
 
   /// The viewer is Operational before the first image is there and inhibited for it: it goes there again with images.
   void SetUp() override {

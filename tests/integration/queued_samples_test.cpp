@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "tests/integration/flight.hpp"
+#include "tests/integration/two_ends.hpp"
 
 /// An encoder at 1 kHz of which an estimator at 100 Hz gets every sample, in a whole spacecraft: supervisor, handshake, cycles,
 /// standstill, death.
@@ -27,52 +27,6 @@ constexpr auto estimator_text = R"(<Subsystem name="ESTIMATOR" id="21">
   <Configuration name="TICKS" id="1" sampling_us="10000"><RealTimeLinkService>
     <Requires name="TICKS" kind="queued" depth="64" age="5"><Field name="NUMBER" type="UINT64"/><Field name="ANGLE" type="DOUBLE" unit="rad"/></Requires>
   </RealTimeLinkService></Configuration></Subsystem>)";
-
-constexpr auto ticks_mission = R"(<Mission name="TICKS" id="79">
-  <Supervisor descriptor="../../supervisor/supervisor.xml">
-    <Database strategy="sqlite" path="log/ticks.db"/>
-    <Ground subsystem="COMMUNICATION" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>
-  </Supervisor>
-  <Subsystem executable="hirosco-communication" descriptor="../../subsystems/communication/communication.xml"/>
-  <Subsystem executable="ticks-encoder" descriptor="ticks-encoder.xml"/>
-  <Subsystem executable="ticks-estimator" descriptor="ticks-estimator.xml"/>
-  <Links><Link id="1" from="ENCODER.TICK" to="ESTIMATOR.TICKS"/></Links>
-  <Modes initial="commissioning" start="operation">
-    <Mode name="commissioning"><Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode>
-    <Mode name="operation">
-      <Commission subsystem="COMMUNICATION" configuration="NOMINAL" state="Operational"/>
-      <Commission subsystem="ENCODER" configuration="TICKS" state="Operational"/>
-      <Commission subsystem="ESTIMATOR" configuration="TICKS" state="Operational"/>
-      <Establish link="1"/>
-      <Permit subsystem="SUPERVISOR" functions="SET_MODE SHUTDOWN"/>
-    </Mode>
-  </Modes>
-  <Recovery><Plan name="ground-lost"><When event="GROUND_LINK_LOST"/><Do action="log"/></Plan></Recovery>
-</Mission>)";
-
-/// Numbers its cycles.
-struct Encoder final : Subsystem {
-  Parameter<std::uint64_t> number;
-  Parameter<double> angle;
-
- protected:
-  Result<Step> software_init() override {
-    publish("NUMBER", number);
-    publish("ANGLE", angle);
-    return done;
-  }
-  Result<> pre_operational(const Cycle&) noexcept override { return turn(); }
-  Result<> safe_operational(const Cycle&) noexcept override { return turn(); }
-  Result<> operational(const Cycle&) noexcept override { return turn(); }
-
- private:
-  Result<> turn() noexcept {
-    const std::uint64_t next = number.load() + 1;
-    number.store(next);
-    angle.store(0.001 * static_cast<double>(next));
-    return ok();
-  }
-};
 
 /// Keeps the numbers of all that came.
 struct Estimator final : Subsystem {
@@ -108,19 +62,8 @@ struct Estimator final : Subsystem {
 struct QueuedSamples : ::testing::Test {
   Encoder* encoder{nullptr};
   Estimator* estimator{nullptr};
-  template <class Author>
-  std::function<std::unique_ptr<Subsystem>()> making(Author*& made) {
-    return [&made] {
-      auto author = std::make_unique<Author>();
-      made = author.get();
-      return author;
-    };
-  }
-  Flight flight{{.mission = "hello",
-                 .subsystems = {{"ticks-encoder", making(encoder)}, {"ticks-estimator", making(estimator)}},
-                 .files = {{"mission.xml", ticks_mission},
-                           {"ticks-encoder.xml", encoder_text},
-                           {"ticks-estimator.xml", estimator_text}}}};
+  Flight flight{two_ends({"ENCODER", "TICKS", "TICK", encoder_text, making(encoder)},
+                         {"ESTIMATOR", "TICKS", "TICKS", estimator_text, making(estimator)})};
 
   void SetUp() override { ASSERT_TRUE(flight.commission()) << flight.story().text(); }
   /// What came from here on.

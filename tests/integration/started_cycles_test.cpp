@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/integration/flight.hpp"
+#include "tests/integration/two_ends.hpp"
 
 /// An encoder whose samples start the cycle of a follower, and that takes other configurations under it, in a whole spacecraft: supervisor,
 /// handshake, cycles, negotiation anew.
@@ -24,53 +24,6 @@ constexpr auto follower_text = R"(<Subsystem name="FOLLOWER" id="21">
   <Configuration name="FOLLOW" id="1" sampling_us="20000" started_by="TICKS" least_us="1000"><RealTimeLinkService>
     <Requires name="TICKS" age="5" missing="hold"><Field name="NUMBER" type="UINT64"/></Requires>
   </RealTimeLinkService></Configuration></Subsystem>)";
-
-std::string mission_text(std::string_view on_loss) {
-  return R"(<Mission name="STARTED" id="79">
-  <Supervisor descriptor="../../supervisor/supervisor.xml">
-    <Database strategy="sqlite" path="log/started.db"/>
-    <Ground subsystem="COMMUNICATION" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>
-  </Supervisor>
-  <Subsystem executable="hirosco-communication" descriptor="../../subsystems/communication/communication.xml"/>
-  <Subsystem executable="started-encoder" descriptor="started-encoder.xml"/>
-  <Subsystem executable="started-follower" descriptor="started-follower.xml"/>
-  <Links><Link id="1" from="ENCODER.TICK" to="FOLLOWER.TICKS" )" +
-         std::string{on_loss} + R"(/></Links>
-  <Modes initial="commissioning" start="operation">
-    <Mode name="commissioning"><Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode>
-    <Mode name="operation">
-      <Commission subsystem="COMMUNICATION" configuration="NOMINAL" state="Operational"/>
-      <Commission subsystem="ENCODER" configuration="QUICK" state="Operational"/>
-      <Commission subsystem="FOLLOWER" configuration="FOLLOW" state="Operational"/>
-      <Establish link="1"/>
-      <Permit subsystem="*" functions="SET_STATE CONFIGURE"/>
-      <Permit subsystem="SUPERVISOR" functions="SET_MODE SHUTDOWN LINK UNLINK"/>
-    </Mode>
-  </Modes>
-  <Recovery><Plan name="ground-lost"><When event="GROUND_LINK_LOST"/><Do action="log"/></Plan></Recovery>
-</Mission>)";
-}
-
-struct Encoder final : Subsystem {
-  Parameter<std::uint64_t> number;
-  Parameter<double> angle;
-
- protected:
-  Result<Step> software_init() override {
-    publish("NUMBER", number);
-    publish("ANGLE", angle);
-    return done;
-  }
-  Result<> pre_operational(const Cycle&) noexcept override { return turn(); }
-  Result<> safe_operational(const Cycle&) noexcept override { return turn(); }
-  Result<> operational(const Cycle&) noexcept override { return turn(); }
-
- private:
-  Result<> turn() noexcept {
-    number.store(number.load() + 1);
-    return ok();
-  }
-};
 
 struct Follower final : Subsystem {
   struct Tick {
@@ -101,20 +54,10 @@ struct StartedCycles : ::testing::Test {
   Encoder* encoder{nullptr};
   Follower* follower{nullptr};
   std::optional<Flight> flight;
-  template <class Author>
-  std::function<std::unique_ptr<Subsystem>()> making(Author*& made) {
-    return [&made] {
-      auto author = std::make_unique<Author>();
-      made = author.get();
-      return author;
-    };
-  }
   void begin(std::string_view on_loss = R"(on_loss="ignore")") {
-    flight.emplace(Plan{.mission = "hello",
-                        .subsystems = {{"started-encoder", making(encoder)}, {"started-follower", making(follower)}},
-                        .files = {{"mission.xml", mission_text(on_loss)},
-                                  {"started-encoder.xml", encoder_text},
-                                  {"started-follower.xml", follower_text}}});
+    flight.emplace(two_ends({"ENCODER", "QUICK", "TICK", encoder_text, making(encoder)},
+                            {"FOLLOWER", "FOLLOW", "TICKS", follower_text, making(follower)}, std::string{on_loss},
+                            R"(<Permit subsystem="*" functions="SET_STATE CONFIGURE"/>)"));
     ASSERT_TRUE(flight->commission()) << flight->story().text();
     ASSERT_EQ(flight->state("FOLLOWER"), State::Operational);
     forget();

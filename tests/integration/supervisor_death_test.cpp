@@ -247,5 +247,38 @@ TEST(SupervisorDeath, AtEveryMomentOfARecoveryBothMachinesComeToRest) {
   EXPECT_GT(flights, 10);
 }
 
+/// From the first message of the flight on: who was let go before the death moves on only where the whole craft was commissioned.
+TEST(SupervisorDeath, AtEveryMomentOfCommissioningNobodyIsLeftMovingAndTheCraftIsCommissionedAnew) {
+  std::map<std::string, int> ends;
+  int flights = 0;
+  for (int at = 1;; ++at) {
+    MortalFlight mortal{at};
+    Flight& flight = mortal.flight;
+    mortal.deaths.armed = true;
+    for (int step = 0;
+         step < 100 && flight.craft().supervisor_deaths() == 0 && !flight.story().has("commissioned: mode"); ++step)
+      flight.craft().run(100ms);
+    mortal.deaths.armed = false;
+    const bool died = flight.craft().supervisor_deaths() > 0;
+    flight.craft().run(4s);
+    ++flights;
+    const std::string now = flight.craft().supervisor().mode().name;
+    // Between the last step and the word that all are there it has the mode already; then it is stopped in that one.
+    const bool whole = !flight.story().has("commissioning stopped: the supervisor died") && now == "telepresence";
+    ++ends[whole ? "commissioned" : "stopped"];
+    EXPECT_TRUE(now == "telepresence" || now == flight.mission().initial_mode) << now;
+    for (const char* name : movers) {
+      EXPECT_EQ(mortal.may_move(name), whole) << name << "\n" << mortal.text();
+      EXPECT_TRUE(whole || flight.state(name) != State::Operational) << name << "\n" << mortal.text();
+    }
+    EXPECT_EQ(flight.craft().supervisor().own_state(), State::Operational) << mortal.text();
+    flies_again(mortal);
+    if (HasFailure() || !died) break;
+  }
+  EXPECT_GT(ends["stopped"], 100);
+  EXPECT_GT(ends["commissioned"], 0);
+  std::printf("%d flights, stopped: %d, commissioned: %d\n", flights, ends["stopped"], ends["commissioned"]);
+}
+
 }  // namespace
 }  // namespace hirosco::testing

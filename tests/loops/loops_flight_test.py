@@ -4,6 +4,7 @@
 """The catalogue with real processes: the threads that its descriptor says, period and priority that follow the configuration
 without a restart, a loop of services that hangs, seen by the guard."""
 import pathlib
+import struct
 import threading
 import time
 import unittest
@@ -59,6 +60,39 @@ class Loops(unittest.TestCase):
         begin, first = time.monotonic(), woken()
         time.sleep(span_s)
         return (woken() - first) / (time.monotonic() - begin)
+
+    def told(self, telemetry, since):
+        """CYCLE_SPIN and LOOP_STATS of the newest report of structure 2 after `since`; each with the numbers of loop 0."""
+        end = time.monotonic() + 10.0
+        while time.monotonic() < end:
+            for report in reversed(list(telemetry.reports)):
+                if report.received > since and (report.service, report.subtype) == (3, 25) and report.data[:2] == b"\0\2" and report.apid == 24:
+                    spin_us, longest_us, exceeded, *loops = struct.unpack(">ffQ8f8f8Q8Q", report.data[2:2 + 208])
+                    return (spin_us, longest_us, exceeded), (loops[0], loops[8], loops[16], loops[24])
+            time.sleep(0.05)
+        raise AssertionError("structure 2 is not reported")
+
+    def test_a_precise_configuration_spins_and_its_loop_says_what_its_steps_take(self):
+        with flight.Flight(MISSION) as craft:
+            craft.wait_told("commissioned: mode operation", 20.0)
+            realtime = self.threads(craft)["cycle"][0] == 1
+            fine, calm, pause_s = 6, 1, 1.5
+            with flight.Telemetry() as telemetry:
+                spin, loop = self.told(telemetry, time.monotonic())
+                self.assertEqual(spin, (0.0, 0.0, 0), "it sleeps where nothing is said")
+                self.assertEqual(loop[0], 2000.0)
+                self.assertEqual(craft.tc("CATALOGUE", "CONFIGURE", fine)[0], 0)
+                self.assertEqual(craft.tc("CATALOGUE", "COUNT")[0], 0)
+                time.sleep(pause_s)
+                spin, loop = self.told(telemetry, time.monotonic())
+                flight.measure(f"spin in force, longest / us, exceeded: {spin}; loop: budget, longest / us, exceeded, missed: {loop}")
+                self.assertEqual(spin[0], 150.0 if realtime else 0.0)
+                self.assertEqual(spin[1] > 0.0, realtime)
+                self.assertGreater(loop[1], 0.0)
+                self.assertEqual(craft.tc("CATALOGUE", "CONFIGURE", calm)[0], 0)
+                time.sleep(pause_s)
+                self.assertEqual(self.told(telemetry, time.monotonic())[0], (0.0, 0.0, 0))
+            craft.end()
 
     def test_a_loop_that_hangs_is_seen_by_the_guard_and_its_process_ended(self):
         with flight.Flight(MISSION) as craft:

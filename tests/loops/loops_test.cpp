@@ -58,6 +58,16 @@ TEST_F(Loops, GoesTenTimesFromOneConfigurationToAnotherInOperationalWithoutALate
   EXPECT_FALSE(flight.story().has("CATALOGUE high")) << flight.story().text();
 }
 
+/// Where time is virtual nobody is late, so nobody spins; what it would take is reckoned all the same.
+TEST_F(Loops, APreciseConfigurationIsReckonedWithItsSpinAndCyclesOnTheSameGrid) {
+  EXPECT_TRUE(configure("FINE").completed) << flight.story().text();
+  EXPECT_EQ(cycles_in(1s), 500U);
+  const auto full = configure("FULL");
+  EXPECT_EQ(full.failure, FailureCode::NotPermittedNow) << "1,000 us of work and 990 of spin leave its loop too little";
+  EXPECT_EQ(full.failure_subtype, 2);
+  EXPECT_EQ(cycles_in(1s), 500U);
+}
+
 TEST_F(Loops, AsksForPowerAndForTheTimeOfAllCyclesBefore) {
   const auto greedy = configure("GREEDY");
   EXPECT_EQ(greedy.failure, FailureCode::PowerShort);

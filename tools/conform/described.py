@@ -18,6 +18,8 @@ NATIVE = 1 if sys.byteorder == "little" else 2
 FRAMEWORK = {"CYCLE_STATS": [("OVERRUNS", 244, 5, 1), ("MAX_US", 240, 9, 1), ("AVG_US", 241, 9, 1)],
              "CYCLE_TIMES": [("EXECUTION", 240, 5, 16), ("LATENCY", 241, 5, 16)],
              "CYCLE_BUDGET": [("BUDGET_US", 242, 9, 1), ("LONGEST_US", 243, 9, 1), ("EXCEEDED", 245, 5, 1)],
+             "CYCLE_SPIN": [("SPIN_US", 244, 9, 1), ("LONGEST_US", 245, 9, 1), ("EXCEEDED", 240, 7, 1)],
+             "LOOP_STATS": [("BUDGET_US", 246, 9, 8), ("LONGEST_US", 247, 9, 8), ("EXCEEDED", 241, 7, 8), ("MISSED", 242, 7, 8)],
              "RESOURCE_STATS": [("MEMORY", 246, 5, 1), ("MEMORY_HIGH", 247, 5, 1), ("DESCRIPTORS", 248, 5, 1), ("DESCRIPTORS_HIGH", 249, 5, 1),
                                 ("THREADS", 250, 5, 1), ("THREADS_HIGH", 251, 5, 1), ("POOL_USED", 252, 5, 8), ("POOL_HIGH", 253, 5, 8),
                                 ("POOL_REFUSED", 254, 5, 1)],
@@ -79,7 +81,7 @@ class Descriptor:
             self.enumerations[each.get("name")] = {text.text: int(text.get("value")) for text in each.iter("Text")}
         self.parameters = [self._parameter(each) for each in self.root.findall("Parameters/*") if each.tag in ("ParamRef", "StructRef")]
         # Those that it has without declaring them; a foreign one may leave them out.
-        ids = {"CYCLE_STATS": 39, "CYCLE_TIMES": 40, "LINK_STATS": 41, "CYCLE_BUDGET": 38, "RESOURCE_STATS": 37, "DESCRIPTOR": 36}
+        ids = {"CYCLE_STATS": 39, "CYCLE_TIMES": 40, "LINK_STATS": 41, "CYCLE_BUDGET": 38, "CYCLE_SPIN": 35, "LOOP_STATS": 34, "RESOURCE_STATS": 37, "DESCRIPTOR": 36}
         self.framework = [Value(name, STRUCT, id=ids[name], members=[Value(word, kind, count, place) for word, place, kind, count in members])
                           for name, members in FRAMEWORK.items()]
         self.functions = [Function(each.get("name"), self._states(each.get("states", "Operational")),

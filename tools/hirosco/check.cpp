@@ -59,8 +59,9 @@ void show_subsystem(const descriptor::Subsystem& subsystem) {
 void show_cycle(const descriptor::CycleResponse& cycle) {
   const std::string budget =
       cycle.budget() > Duration{} ? fmt::format("{} us", cycle.budget() / 1us) : "no budget declared";
-  fmt::print("  {} {} {}: {}, priority {}, ends at most {} us after it is due, due again after {} us\n",
-             cycle.loop != nullptr ? "loop" : "cycle", cycle.subsystem, cycle.name(), budget, cycle.priority(),
+  const std::string spin = cycle.spin() > Duration{} ? fmt::format(" after {} us of spin", cycle.spin() / 1us) : "";
+  fmt::print("  {} {} {}: {}{}, priority {}, ends at most {} us after it is due, due again after {} us\n",
+             cycle.loop != nullptr ? "loop" : "cycle", cycle.subsystem, cycle.name(), budget, spin, cycle.priority(),
              cycle.longest ? fmt::format("{}", *cycle.longest / 1us) : "?", cycle.period() / 1us);
 }
 

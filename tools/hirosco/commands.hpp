@@ -115,6 +115,15 @@ struct ModeOptions {
 /// The whole craft into a mode (adr 0075). 1: refused, or it failed; with `preview`, it is impossible now.
 int mode(const ModeOptions& options);
 
+struct PlanOptions {
+  Connection connection;
+  std::string event;  ///< SUBSYSTEM:EVENT
+  bool from_descriptors{false};  ///< in every mode, without a flight
+  Duration limit{std::chrono::seconds{10}};
+};
+/// What recovery would do about an event, step by step; nothing is done (adr 0099). 1: it could not begin now, or no answer.
+int plan(const PlanOptions& options);
+
 struct LogOptions {
   std::string mission;  ///< as for a connection
   std::string instance;

@@ -142,6 +142,16 @@ int read_and_do(int argc, char** argv) {
   mode_command->add_option("--limit", mode_limit, "How long to wait for the end")->capture_default_str();
   add_connection(*mode_command, mode_options.connection);
 
+  PlanOptions plan_options;
+  std::string plan_limit = "10s";
+  auto* plan_command =
+      app.add_subcommand("plan", "What recovery would do about an event now, in steps; nothing is done");
+  plan_command->add_option("event", plan_options.event, "SUBSYSTEM:EVENT, for example ARM:PROCESS_DIED")->required();
+  plan_command->add_flag("--descriptors", plan_options.from_descriptors,
+                         "In each mode, as the descriptors say it: needs no flight");
+  plan_command->add_option("--limit", plan_limit, "How long to wait for the answer")->capture_default_str();
+  add_connection(*plan_command, plan_options.connection);
+
   StatusOptions status_options;
   auto* status_command =
       app.add_subcommand("status", "Is it well? One line and what deviates; ends with 1 when it is not");
@@ -231,6 +241,7 @@ int read_and_do(int argc, char** argv) {
     simulate_options.run_for = duration_of(simulate_for);
     tc_options.limit = duration_of(tc_limit);
     mode_options.limit = duration_of(mode_limit);
+    plan_options.limit = duration_of(plan_limit);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? exit_ok : exit_usage;
@@ -250,6 +261,7 @@ int read_and_do(int argc, char** argv) {
   if (*report_command) return mission_program("report", judged_mission, {});
   if (*tc_command) return telecommand(tc_options);
   if (*mode_command) return mode(mode_options);
+  if (*plan_command) return plan(plan_options);
   if (*dynamics_command) return dynamics(dynamics_options);
   if (*manifest_command) return manifest(manifest_options);
   if (*permissions_command) return permissions(permissions_options);

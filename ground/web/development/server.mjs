@@ -113,7 +113,7 @@ function status(t = now) {
     subsystems: flight.mission.subsystems.map((one) => ({id: one.id, name: one.name, state: state_of(one),
       configuration: one.configurations[one.configurations.length - 1]?.name, cycles: Math.round((t - first_t) * 2000), overruns: 0, missed: 0,
       latency_max_ns: 61000, execution_mean_ns: 8400, inhibited: state_of(one) === 'ErrorOperational' ? ['failure'] : state === 'stopped' && flight.stop.stopped.includes(one.name) ? ['device'] : [], waits_for: '', age_s: 0.1})),
-    links: flight.mission.links.map((link) => ({id: link.id, up, age_cycles: up ? 0 : 400, rate_hz: up ? link.rate_hz : 0, lost: 0, latency_mean_ns: 310000, latency_max_ns: 620000}))};
+    links: flight.mission.links.map((link) => ({id: link.id, up, age_cycles: up ? 0 : 400, rate_hz: up ? link.rate_hz : 0, lost: 0, latency_mean_ns: 310000, latency_max_ns: 620000, jitter_ns: 4100, age_at_use_us: 310}))};
 }
 
 if (state !== 'fresh') {

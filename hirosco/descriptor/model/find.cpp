@@ -177,7 +177,7 @@ double cycle_share(const Mission& mission, const Mode& mode) noexcept {
     const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
     if (configuration != nullptr && configuration->shortest().count() > 0)
       share +=
-          static_cast<double>(configuration->budget.count()) / static_cast<double>(configuration->shortest().count());
+          static_cast<double>(configuration->load().count()) / static_cast<double>(configuration->shortest().count());
   }
   for (const MissionSubsystem& member : mission.subsystems)
     for (const ServiceLoop& loop : member.subsystem.service_loops)

@@ -20,6 +20,10 @@ inline constexpr const char* cycle_stats = "CYCLE_STATS";
 inline constexpr const char* cycle_times = "CYCLE_TIMES";
 /// hirosco::CycleBudget
 inline constexpr const char* cycle_budget = "CYCLE_BUDGET";
+/// hirosco::CycleSpin
+inline constexpr const char* cycle_spin = "CYCLE_SPIN";
+/// hirosco::LoopStatistics
+inline constexpr const char* loop_stats = "LOOP_STATS";
 /// hirosco::LinkStatistics
 inline constexpr const char* link_stats = "LINK_STATS";
 /// hirosco::ResourceStatistics
@@ -28,7 +32,8 @@ inline constexpr const char* resource_stats = "RESOURCE_STATS";
 inline constexpr const char* descriptor = "DESCRIPTOR";
 }  // namespace framework_parameter
 
-/// CYCLE_STATS, CYCLE_TIMES, CYCLE_BUDGET, LINK_STATS, RESOURCE_STATS and DESCRIPTOR, with the ids that are theirs where a descriptor gives no other.
+/// CYCLE_STATS, CYCLE_TIMES, CYCLE_BUDGET, CYCLE_SPIN, LINK_STATS, LOOP_STATS, RESOURCE_STATS and DESCRIPTOR, with the ids that are theirs where a
+/// descriptor gives no other.
 [[nodiscard]] std::vector<Parameter> framework_parameters();
 
 /// "NAME_OUTPUT": what is put out to an actuator, or what its author would put out (adr 0073).

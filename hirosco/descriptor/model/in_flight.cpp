@@ -247,14 +247,15 @@ class Comparison {
     unless(flown.fall_backs.empty() == fall_backs.empty(), at, what + ": whether it has fall-backs", code_why);
   }
   void configuration(const Subsystem& subsystem, const Configuration& flown, const Configuration& fresh) {
-    [[maybe_unused]] const auto& [name, id, priority, sampling, started_by, least, budget, power_w, overruns, self_test,
-                                  self_test_within, housekeeping, provides, requires_, devices, initial, services, at] =
-        fresh;
+    [[maybe_unused]] const auto& [name, id, priority, sampling, started_by, least, budget, spin, power_w, overruns,
+                                  self_test, self_test_within, housekeeping, provides, requires_, devices, initial,
+                                  services, at] = fresh;
     const std::string what = "configuration " + name;
     unless(flown.id == id, at, what + ": its id", code_why);
     unless(flown.priority == priority && flown.sampling == sampling && flown.budget == budget, at,
            what + ": priority, sampling time or budget", timing_why);
     unless(flown.started_by == started_by && flown.least == least, at, what + ": what starts its cycles", timing_why);
+    unless(flown.spin == spin, at, what + ": how long before its cycles it wakes", timing_why);
     unless(std::ranges::equal(flown.services, services, same_use_of_service), at, what + ": which services it has",
            code_why);
     unless(flown.self_test == self_test, at, what + ": whether it wants a self test", safety_why);

@@ -13,21 +13,22 @@ namespace {
 
 /// What all of `cycles` takes from one of them until it has ended, if that began with all due and took `span`.
 [[nodiscard]] Duration demand(const std::vector<CycleResponse>& cycles, const CycleResponse& of, Duration span) {
-  Duration sum = of.budget();
+  Duration sum = of.load();
   for (const CycleResponse& other : cycles) {
     if (&other == &of || other.priority() < of.priority()) continue;
     const bool in_turn =
         other.priority() == of.priority() && of.priority() > 0;  // without a priority nobody keeps a turn
-    sum += in_turn ? other.budget() : begun_within(span, other.period()) * other.budget();
+    sum += in_turn ? other.load() : begun_within(span, other.period()) * other.load();
   }
   return sum;
 }
 
 [[nodiscard]] std::optional<Duration> longest(const std::vector<CycleResponse>& cycles, const CycleResponse& of) {
   // Each round is longer by a budget at least, so that it ends at the period at the latest.
-  for (Duration span = std::max(of.budget(), Duration{1}); span <= of.period();) {
+  // It counts from when the cycle takes the processor, which a precise one does before it is due.
+  for (Duration span = std::max(of.load(), Duration{1}); span <= of.period();) {
     const Duration needed = demand(cycles, of, span);
-    if (needed == span) return span;
+    if (needed == span) return span - of.spin();
     span = needed;
   }
   return std::nullopt;

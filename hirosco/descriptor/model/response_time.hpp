@@ -24,6 +24,9 @@ struct CycleResponse {
   /// The shortest.
   [[nodiscard]] Duration period() const noexcept { return loop != nullptr ? loop->period : configuration->shortest(); }
   [[nodiscard]] Duration budget() const noexcept { return loop != nullptr ? loop->budget : configuration->budget; }
+  /// Before it is due it keeps the processor for so long, as whoever works would (docs/adr/0104).
+  [[nodiscard]] Duration spin() const noexcept { return loop != nullptr ? Duration{} : configuration->spin; }
+  [[nodiscard]] Duration load() const noexcept { return budget() + spin(); }
   [[nodiscard]] int priority() const noexcept { return loop != nullptr ? loop->priority : configuration->priority; }
 };
 

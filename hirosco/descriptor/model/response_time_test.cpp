@@ -17,6 +17,7 @@ struct Declared {
   int priority;
   Duration sampling;
   Duration budget;
+  Duration spin{};
 };
 
 struct CycleResponses : ::testing::Test {
@@ -28,6 +29,7 @@ struct CycleResponses : ::testing::Test {
     only.priority = declared.priority;
     only.sampling = declared.sampling;
     only.budget = declared.budget;
+    only.spin = declared.spin;
     member.subsystem.configurations.push_back(std::move(only));
     mission.subsystems.push_back(std::move(member));
     CommissionStep step;
@@ -114,6 +116,28 @@ TEST_F(CycleResponses, StandInTheOrderOfTheirPriority) {
   commission({"LOW", 10, 500us, 1us});
   commission({"HIGH", 80, 500us, 1us});
   EXPECT_EQ(cycle_responses(mission, mode).front().subsystem, "HIGH");
+}
+
+TEST_F(CycleResponses, OfAPreciseOneCountFromWhenItIsDueAndItsSpinIsLoadOfTheOthers) {
+  commission({"A", 80, 500us, 100us, 60us});
+  commission({"B", 70, 1000us, 200us});
+  EXPECT_EQ(longest()["A"], 100us) << "spun away before";
+  EXPECT_EQ(longest()["B"], 360us);
+  EXPECT_DOUBLE_EQ(cycle_share(mission, mode), 0.32 + 0.2);
+}
+
+TEST_F(CycleResponses, OfAPreciseOneThatOthersKeepFromSpinningAreNoLonger) {
+  commission({"A", 80, 500us, 100us});
+  commission({"B", 70, 1000us, 200us, 60us});
+  EXPECT_EQ(longest()["B"], 300us);
+}
+
+TEST_F(CycleResponses, FindNoRoomForASpinThatLeavesTheOthersTooLittle) {
+  commission({"A", 80, 500us, 100us, 300us});
+  commission({"B", 70, 500us, 100us});
+  EXPECT_EQ(longest()["B"], 500us);
+  mission.subsystems[0].subsystem.configurations[0].spin = 301us;
+  EXPECT_EQ(longest()["B"], std::nullopt);
 }
 
 /// From the instant at which all are due, microsecond by microsecond; more than its period: not in time.

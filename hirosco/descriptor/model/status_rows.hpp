@@ -8,12 +8,13 @@
 
 #include "hirosco/descriptor/model/mission.hpp"
 
-/// What the supervisor tells of everybody: a row for itself and each subsystem, a row for each link, as two structures of its
+/// What the supervisor tells of everybody: a row for itself and each subsystem, a row for each link, as three structures of its
 /// descriptor whose members are columns.
 namespace hirosco::descriptor {
 
 inline constexpr std::string_view subsystem_rows = "SUBSYSTEMS";
 inline constexpr std::string_view link_rows = "LINK_STATUS";
+inline constexpr std::string_view link_quality_rows = "LINK_QUALITY";
 /// Of either; as many as go into one telemetry packet are taken, whatever this says.
 inline constexpr std::size_t most_status_rows = 128;
 

@@ -296,6 +296,8 @@ inline constexpr Duration default_self_test_within = std::chrono::seconds{10};
 inline constexpr Duration least_sampling = std::chrono::microseconds{50};
 /// Above every cycle run the simulated devices and the supervisor's guard, which takes priority from a cycle that hangs.
 inline constexpr int greatest_cycle_priority = 84;
+/// A precise cycle looks at the clock no longer than this before it is due (adr 0104): what wakes later than that is not awake in time anyway.
+inline constexpr Duration greatest_spin = std::chrono::milliseconds{1};
 /// Most octets that the arguments of a function take together on their way to the cycle.
 inline constexpr std::size_t max_argument_octets = 256;
 
@@ -307,6 +309,8 @@ struct Configuration {
   std::string started_by;  ///< required set whose samples start the cycle; empty: the clock alone does (adr 0094)
   Duration least{};  ///< of one that samples start: from the start of a cycle to that of the next
   Duration budget{};  ///< most processor time that a cycle takes; 0 = not declared
+  Duration
+      spin{};  ///< of a precise one: so long before it is due it wakes and looks at the clock; 0 = it sleeps (adr 0104)
   double power_w{0};  ///< most that it draws from Safe- to Post-Operational; 0 = not accounted
   CycleLimit overruns{3, 20};  ///< overruns in a row until the overrun event
   SelfTest self_test{SelfTest::Optional};
@@ -324,6 +328,8 @@ struct Configuration {
   Location at;
   /// The shortest distance of two cycles: what they cost a processor at most is reckoned with it.
   [[nodiscard]] Duration shortest() const noexcept { return started_by.empty() ? sampling : least; }
+  /// What a cycle takes of its processor at most, what it spins away before it included.
+  [[nodiscard]] Duration load() const noexcept { return budget + spin; }
 };
 
 /// A failure code of the author's own, 0x8000 to 0xFFFF.

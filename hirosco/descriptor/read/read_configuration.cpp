@@ -46,6 +46,7 @@ void SubsystemReader::read_configuration(const xml::Element& element) {
       attributes.required_integer<std::int64_t>("sampling_us", least_sampling_us, max_sampling_us)};
   read_start(attributes, configuration);
   read_budget(attributes, configuration);
+  read_spin(attributes, configuration);
   configuration.power_w = attributes.watts("power_W").value_or(0);
   configuration.overruns = read_limit(attributes, "overruns", "overruns_reduced", configuration.overruns);
   configuration.self_test = attributes.one_of("self_test", SelfTest::Optional);
@@ -91,6 +92,27 @@ void SubsystemReader::read_budget(Attributes& attributes, Configuration& configu
       *attributes.optional("budget_us"), "E0227",
       fmt::format("a cycle of {} us every {} us is an overrun each time", configuration.budget / 1us, period / 1us),
       "the budget is at most the sampling period, or the least distance of cycles that samples start");
+}
+
+/// Of a precise cycle (adr 0104). It is no favour: the processor is everybody's, and the spin is reckoned as its work is.
+void SubsystemReader::read_spin(Attributes& attributes, Configuration& configuration) {
+  const auto* spin = attributes.optional("spin_us");
+  if (spin == nullptr) return;
+  configuration.spin = std::chrono::microseconds{
+      attributes.integer_or<std::int64_t>("spin_us", 1, greatest_spin / std::chrono::microseconds{1}, 0)};
+  const auto refuse = [&](std::string message, std::string hint) {
+    problems_.add(*spin, "E0253", std::move(message), std::move(hint));
+  };
+  if (!configuration.started_by.empty())
+    return refuse("a cycle that samples start is due at no instant", "spin_us is of a cycle that the clock starts");
+  if (configuration.priority == 0)
+    return refuse("a precise cycle has no priority", "priority: without one it would take turns with everybody");
+  if (configuration.budget == Duration{})
+    return refuse("a precise cycle declares no budget", "budget_us: whether there is room to spin is reckoned with it");
+  if (configuration.sampling == Duration{} || configuration.load() <= configuration.sampling) return;
+  refuse(fmt::format("{} us of spin and {} us of budget are more than a period of {} us", configuration.spin / 1us,
+                     configuration.budget / 1us, configuration.sampling / 1us),
+         "lower spin_us or budget_us, or raise sampling_us");
 }
 
 /// Of a cycle that samples start: by which set, and how soon one may follow another.

@@ -125,11 +125,14 @@ void MissionReader::read_supervisor(const xml::Element& element) {
       problems_.add(at, "E0303", fmt::format("the supervisor has id 1, '{}' has {}", subsystem->name, subsystem->id));
     subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
     check_endnodes(*subsystem);
-    if (!subsystem->service_loops.empty() || !subsystem->bumpless.empty())
+    const bool spins = std::ranges::any_of(subsystem->configurations,
+                                           [](const Configuration& each) { return each.spin > Duration{}; });
+    if (!subsystem->service_loops.empty() || !subsystem->bumpless.empty() || spins)
       problems_.add(at, "E0332",
-                    fmt::format("'{}' is the supervisor: its services run in its own loop, its configuration stays",
+                    fmt::format("'{}' is the supervisor: its services run in its own loop, its configuration stays, "
+                                "its cycle spins for nobody",
                                 subsystem->name),
-                    "leave <ServiceLoop> and <Bumpless> out of its descriptor");
+                    "leave <ServiceLoop>, <Bumpless> and spin_us out of its descriptor");
     mission_.supervisor = std::move(*subsystem);
   }
   mission_.database.path = "log/" + (mission_.name.empty() ? std::string{"mission"} : mission_.name) + ".db";

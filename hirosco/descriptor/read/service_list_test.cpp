@@ -107,5 +107,13 @@ TEST(ServiceList, IsNoMatterOfTheSupervisorsLoop) {
   EXPECT_EQ(reading.problems[0].code, "E0332");
 }
 
+TEST(ServiceList, TheSupervisorsCycleSpinsForNobody) {
+  const auto supervisor = changed(R"(sampling_us=")", R"(priority="10" budget_us="10" spin_us="10" sampling_us=")",
+                                  file_system()(data / "supervisor.xml").value());
+  const auto reading = read_mission(data / "mission.xml", overlay({{"supervisor.xml", supervisor}}));
+  ASSERT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, {});
+  EXPECT_EQ(reading.problems[0].code, "E0332");
+}
+
 }  // namespace
 }  // namespace hirosco::descriptor

@@ -33,6 +33,7 @@ TEST(StatusRows, AreSixteenInSmallMissionsSoThatTheirReportsStayAsTheyAre) {
   EXPECT_EQ(give_everybody_a_row(mission), "");
   EXPECT_EQ(lengths(mission, subsystem_rows), std::vector<std::size_t>(10, 16));
   EXPECT_EQ(lengths(mission, link_rows), std::vector<std::size_t>(7, 16));
+  EXPECT_EQ(lengths(mission, link_quality_rows), std::vector<std::size_t>(6, 16));
 }
 
 TEST(StatusRows, AreOneForEachOfMany) {
@@ -40,6 +41,7 @@ TEST(StatusRows, AreOneForEachOfMany) {
   EXPECT_EQ(give_everybody_a_row(mission), "");
   EXPECT_EQ(lengths(mission, subsystem_rows), std::vector<std::size_t>(10, 17)) << "the supervisor has one, too";
   EXPECT_EQ(lengths(mission, link_rows), std::vector<std::size_t>(7, 17));
+  EXPECT_EQ(lengths(mission, link_quality_rows), std::vector<std::size_t>(6, 17));
   mission = crew_of(60, 90);
   EXPECT_EQ(give_everybody_a_row(mission), "");
   EXPECT_EQ(lengths(mission, subsystem_rows), std::vector<std::size_t>(10, 61));

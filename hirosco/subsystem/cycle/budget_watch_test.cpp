@@ -71,5 +71,37 @@ TEST_F(ABudget, BeginsAnewWithEachConfiguration) {
   EXPECT_EQ(watch.told().exceeded, 0U);
 }
 
+TEST_F(ABudget, CountsWhatIsSpunAwayForItself) {
+  watch.begin(configuration, true, 80us);
+  static_cast<void>(watch.account(used));
+  const auto spin_and_take = [&](Duration spun, Duration cycle) {
+    watch.account_spin(spun);
+    return take(spun + cycle);
+  };
+  EXPECT_FALSE(spin_and_take(75us, 100us));
+  EXPECT_FALSE(spin_and_take(60us, 40us));
+  EXPECT_EQ(watch.told().longest_us, 100.0F);
+  EXPECT_EQ(watch.told().exceeded, 0U);
+  EXPECT_EQ(watch.told_spin().spin_us, 80.0F);
+  EXPECT_EQ(watch.told_spin().longest_us, 75.0F);
+  EXPECT_EQ(watch.told_spin().exceeded, 0U);
+  EXPECT_FALSE(take(130us)) << "which did not spin";
+  EXPECT_EQ(watch.told().exceeded, 1U);
+}
+
+TEST_F(ABudget, IsToldOfARowThatSpinsTooLong) {
+  watch.begin(configuration, true, 80us);
+  static_cast<void>(watch.account(used));
+  for (const bool told : {false, false, true, false}) {
+    watch.account_spin(81us);
+    EXPECT_EQ(take(81us + 10us), told);
+  }
+  EXPECT_EQ(watch.told_spin().exceeded, 4U);
+  EXPECT_EQ(watch.told().exceeded, 0U) << "its work is within its budget";
+  watch.account_spin(80us);
+  EXPECT_FALSE(take(80us + 10us));
+  EXPECT_EQ(watch.in_a_row(), 0U);
+}
+
 }  // namespace
 }  // namespace hirosco

@@ -77,9 +77,11 @@ void CycleLoop::release() {
   plan_ = {};
 }
 
-TimePoint CycleLoop::step(TimePoint planned) noexcept {
+TimePoint CycleLoop::step(TimePoint planned, std::optional<Duration> spun_from) noexcept {
   const RealtimeScope forbidden;
   const TimePoint started = parts_.clock.now();
+  // Asked after its instant, so that the question makes no cycle late.
+  if (spun_from) budget_.account_spin(parts_.clock.processor() - *spun_from);
   const CyclePace::Start start = pace_.start(planned, started);
   take_permit();
   listen_to_supervisor(start.counts);
@@ -256,6 +258,7 @@ void CycleLoop::account(const CyclePace::Start& start, TimePoint started) noexce
   // They change slowly and are many words: not in each cycle.
   constexpr std::uint64_t cycles_between = 16;
   if (count_ % cycles_between == 1) resource_statistics_.store(parts_.resources.statistics());
+  if (count_ % cycles_between == 2 && parts_.loops.any()) loop_statistics_.store(parts_.loops.statistics());
 
   if (overruns_.account(execution, started - start.planned)) {
     const double row = overruns_.in_a_row();
@@ -282,6 +285,7 @@ void CycleLoop::hold_to_budget() noexcept {
     raise(descriptor::framework_event::cycle_over_budget, told);
   }
   budget_parameter_.store(budget_.told());
+  if (pace_.wait().spin != Duration{}) spin_parameter_.store(budget_.told_spin());
 }
 
 void CycleLoop::hold_to_realtime(const RealtimeUses& of_cycle) noexcept {

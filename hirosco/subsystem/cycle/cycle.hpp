@@ -18,6 +18,7 @@
 #include "hirosco/subsystem/cycle/cycle_pace.hpp"
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 #include "hirosco/subsystem/cycle/link_slots.hpp"
+#include "hirosco/subsystem/cycle/loop_meter.hpp"
 #include "hirosco/subsystem/cycle/loop_rings.hpp"
 #include "hirosco/subsystem/cycle/overrun_watch.hpp"
 #include "hirosco/subsystem/cycle/realtime_watch.hpp"
@@ -79,7 +80,9 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
     VitalPage& vital;
     const PermitPage& permit;  ///< to begin with
     bool realtime;
+    bool precise;  ///< one that asks for it may spin until it is due
     const ResourceMeter& resources;
+    const LoopMeter& loops;
   };
   explicit CycleLoop(const Parts& parts);
 
@@ -97,10 +100,12 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] Parameter<CycleStatistics>& statistics() noexcept { return statistics_; }
   [[nodiscard]] Parameter<CycleTimes>& times() noexcept { return times_parameter_; }
   [[nodiscard]] Parameter<CycleBudget>& budget() noexcept { return budget_parameter_; }
+  [[nodiscard]] Parameter<CycleSpin>& spin() noexcept { return spin_parameter_; }
   /// One for each actuator of the descriptor.
   [[nodiscard]] std::span<const std::unique_ptr<OutputParameter>> outputs() const noexcept { return outputs_; }
   [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
   [[nodiscard]] Parameter<ResourceStatistics>& resource_statistics() noexcept { return resource_statistics_; }
+  [[nodiscard]] Parameter<LoopStatistics>& loop_statistics() noexcept { return loop_statistics_; }
 
   /// Whether the author's node wrote this parameter in the newest cycle: what anybody else writes would not last.
   /// Realtime: wait-free. Thread: any.
@@ -120,8 +125,9 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
 
   // --- the cycle --------------------------------------------------------------------------------------------------
   /// One cycle that was due at `planned`, or was started by a sample before that; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
-  /// at most one system call per device, and one for its own processor time.
-  TimePoint step(TimePoint planned) noexcept;
+  /// at most one system call per device, and one for its own processor time, or two where it has spun before.
+  /// `spun_from`: the thread's processor time when it began to spin; empty: it has slept until it was woken.
+  TimePoint step(TimePoint planned, std::optional<Duration> spun_from = {}) noexcept;
   /// What may start the next one before it is due.  Realtime: wait-free. Thread: cycle.
   [[nodiscard]] const CycleWait& wait() const noexcept { return pace_.wait(); }
 
@@ -184,8 +190,10 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   Parameter<CycleStatistics> statistics_;
   Parameter<CycleTimes> times_parameter_;
   Parameter<CycleBudget> budget_parameter_;
+  Parameter<CycleSpin> spin_parameter_;
   Parameter<LinkStatistics> link_statistics_;
   Parameter<ResourceStatistics> resource_statistics_;
+  Parameter<LoopStatistics> loop_statistics_;
   std::vector<std::unique_ptr<OutputParameter>> outputs_;
   std::vector<std::byte> event_buffer_;  ///< room for the largest event of the descriptor
   struct Watched {

@@ -19,12 +19,12 @@ namespace {
 
 bool CycleWait::arrived() const noexcept { return word != nullptr && load(*word) != seen; }
 
-void CyclePace::begin(const descriptor::Configuration& configuration) noexcept {
+void CyclePace::begin(const descriptor::Configuration& configuration, bool precise) noexcept {
   longest_ = configuration.sampling;
   least_ = configuration.least;
   by_samples_ = !configuration.started_by.empty();
   counted_ = false;
-  wait_ = {.least = least_};
+  wait_ = {.least = least_, .spin = precise ? configuration.spin : Duration{}};
 }
 
 CyclePace::Start CyclePace::start(TimePoint planned, TimePoint started) noexcept {

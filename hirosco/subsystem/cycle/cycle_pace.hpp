@@ -16,6 +16,8 @@ struct CycleWait {
   std::uint32_t seen{0};  ///< of the word, before the last cycle read its samples
   TimePoint earliest{};  ///< nobody is woken before
   Duration least{};  ///< who was woken without a sample rests so long before it waits again
+  Duration
+      spin{};  ///< of a precise cycle: from the wake-up, at which it begins to look at the clock, to when it is due
 
   [[nodiscard]] bool arrived() const noexcept;
 };
@@ -23,7 +25,8 @@ struct CycleWait {
 /// One per cycle loop; begun anew with each configuration.  Realtime: wait-free. Thread: the cycle.
 class CyclePace {
  public:
-  void begin(const descriptor::Configuration& configuration) noexcept;
+  /// `precise`: the platform lets a cycle spin that asks for it.
+  void begin(const descriptor::Configuration& configuration, bool precise) noexcept;
 
   /// How a cycle began.
   struct Start {

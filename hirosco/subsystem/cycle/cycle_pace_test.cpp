@@ -23,7 +23,7 @@ descriptor::Configuration by_samples() {
 
 TEST(CyclePace, ByTheClockEveryCycleCountsAndTheNextIsOnTheGrid) {
   CyclePace pace;
-  pace.begin(by_clock());
+  pace.begin(by_clock(), true);
   for (const Duration late : {0ms, 1ms, 9ms}) {
     const auto start = pace.start(TimePoint{10ms}, TimePoint{10ms + late});
     EXPECT_EQ(start.planned, TimePoint{10ms});
@@ -39,7 +39,7 @@ TEST(CyclePace, ByTheClockEveryCycleCountsAndTheNextIsOnTheGrid) {
 
 TEST(CyclePace, ACycleThatASampleStartsCountsFromItsBeginning) {
   CyclePace pace;
-  pace.begin(by_samples());
+  pace.begin(by_samples(), true);
   const auto first = pace.start(TimePoint{10ms}, TimePoint{10ms + 100us});
   EXPECT_FALSE(first.arrived) << "overdue";
   EXPECT_EQ(first.planned, TimePoint{10ms});
@@ -59,7 +59,7 @@ TEST(CyclePace, NoProducerMakesALimitShort) {
   for (std::uint32_t seed = 1; seed <= 200; ++seed) {
     std::mt19937 random{seed};
     CyclePace pace;
-    pace.begin(by_samples());
+    pace.begin(by_samples(), true);
     const TimePoint began{1s};
     TimePoint due = began, now = began;
     std::int64_t counted = 0;
@@ -79,7 +79,7 @@ TEST(CyclePace, NoProducerMakesALimitShort) {
 
 TEST(CyclePace, APauseOfTheWholeComputerCountsOnce) {
   CyclePace pace;
-  pace.begin(by_samples());
+  pace.begin(by_samples(), true);
   EXPECT_TRUE(pace.start(TimePoint{10ms}, TimePoint{10ms}).counts);
   const auto late = pace.start(TimePoint{20ms}, TimePoint{2s});
   EXPECT_TRUE(late.counts);
@@ -96,7 +96,7 @@ TEST(CyclePace, APauseOfTheWholeComputerCountsOnce) {
 
 TEST(CyclePace, WaitsForAnotherWordThanBeforeItReadAsLongAsThatIsReliedOn) {
   CyclePace pace;
-  pace.begin(by_samples());
+  pace.begin(by_samples(), true);
   std::uint32_t word = 7;
   pace.look(&word);
   pace.rely(true);
@@ -112,8 +112,23 @@ TEST(CyclePace, WaitsForAnotherWordThanBeforeItReadAsLongAsThatIsReliedOn) {
   pace.rely(true);
   EXPECT_FALSE(pace.wait().arrived()) << "no link";
   pace.look(&word);
-  pace.begin(by_clock());
+  pace.begin(by_clock(), true);
   EXPECT_EQ(pace.wait().word, nullptr) << "another configuration";
+}
+
+TEST(CyclePace, SpinsWhereItsConfigurationAsksForItAndItsPlatformLetsIt) {
+  descriptor::Configuration asks = by_clock();
+  CyclePace pace;
+  pace.begin(asks, true);
+  EXPECT_EQ(pace.wait().spin, 0us) << "off where nothing is said";
+  asks.spin = 80us;
+  pace.begin(asks, false);
+  EXPECT_EQ(pace.wait().spin, 0us);
+  pace.begin(asks, true);
+  EXPECT_EQ(pace.wait().spin, 80us);
+  pace.look(nullptr);
+  pace.rely(false);
+  EXPECT_EQ(pace.wait().spin, 80us) << "whatever links do";
 }
 
 }  // namespace

@@ -58,10 +58,11 @@ void CycleLoop::begin_counting(const descriptor::Configuration& configuration) n
   times_ = {};
   statistics_.store({});
   times_parameter_.store({});
-  budget_.begin(configuration, parts_.realtime);
+  pace_.begin(configuration, parts_.precise);
+  budget_.begin(configuration, parts_.realtime, pace_.wait().spin);
   realtime_.begin(configuration.shortest());
-  pace_.begin(configuration);
   budget_parameter_.store(budget_.told());
+  spin_parameter_.store(budget_.told_spin());
 }
 
 /// Whether it may be: the guard, the second inhibit and the state are asked in the cycle, as it is taken over there.

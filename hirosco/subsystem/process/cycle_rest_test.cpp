@@ -94,5 +94,65 @@ TEST_F(CycleRest, WakesWithoutASampleStartNothing) {
   EXPECT_FALSE(wait.arrived());
 }
 
+// --- precise cycles (adr 0104) --------------------------------------------------------------------------------------------
+
+TEST_F(CycleRest, ThatIsPreciseEndsWhenItIsDueAndSaysWhatTheThreadHadTakenBeforeItSpun) {
+  wait = {.spin = 200us};
+  const Duration before = clock.processor();
+  const TimePoint due = clock.now() + 3ms;
+  const auto spun_from = rest_until(due, wait, clock);
+  EXPECT_GE(clock.now(), due);
+  ASSERT_TRUE(spun_from);
+  EXPECT_GE(*spun_from, before);
+  EXPECT_LE(*spun_from, clock.processor());
+}
+
+TEST_F(CycleRest, ThatIsNotPreciseSpinsNever) {
+  EXPECT_FALSE(rest_until(clock.now() + 1ms, {}, clock));
+  publish();
+  EXPECT_FALSE(rest_until(clock.now() + 1ms, wait, clock));
+}
+
+/// Each look takes this long: so passes virtual time for who spins.
+class LookedAt final : public Clock {
+ public:
+  LookedAt(TimePoint now, Duration look) : now_{now}, look_{look} {}
+  [[nodiscard]] TimePoint passed() const { return now_; }
+  [[nodiscard]] std::uint64_t looks() const { return looks_; }
+
+ private:
+  [[nodiscard]] TimePoint do_now() const noexcept override {
+    ++looks_;
+    return now_ += look_;
+  }
+  [[nodiscard]] OnboardTime do_onboard() const noexcept override { return {}; }
+  mutable TimePoint now_;
+  Duration look_;
+  mutable std::uint64_t looks_{0};
+};
+
+TEST(Spin, LastsUntilItIsDueAndNoLookLonger) {
+  for (const Duration look : {1ns, 20ns, 333ns, 5000ns})
+    for (const Duration most : {1us, 50us, 200us, 1000us}) {
+      const LookedAt clock{TimePoint{1s} - most, look};
+      const auto looks = spin_until(TimePoint{1s}, most, clock);
+      EXPECT_GE(clock.passed(), TimePoint{1s});
+      EXPECT_LT(clock.passed(), TimePoint{1s} + look) << "not a look more";
+      EXPECT_EQ(looks, clock.looks());
+    }
+}
+
+TEST(Spin, OfWhoWakesTooLateIsOneLook) {
+  const LookedAt clock{TimePoint{1s} + 10us, 20ns};
+  EXPECT_EQ(spin_until(TimePoint{1s}, 200us, clock), 1U);
+}
+
+TEST(Spin, EndsWithAClockThatStandsOrGoesBack) {
+  for (const Duration look : {0ns, -1000ns}) {
+    const LookedAt clock{TimePoint{1s} - 50us, look};
+    EXPECT_EQ(spin_until(TimePoint{1s}, 50us, clock), 50'000U) << "a look takes a nanosecond at least";
+  }
+}
+
 }  // namespace
 }  // namespace hirosco

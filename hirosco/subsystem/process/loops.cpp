@@ -130,10 +130,10 @@ void CycleThread::cycle(std::uint32_t generation, int priority) {
   const RealtimeScope no_heap;
   TimePoint planned = clock_.now() + subsystem_.cycle_demand().period;
   for (;;) {
-    sleep_until(planned);
+    const auto spun_from = rest_until(planned, subsystem_.cycle_wait(), clock_);
     const auto demand = subsystem_.cycle_demand();
     if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) break;
-    planned = subsystem_.cycle_step(planned);
+    planned = subsystem_.cycle_step(planned, spun_from);
     // Another configuration may have followed without a break (adr 0096): its period is in `planned`.
     if (const int wanted = subsystem_.cycle_demand().priority; wanted != priority) {
       priority = wanted;

@@ -151,6 +151,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
       .memory = memory,
       .flows = flows,
       .realtime = realtime,
+      .precise = realtime && usable_processors() > 1,
       .wakes = true,
       .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); },
       .usage = [&meter]() -> std::optional<ProcessUsage> { return meter ? meter->look() : std::nullopt; },

@@ -48,6 +48,8 @@ struct Platform {
   MemoryProvider& memory;
   FlowFactory& flows;
   bool realtime{true};               ///< SCHED_FIFO is granted; false: the reduced limits hold (decision 21)
+  /// A cycle that asks for it may spin until it is due (docs/adr/0104): it has real-time rights, and whoever is no cycle another processor.
+  bool precise{false};
   /// Whoever drives the service loop steps it when the cycle has something to report (has_reports()), so that it need not look every
   /// millisecond while a cycle runs (adr 0071).
   bool wakes{false};
@@ -119,7 +121,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   };
   [[nodiscard]] Demand cycle_demand() const noexcept;
   /// One cycle; call only while cycle_demand().wanted.  Realtime: bounded, no allocation. Thread: cycle.
-  TimePoint cycle_step(TimePoint planned) noexcept { return cycle_.step(planned); }
+  /// `spun_from`: of the thread, its processor time when it began to spin until this cycle; empty: it has not.
+  TimePoint cycle_step(TimePoint planned, std::optional<Duration> spun_from = {}) noexcept {
+    return cycle_.step(planned, spun_from);
+  }
   /// What may start the next one before it is due.  Realtime: wait-free. Thread: cycle.
   [[nodiscard]] CycleWait cycle_wait() const noexcept { return cycle_.wait(); }
   /// The cycle thread has seen that no cycle is wanted and rests.  Thread: cycle.
@@ -289,6 +294,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   LoopRings rings_;
   ResourceMeter resources_;
   TimePoint look_at_resources_at_{};
+  LoopMeter loop_meter_;
   std::vector<std::unique_ptr<OwnLoop>> loops_;
   TimePoint loops_looked_at_{};
   CycleLoop cycle_;

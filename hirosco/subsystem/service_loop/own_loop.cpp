@@ -74,6 +74,7 @@ bool OwnLoop::hangs(Duration passed) noexcept {
 }
 
 TimePoint OwnLoop::step(TimePoint planned) {
+  const Duration used = parts_.clock.processor();
   {
     const LockGuard lock{mutex_};
     in_step_.store(true, std::memory_order_release);
@@ -92,7 +93,9 @@ TimePoint OwnLoop::step(TimePoint planned) {
   const Duration period = parts_.declared.period;
   const TimePoint next = planned + period;
   const TimePoint finished = parts_.clock.now();
-  return finished <= next ? next : next + ((finished - next) / period + 1) * period;
+  const auto missed = finished <= next ? 0 : (finished - next) / period + 1;
+  parts_.meter.account(parts_.place, parts_.clock.processor() - used, static_cast<std::uint64_t>(missed));
+  return next + missed * period;
 }
 
 void OwnLoop::handle(Octets record) {

@@ -14,6 +14,7 @@
 #include "hirosco/parameter/write_queue.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
+#include "hirosco/subsystem/cycle/loop_meter.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/mutex.hpp"
 #include "hirosco/utilities/record_ring.hpp"
@@ -33,6 +34,8 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
     const Clock& clock;
     const Dictionary& dictionary;
     WriteQueue& writes;
+    LoopMeter& meter;
+    std::size_t place;  ///< among the loops of its subsystem
   };
   explicit OwnLoop(const Parts& parts);
   /// Another supervisor's page counts from now on; the one before stays mapped until yet another comes.  Thread: the service loop's.

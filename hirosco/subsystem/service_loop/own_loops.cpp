@@ -24,7 +24,9 @@ std::vector<std::unique_ptr<OwnLoop>> GenericSubsystem::make_loops() {
                                                              .permit = *permit_,
                                                              .clock = platform_.clock,
                                                              .dictionary = dictionary_,
-                                                             .writes = writes_}));
+                                                             .writes = writes_,
+                                                             .meter = loop_meter_,
+                                                             .place = loops.size()}));
   return loops;
 }
 

@@ -146,7 +146,9 @@ Result<Step> GenericSubsystem::initialise_software() {
   publish(descriptor::framework_parameter::cycle_stats, cycle_.statistics());
   publish(descriptor::framework_parameter::cycle_times, cycle_.times());
   publish(descriptor::framework_parameter::cycle_budget, cycle_.budget());
+  publish(descriptor::framework_parameter::cycle_spin, cycle_.spin());
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
+  publish(descriptor::framework_parameter::loop_stats, cycle_.loop_statistics());
   publish(descriptor::framework_parameter::resource_stats, cycle_.resource_statistics());
   publish(descriptor::framework_parameter::descriptor, descriptor_in_force_);
   for (const auto& output : cycle_.outputs()) publish(output->name(), *output);

@@ -62,6 +62,8 @@ class Thread {
 /// Ties the calling thread to the last processor that it may use: the one that all cycles and devices of a node share
 /// (docs/adr/0007). Unavailable where the system has no affinity.
 [[nodiscard]] Result<> pin_to_cycle_cpu() noexcept;
+/// How many processors the calling thread may use; 1 where the system cannot say.
+[[nodiscard]] unsigned usable_processors() noexcept;
 /// Names the calling thread (first 15 octets); for tools only, so a refusal is silent.
 void set_thread_name(const char* name) noexcept;
 

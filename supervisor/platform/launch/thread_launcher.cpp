@@ -106,6 +106,7 @@ void ThreadLauncher::Member::fly() {
       .memory = *memory,
       .flows = parts->flows,
       .realtime = parts->realtime,
+      .precise = parts->realtime && usable_processors() > 1,
       .wakes = true,
       .explain =
           [this](std::string_view text) {

@@ -20,6 +20,7 @@ void Housekeeping::provide() {
   parts_.own.publish("COUNTS", counts_);
   parts_.own.publish(descriptor::subsystem_rows, members_);
   parts_.own.publish(descriptor::link_rows, link_rows_);
+  parts_.own.publish(descriptor::link_quality_rows, link_quality_);
   parts_.own.publish("POWER", power_);
 }
 
@@ -90,6 +91,8 @@ void Housekeeping::add_consumer(const descriptor::MissionLink& link, LinkRow& st
       status.lost = found->lost;
       status.latency_mean_ns = found->latency_mean_ns;
       status.latency_max_ns = found->latency_max_ns;
+      status.jitter_ns = found->jitter_ns;
+      status.age_at_use_us = found->age_us;
       return;
     }
     return;
@@ -114,8 +117,14 @@ LinkRow Housekeeping::status_of(const descriptor::MissionLink& link) const noexc
 void Housekeeping::show_links() noexcept {
   LinkRows rows;
   const std::size_t told = std::min(craft_.mission.links.size(), rows.link.size());
-  for (std::size_t i = 0; i < told; ++i) put(rows, i, status_of(craft_.mission.links[i]));
+  LinkQualityRows quality;
+  for (std::size_t i = 0; i < told; ++i) {
+    const LinkRow status = status_of(craft_.mission.links[i]);
+    put(rows, i, status);
+    put(quality, i, status);
+  }
   link_rows_.store(rows);
+  link_quality_.store(quality);
 }
 
 }  // namespace hirosco::supervisor

@@ -64,6 +64,7 @@ class Housekeeping final : public Watch {
   std::size_t memory_turn_{0};
   Parameter<MemberRows> members_;
   Parameter<LinkRows> link_rows_;
+  Parameter<LinkQualityRows> link_quality_;
 };
 
 }  // namespace hirosco::supervisor

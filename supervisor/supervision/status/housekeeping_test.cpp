@@ -120,6 +120,29 @@ TEST_F(HousekeepingTest, LinksAreToldAsTheirConsumerSeesThem) {
   EXPECT_EQ(age_us[1], LinkRow::not_told);
 }
 
+TEST_F(HousekeepingTest, HowWellEachLinkDoesStandsTogetherAndOfThoseThatNobodyElseCanLookIntoToo) {
+  parts.graph.set_up(2, true);
+  IncomingLink& seen = played[arm].vital->incoming[0];
+  seen.link = 2;
+  seen.lost = 6;
+  seen.latency_mean_ns = 1000;
+  seen.latency_max_ns = 1234;
+  seen.jitter_ns = 56;
+  seen.age_us = 789;
+  const auto octets = value_of(Type::Struct, 8);
+  OctetReader reader{octets};
+  std::array<std::uint8_t, places> link{};
+  std::array<std::array<std::uint32_t, places>, 5> columns{};
+  read(reader, link);
+  for (auto& column : columns) read(reader, column);
+  ASSERT_TRUE(reader.good() && reader.remaining() == 0);
+  EXPECT_THAT(std::vector(link.begin(), link.begin() + 3), ElementsAre(1, 2, 0));
+  std::vector<std::uint32_t> told;
+  for (const auto& column : columns) told.push_back(column[1]);
+  EXPECT_THAT(told, ElementsAre(6, 1000, 1234, 56, 789));
+  EXPECT_EQ(columns[3][0], 0U);
+}
+
 TEST_F(HousekeepingTest, ModeAndRejectionsAreThose) {
   EXPECT_EQ(value_of(Type::Uint8, 0), std::vector{std::byte{1}});
   verify(arm, 1, 4, pus::FailureCode::WrongMode, 0);

@@ -8,7 +8,7 @@
 #include "hirosco/descriptor/model/status_rows.hpp"
 #include "hirosco/parameter/sized.hpp"
 
-/// What ground is told of each of us and of each link: one structure, one row (housekeeping 4702).
+/// What ground is told of each of us and of each link: one structure, one row (housekeeping 4702 and 4703).
 namespace hirosco::supervisor {
 
 struct MemberRow {
@@ -35,6 +35,8 @@ struct LinkRow {
   std::uint32_t lost{0};
   std::uint32_t latency_mean_ns{0};
   std::uint32_t latency_max_ns{0};
+  std::uint32_t jitter_ns{0};
+  std::uint32_t age_at_use_us{0};
 };
 
 /// The rows as parameters have them, by columns. Published they are as long as the descriptor says.
@@ -66,6 +68,16 @@ struct LinkRows {
   Column<std::uint32_t> latency_max_ns = empty_column<std::uint32_t>;
 };
 
+/// LINK_QUALITY.
+struct LinkQualityRows {
+  Column<std::uint8_t> link = empty_column<std::uint8_t>;
+  Column<std::uint32_t> lost = empty_column<std::uint32_t>;
+  Column<std::uint32_t> latency_mean_ns = empty_column<std::uint32_t>;
+  Column<std::uint32_t> latency_max_ns = empty_column<std::uint32_t>;
+  Column<std::uint32_t> jitter_ns = empty_column<std::uint32_t>;
+  Column<std::uint32_t> age_at_use_us = empty_column<std::uint32_t>;
+};
+
 /// Realtime: wait-free.
 inline void put(MemberRows& rows, std::size_t i, const MemberRow& status) noexcept {
   rows.apid[i] = status.apid;
@@ -89,6 +101,16 @@ inline void put(LinkRows& rows, std::size_t i, const LinkRow& status) noexcept {
   rows.lost[i] = status.lost;
   rows.latency_mean_ns[i] = status.latency_mean_ns;
   rows.latency_max_ns[i] = status.latency_max_ns;
+}
+
+/// Realtime: wait-free.
+inline void put(LinkQualityRows& rows, std::size_t i, const LinkRow& status) noexcept {
+  rows.link[i] = status.link;
+  rows.lost[i] = status.lost;
+  rows.latency_mean_ns[i] = status.latency_mean_ns;
+  rows.latency_max_ns[i] = status.latency_max_ns;
+  rows.jitter_ns[i] = status.jitter_ns;
+  rows.age_at_use_us[i] = status.age_at_use_us;
 }
 
 }  // namespace hirosco::supervisor

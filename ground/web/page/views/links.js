@@ -13,7 +13,7 @@ export function Links() {
   const locked = Boolean(replay.value) || !operator.value;
   return html`<main class="link_view">
     <${Panel} title="Real-time links" hint="point at a subsystem to see what falls with it"><${LinkGraph} width=${860} height=${380} all /></${Panel}>
-    <${Panel} title="Now"><table class="values"><thead><tr><th>link</th><th>from</th><th>to</th><th>state</th><th>rate</th><th>age</th><th>limit</th><th title="from the instant of a sample to the start of the cycle that uses it first: mean, largest">latency</th><th>lost</th><th>network</th><th /></tr></thead>
+    <${Panel} title="Now"><table class="values"><thead><tr><th>link</th><th>from</th><th>to</th><th>state</th><th>rate</th><th>age</th><th>limit</th><th title="from the instant of a sample to the start of the cycle that uses it first: mean, largest">latency</th><th title="mean distance of two latencies in a row">jitter</th><th>lost</th><th>network</th><th /></tr></thead>
       <tbody>${(mission.value?.links ?? []).map((link) => {
         const now = live_link(link.id);
         const up = now.up === true;
@@ -21,7 +21,7 @@ export function Links() {
           <td>${link.to}${link.requires ? html` <small>${link.requires}</small>` : null}</td>
           <td><b class=${`state ${up ? 'good' : is_wanted(link) ? 'bad' : 'off'}`}>${up ? 'up' : is_wanted(link) ? 'down, required' : 'not in this mode'}</b></td>
           <td class="number">${rate_text(now.rate_hz ?? NaN)}</td><td class="number">${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles</td>
-          <td class="number">${number_text(link.age_limit_cycles)} cycles</td><td class="number" data-test=${`latency-${link.id}`}>${duration_text(now.latency_mean_ns ?? NaN)}${up ? html` <small>≤ ${duration_text(now.latency_max_ns)}</small>` : null}</td><td class="number">${number_text(now.lost)}</td>
+          <td class="number">${number_text(link.age_limit_cycles)} cycles</td><td class="number" data-test=${`latency-${link.id}`}>${duration_text(now.latency_mean_ns ?? NaN)}${up ? html` <small>≤ ${duration_text(now.latency_max_ns)}</small>` : null}</td><td class="number" data-test=${`jitter-${link.id}`}>${duration_text(now.jitter_ns ?? NaN)}</td><td class="number">${number_text(now.lost)}</td>
           <td>${[...network_of(link.from)].join(', ')}</td>
           <td><button class="chip" disabled=${locked} data-test=${`link-${link.id}`} onClick=${() => send_and_say('SUPERVISOR', up ? 'UNLINK' : 'LINK', {LINK: link.id})}>${up ? 'cut' : 'make'}</button></td></tr>`;
       })}</tbody></table>

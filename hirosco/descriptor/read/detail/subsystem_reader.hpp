@@ -64,6 +64,7 @@ class SubsystemReader {
   // read_configuration.cpp
   void read_configuration(const xml::Element& element);
   void read_budget(Attributes& attributes, Configuration& configuration);
+  void read_spin(Attributes& attributes, Configuration& configuration);
   void read_start(Attributes& attributes, Configuration& configuration);
   /// When its sets are known: the one that starts the cycle.
   void check_start(const xml::Element& element, Configuration& configuration);

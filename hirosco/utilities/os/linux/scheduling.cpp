@@ -91,6 +91,13 @@ Result<> pin_to_cycle_cpu() noexcept {
   return fail(ErrorCode::Internal, "no processor");
 }
 
+unsigned usable_processors() noexcept {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed) != 0) return 1;
+  return static_cast<unsigned>(CPU_COUNT(&allowed));
+}
+
 Result<> pin_to_cpu(unsigned cpu) noexcept {
   if (cpu >= CPU_SETSIZE) return fail(ErrorCode::OutOfRange, "processor", cpu);
   cpu_set_t set;

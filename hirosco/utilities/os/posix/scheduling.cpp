@@ -45,6 +45,7 @@ bool realtime_permitted() noexcept {
 }
 
 Result<> pin_to_cycle_cpu() noexcept { return fail(ErrorCode::Unavailable, "POSIX has no processor affinity"); }
+unsigned usable_processors() noexcept { return 1; }
 Result<> pin_to_cpu(unsigned cpu) noexcept {
   return fail(ErrorCode::Unavailable, "POSIX has no processor affinity", cpu);
 }

@@ -1,0 +1,340 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/process/loops.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hirosco/subsystem/author/custom_service.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+
+/// The threads that drive a subsystem in real time: its cycle and its loops of services, as a process has them, beside a service loop that
+/// the test steps. Run under the thread sanitizer by ./check.
+namespace hirosco {
+namespace {
+
+/// One subsystem with its threads; the test's thread is its service loop and its supervisor.
+class Driven {
+ public:
+  Driven(Subsystem& author, const std::string& descriptor, bool precise = false)
+      : subsystem{author,
+                  testing::read_descriptor(descriptor),
+                  {.clock = clock,
+                   .memory = memory,
+                   .flows = flows,
+                   .realtime = false,
+                   .precise = precise,
+                   .wakes = true,
+                   .explain = {}},
+                  channels.subsystem_end(),
+                  vital,
+                  permit},
+        cycle_{subsystem, clock, bell_, false} {
+    permit.release();
+    EXPECT_TRUE(cycle_.start("cycle"));
+    for (std::size_t i = 0; i < subsystem.own_loops(); ++i) {
+      loops_.push_back(std::make_unique<OwnLoopThread>(subsystem, i, clock, bell_, false));
+      EXPECT_TRUE(loops_.back()->start());
+    }
+  }
+  ~Driven() {
+    cycle_.end();
+    for (const auto& loop : loops_) loop->end();
+  }
+  Driven(const Driven&) = delete;
+  Driven& operator=(const Driven&) = delete;
+
+  void send(std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& with = {}) {
+    std::array<std::byte, max_packet_octets> buffer{};
+    const auto packet = pus::write_telecommand(buffer,
+                                               {.apid = subsystem.descriptor().id,
+                                                .sequence_count = ++count_,
+                                                .ack = pus::ack_all,
+                                                .service = service,
+                                                .subtype = subtype,
+                                                .source = 7},
+                                               data);
+    ASSERT_TRUE(channels.supervisor_end().send({.packet = packet.value(), .memory = with}));
+    ++sent;
+  }
+  void call(std::string_view function, double argument) {
+    const auto common = pus::common_functions();
+    const auto found = std::ranges::find(common, function, &descriptor::Function::name);
+    ASSERT_NE(found, common.end());
+    send(8, 1, pus::encode_call(*found, std::span{&argument, 1}).value());
+  }
+  void step() {
+    permit.heartbeat.fetch_add(1);
+    static_cast<void>(subsystem.service_step(clock.now()));
+    const auto demand = subsystem.cycle_demand();
+    if ((demand.wanted && !cycling_) || demand.ticket != ticket_) cycle_.wake();
+    cycling_ = demand.wanted;
+    ticket_ = demand.ticket;
+    bell_.hear();
+    MessageBuffer buffer;
+    for (;;) {
+      const auto found = channels.supervisor_end().receive(buffer);
+      if (!found || found->flow == Flow::None) break;
+      if (found->message.kind == MessageKind::Event) continue;
+      const auto view = pus::TelemetryView::parse(found->message.packet);
+      ASSERT_TRUE(view);
+      if (view->service() == 1 && view->subtype() % 2 == 0) ++failures;
+      if (view->service() == 1 && view->subtype() == 7) ++completions;
+      if (view->service() == 3 && view->subtype() == 25) ++housekeeping;
+      if (view->service() == 200) ++reports;
+    }
+    std::this_thread::yield();
+  }
+  template <class Condition>
+  void until(Condition&& condition) {
+    while (!condition()) step();
+  }
+  void done() {
+    until([this] { return completions + failures >= sent; });
+  }
+  void go(State state) {
+    call("SET_STATE", static_cast<double>(state));
+    until([&] { return subsystem.state() == state; });
+  }
+  [[nodiscard]] std::uint64_t cycles() const { return vital.cycles.load(); }
+  void cycle_on(std::uint64_t count) {
+    const std::uint64_t before = cycles();
+    until([&] { return cycles() >= before + count; });
+  }
+
+  SystemClock clock;
+  HeapMemory memory;
+  LocalFlows flows;
+  ChannelPair channels{4096};
+  VitalPage vital{};
+  PermitPage permit{};
+  GenericSubsystem subsystem;
+  int sent{0}, failures{0}, completions{0}, housekeeping{0}, reports{0};
+
+ private:
+  Bell bell_ = Bell::make().value();
+  CycleThread cycle_;
+  std::vector<std::unique_ptr<OwnLoopThread>> loops_;
+  bool cycling_{false};
+  std::uint32_t ticket_{0};
+  std::uint16_t count_{0};
+};
+
+// --- the cycle ---------------------------------------------------------------------------------------------------------
+
+struct Tick {
+  std::uint64_t number;
+};
+
+struct Filter final : Subsystem {
+  LinkInput<Tick> ticks;
+  TimePoint before{};
+  std::atomic<int> early{0};  ///< cycles that began before they were due
+
+ protected:
+  Result<Step> software_init() override {
+    require_link("TICKS", ticks);
+    return done;
+  }
+  Result<> pre_operational(const Cycle& cycle) noexcept override {
+    if (before != TimePoint{} && cycle.planned < before + cycle.period) ++early;
+    before = cycle.planned;
+    return ok();
+  }
+};
+
+TEST(CycleThreads, BeginACycleWithTheSampleThatStartsIt) {
+  Filter filter;
+  Driven driven{filter, R"(<Subsystem name="FILTER" id="21">
+    <Configuration name="C" id="1" sampling_us="100000" started_by="TICKS" least_us="1000"><RealTimeLinkService>
+      <Requires name="TICKS" age="3"><Field name="NUMBER" type="UINT64"/></Requires></RealTimeLinkService></Configuration>
+    </Subsystem>)"};
+  driven.go(State::PreOperational);
+  driven.call("CONFIGURE", 1);
+  driven.cycle_on(2);
+  EXPECT_EQ(filter.early, 0) << "no link: the clock alone";
+  const pus::st128::Agreement agreed{.method = LinkMethod::SharedMemory,
+                                     .byte_order = descriptor::ByteOrder::Little,
+                                     .kind = LinkKind::Latest,
+                                     .depth = 0,
+                                     .producer_period = 3ms,
+                                     .consumer_period = 100ms,
+                                     .fields = {{"NUMBER", Type::Uint64, 1}},
+                                     .wakes = true};
+  const auto* mechanism = find_link_mechanism(standard_link_mechanisms(), agreed.method, agreed.kind);
+  const MemoryHandle shared = mechanism->establish(driven.memory, agreed.layout(1)).value();
+  const auto writer = mechanism->produce(driven.memory, shared, agreed.layout(1)).value();
+  std::array<std::byte, max_packet_octets> buffer{};
+  const auto octets =
+      pus::st128::write_attach_request(
+          buffer, {.link = 1, .role = pus::st128::Role::Consumer, .epoch = 1, .set = "TICKS", .agreement = agreed})
+          .value();
+  driven.send(128, pus::st128::attach, Octets{buffer}.first(octets), shared);
+  driven.done();
+  ASSERT_EQ(driven.failures, 0);
+  for (std::uint64_t number = 1; number <= 20; ++number) {
+    const std::uint64_t before = driven.cycles();
+    writer->write(std::as_bytes(std::span{&number, 1}), driven.clock.now(), LinkStatus::Valid);
+    driven.until([&] { return driven.cycles() > before; });
+  }
+  EXPECT_GT(filter.early, 0);
+}
+
+struct Idle final : Subsystem {};
+
+constexpr const char* precise_descriptor = R"(<Subsystem name="PRECISE" id="22">
+  <Configuration name="C" id="1" sampling_us="2000" priority="30" budget_us="500" spin_us="200"/>
+  <Configuration name="SLEEPS" id="2" sampling_us="2000" priority="30" budget_us="500"/></Subsystem>)";
+
+CycleSpin spun(std::uint8_t configuration, bool precise) {
+  Idle idle;
+  Driven driven{idle, precise_descriptor, precise};
+  driven.go(State::PreOperational);
+  driven.call("CONFIGURE", configuration);
+  driven.cycle_on(50);
+  CycleSpin told;
+  while (!driven.subsystem.cycle().spin().snapshot(told)) {}
+  return told;
+}
+
+TEST(CycleThreads, SpinBeforeEachCycleWhereTheConfigurationAsksForItAndTheComputerHasRoom) {
+  const CycleSpin precise = spun(1, true);
+  EXPECT_EQ(precise.spin_us, 200.0F);
+  EXPECT_GT(precise.longest_us, 0.0F);
+  for (const CycleSpin& sleeps : {spun(1, false), spun(2, true)}) {
+    EXPECT_EQ(sleeps.spin_us, 0.0F);
+    EXPECT_EQ(sleeps.longest_us, 0.0F);
+    EXPECT_EQ(sleeps.exceeded, 0U);
+  }
+}
+
+// --- loops of services beside it ---------------------------------------------------------------------------------------
+
+constexpr const char* archive_descriptor = R"(<Subsystem name="ARCHIVE" id="10">
+  <ParamRef name="FILES" id="0" type="UINT32" init="7"/>
+  <ParamRef name="LOOKED" id="1" type="UINT32"/>
+  <EventService><Event name="FULL" id="5" severity="low"><Argument name="FILES" type="UINT32"/></Event></EventService>
+  <CustomService name="STORE" type="200">
+    <Request name="KEEP" subtype="1"><Argument name="FILES" type="UINT32" minimum="0" maximum="1000"/></Request>
+    <Report name="KEPT" subtype="2"><Field name="LOOKED" type="UINT32"/></Report>
+  </CustomService>
+  <CustomService name="LOOK" type="201"><Request name="AT" subtype="1"/></CustomService>
+  <ServiceLoop name="SLOW" period_us="1000" queue="8" budget_us="1"/>
+  <ServiceLoop name="OTHER" period_us="2000" queue="8"/>
+  <Service name="STORE" loop="SLOW"/><Service name="ST03" loop="SLOW"/><Service name="LOOK" loop="OTHER"/>
+  <HKService id="9" interval="5"><SampledOnce><ParamRef name="FILES"/><ParamRef name="LOOP_STATS"/></SampledOnce></HKService>
+  <Configuration name="FIRST" id="1" sampling_us="500"/>
+  <Configuration name="SECOND" id="2" sampling_us="300"><Set parameter="FILES" value="3"/></Configuration>
+  <Bumpless between="FIRST SECOND"/>
+</Subsystem>)";
+
+struct Archive final : Subsystem {
+  CustomService store{"STORE"}, look{"LOOK"};
+  Parameter<std::uint32_t> files, looked;
+  Event<std::uint32_t> full{"FULL"};
+
+ protected:
+  Result<> offline() override {
+    store.on_request("KEEP", [this](std::uint32_t number, Call call) -> Result<> {
+      std::uint32_t seen = 0;
+      static_cast<void>(looked.snapshot(seen));
+      if (auto set = store.store(files, number); !set) return set;
+      static_cast<void>(store.raise(full, number));
+      return store.report("KEPT", call, seen);
+    });
+    look.on_request("AT", [this]() -> Result<> {
+      std::uint32_t seen = 0;
+      static_cast<void>(files.snapshot(seen));
+      return ok();
+    });
+    provide(store);
+    provide(look);
+    return ok();
+  }
+  Result<Step> software_init() override {
+    publish("FILES", files);
+    publish("LOOKED", looked);
+    use_event(full);
+    return done;
+  }
+  Result<> bumpless(const descriptor::Configuration&, const descriptor::Configuration&,
+                    const Cycle&) noexcept override {
+    return ok();
+  }
+  Result<> pre_operational(const Cycle& cycle) noexcept override { return take(cycle); }
+  Result<> safe_operational(const Cycle& cycle) noexcept override { return take(cycle); }
+  Result<> operational(const Cycle& cycle) noexcept override { return take(cycle); }
+
+ private:
+  Result<> take(const Cycle& cycle) noexcept {
+    looked.store(static_cast<std::uint32_t>(cycle.count));
+    return ok();
+  }
+};
+
+/// Up, through requests to both loops while the cycle changes its configuration, and down again: each request has exactly one end.
+TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAndStop) {
+  Archive archive;
+  Driven driven{archive, archive_descriptor};
+  for (int round = 0; round < 20; ++round) {
+    driven.go(State::PreOperational);
+    driven.call("CONFIGURE", 1);
+    driven.cycle_on(1);
+    driven.go(State::SafeOperational);
+    driven.go(State::Operational);
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      std::array<std::byte, 4> number;
+      OctetWriter{number}.put(i);
+      driven.send(200, 1, number);
+      driven.send(201, 1, {});
+      driven.call("CONFIGURE", 1 + (i + 1) % 2);
+      // Housekeeping is busy until the cycle has taken what was asked of it before.
+      driven.done();
+      driven.cycle_on(2);
+      std::array<std::byte, 3> structure;
+      OctetWriter{structure}.put(std::uint8_t{1}).put(std::uint16_t{9});
+      driven.send(3, i % 2 == 0 ? 6 : 5, structure);
+      driven.done();
+    }
+    driven.go(State::ErrorOperational);
+    driven.go(State::Offline);
+  }
+  driven.done();
+  EXPECT_EQ(driven.failures, 0);
+  EXPECT_EQ(driven.completions, driven.sent);
+  EXPECT_EQ(driven.reports, 20 * 6);
+}
+
+/// What their steps take stands in housekeeping; a budget of a microsecond is exceeded by whoever does anything.
+TEST(OwnLoopThreads, AreToldWithTheirLongestStepBesideTheirBudget) {
+  Archive archive;
+  Driven driven{archive, archive_descriptor};
+  driven.go(State::PreOperational);
+  driven.call("CONFIGURE", 1);
+  std::array<std::byte, 4> number;
+  OctetWriter{number}.put(std::uint32_t{4});
+  for (int i = 0; i < 10; ++i) {
+    driven.send(200, 1, number);
+    driven.done();
+  }
+  driven.cycle_on(40);
+  LoopStatistics told;
+  while (!driven.subsystem.cycle().loop_statistics().snapshot(told)) {}
+  EXPECT_EQ(told.budget_us[0], 1.0F);
+  EXPECT_EQ(told.budget_us[1], 0.0F);
+  EXPECT_GT(told.longest_us[0], 1.0F);
+  EXPECT_GT(told.longest_us[1], 0.0F);
+  EXPECT_GT(told.exceeded[0], 0U);
+  EXPECT_EQ(told.exceeded[1], 0U) << "it declares none";
+  EXPECT_EQ(told.budget_us[2], 0.0F) << "there is no third";
+  EXPECT_GT(driven.housekeeping, 0);
+}
+
+}  // namespace
+}  // namespace hirosco

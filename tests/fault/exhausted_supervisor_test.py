@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""A supervisor that gets no more memory, or no more descriptors, while the robot is coupled. It refuses what it cannot do, or it dies of it
+and another one goes on (docs/adr/0093): either way what moves is stopped by whoever asks, nothing that was begun is left half done, and the
+flight flies again."""
+import contextlib
+import os
+import pathlib
+import resource
+import time
+import unittest
+
+import flight
+
+MODE = 3
+
+
+def held(pid):
+    """How much address space and how many descriptors a process has now."""
+    status = pathlib.Path(f"/proc/{pid}/status").read_text()
+    octets = int(status.split("VmSize:")[1].split()[0]) * 1024
+    return octets, len(os.listdir(f"/proc/{pid}/fd"))
+
+
+class Exhausted(unittest.TestCase):
+    def starve(self, craft, what):
+        """From now on it gets nothing more; returns its pid."""
+        pid = craft.pid_of("hirosco-supervisor")
+        octets, descriptors = held(pid)
+        limits = {"memory": (resource.RLIMIT_AS, octets), "descriptors": (resource.RLIMIT_NOFILE, descriptors)}
+        which, limit = limits[what]
+        # The soft limit bites; the hard one stays, or nobody could take it back.
+        resource.prlimit(pid, which, (limit, resource.prlimit(pid, which)[1]))
+        return pid
+
+    def feed(self, pid):
+        """Whoever was starved and lives may have everything again."""
+        for which in (resource.RLIMIT_AS, resource.RLIMIT_NOFILE):
+            with contextlib.suppress(ProcessLookupError):
+                hard = resource.prlimit(pid, which)[1]
+                resource.prlimit(pid, which, (hard, hard))
+
+    def want_much(self, craft):
+        """Whatever of its work wants memory and descriptors: packets, connections, processes, pages, links, files."""
+        for _ in range(3):
+            craft.tc("manipulator", "ping", seconds=60)
+            craft.tc("supervisor", "SET_MODE", 2, seconds=60)
+        begin = craft.count()
+        craft.kill("hirosco-joystick")
+        craft.wait_line(lambda l: "JOYSTICK" in l.told, 10.0, begin)
+        craft.tc("joystick", "SET_STATE", 0, seconds=60)
+        craft.tc("supervisor", "SET_MODE", MODE, seconds=90)
+        craft.tc("supervisor", "SET_DATABASE", 1, seconds=60)
+
+    def starved_of(self, what):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            begin = rokviss.count()
+            pid = self.starve(rokviss, what)
+            self.want_much(rokviss)
+            # Who asks for a stop gets one, from this supervisor or from its successor.
+            asked = time.monotonic()
+            self.assertEqual(rokviss.hirosco("safe", "--mission", rokviss.mission).returncode, 0)
+            truth = rokviss.truth("robot")
+            self.assertEqual((truth["motor_1"], truth["motor_2"]), (0.0, 0.0))
+            flight.measure(f"without {what}: stopped {time.monotonic() - asked:.2f} s after it was asked, "
+                           f"{'the same supervisor' if rokviss.pid_of('hirosco-supervisor') == pid else 'another supervisor'}")
+            rokviss.wait_told("cannot start JOYSTICK", 1.0, begin)     # it bites
+            said = [line.told for line in rokviss.told(begin)] + rokviss.errors
+            self.assertFalse([line for line in said if "terminate called" in line and "what()" not in "\n".join(said)], said)
+            self.feed(rokviss.pid_of("hirosco-supervisor"))
+            end = time.monotonic() + 60.0
+            # One that died of it may have left a member down: the mode brings all of them up, as often as it takes to be heard.
+            while rokviss.tc("supervisor", "SET_MODE", MODE, seconds=90)[0] != 0:
+                self.assertLess(time.monotonic(), end, "it flies again")
+                for name in ("manipulator", "joystick"):
+                    rokviss.tc(name, "SET_STATE", 0, seconds=60)
+            status = rokviss.wait_status(lambda s: s["mode"] == "telepresence", 10.0)
+            self.assertIsNotNone(status)
+            states = {member["name"]: member["state"] for member in status["subsystems"]}
+            self.assertEqual((states["MANIPULATOR"], states["JOYSTICK"]), ("Operational", "Operational"))
+            rokviss.end()
+
+    def test_without_memory(self):
+        self.starved_of("memory")
+
+    def test_without_descriptors(self):
+        self.starved_of("descriptors")
+
+    def test_a_supervisor_that_never_gets_enough_ends_the_flight_in_words_and_leaves_nobody_moving(self):
+        """Limits that its successors inherit, as of the keeper."""
+        before = flight.segments()
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            keeper = rokviss.process.pid
+            resource.prlimit(keeper, resource.RLIMIT_AS, (held(keeper)[0],) * 2)
+            rokviss.kill("hirosco-supervisor")
+            end = time.monotonic() + 60.0
+            while rokviss.process.poll() is None and rokviss.wait_line(
+                    lambda l: "goes on for one that died" in l.told, 0.2) is None:
+                self.assertLess(time.monotonic(), end, "the flight goes on or ends")
+            if rokviss.process.poll() is None:     # what the keeper has is enough for it
+                self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
+                self.assertEqual(rokviss.end(), 0, rokviss.errors)
+            else:
+                self.assertNotEqual(rokviss.errors, [], "it says why")
+                self.assertNotIn(rokviss.process.returncode, (0,))
+        self.assertEqual(flight.segments(), before)
+
+
+if __name__ == "__main__":
+    flight.main()
