@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t payload_octets = 16'384;
 constexpr std::uint32_t depth = 2;
-constexpr LinkLayout layout{7, payload_octets, 0x1234'5678'9ABC'DEF0, 1ms, depth};
+const LinkLayout layout{7, payload_octets, 0x1234'5678'9ABC'DEF0, 1ms, depth};
 
 /// Every word of sample n is a different function of n, so that a mixture of two samples in one slot cannot pass for one. They are made
 /// beforehand: a producer that does nothing but write is nearly always at work in the slot that its consumer is about to lose.
