@@ -130,7 +130,7 @@ void CycleThread::cycle(std::uint32_t generation, int priority) {
   const RealtimeScope no_heap;
   TimePoint planned = clock_.now() + subsystem_.cycle_demand().period;
   for (;;) {
-    sleep_until(planned);
+    rest_until(planned, subsystem_.cycle_wait(), clock_);
     const auto demand = subsystem_.cycle_demand();
     if (!demand.wanted || demand.generation != generation || ending_.load(std::memory_order_acquire)) break;
     planned = subsystem_.cycle_step(planned);
