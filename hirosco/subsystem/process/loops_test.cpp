@@ -24,12 +24,7 @@ class Driven {
   Driven(Subsystem& author, const std::string& descriptor)
       : subsystem{author,
                   testing::read_descriptor(descriptor),
-                  {.clock = clock,
-                   .memory = memory,
-                   .flows = flows,
-                   .realtime = false,
-                   .wakes = true,
-                   .explain = {}},
+                  {.clock = clock, .memory = memory, .flows = flows, .realtime = false, .wakes = true, .explain = {}},
                   channels.subsystem_end(),
                   vital,
                   permit},
