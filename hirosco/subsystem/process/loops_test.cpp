@@ -5,20 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <memory>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/told.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 
-/// The threads that drive a subsystem in real time: its cycle and its loops of services, as a process has them, beside a service loop that
-/// the test steps. Run under the thread sanitizer by ./check.
+/// The thread that drives a subsystem's cycle in real time, as a process has it, beside a service loop that the test steps.
+/// Run under the thread sanitizer by ./check.
 namespace hirosco {
 namespace {
 
-/// One subsystem with its threads; the test's thread is its service loop and its supervisor.
+/// One subsystem with the thread of its cycle; the test's thread is its service loop and its supervisor.
 class Driven {
  public:
   Driven(Subsystem& author, const std::string& descriptor)
@@ -31,15 +30,8 @@ class Driven {
         cycle_{subsystem, clock, bell_, false} {
     permit.release();
     EXPECT_TRUE(cycle_.start("cycle"));
-    for (std::size_t i = 0; i < subsystem.own_loops(); ++i) {
-      loops_.push_back(std::make_unique<OwnLoopThread>(subsystem, i, clock, bell_, false));
-      EXPECT_TRUE(loops_.back()->start());
-    }
   }
-  ~Driven() {
-    cycle_.end();
-    for (const auto& loop : loops_) loop->end();
-  }
+  ~Driven() { cycle_.end(); }
   Driven(const Driven&) = delete;
   Driven& operator=(const Driven&) = delete;
 
@@ -70,18 +62,7 @@ class Driven {
     cycling_ = demand.wanted;
     ticket_ = demand.ticket;
     bell_.hear();
-    MessageBuffer buffer;
-    for (;;) {
-      const auto found = channels.supervisor_end().receive(buffer);
-      if (!found || found->flow == Flow::None) break;
-      if (found->message.kind == MessageKind::Event) continue;
-      const auto view = pus::TelemetryView::parse(found->message.packet);
-      ASSERT_TRUE(view);
-      if (view->service() == 1 && view->subtype() % 2 == 0) ++failures;
-      if (view->service() == 1 && view->subtype() == 7) ++completions;
-      if (view->service() == 3 && view->subtype() == 25) ++housekeeping;
-      if (view->service() == 200) ++reports;
-    }
+    told.hear(channels.supervisor_end());
     std::this_thread::yield();
   }
   template <class Condition>
@@ -89,7 +70,7 @@ class Driven {
     while (!condition()) step();
   }
   void done() {
-    until([this] { return completions + failures >= sent; });
+    until([this] { return told.completions + told.failures >= sent; });
   }
   void go(State state) {
     call("SET_STATE", static_cast<double>(state));
@@ -108,12 +89,12 @@ class Driven {
   VitalPage vital{};
   PermitPage permit{};
   GenericSubsystem subsystem;
-  int sent{0}, failures{0}, completions{0}, housekeeping{0}, reports{0};
+  testing::Told told;
+  int sent{0};
 
  private:
   Bell bell_ = Bell::make().value();
   CycleThread cycle_;
-  std::vector<std::unique_ptr<OwnLoopThread>> loops_;
   bool cycling_{false};
   std::uint32_t ticket_{0};
   std::uint16_t count_{0};
@@ -170,7 +151,7 @@ TEST(CycleThreads, BeginACycleWithTheSampleThatStartsIt) {
           .value();
   driven.send(128, pus::st128::attach, Octets{buffer}.first(octets), shared);
   driven.done();
-  ASSERT_EQ(driven.failures, 0);
+  ASSERT_EQ(driven.told.failures, 0);
   for (std::uint64_t number = 1; number <= 20; ++number) {
     const std::uint64_t before = driven.cycles();
     writer->write(std::as_bytes(std::span{&number, 1}), driven.clock.now(), LinkStatus::Valid);
