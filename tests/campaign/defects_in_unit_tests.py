@@ -168,6 +168,14 @@ DEFECTS = [
     Defect("SF8 cycle without supervisor", GATE, "if (silent_cycles_ > silence_limit_) inhibit(",
            "if (silent_cycles_ > silence_limit_ && !PLANTED) inhibit(",
            "subsystem_test", "SupervisorGone.TheCycleItselfInhibitsTheActuatorsInItsOwnCyclesThoughTheServiceLoopIsStuck"),
+    # In real time no sample started a cycle: the thread slept by the clock.
+    Defect("no sample starts a cycle", "hirosco/subsystem/process/loops.cpp", "rest_until(planned, subsystem_.cycle_wait(), clock_);",
+           "if (PLANTED) sleep_until(planned); else rest_until(planned, subsystem_.cycle_wait(), clock_);",
+           "subsystem_concurrency_test", "CycleThreads.BeginACycleWithTheSampleThatStartsIt"),
+    # One more than can be known to be under way left, and nobody told of it when its addressee died.
+    Defect("more than can be told", TELECOMMANDS, "if (parts_.unanswered.full() && !essential && !to_itself)",
+           "if (parts_.unanswered.full() && !essential && !to_itself && !PLANTED)",
+           "supervisor_test", "TelecommandsTest.OneWhoseEndCouldNotBeToldIsRefusedButWhatProtectsLeaves"),
     # The entry into Operational forgot that a node had failed in the cycle before.
     Defect("SF10 entry forgets failure", CYCLE, "if ((inhibited_ & inhibited_by_failure) != 0) return \"a node",
            "if ((inhibited_ & inhibited_by_failure) != 0 && !PLANTED) return \"a node",
@@ -238,7 +246,7 @@ DEFECTS = [
            "subsystem_test", "Devices.ALostDeviceSaysWhetherItWasSilentDamagedOfTheWrongSizeOrRepeatedItself"),
     # A write was completed that the next cycle overwrote.
     Defect("overwritten parameter", "hirosco/subsystem/service_loop/generic_subsystem.cpp", "cycle_.writes_itself(place->index))",
-           "cycle_.writes_itself(*index) && !PLANTED)",
+           "cycle_.writes_itself(place->index) && !PLANTED)",
            "subsystem_test", "ParameterWrites.ThatTheNextCycleWouldOverwriteAreRefused"),
 
     # --- the manipulator -------------------------------------------------------------------------------------------------
