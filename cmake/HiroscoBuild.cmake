@@ -77,11 +77,7 @@ endfunction()
 # target must differ.
 function(hirosco_compile_as_test name)
   if(HIROSCO_IN_PIECES)
-    set(files 4)
-    if(HIROSCO_SANITIZE)
-      set(files 12)
-    endif()
-    set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${files})
+    set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 4)
   endif()
   # g++ 12 sees overlong string concatenations where there are none.
   target_compile_options(${name} PRIVATE

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
-#include <limits>
 #include <utility>
 
 #include "hirosco/descriptor/model/framework_events.hpp"

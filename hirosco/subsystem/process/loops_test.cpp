@@ -12,6 +12,7 @@
 
 #include "hirosco/subsystem/author/custom_service.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/told.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 
 /// The threads that drive a subsystem in real time: its cycle and its loops of services, as a process has them, beside a service loop that
@@ -77,18 +78,7 @@ class Driven {
     cycling_ = demand.wanted;
     ticket_ = demand.ticket;
     bell_.hear();
-    MessageBuffer buffer;
-    for (;;) {
-      const auto found = channels.supervisor_end().receive(buffer);
-      if (!found || found->flow == Flow::None) break;
-      if (found->message.kind == MessageKind::Event) continue;
-      const auto view = pus::TelemetryView::parse(found->message.packet);
-      ASSERT_TRUE(view);
-      if (view->service() == 1 && view->subtype() % 2 == 0) ++failures;
-      if (view->service() == 1 && view->subtype() == 7) ++completions;
-      if (view->service() == 3 && view->subtype() == 25) ++housekeeping;
-      if (view->service() == 200) ++reports;
-    }
+    told.hear(channels.supervisor_end());
     std::this_thread::yield();
   }
   template <class Condition>
@@ -96,7 +86,7 @@ class Driven {
     while (!condition()) step();
   }
   void done() {
-    until([this] { return completions + failures >= sent; });
+    until([this] { return told.completions + told.failures >= sent; });
   }
   void go(State state) {
     call("SET_STATE", static_cast<double>(state));
@@ -115,7 +105,8 @@ class Driven {
   VitalPage vital{};
   PermitPage permit{};
   GenericSubsystem subsystem;
-  int sent{0}, failures{0}, completions{0}, housekeeping{0}, reports{0};
+  testing::Told told;
+  int sent{0};
 
  private:
   Bell bell_ = Bell::make().value();
@@ -177,7 +168,7 @@ TEST(CycleThreads, BeginACycleWithTheSampleThatStartsIt) {
           .value();
   driven.send(128, pus::st128::attach, Octets{buffer}.first(octets), shared);
   driven.done();
-  ASSERT_EQ(driven.failures, 0);
+  ASSERT_EQ(driven.told.failures, 0);
   for (std::uint64_t number = 1; number <= 20; ++number) {
     const std::uint64_t before = driven.cycles();
     writer->write(std::as_bytes(std::span{&number, 1}), driven.clock.now(), LinkStatus::Valid);
@@ -198,9 +189,9 @@ CycleSpin spun(std::uint8_t configuration, bool precise) {
   driven.go(State::PreOperational);
   driven.call("CONFIGURE", configuration);
   driven.cycle_on(50);
-  CycleSpin told;
-  while (!driven.subsystem.cycle().spin().snapshot(told)) {}
-  return told;
+  CycleSpin spin;
+  while (!driven.subsystem.cycle().spin().snapshot(spin)) {}
+  return spin;
 }
 
 TEST(CycleThreads, SpinBeforeEachCycleWhereTheConfigurationAsksForItAndTheComputerHasRoom) {
@@ -306,9 +297,9 @@ TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAn
     driven.go(State::Offline);
   }
   driven.done();
-  EXPECT_EQ(driven.failures, 0);
-  EXPECT_EQ(driven.completions, driven.sent);
-  EXPECT_EQ(driven.reports, 20 * 6);
+  EXPECT_EQ(driven.told.failures, 0);
+  EXPECT_EQ(driven.told.completions, driven.sent);
+  EXPECT_EQ(driven.told.reports, 20 * 6);
 }
 
 /// What their steps take stands in housekeeping; a budget of a microsecond is exceeded by whoever does anything.
@@ -333,7 +324,7 @@ TEST(OwnLoopThreads, AreToldWithTheirLongestStepBesideTheirBudget) {
   EXPECT_GT(told.exceeded[0], 0U);
   EXPECT_EQ(told.exceeded[1], 0U) << "it declares none";
   EXPECT_EQ(told.budget_us[2], 0.0F) << "there is no third";
-  EXPECT_GT(driven.housekeeping, 0);
+  EXPECT_GT(driven.told.housekeeping, 0);
 }
 
 }  // namespace

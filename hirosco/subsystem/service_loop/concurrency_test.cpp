@@ -6,6 +6,7 @@
 
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/told.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 
 /// Service loop and cycle of one subsystem in threads of their own, at full speed and without any sleep: whatever they
@@ -60,23 +61,11 @@ class Threaded {
   void step() {
     permit_.heartbeat.fetch_add(1);
     static_cast<void>(subsystem_.service_step(clock_.now()));
-    MessageBuffer buffer;
-    for (;;) {
-      const auto found = channels_.supervisor_end().receive(buffer);
-      if (!found || found->flow == Flow::None) return;
-      if (found->message.kind == MessageKind::Event) continue;
-      const auto view = pus::TelemetryView::parse(found->message.packet);
-      ASSERT_TRUE(view);
-      if (view->service() == 1 && view->subtype() % 2 == 0) ++failures;
-      if (view->service() == 1 && view->subtype() == 7) ++completions;
-      if (view->service() == 3) ++housekeeping;
-    }
+    told.hear(channels_.supervisor_end());
   }
   [[nodiscard]] std::uint64_t cycles() const { return vital_.cycles.load(); }
 
-  int failures{0};
-  int completions{0};
-  int housekeeping{0};
+  testing::Told told;
 
  private:
   void run_cycle() {
@@ -129,8 +118,8 @@ TEST(TwoLoops, SurviveTwoHundredRoundsOfStartConfigureAndStop) {
     threaded.until(State::Offline);
   }
   threaded.step();
-  EXPECT_EQ(threaded.failures, 0);
-  EXPECT_EQ(threaded.completions, rounds * (commands_per_round + 1));
+  EXPECT_EQ(threaded.told.failures, 0);
+  EXPECT_EQ(threaded.told.completions, rounds * (commands_per_round + 1));
 }
 
 TEST(TwoLoops, AConfigurationMayBeCalledOffBeforeTheCycleSawIt) {
@@ -144,7 +133,7 @@ TEST(TwoLoops, AConfigurationMayBeCalledOffBeforeTheCycleSawIt) {
     threaded.send("SET_STATE", 0);
     threaded.until(State::Offline);
   }
-  EXPECT_EQ(threaded.failures, 0);
+  EXPECT_EQ(threaded.told.failures, 0);
 }
 
 TEST(TwoLoops, TelemetryFlowsWhileTheCycleRunsAtFullSpeed) {
@@ -152,8 +141,8 @@ TEST(TwoLoops, TelemetryFlowsWhileTheCycleRunsAtFullSpeed) {
   threaded.send("SET_STATE", 3);
   threaded.until(State::PreOperational);
   threaded.send("CONFIGURE", 1);
-  while (threaded.housekeeping < 20) threaded.step();
-  EXPECT_EQ(threaded.failures, 0);
+  while (threaded.told.housekeeping < 20) threaded.step();
+  EXPECT_EQ(threaded.told.failures, 0);
 }
 
 }  // namespace

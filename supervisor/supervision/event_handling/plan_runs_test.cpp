@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/event_handling/plan_runs.hpp"
 
-#include <memory>
-#include <ranges>
-#include <set>
-
-#include "hirosco/descriptor/model/plan_steps.hpp"
 #include "supervisor/supervision/testing/plans_rig.hpp"
 
 namespace hirosco::supervisor {
