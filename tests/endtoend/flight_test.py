@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """The demonstrator flies for real: commissioned in time, coupled, felt, and gone without a trace."""
+import json
 import subprocess
 import time
 import unittest
@@ -94,6 +95,13 @@ class Modes(unittest.TestCase):
             self.assertEqual(preview.returncode, 0, preview.stderr)
             self.assertIn("JOYSTICK Offline", preview.stdout)
             self.assertIn("MANIPULATOR configuration SCRIPT", preview.stdout)
+            plan = rokviss.hirosco("plan", "manipulator:torque_hard_exceeded", "--mission", rokviss.mission, "--json")
+            self.assertEqual(plan.returncode, 0, plan.stderr)
+            told = json.loads(plan.stdout)
+            self.assertEqual((told["event"], told["severity"], told["against"]), ("TORQUE_HARD_EXCEEDED", "high", []))
+            self.assertEqual([(step["stage"], step["subsystem"], step["what"]) for step in told["steps"]],
+                             [(1, "MANIPULATOR", "shut_down_network")])
+            self.assertEqual(rokviss.hirosco("mode", "--mission", rokviss.mission).returncode, 0, "nothing was done")
             # What a stop left: the mode that holds brings it up again.
             self.assertEqual(rokviss.hirosco("safe", "--mission", rokviss.mission).returncode, 0)
             again = rokviss.hirosco("mode", "telepresence", "--mission", rokviss.mission)
