@@ -88,4 +88,12 @@ void add_framework_parameters(Subsystem& subsystem) {
     if (subsystem.find_parameter(parameter.field.name) == nullptr) subsystem.parameters.push_back(std::move(parameter));
 }
 
+std::vector<std::string> built_in_parameters(const Subsystem& subsystem) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : framework_parameters()) names.push_back(parameter.field.name);
+  for (const Device& device : subsystem.devices)
+    if (device.actuator) names.push_back(output_parameter(device));
+  return names;
+}
+
 }  // namespace hirosco::descriptor

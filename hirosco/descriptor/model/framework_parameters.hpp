@@ -39,6 +39,9 @@ inline constexpr const char* descriptor = "DESCRIPTOR";
 inline constexpr std::size_t most_actuators = 200;
 inline constexpr std::size_t most_output_fields = 200;
 
+/// Names of those that the framework writes: all of the above.
+[[nodiscard]] std::vector<std::string> built_in_parameters(const Subsystem& subsystem);
+
 /// Appends all of them and STATES; those that are there stay as they are.
 void add_framework_parameters(Subsystem& subsystem);
 

@@ -33,6 +33,7 @@ constexpr int messages_per_step = 64;
       for (const auto& member : parameter.members)
         spec.fields.push_back({member.field.name, member.field.type, member.field.elements(), member.id});
     else spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.elements()});
+    for (const auto& part : parameter.parts) spec.parts.push_back({part.name, part.first, part.count, part.id});
     specs.push_back(std::move(spec));
   }
   auto dictionary = Dictionary::make(specs);
@@ -312,10 +313,9 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
     return true;
   };
   bool good = true;
-  if (place->member >= 0) good = in_range(declared.members[static_cast<std::size_t>(place->member)].field);
-  else if (declared.members.empty()) good = in_range(declared.field);
-  else
-    for (const auto& member : declared.members) good = good && in_range(member.field);
+  const auto number = place->member < 0 ? std::nullopt : std::optional{static_cast<std::uint16_t>(place->member)};
+  if (declared.members.empty()) good = in_range(declared.field);
+  for (const auto& member : declared.members_at(number)) good = good && in_range(member.field);
   if (!good) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
   return {};
 }
