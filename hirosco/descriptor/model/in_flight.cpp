@@ -153,7 +153,8 @@ class Comparison {
           [&](const Function& a, const Function& b) { function(a, b, kind); });
   }
   void parameter(const Parameter& flown, const Parameter& fresh) {
-    [[maybe_unused]] const auto& [value, id, init, writable_states, protection, persistent, members, parts] = fresh;
+    [[maybe_unused]] const auto& [value, id, init, writable_states, protection, persistent, members, parts, from, age] =
+        fresh;
     const std::string what = "parameter " + value.name;
     field(flown.field, value, what);
     unless(flown.id == id, value.at, what + ": its id", layout_why);
@@ -171,6 +172,7 @@ class Comparison {
           unless(a.id == member_id, member.at, what + "." + member.name + ": its id", layout_why);
         });
     unless(same_parts(flown.parts, parts), value.at, what + ": the structures within", layout_why);
+    unless(flown.from == from && flown.age == age, value.at, what + ": whose value it has", code_why);
   }
   void parameters(const Subsystem& flown, const Subsystem& fresh) {
     lists(

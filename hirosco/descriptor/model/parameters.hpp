@@ -12,6 +12,7 @@
 #include "hirosco/descriptor/model/service_list.hpp"
 #include "hirosco/parameter/exact_number.hpp"
 #include "hirosco/parameter/type.hpp"
+#include "hirosco/utilities/time.hpp"
 
 /// Values as a descriptor declares them: fields, parameters, structures in structures, and what refers to them (paper 4.1,
 /// listing 1).
@@ -82,6 +83,8 @@ struct Parameter {
     Location at;
   };
   std::vector<Part> parts;  ///< at any depth
+  std::string from;  ///< whose value it has: "POWER.BUS.VOLTAGE", of another subsystem (docs/adr/0103); empty: its own
+  Duration age{};  ///< with `from`: what was heard counts so long, then `init`
   /// The members that a reference of this number stands for (ParameterRef::member); none of a single value or array.
   [[nodiscard]] std::span<const Member> members_at(std::optional<std::uint16_t> number) const noexcept {
     if (!number) return members;

@@ -279,10 +279,19 @@ struct Commands {
   std::vector<Function> requests{};  ///< what it says of `functions`, in their order
 };
 
+/// A parameter that has the value of one of another subsystem, heard by its housekeeping (adr 0103).
+struct Foreign {
+  std::uint16_t parameter{};  ///< index into Subsystem::parameters
+  std::string name;  ///< of the other's
+  std::uint16_t structure{0};  ///< by which it is heard; like the next 0 before a mission says who the other is
+  std::size_t offset{0};  ///< of the value, behind the id of the structure
+};
+
 /// Whose housekeeping and events it may have the supervisor pass on to it (adr 0098).
 struct Subscribes {
   std::string subsystem;  ///< as this descriptor calls it
   std::vector<Thing> things;
+  std::vector<Foreign> foreign{};
   Location at;
   std::uint16_t apid{0};  ///< as the mission has it, like the next; 0 = not known yet
   std::filesystem::path file{};  ///< its descriptor
@@ -340,6 +349,13 @@ struct NoThing {
   std::string_view why{};
 };
 [[nodiscard]] NoThing resolve(std::vector<Thing>& things, const Subsystem& other);
+/// Says by which of the structures that are heard, and where in it, each foreign parameter comes. The first that does not, and why in
+/// words.
+struct NoForeign {
+  const Foreign* foreign{nullptr};
+  std::string why{};
+};
+[[nodiscard]] NoForeign resolve_foreign(const Subsystem& own, Subscribes& heard, const Subsystem& other);
 
 /// Names of the actuator devices that have no second inhibit: nothing but their subsystem keeps them from moving.
 [[nodiscard]] std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem);

@@ -124,6 +124,7 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
     initial_values_.push_back({subsystem_.parameters.size(), std::nullopt, init});
   read_access(attributes, parameter);
   read_persistent(attributes, parameter);
+  read_from(attributes, parameter);
   claim_parameter_id(attributes, parameter.field.type, parameter.id);
   no_children(element, problems_);
   if (parameter.writable()) expect_range(element, "parameter");

@@ -45,6 +45,7 @@ void SubsystemReader::read_structure(const xml::Element& element) {
   for (const auto& [member, at] : inside.init)
     initial_values_.push_back({subsystem_.parameters.size(), static_cast<std::uint16_t>(member), at});
   read_persistent(attributes, parameter);
+  read_from(attributes, parameter);
   subsystem_.parameters.push_back(std::move(parameter));
 }
 

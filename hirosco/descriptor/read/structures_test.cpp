@@ -9,9 +9,9 @@
 namespace hirosco::descriptor {
 namespace {
 
+using ::testing::ElementsAre;
 using testing::marked;
 using testing::read_text;
-using ::testing::ElementsAre;
 
 std::string with(const std::string& body) {
   return "<Subsystem name=\"S\" id=\"10\"><Enumeration name=\"MODES\"><Text value=\"0\">rest</Text><Text "

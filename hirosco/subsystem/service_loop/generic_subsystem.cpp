@@ -76,7 +76,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       services_{&housekeeping_service_, &event_service_, &function_service_,
                 &parameter_service_,    &link_service_,  &descriptor_service_},
       requester_{descriptor_, channel_, platform.clock.now()},
-      subscriber_{descriptor_, channel_} {
+      subscriber_{descriptor_, channel_},
+      foreign_{descriptor_, foreign_home()} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
     made_services_.push_back(kind->make(*this));
@@ -119,6 +120,7 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
   requester_.step(now);
   // As for what is asked: its own reports come first.
   if (backlog_.empty()) subscriber_.step(now);
+  foreign_.step(now, state_ == State::SafeOperational || state_ == State::Operational);
   author_.service(now);
   for (pus::Service* service : services_)
     if (loop_of(service->type()) == nullptr) service->step(now);
@@ -291,6 +293,27 @@ std::size_t GenericSubsystem::size_of(std::uint32_t parameter) {
   return dictionary_.wire_octets(place->index, place->member);
 }
 
+namespace {
+
+/// Each number of these octets, which are of its length, within the range that it has.  Realtime: bounded.
+[[nodiscard]] bool in_range(const descriptor::Parameter& declared, std::optional<std::uint16_t> member, Octets value) {
+  OctetReader reader{value};
+  const auto fits = [&](const descriptor::Field& field) {
+    if (field.type == Type::Text) return static_cast<void>(reader.get(field.octets())), true;
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      const Number number = read_number(reader, field.type);
+      if (!(number == number)) return false;
+      if (field.minimum && number < *field.minimum) return false;
+      if (field.maximum && number > *field.maximum) return false;
+    }
+    return true;
+  };
+  if (declared.members.empty()) return fits(declared.field);
+  return std::ranges::all_of(declared.members_at(member), [&](const auto& each) { return fits(each.field); });
+}
+
+}  // namespace
+
 std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_t parameter, Octets value) {
   const auto place = dictionary_.place_of(parameter);
   if (!place) return std::unexpected{pus::FailureCode::UnknownIdentifier};
@@ -301,22 +324,8 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
     return std::unexpected{pus::FailureCode::NotPermittedNow};
   if (!dictionary_.accepts(place->index, place->member, value))
     return std::unexpected{pus::FailureCode::ValueNotAcceptable};
-  OctetReader reader{value};
-  const auto in_range = [&](const descriptor::Field& field) {
-    if (field.type == Type::Text) return static_cast<void>(reader.get(field.octets())), true;
-    for (std::uint32_t i = 0; i < field.count; ++i) {
-      const Number number = read_number(reader, field.type);
-      if (!(number == number)) return false;
-      if (field.minimum && number < *field.minimum) return false;
-      if (field.maximum && number > *field.maximum) return false;
-    }
-    return true;
-  };
-  bool good = true;
   const auto number = place->member < 0 ? std::nullopt : std::optional{static_cast<std::uint16_t>(place->member)};
-  if (declared.members.empty()) good = in_range(declared.field);
-  for (const auto& member : declared.members_at(number)) good = good && in_range(member.field);
-  if (!good) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
+  if (!in_range(declared, number, value)) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
   return {};
 }
 
@@ -331,6 +340,23 @@ std::expected<void, pus::FailureCode> GenericSubsystem::submit_write(
   // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
   if (cycle_rests()) writes_.apply(dictionary_);
   return {};
+}
+
+/// What is heard of others comes into a parameter as what a telecommand sets, without asking whether one may.
+ForeignParameters::Home GenericSubsystem::foreign_home() {
+  const auto accepts = [this](std::uint16_t parameter, Octets value) {
+    return dictionary_.accepts(parameter, -1, value) &&
+           in_range(descriptor_.parameters[parameter], std::nullopt, value);
+  };
+  const auto set = [this](std::uint16_t parameter, Octets value) {
+    const ParameterWrite write{parameter, -1, value};
+    if (!writes_.enqueue(dictionary_, {&write, 1})) return false;
+    if (cycle_rests()) writes_.apply(dictionary_);
+    return true;
+  };
+  return {.set = set, .accepts = accepts, .tell = [this](std::uint16_t parameter) {
+            raise_in_service(descriptor::framework_event::foreign_unknown, std::array{static_cast<double>(parameter)});
+          }};
 }
 
 }  // namespace hirosco

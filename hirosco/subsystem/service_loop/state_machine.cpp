@@ -158,6 +158,7 @@ Result<Step> GenericSubsystem::initialise_software() {
     return fail(said.code, problems_text_.c_str(), said.value);
   }
   HIROSCO_TRY(dictionary_.initialise());
+  foreign_.begin(dictionary_);
   initialised_ = true;
   return done;
 }
@@ -170,7 +171,7 @@ void GenericSubsystem::remember_persistent() {
     const descriptor::Parameter& parameter = descriptor_.parameters[index];
     if (!parameter.persistent) continue;
     const std::size_t octets = dictionary_.snapshot_encode(index, -1, room);
-    if (auto values = descriptor::values_within(parameter.field, Octets{room}.first(octets)))
+    if (auto values = descriptor::values_within(parameter, Octets{room}.first(octets)))
       dictionary_.begin_with(index, std::move(*values));
   }
 }

@@ -127,6 +127,11 @@ class SubsystemReader {
   [[nodiscard]] std::string suggest_reference(std::string_view text) const;
   [[nodiscard]] std::size_t octets_of_reference(const ParameterRef& reference) const;
 
+  // read_foreign.cpp
+  /// Whose value it has: after read_access and read_persistent.
+  void read_from(Attributes& attributes, Parameter& parameter);
+  void check_foreign();
+
   // read_custom_service.cpp
   void read_custom_service(const xml::Element& element);
   void read_request(const xml::Element& element, CustomService& service, Unique& subtypes);
@@ -214,6 +219,7 @@ class SubsystemReader {
     const xml::Attribute* at;
   };
   std::vector<InitialValue> initial_values_;
+  std::vector<std::pair<std::size_t, const xml::Attribute*>> foreign_;  ///< which parameter, and its `from`
   std::size_t persistent_octets_{0};
   std::map<std::uint16_t, std::string> raised_by_;  ///< the function whose argument is first `of` a parameter
   std::vector<std::pair<const xml::Element*, Event>> framework_severities_;  ///< as the descriptor wants them
