@@ -21,6 +21,7 @@ FRAMEWORK = {"CYCLE_STATS": [("OVERRUNS", 244, 5, 1), ("MAX_US", 240, 9, 1), ("A
              "RESOURCE_STATS": [("MEMORY", 246, 5, 1), ("MEMORY_HIGH", 247, 5, 1), ("DESCRIPTORS", 248, 5, 1), ("DESCRIPTORS_HIGH", 249, 5, 1),
                                 ("THREADS", 250, 5, 1), ("THREADS_HIGH", 251, 5, 1), ("POOL_USED", 252, 5, 8), ("POOL_HIGH", 253, 5, 8),
                                 ("POOL_REFUSED", 254, 5, 1)],
+             "HEAP_USES": [("CYCLE", 255, 7, 1), ("SERVICE", 254, 7, 1), ("COUNTED", 255, 33, 1)],
              "DESCRIPTOR": [("HASH", 255, 5, 1), ("CHANGES", 240, 3, 1)],
              "LINK_STATS": [("RECEIVED", 242, 5, 1), ("LOST", 243, 5, 1)]}
 
@@ -79,7 +80,7 @@ class Descriptor:
             self.enumerations[each.get("name")] = {text.text: int(text.get("value")) for text in each.iter("Text")}
         self.parameters = [self._parameter(each) for each in self.root.findall("Parameters/*") if each.tag in ("ParamRef", "StructRef")]
         # Those that it has without declaring them; a foreign one may leave them out.
-        ids = {"CYCLE_STATS": 39, "CYCLE_TIMES": 40, "LINK_STATS": 41, "CYCLE_BUDGET": 38, "RESOURCE_STATS": 37, "DESCRIPTOR": 36}
+        ids = {"CYCLE_STATS": 39, "CYCLE_TIMES": 40, "LINK_STATS": 41, "CYCLE_BUDGET": 38, "RESOURCE_STATS": 37, "HEAP_USES": 35, "DESCRIPTOR": 36}
         self.framework = [Value(name, STRUCT, id=ids[name], members=[Value(word, kind, count, place) for word, place, kind, count in members])
                           for name, members in FRAMEWORK.items()]
         self.functions = [Function(each.get("name"), self._states(each.get("states", "Operational")),

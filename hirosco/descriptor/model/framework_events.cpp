@@ -106,6 +106,8 @@ void add_framework_events(Subsystem& subsystem) {
        argument("USED", Type::Uint32), argument("LIMIT", Type::Uint32), argument("CROSSINGS", Type::Uint32)});
   add("CYCLE_NOT_REALTIME", cycle_not_realtime, Severity::Low,
       {argument("HEAP", Type::Uint32), argument("LOCKS", Type::Uint32), argument("OUTPUTS", Type::Uint32)});
+  add("SERVICE_USES_HEAP", service_uses_heap, Severity::Low,
+      {argument("ALLOCATIONS", Type::Uint32), argument("FREES", Type::Uint32)});
   if (!subsystem.service_loops.empty())
     add("SERVICE_LOOP_HANGS", service_loop_hangs, Severity::Low,
         {argument("LOOP", Type::Uint8), argument("FOR_MS", Type::Uint32)});

@@ -50,6 +50,8 @@ std::vector<Parameter> framework_parameters() {
            member("DESCRIPTORS", 248, Uint32), member("DESCRIPTORS_HIGH", 249, Uint32), member("THREADS", 250, Uint32),
            member("THREADS_HIGH", 251, Uint32), member("POOL_USED", 252, Uint32, "", most_pools),
            member("POOL_HIGH", 253, Uint32, "", most_pools), member("POOL_REFUSED", 254, Uint32)}),
+      structure(framework_parameter::heap_uses, 35,
+                {member("CYCLE", 255, Uint64), member("SERVICE", 254, Uint64), member("COUNTED", 255, Bool)}),
       structure(framework_parameter::descriptor, 36, {member("HASH", 255, Uint32), member("CHANGES", 240, Uint16)})};
 }
 

@@ -24,11 +24,13 @@ inline constexpr const char* cycle_budget = "CYCLE_BUDGET";
 inline constexpr const char* link_stats = "LINK_STATS";
 /// hirosco::ResourceStatistics
 inline constexpr const char* resource_stats = "RESOURCE_STATS";
+/// hirosco::HeapUses
+inline constexpr const char* heap_uses = "HEAP_USES";
 /// hirosco::DescriptorInForce
 inline constexpr const char* descriptor = "DESCRIPTOR";
 }  // namespace framework_parameter
 
-/// CYCLE_STATS, CYCLE_TIMES, CYCLE_BUDGET, LINK_STATS, RESOURCE_STATS and DESCRIPTOR, with the ids that are theirs where a descriptor gives no other.
+/// CYCLE_STATS, CYCLE_TIMES, CYCLE_BUDGET, LINK_STATS, RESOURCE_STATS, HEAP_USES and DESCRIPTOR, with the ids that are theirs where a descriptor gives no other.
 [[nodiscard]] std::vector<Parameter> framework_parameters();
 
 /// "NAME_OUTPUT": what is put out to an actuator, or what its author would put out (adr 0073).

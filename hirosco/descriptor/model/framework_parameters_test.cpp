@@ -25,7 +25,8 @@ std::string problems_of(const std::string& body) {
 TEST(FrameworkParameters, AreThereInADescriptorThatDeclaresNoneWithTheSameIdsInAll) {
   const auto subsystem = with("").value.value();
   const std::pair<const char*, std::uint8_t> wanted[]{{"CYCLE_STATS", 39}, {"CYCLE_TIMES", 40},    {"CYCLE_BUDGET", 38},
-                                                      {"LINK_STATS", 41},  {"RESOURCE_STATS", 37}, {"DESCRIPTOR", 36}};
+                                                      {"LINK_STATS", 41},  {"RESOURCE_STATS", 37}, {"HEAP_USES", 35},
+                                                      {"DESCRIPTOR", 36}};
   ASSERT_EQ(subsystem.parameters.size(), std::size(wanted));
   for (const auto& [name, id] : wanted) {
     const Parameter* parameter = subsystem.find_parameter(name);
@@ -38,13 +39,14 @@ TEST(FrameworkParameters, AreThereInADescriptorThatDeclaresNoneWithTheSameIdsInA
   EXPECT_EQ(subsystem.find_parameter("CYCLE_TIMES")->octets(), 128U);
   EXPECT_EQ(subsystem.find_parameter("LINK_STATS")->octets(), 8U);
   EXPECT_EQ(subsystem.find_parameter("RESOURCE_STATS")->octets(), 92U);
+  EXPECT_EQ(subsystem.find_parameter("HEAP_USES")->octets(), 17U);
   EXPECT_EQ(subsystem.find_parameter("DESCRIPTOR")->octets(), 6U);
 }
 
 TEST(FrameworkParameters, StandBehindTheAuthorsOwn) {
   const auto subsystem = with(R"(<ParamRef name="X" id="1" type="DOUBLE"/>)").value.value();
   EXPECT_EQ(subsystem.parameters.front().field.name, "X");
-  EXPECT_EQ(subsystem.parameters.size(), 7U);
+  EXPECT_EQ(subsystem.parameters.size(), 8U);
 }
 
 TEST(FrameworkParameters, AreReferredToLikeDeclaredOnes) {
@@ -61,7 +63,7 @@ TEST(FrameworkParameters, AreReferredToLikeDeclaredOnes) {
 
 TEST(FrameworkParameters, DeclaredByHandAreToldOnceInWords) {
   for (const char* name :
-       {"CYCLE_STATS", "CYCLE_TIMES", "CYCLE_BUDGET", "LINK_STATS", "RESOURCE_STATS", "DESCRIPTOR"}) {
+       {"CYCLE_STATS", "CYCLE_TIMES", "CYCLE_BUDGET", "LINK_STATS", "RESOURCE_STATS", "HEAP_USES", "DESCRIPTOR"}) {
     const std::string told = "E0213 '" + std::string{name} + "' is built in: every subsystem has it\n";
     EXPECT_EQ(problems_of("<StructRef name=\"" + std::string{name} +
                           R"(" id="40"><ParamRef name="LOST" id="243" type="UINT32"/></StructRef>)"),

@@ -28,7 +28,8 @@ constexpr const char* bus = R"(<Subsystem name="BUS" id="41">
   <Configuration name="ONE" id="1" sampling_us="1000"/>
 </Subsystem>)";
 
-std::string heater(const std::string& body, const std::string& heard = R"(<Subscribes subsystem="POWER" housekeeping="4801"/>)") {
+std::string heater(const std::string& body,
+                   const std::string& heard = R"(<Subscribes subsystem="POWER" housekeeping="4801"/>)") {
   return R"(<Subsystem name="HEATER" id="40">)" + heard + body +
          R"(<Configuration name="ONE" id="1" sampling_us="1000"/></Subsystem>)";
 }
@@ -46,13 +47,14 @@ FileSource with_heater(const std::string& text, const std::string& other = bus) 
 }
 std::string problem_of(const FileSource& source) {
   const auto reading = read_mission(data / "mission.xml", source);
-  return reading.problems.empty() ? std::string{} : reading.problems.front().code + " " + reading.problems.front().message;
+  return reading.problems.empty() ? std::string{}
+                                  : reading.problems.front().code + " " + reading.problems.front().message;
 }
 bool begins(const std::string& text, std::string_view code) { return text.starts_with(code); }
 
 TEST(Foreign, HasItsPlaceInTheReportByWhichItIsHeard) {
-  const auto source = with_heater(heater(
-      std::string{voltage} + R"(<StructRef name="BOTH" id="7" from="POWER.STATE.MAIN" age_ms="300">
+  const auto source =
+      with_heater(heater(std::string{voltage} + R"(<StructRef name="BOTH" id="7" from="POWER.STATE.MAIN" age_ms="300">
         <ParamRef name="U" id="8" type="DOUBLE" unit="V"/><ParamRef name="I" id="9" type="DOUBLE" unit="A"/></StructRef>)"));
   const auto reading = read_mission(data / "mission.xml", source);
   ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
@@ -91,10 +93,13 @@ TEST(Foreign, OfWhomNothingIsHeardOrThatSomebodyElseSetsIsRefused) {
   EXPECT_EQ(problem(heater(changed(" age_ms=\"300\"", "", voltage))), "E0105");
   EXPECT_EQ(problem(heater(changed("POWER.STATE.MAIN.VOLTAGE", "POWER", voltage))), "E0110");
   EXPECT_EQ(problem(heater(changed(" from=\"POWER.STATE.MAIN.VOLTAGE\"", "", voltage))), "E0255");
-  EXPECT_EQ(problem(heater(changed(" age_ms", " minimum=\"0\" maximum=\"1\" writable=\"Operational\" age_ms", voltage))), "E0255");
+  EXPECT_EQ(
+      problem(heater(changed(" age_ms", " minimum=\"0\" maximum=\"1\" writable=\"Operational\" age_ms", voltage))),
+      "E0255");
   EXPECT_EQ(problem(heater(changed(" age_ms", " protection=\"yes\" age_ms", voltage))), "E0255");
   EXPECT_EQ(problem(changed("sampling_us=\"1000\"/>",
-                            "sampling_us=\"1000\"><Set parameter=\"VOLTAGE\" value=\"1\"/></Configuration>", heater(voltage))),
+                            "sampling_us=\"1000\"><Set parameter=\"VOLTAGE\" value=\"1\"/></Configuration>",
+                            heater(voltage))),
             "E0255");
 }
 
@@ -118,8 +123,9 @@ TEST(Foreign, WhoseValueComesFromItselfIsRefused) {
     <HKService id="4801" interval="100"><SampledOnce><ParamRef name="ECHO"/></SampledOnce></HKService>
     <Configuration name="ONE" id="1" sampling_us="1000"/></Subsystem>)";
   const auto loud = [](const std::string& from) {
-    return heater(R"(<ParamRef name="LOUD" id="1" type="DOUBLE")" + from +
-                  R"(/><HKService id="4901" interval="100"><SampledOnce><ParamRef name="LOUD"/></SampledOnce></HKService>)");
+    return heater(
+        R"(<ParamRef name="LOUD" id="1" type="DOUBLE")" + from +
+        R"(/><HKService id="4901" interval="100"><SampledOnce><ParamRef name="LOUD"/></SampledOnce></HKService>)");
   };
   EXPECT_EQ(problem_of(with_heater(loud(""), mirror)), "") << "a chain that has an end";
   EXPECT_TRUE(begins(problem_of(with_heater(loud(R"( from="POWER.ECHO" age_ms="500")"), mirror)), "E0375"));

@@ -109,7 +109,29 @@ GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
 
 // --- the service loop --------------------------------------------------------------------------------------------------
 
+/// Commissioning uses the heap, and so does each change of state: what is between them must not (adr 0103).
+bool GenericSubsystem::commissioned() const noexcept {
+  return (state_ == State::SafeOperational || state_ == State::Operational) && !way_;
+}
+
 TimePoint GenericSubsystem::service_step(TimePoint now) {
+  if (!commissioned()) return step_services(now);
+  AllocationCount used;
+  TimePoint next;
+  {
+    const RealtimeScope watched;
+    next = step_services(now);
+    used = watched.count();
+  }
+  if (!commissioned() || !heap_watch_.account(used, now)) return next;
+  const AllocationCount& sum = heap_watch_.sum();
+  cycle_.note_service_heap(sum.allocations + sum.frees);
+  raise_in_service(descriptor::framework_event::service_uses_heap,
+                   std::array{static_cast<double>(sum.allocations), static_cast<double>(sum.frees)});
+  return next;
+}
+
+TimePoint GenericSubsystem::step_services(TimePoint now) {
   take_cycle_reports();
   take_loop_reports();
   receive_messages();

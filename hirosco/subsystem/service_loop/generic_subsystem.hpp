@@ -271,6 +271,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void raise_failure(std::uint16_t event, std::uint8_t what, const Failure& why);
   void tell_losses(TimePoint now);
   void look_at_resources(TimePoint now);
+  [[nodiscard]] bool commissioned() const noexcept;
+  TimePoint step_services(TimePoint now);
   [[nodiscard]] ForeignParameters::Home foreign_home();
 
   Subsystem& author_;
@@ -351,6 +353,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Backlog backlog_;
   Requester requester_;
   Subscriber subscriber_;
+  HeapWatch heap_watch_;
   ForeignParameters foreign_;
   std::array<std::uint64_t, 6> told_losses_{};
   TimePoint losses_told_at_{};

@@ -148,6 +148,7 @@ Result<Step> GenericSubsystem::initialise_software() {
   publish(descriptor::framework_parameter::cycle_budget, cycle_.budget());
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
   publish(descriptor::framework_parameter::resource_stats, cycle_.resource_statistics());
+  publish(descriptor::framework_parameter::heap_uses, cycle_.heap_uses());
   publish(descriptor::framework_parameter::descriptor, descriptor_in_force_);
   for (const auto& output : cycle_.outputs()) publish(output->name(), *output);
   if (step) check_introduction();
