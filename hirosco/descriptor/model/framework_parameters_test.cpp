@@ -38,7 +38,7 @@ TEST(FrameworkParameters, AreThereInADescriptorThatDeclaresNoneWithTheSameIdsInA
   EXPECT_EQ(subsystem.find_parameter("CYCLE_STATS")->octets(), 12U);
   EXPECT_EQ(subsystem.find_parameter("CYCLE_TIMES")->octets(), 128U);
   EXPECT_EQ(subsystem.find_parameter("LINK_STATS")->octets(), 8U);
-  EXPECT_EQ(subsystem.find_parameter("RESOURCE_STATS")->octets(), 92U);
+  EXPECT_EQ(subsystem.find_parameter("RESOURCE_STATS")->octets(), 102U);
   EXPECT_EQ(subsystem.find_parameter("HEAP_USES")->octets(), 17U);
   EXPECT_EQ(subsystem.find_parameter("DESCRIPTOR")->octets(), 6U);
 }

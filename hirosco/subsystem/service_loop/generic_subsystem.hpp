@@ -155,6 +155,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void bind_function(std::string_view name, BoundHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   [[nodiscard]] PoolResource& resources() noexcept { return resources_.pools(); }
+  [[nodiscard]] ResourceMeter& meter() noexcept { return resources_; }
 
   /// All that Software-Init finds, tried in Offline before any flight. Nothing is kept of it.
   [[nodiscard]] std::vector<Mistake> try_introduction();

@@ -340,8 +340,11 @@ Result<std::vector<DeviceSlot::Way>> GenericSubsystem::open_ways(const descripto
   std::vector<DeviceSlot::Way> ways;
   std::optional<Error> first;
   const auto open = [&](const descriptor::Endnode& endnode, std::size_t at) {
-    auto flow = platform_.flows.open({endnode.transfer, endnode.address}, FlowSide::Subsystem);
-    if (flow) return ways.push_back({std::move(*flow), static_cast<std::uint8_t>(at)});
+    Result<Quota::Held> port = Quota::Held{};
+    if (endnode.transfer == Transfer::Udp) port = resources_.ports().take();
+    auto flow = port ? platform_.flows.open({endnode.transfer, endnode.address}, FlowSide::Subsystem)
+                     : Result<std::unique_ptr<DataFlow>>{std::unexpected{port.error()}};
+    if (flow) return ways.push_back({std::move(*flow), static_cast<std::uint8_t>(at), std::move(*port)});
     if (!first) first = flow.error();
     const std::array arguments{static_cast<double>(descriptor::DeviceLoss::NotOpened), static_cast<double>(at),
                                static_cast<double>(ways.empty() ? at + 1 : ways.front().endnode), 0.0};
