@@ -60,14 +60,14 @@ TEST(Dictionary, RejectsASecondParameterOfTheSameLayoutAndId) {
   EXPECT_THAT(refusal({goal(), other}), AllOf(HasSubstr("OTHER"), HasSubstr("DES_POSITION")));
 }
 
-struct Gains {
+struct PartGains {
   double p;
   double d;
 };
-struct Controller {
+struct PartLaw {
   std::uint8_t mode;
-  Gains gains;
-  std::array<Gains, 2> joints;
+  PartGains gains;
+  std::array<PartGains, 2> joints;
 };
 ParameterSpec controller() {
   return {"CONTROLLER",
@@ -103,7 +103,7 @@ TEST(Dictionary, KnowsAStructureWithinByNameAndById) {
 
 TEST(Dictionary, SetsAndTellsAStructureWithinAndNothingBesideIt) {
   Dictionary dictionary = made({controller()});
-  Parameter<Controller> parameter;
+  Parameter<PartLaw> parameter;
   ASSERT_TRUE(dictionary.publish("CONTROLLER", parameter).has_value());
   ASSERT_TRUE(dictionary.initialise());
   std::array<std::byte, 16> told{};
@@ -114,7 +114,7 @@ TEST(Dictionary, SetsAndTellsAStructureWithinAndNothingBesideIt) {
   std::array<std::byte, 16> wanted;
   OctetWriter{wanted}.put(-4.0).put(-5.0);
   ASSERT_TRUE(dictionary.decode_into(0, 8, wanted));
-  const Controller now = parameter.load();
+  const PartLaw now = parameter.load();
   EXPECT_EQ(now.gains.p, 2);
   EXPECT_EQ(now.joints[0].p, -4);
   EXPECT_EQ(now.joints[0].d, -5);

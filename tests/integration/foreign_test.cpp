@@ -8,7 +8,7 @@
 namespace hirosco::testing {
 namespace {
 
-constexpr auto mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
+constexpr auto heated_mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
 <Mission name="HEATED" id="9">
   <Supervisor descriptor="../../supervisor/supervisor.xml">
     <Database strategy="sqlite" path="log/heated.db"/>
@@ -54,18 +54,18 @@ constexpr auto heater_text = R"(<?xml version="1.0" encoding="UTF-8"?>
 </Subsystem>
 )";
 
-struct Budget {
+struct HeatingBudget {
   double heating_w;
 };
 
-class Bus final : public Subsystem {
+class PowerBus final : public Subsystem {
   Result<Step> software_init() override {
     publish("COUNT", count_);
     publish("BUDGET", budget_);
     return done;
   }
   Parameter<std::uint32_t> count_;
-  Parameter<Budget> budget_;
+  Parameter<HeatingBudget> budget_;
 };
 
 class Heater final : public Subsystem {
@@ -105,9 +105,9 @@ struct Heated : ::testing::Test {
   double told_w{-1};
   int unknown_events{0};
   Flight flight{{.mission = "hello",  // its folder: the texts stand in for the files there
-                 .subsystems = {{"bus", [] { return std::make_unique<Bus>(); }},
+                 .subsystems = {{"bus", [] { return std::make_unique<PowerBus>(); }},
                                 {"heater", [this] { return std::make_unique<Heater>(most_w); }}},
-                 .files = {{"mission.xml", mission_text}, {"bus.xml", bus_text}, {"heater.xml", heater_text}}}};
+                 .files = {{"mission.xml", heated_mission_text}, {"bus.xml", bus_text}, {"heater.xml", heater_text}}}};
 };
 
 TEST_F(Heated, ALimitIsThatOfTheOtherInTheCycleAndInItsOwnHousekeeping) {

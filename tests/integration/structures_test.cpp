@@ -10,7 +10,7 @@
 namespace hirosco::testing {
 namespace {
 
-constexpr auto mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
+constexpr auto structured_mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
 <Mission name="STRUCTURED" id="9">
   <Supervisor descriptor="../../supervisor/supervisor.xml">
     <Database strategy="sqlite" path="log/structured.db"/>
@@ -30,7 +30,7 @@ constexpr auto mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
 </Mission>
 )";
 
-constexpr auto arm_text = R"(<?xml version="1.0" encoding="UTF-8"?>
+constexpr auto structured_arm_text = R"(<?xml version="1.0" encoding="UTF-8"?>
 <Subsystem name="ARM" id="20">
   <Enumeration name="LAWS"><Text value="0">rest</Text><Text value="1">follow</Text></Enumeration>
   <StructRef name="CONTROLLER" id="0" writable="PreOperational SafeOperational Operational" persistent="yes">
@@ -51,22 +51,22 @@ constexpr auto arm_text = R"(<?xml version="1.0" encoding="UTF-8"?>
 </Subsystem>
 )";
 
-struct Gains {
+struct JointGains {
   double p;
   double d;
 };
-struct Joint {
+struct GainedJoint {
   bool on;
-  Gains gains;
+  JointGains gains;
 };
-struct Controller {
+struct JointController {
   std::uint8_t law;
-  std::array<Joint, 2> joints;
+  std::array<GainedJoint, 2> joints;
 };
 
-class Arm final : public Subsystem {
+class StructuredArm final : public Subsystem {
  public:
-  explicit Arm(Controller& seen) : seen_{seen} {}
+  explicit StructuredArm(JointController& seen) : seen_{seen} {}
 
  private:
   Result<Step> software_init() override {
@@ -81,16 +81,16 @@ class Arm final : public Subsystem {
     return ok();
   }
 
-  Controller& seen_;  ///< as its cycle has it
-  Parameter<Controller> controller_;
+  JointController& seen_;  ///< as its cycle has it
+  Parameter<JointController> controller_;
 };
 
 /// One flight of several; without a store it has no past and no future.
 struct Structured {
   explicit Structured(supervisor::ValueStore* store = nullptr)
       : flight{{.mission = "hello",  // its folder: the texts stand in for the files there
-                .subsystems = {{"arm", [this] { return std::make_unique<Arm>(seen); }}},
-                .files = {{"mission.xml", mission_text}, {"arm.xml", arm_text}},
+                .subsystems = {{"arm", [this] { return std::make_unique<StructuredArm>(seen); }}},
+                .files = {{"mission.xml", structured_mission_text}, {"arm.xml", structured_arm_text}},
                 .values = store}},
         decoder{flight.mission().find_subsystem("ARM")->subsystem} {
     flight.story().on_telemetry = [this](const pus::TelemetryView& report) {
@@ -108,7 +108,7 @@ struct Structured {
     return outcome;
   }
 
-  Controller seen{};
+  JointController seen{};
   Flight flight;
   pus::HousekeepingDecoder decoder;
   std::string told;  ///< the newest report of structure 4801

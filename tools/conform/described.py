@@ -43,6 +43,7 @@ class Value:
     writable: tuple = ()
     protection: bool = False
     members: list = dataclasses.field(default_factory=list)
+    parts: list = dataclasses.field(default_factory=list)  # structures within
     safe: list = dataclasses.field(default_factory=list)
 
     def size(self):
@@ -113,8 +114,10 @@ class Descriptor:
         members = FRAMEWORK.get(element.get("name")) if element.tag == "StructRef" and len(element) == 0 else None
         if element.tag == "StructRef":
             value = Value(element.get("name"), STRUCT)
-            value.members = ([Value(name, kind, count, number) for name, number, kind, count in members] if members
-                             else [self._parameter(each) for each in element.findall("ParamRef")])
+            if members:
+                value.members = [Value(name, kind, count, number) for name, number, kind, count in members]
+            else:
+                value.members, value.parts = self._inside(element)
         else:
             value = self._value(element)
         value.id = int(element.get("id"))
@@ -122,6 +125,30 @@ class Descriptor:
         value.writable = tuple(self._states(element.get("writable", "")))
         value.protection = element.get("protection") == "yes"
         return value
+
+    def _inside(self, element):
+        """Members and parts of a structure by their way; ids of the elements of an array go on behind those of the one before."""
+        members, parts = [], []
+        for each in element:
+            if each.tag == "ParamRef":
+                members.append(self._parameter(each))
+            if each.tag != "StructRef":
+                continue
+            inner, within = self._inside(each)
+            own = Value("", STRUCT, id=int(each.get("id")), members=inner)
+            ids = {}
+            for value in [own, *inner, *within]:
+                ids.setdefault(value.type, set()).add(value.id)
+            count = int(each.get("count", 1))
+            for i in range(count):
+                way = each.get("name") + (f"[{i}]" if count > 1 else "")
+                moved = {id(value): dataclasses.replace(value, name=f"{way}.{value.name}".rstrip("."),
+                                                        id=value.id + i * (max(ids[value.type]) - min(ids[value.type]) + 1))
+                         for value in [own, *inner, *within]}
+                for part in [own, *within]:
+                    parts.append(dataclasses.replace(moved[id(part)], members=[moved[id(member)] for member in part.members]))
+                members += [moved[id(member)] for member in inner]
+        return members, parts
 
     def _argument(self, place, element):
         value = self._value(element, self.find(element.get("of")) if element.get("of") else None)
@@ -133,15 +160,15 @@ class Descriptor:
         head, _, tail = name.partition(".")
         for parameter in self.parameters + self.framework:
             if parameter.name == head:
-                return next(member for member in parameter.members if member.name == tail) if tail else parameter
-        return next(member for parameter in self.parameters for member in parameter.members if member.name == name)
+                return next(inside for inside in parameter.members + parameter.parts if inside.name == tail) if tail else parameter
+        return next(inside for parameter in self.parameters for inside in parameter.members + parameter.parts if inside.name == name)
 
     def wire(self, value):
         return self.apid << 16 | value.type << 8 | value.id
 
     def readable(self):
-        """[(id on the wire, Value)] of every parameter and member."""
-        return [(self.wire(value), value) for parameter in self.parameters for value in (parameter, *parameter.members)]
+        """[(id on the wire, Value)] of every parameter and what is in it."""
+        return [(self.wire(value), value) for parameter in self.parameters for value in (parameter, *parameter.members, *parameter.parts)]
 
     def richest(self):
         """The configuration that has most to judge."""

@@ -13,13 +13,13 @@ using ::testing::ElementsAre;
 using testing::marked;
 using testing::read_text;
 
-std::string with(const std::string& body) {
+std::string with_structures(const std::string& body) {
   return "<Subsystem name=\"S\" id=\"10\"><Enumeration name=\"MODES\"><Text value=\"0\">rest</Text><Text "
          "value=\"1\">follow</Text></Enumeration>" +
          body + "</Subsystem>";
 }
 
-constexpr auto controller = R"(
+constexpr auto nested_controller = R"(
 <StructRef name="CONTROLLER" id="7" type="STRUCT" writable="SafeOperational">
   <ParamRef name="MODE" id="1" type="UINT8" enumeration="MODES" minimum="0" maximum="1" init="follow"/>
   <StructRef name="GAINS" id="8" type="STRUCT">
@@ -38,15 +38,16 @@ constexpr auto controller = R"(
   <ParamRef name="CONTROLLER.JOINTS[1]"/><ParamRef name="GAINS.D"/>
 </SampledOnce></HKService>)";
 
-std::vector<std::string> names_of(const std::vector<Field>& fields) {
+std::vector<std::string> field_names(const std::vector<Field>& fields) {
   std::vector<std::string> names;
   for (const Field& field : fields) names.push_back(field.name);
   return names;
 }
 
 TEST(Structures, StandInStructuresByTheirWay) {
-  const auto reading = read_text(with(controller));
-  ASSERT_TRUE(reading.value) << testing::rendered(reading.problems, testing::text_source(with(controller)));
+  const auto reading = read_text(with_structures(nested_controller));
+  ASSERT_TRUE(reading.value) << testing::rendered(reading.problems,
+                                                  testing::text_source(with_structures(nested_controller)));
   const Parameter& parameter = *reading.value->find_parameter("CONTROLLER");
   std::vector<std::string> members;
   for (const auto& member : parameter.members) members.push_back(member.field.name + " " + std::to_string(member.id));
@@ -64,14 +65,14 @@ TEST(Structures, StandInStructuresByTheirWay) {
 }
 
 TEST(Structures, AreReferredToWholeAndInPart) {
-  const auto reading = read_text(with(controller));
+  const auto reading = read_text(with_structures(nested_controller));
   ASSERT_TRUE(reading.value);
   const Subsystem& subsystem = *reading.value;
   const auto& sampled = subsystem.housekeeping.front().sampled_once;
   ASSERT_EQ(sampled.size(), 2u);
-  EXPECT_THAT(names_of(fields_of(subsystem, sampled[0])),
+  EXPECT_THAT(field_names(fields_of(subsystem, sampled[0])),
               ElementsAre("JOINTS[1].ON", "JOINTS[1].LIMITS.LEAST", "JOINTS[1].LIMITS.MOST"));
-  EXPECT_THAT(names_of(fields_of(subsystem, sampled[1])), ElementsAre("GAINS.D"));
+  EXPECT_THAT(field_names(fields_of(subsystem, sampled[1])), ElementsAre("GAINS.D"));
   EXPECT_EQ(identity_of(subsystem, sampled[0]), (ParameterId{10, Type::Struct, 11}));
   const auto whole = find_place(subsystem, "CONTROLLER");
   const auto gains = find_place(subsystem, "CONTROLLER.GAINS");
@@ -92,7 +93,7 @@ TEST(Structures, AreReferredToWholeAndInPart) {
 }
 
 TEST(Structures, BeginWithWhatAMissionOrAProcessIsToldInPart) {
-  auto reading = read_text(with(controller));
+  auto reading = read_text(with_structures(nested_controller));
   ASSERT_TRUE(reading.value);
   Subsystem& subsystem = *reading.value;
   EXPECT_TRUE(apply_override(subsystem, "CONTROLLER.GAINS=3 4"));
@@ -105,18 +106,18 @@ TEST(Structures, BeginWithWhatAMissionOrAProcessIsToldInPart) {
 }
 
 TEST(Structures, AreSetByAConfigurationInPart) {
-  const auto reading = read_text(with(std::string{controller} +
-                                      R"(<Configuration name="C" id="1" sampling_us="1000">
+  const auto reading = read_text(with_structures(std::string{nested_controller} +
+                                                 R"(<Configuration name="C" id="1" sampling_us="1000">
                                            <Set parameter="CONTROLLER.JOINTS[0].LIMITS" value="-1 2"/></Configuration>)"));
   ASSERT_TRUE(reading.value);
   const auto& initial = reading.value->configurations.front().initial;
   ASSERT_EQ(initial.size(), 1u);
   EXPECT_EQ(initial.front().values, (std::vector<Value>{-1.0, 2.0}));
-  EXPECT_EQ(names_of(fields_of(*reading.value, initial.front().parameter)).front(), "JOINTS[0].LIMITS.LEAST");
+  EXPECT_EQ(field_names(fields_of(*reading.value, initial.front().parameter)).front(), "JOINTS[0].LIMITS.LEAST");
 }
 
 // clang-format off
-constexpr std::array bad{
+constexpr std::array bad_structures{
     std::pair{"E0253", R"(<StructRef name="A" id="1"><StructRef name="B" id="2"><StructRef name="C" id="3"><StructRef name="D" id="4">@<StructRef name="E" id="5"><ParamRef name="X" id="1" type="INT8"/></StructRef><ParamRef name="X" id="2" type="INT8"/></StructRef></StructRef></StructRef></StructRef>)"},
     std::pair{"E0253", R"(<StructRef name="A" id="1">@<StructRef name="B" id="2" count="64"><ParamRef name="V" id="1" type="INT8"/><ParamRef name="W" id="2" type="INT8"/><ParamRef name="X" id="3" type="INT8"/><ParamRef name="Y" id="1" type="INT16"/><ParamRef name="Z" id="2" type="INT16"/></StructRef></StructRef>)"},
     std::pair{"E0253", R"(<StructRef name="A" id="1"><StructRef name="B" id="2" count="@3"><ParamRef name="X" id="254" type="INT8"/></StructRef></StructRef>)"},
@@ -131,8 +132,8 @@ constexpr std::array bad{
 // clang-format on
 
 TEST(Structures, ThatCannotBeAreRefusedWithTheirPlace) {
-  for (const auto& [code, body] : bad) {
-    auto text = marked(with(body));
+  for (const auto& [code, body] : bad_structures) {
+    auto text = marked(with_structures(body));
     const auto reading = read_text(text.text);
     ASSERT_FALSE(reading.problems.empty()) << body;
     if (code == std::string_view{"E0203"}) {  // two are told of: the second use is where the mark stands, or behind it

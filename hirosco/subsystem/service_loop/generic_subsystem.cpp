@@ -9,6 +9,7 @@
 
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/parameter/number.hpp"
+#include "hirosco/pus/st01_verification/instructions.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
 #include "hirosco/pus/standard_services.hpp"
 
@@ -83,6 +84,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
     made_services_.push_back(kind->make(*this));
     services_.push_back(made_services_.back().get());
   }
+  // One for each command that can be on its way to the cycle: none grows it then.
+  open_calls_.reserve(std::decay_t<decltype(handover_.commands)>::capacity());
   tell_descriptor();
   if (OwnLoop* const loop = loop_of(housekeeping_service_.type())) loop->host(housekeeping_service_);
   loops_looked_at_ = platform_.clock.now();
@@ -353,10 +356,12 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
 
 std::expected<void, pus::FailureCode> GenericSubsystem::submit_write(
     std::span<const pus::ParameterAccess::Write> writes, const pus::Request&) {
-  std::vector<ParameterWrite> batch;
+  std::array<ParameterWrite, pus::max_instructions> batch;
+  std::size_t count = 0;
   for (const auto& write : writes)
-    if (const auto place = dictionary_.place_of(write.id)) batch.push_back({place->index, place->member, write.value});
-  if (const auto queued = writes_.enqueue(dictionary_, batch); !queued)
+    if (const auto place = dictionary_.place_of(write.id); place && count < batch.size())
+      batch[count++] = {place->index, place->member, write.value};
+  if (const auto queued = writes_.enqueue(dictionary_, std::span{batch}.first(count)); !queued)
     return std::unexpected{queued.error().code == ErrorCode::OutOfRange ? pus::FailureCode::CapacityExceeded
                                                                         : pus::FailureCode::Busy};
   // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
