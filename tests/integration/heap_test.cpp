@@ -30,7 +30,8 @@ struct HeapFlight {
     };
   }
   Flight flight;
-  std::map<std::pair<std::uint16_t, std::uint16_t>, std::uint32_t> told;  ///< newest count of allocations, by subsystem and event
+  std::map<std::pair<std::uint16_t, std::uint16_t>, std::uint32_t>
+      told;  ///< newest count of allocations, by subsystem and event
 };
 
 /// Something that the argument may be.
@@ -152,8 +153,10 @@ TEST(Heap, UsedByAPlantedAuthorInItsServiceLoopIsTold) {
   HeapFlight heard{
       {.mission = "hello",
        .subsystems = {{"planted", [] { return std::make_unique<Planted>(); }}},
-       .files = {{"mission.xml", planted_mission_text},
-                 {"planted.xml", R"(<Subsystem name="PLANTED" id="20"><Configuration name="NOMINAL" id="1" sampling_us="1000"/></Subsystem>)"}}}};
+       .files = {
+           {"mission.xml", planted_mission_text},
+           {"planted.xml",
+            R"(<Subsystem name="PLANTED" id="20"><Configuration name="NOMINAL" id="1" sampling_us="1000"/></Subsystem>)"}}}};
   ASSERT_TRUE(heard.flight.commission()) << heard.flight.story().text();
   heard.flight.craft().run(10s);
   EXPECT_GE((heard.told[{20, framework_event::service_uses_heap}]), 2U);

@@ -90,7 +90,7 @@ TEST(FrameworkParameters, TakeAnotherIdFromTheDescriptorAndNothingElse) {
   const auto subsystem = with(R"(<StructRef name="CYCLE_STATS" id="7"/>)").value.value();
   EXPECT_EQ(subsystem.find_parameter("CYCLE_STATS")->id, 7);
   EXPECT_EQ(subsystem.find_parameter("CYCLE_STATS")->members.size(), 3U);
-  EXPECT_EQ(subsystem.parameters.size(), 6U);
+  EXPECT_EQ(subsystem.parameters.size(), 7U);
   EXPECT_EQ(problems_of(R"(<StructRef name="CYCLE_STATS" id="7"/>
     <StructRef name="A" id="7"><ParamRef name="X" id="1" type="INT8"/></StructRef>
     <StructRef name="B" id="39"><ParamRef name="X" id="2" type="INT8"/></StructRef>)"),
@@ -113,7 +113,7 @@ TEST(FrameworkParameters, LeaveTheNamesOfTheirMembersToAuthors) {
 TEST(FrameworkParameters, AddedTwiceAreThereOnce) {
   auto subsystem = with("").value.value();
   add_framework_parameters(subsystem);
-  EXPECT_EQ(subsystem.parameters.size(), 6U);
+  EXPECT_EQ(subsystem.parameters.size(), 7U);
   EXPECT_EQ(std::ranges::count(subsystem.enumerations, "STATES", &Enumeration::name), 1);
 }
 

@@ -107,7 +107,7 @@ TEST(Foreign, ThatTheOtherDoesNotTellIsRefusedWithTheReason) {
   const auto with = [](const std::string& from, const std::string& to) {
     return mission_problem(with_heater(heater_text(changed(from, to, heard_voltage))));
   };
-  EXPECT_EQ(with("x", "x"), "");
+  EXPECT_EQ(with(" age_ms", " age_ms"), "");
   EXPECT_TRUE(has_code(with("VOLTAGE\" age", "TENSION\" age"), "E0374")) << "there is none of this name";
   EXPECT_TRUE(has_code(with("STATE.MAIN.VOLTAGE", "HIDDEN"), "E0374")) << "it is reported by no structure";
   EXPECT_TRUE(has_code(with("unit=\"V\"", "unit=\"mV\""), "E0374"));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <utility>
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/descriptor/read/read.hpp"
@@ -48,17 +49,19 @@ Result<> apply_override(Subsystem& subsystem, std::string_view text) {
     return ok();
   }
   std::vector<Value> values;
+  bool more = true;
   for (const Field& field : fields) {
     if (field.type == Type::Text) return fail(ErrorCode::OutOfRange, "words among numbers");
     for (std::uint32_t i = 0; i < field.values(); ++i) {
       const auto end = given.find(' ');
+      if (!std::exchange(more, end != given.npos)) return fail(ErrorCode::OutOfRange, "another number of values");
       const auto value = value_in(field, given.substr(0, end));
       if (!value) return fail(ErrorCode::OutOfRange, "not a number of its type");
       values.push_back(*value);
       given.remove_prefix(end == given.npos ? given.size() : end + 1);
     }
   }
-  if (!given.empty()) return fail(ErrorCode::OutOfRange, "another number of values");
+  if (more) return fail(ErrorCode::OutOfRange, "another number of values");
   begin_with(parameter, place->member, std::move(values));
   return ok();
 }

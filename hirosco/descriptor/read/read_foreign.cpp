@@ -18,18 +18,18 @@ constexpr std::int64_t most_age_ms = 3'600'000;
 
 void SubsystemReader::read_from(Attributes& attributes, Parameter& parameter) {
   const auto* from = attributes.optional("from");
-  const auto* age = attributes.optional("age_ms");
   if (from == nullptr) {
-    if (age != nullptr)
+    if (const auto* age = attributes.optional("age_ms"); age != nullptr)
       problems_.add(place(age->at), "E0255", fmt::format("'{}' has an age and is from nobody", parameter.field.name),
                     "age_ms stands beside from", age->name.size());
     return;
   }
   parameter.from = from->value;
   parameter.age = std::chrono::milliseconds{attributes.required_integer<std::int64_t>("age_ms", 1, most_age_ms)};
-  if (const auto dot = from->value.find('.'); dot == 0 || dot == std::string::npos || dot + 1 == from->value.size())
-    problems_.add(*from, "E0110", in_quotes(from->value) + " names no parameter of another subsystem",
-                  "SUBSYSTEM.PARAMETER, as <Subscribes> calls the subsystem");
+  const auto dot = from->value.find('.');
+  if (dot == 0 || dot == std::string::npos || dot + 1 == from->value.size())
+    return problems_.add(*from, "E0110", in_quotes(from->value) + " names no parameter of another subsystem",
+                         "SUBSYSTEM.PARAMETER, as <Subscribes> calls the subsystem");
   if (parameter.writable() || parameter.protection || parameter.persistent)
     problems_.add(*from, "E0255",
                   fmt::format("'{}' is from another subsystem and {}", parameter.field.name,

@@ -61,7 +61,8 @@ SubsystemReader::Inside SubsystemReader::read_inside(const xml::Element& element
   each_child(element, problems_,
              {{"ParamRef", [&](const xml::Element& child) { read_member(child, inside, names); }, most_members},
               {"StructRef", [&](const xml::Element& child) { read_within(child, inside, names, level + 1); }}});
-  if (inside.members.empty()) problems_.add(element, "E0106", "<StructRef> needs at least one <ParamRef>");
+  const bool refused = std::ranges::find(element.children, "StructRef", &xml::Element::name) != element.children.end();
+  if (inside.members.empty() && !refused) problems_.add(element, "E0106", "<StructRef> needs at least one <ParamRef>");
   return inside;
 }
 
