@@ -270,7 +270,7 @@ class Palette {
       case 3: rig_.send(20, 3, data(two, kp, 7.0, kd, 1.0)); break;
       case 4: rig_.send(20, 3, data(one, kp, 1e9)); break;
       case 5: rig_.call("SET_GOAL", {0.5}); break;
-      case 6: rig_.call("SET_GOAL", {9.0}); break;
+      case 6: rig_.send(8, 1, data(one)); break;
       case 7: rig_.send(3, 6, data(one, structure)); break;
       case 8: rig_.send(3, 5, data(one, structure)); break;
       case 9: rig_.send(3, 27, data(one, structure)); break;

@@ -321,7 +321,7 @@ std::size_t GenericSubsystem::size_of(std::uint32_t parameter) {
 namespace {
 
 /// Each number of these octets, which are of its length, within the range that it has.  Realtime: bounded.
-[[nodiscard]] bool in_range(const descriptor::Parameter& declared, std::optional<std::uint16_t> member, Octets value) {
+[[nodiscard]] bool in_range(const descriptor::Parameter& declared, int member, Octets value) {
   OctetReader reader{value};
   const auto fits = [&](const descriptor::Field& field) {
     if (field.type == Type::Text) return static_cast<void>(reader.get(field.octets())), true;
@@ -334,7 +334,9 @@ namespace {
     return true;
   };
   if (declared.members.empty()) return fits(declared.field);
-  return std::ranges::all_of(declared.members_at(member), [&](const auto& each) { return fits(each.field); });
+  const std::span<const descriptor::Parameter::Member> all{declared.members};
+  const auto asked = member < 0 ? all : declared.members_at(static_cast<std::uint16_t>(member));
+  return std::ranges::all_of(asked, [&](const auto& each) { return fits(each.field); });
 }
 
 }  // namespace
@@ -349,8 +351,7 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
     return std::unexpected{pus::FailureCode::NotPermittedNow};
   if (!dictionary_.accepts(place->index, place->member, value))
     return std::unexpected{pus::FailureCode::ValueNotAcceptable};
-  const auto number = place->member < 0 ? std::nullopt : std::optional{static_cast<std::uint16_t>(place->member)};
-  if (!in_range(declared, number, value)) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
+  if (!in_range(declared, place->member, value)) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
   return {};
 }
 
@@ -372,8 +373,7 @@ std::expected<void, pus::FailureCode> GenericSubsystem::submit_write(
 /// What is heard of others comes into a parameter as what a telecommand sets, without asking whether one may.
 ForeignParameters::Home GenericSubsystem::foreign_home() {
   const auto accepts = [this](std::uint16_t parameter, Octets value) {
-    return dictionary_.accepts(parameter, -1, value) &&
-           in_range(descriptor_.parameters[parameter], std::nullopt, value);
+    return dictionary_.accepts(parameter, -1, value) && in_range(descriptor_.parameters[parameter], -1, value);
   };
   const auto set = [this](std::uint16_t parameter, Octets value) {
     const ParameterWrite write{parameter, -1, value};
