@@ -296,6 +296,8 @@ TEST(ServiceLoopAllocations, ThereAreNoneForAnyTelecommandOnceCommissioned) {
   ASSERT_EQ(flight.rig().state(), State::Operational);
   for (int i = 0; i < 64; ++i) flight.cycle();
   flight.rig().raised.clear();
+  // The probe's own table of nodes has grown in its first cycles.
+  const std::uint64_t before = flight.rig().subsystem.cycle().heap_uses().load().cycle;
   Palette palette{flight.rig()};
   for (int i = 0; i < 10'000; ++i) {
     palette.next();
@@ -304,7 +306,7 @@ TEST(ServiceLoopAllocations, ThereAreNoneForAnyTelecommandOnceCommissioned) {
   EXPECT_EQ(flight.rig().heard(descriptor::framework_event::service_uses_heap), 0);
   const HeapUses told = flight.rig().subsystem.cycle().heap_uses().load();
   EXPECT_EQ(told.service, 0u);
-  EXPECT_EQ(told.cycle, 0u);
+  EXPECT_EQ(told.cycle, before);
   EXPECT_TRUE(told.counted);
 }
 
