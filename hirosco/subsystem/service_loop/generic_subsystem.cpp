@@ -85,7 +85,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
     services_.push_back(made_services_.back().get());
   }
   // One for each command that can be on its way to the cycle: none grows it then.
-  open_calls_.reserve(std::decay_t<decltype(handover_.commands)>::capacity());
+  open_calls_.reserve(std::decay_t<decltype(rings_.commands)>::capacity());
   tell_descriptor();
   if (OwnLoop* const loop = loop_of(housekeeping_service_.type())) loop->host(housekeeping_service_);
   loops_looked_at_ = platform_.clock.now();
