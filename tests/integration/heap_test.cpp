@@ -76,13 +76,13 @@ void play_palette(Flight& flight, const descriptor::Subsystem& subsystem) {
   };
   std::array<std::byte, 16> room;
   for (const std::uint16_t id : structures)
-    for (const std::uint8_t subtype : {6, 5, 27}) {
+    for (const std::uint8_t subtype : std::array<std::uint8_t, 3>{6, 5, 27}) {
       OctetWriter writer{room};
       writer.put(std::uint8_t{1}).put(id);
       send(3, subtype, writer.written());
     }
   for (const std::uint16_t id : events)
-    for (const std::uint8_t subtype : {6, 5}) {
+    for (const std::uint8_t subtype : std::array<std::uint8_t, 2>{6, 5}) {
       OctetWriter writer{room};
       writer.put(std::uint8_t{1}).put(id);
       send(5, subtype, writer.written());

@@ -147,7 +147,8 @@ TEST(Structures, OneValueThatIsOutsideItsRangeLeavesTheRestAsItWas) {
   Structured arm;
   ASSERT_TRUE(arm.commissioned) << arm.flight.story().text();
   // As no decent ground would send it: D of the second joint is above 10.
-  const auto id = ParameterId{20, Type::Struct, 4}.wire();
+  // Structures of an element have the ids 1 and 3: those of the next one 4 and 6.
+  const auto id = ParameterId{20, Type::Struct, 6}.wire();
   std::array<std::byte, 1 + 4 + 16> data;
   OctetWriter{data}.put(std::uint8_t{1}).put(id).put(50.0).put(11.0);
   std::array<std::byte, 64> buffer;
