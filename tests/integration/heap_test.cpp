@@ -18,11 +18,13 @@ namespace {
 
 namespace framework_event = descriptor::framework_event;
 
+constexpr std::uint16_t supervisor_apid = 1;  ///< itself no subsystem that acts: its cycle only tells
+
 /// Every flight is listened to for what the framework says of the heap.
 struct HeapFlight {
   explicit HeapFlight(Plan plan) : flight{std::move(plan)} {
     flight.story().on_telemetry = [this](const pus::TelemetryView& report) {
-      if (report.service() != 5) return;
+      if (report.service() != 5 || report.apid() == supervisor_apid) return;
       OctetReader reader{report.source_data()};
       const auto id = reader.get<std::uint16_t>();
       if (id == framework_event::service_uses_heap || id == framework_event::cycle_not_realtime)
