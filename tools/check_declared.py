@@ -13,7 +13,7 @@ import xml.etree.ElementTree as xml
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "hirosco/descriptor"
-MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/resources.hpp", FOLDER / "model/service_list.hpp", FOLDER / "model/mission.hpp", ROOT / "hirosco/parameter/type.hpp"]
+MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/parameters.hpp", FOLDER / "model/resources.hpp", FOLDER / "model/service_list.hpp", FOLDER / "model/mission.hpp", ROOT / "hirosco/parameter/type.hpp"]
 COLUMNS = ["schema", "declared", "honoured_by", "in"]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 PLAIN = {"YesNo"}  # its words are those of every language

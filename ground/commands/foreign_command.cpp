@@ -78,8 +78,8 @@ StoredCommand command_of(const Catalogue& catalogue, const pus::TelecommandView&
   if (subsystem == nullptr) return command;
   const auto requests = catalogue.functions_of(*subsystem);
   const auto known = std::ranges::find_if(requests, [&](const descriptor::Function& request) {
-    return request.service == telecommand.service() && request.subtype == telecommand.subtype() &&
-           (!call || request.name == command.function);
+    if (call) return request.service == telecommand.service() && request.name == command.function;
+    return pus::is_for(request, telecommand.service(), telecommand.subtype(), telecommand.application_data());
   });
   if (known == requests.end()) return command;
   command.function = known->name;

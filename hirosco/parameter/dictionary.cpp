@@ -29,12 +29,24 @@ namespace {
     if (spec.is_struct && std::ranges::count(spec.fields, field.name, &SpecField::name) > 1)
       return spec.name + "." + field.name + ": the structure has two members of this name";
   }
+  for (const SpecPart& part : spec.parts)
+    if (!spec.is_struct || part.count == 0 || part.first >= spec.fields.size() ||
+        part.count > spec.fields.size() - part.first)
+      return spec.name + "." + part.name + ": a part has fields of its structure";
   if (spec.id.layout != (spec.is_struct ? Type::Struct : spec.fields.front().type))
     return spec.name + ": the layout of its id is not its type";
   if (!spec.init.empty() && spec.init.size() != value_count(spec))
     return spec.name + ": " + std::to_string(spec.init.size()) + " initial values for " +
            std::to_string(value_count(spec)) + " elements";
   return {};
+}
+
+[[nodiscard]] std::size_t number_of_members(const ParameterSpec& spec) noexcept {
+  return spec.is_struct ? spec.fields.size() + spec.parts.size() : 0;
+}
+/// A field or, from the number of fields on, a part.
+[[nodiscard]] const std::string& name_of(const ParameterSpec& spec, std::size_t member) noexcept {
+  return member < spec.fields.size() ? spec.fields[member].name : spec.parts[member - spec.fields.size()].name;
 }
 
 [[nodiscard]] std::string declared_text(const SpecField& field) { return descriptor_text(field.type, field.count); }
@@ -117,12 +129,15 @@ std::expected<Dictionary, std::string> Dictionary::make(std::span<const Paramete
     const auto claim = [&](ParameterId id, int member) -> std::string {
       const auto [other, fresh] = made.by_id_.emplace(id.wire(), ParameterPlace{index, member});
       if (fresh) return {};
-      return spec.name + (member < 0 ? "" : "." + spec.fields[static_cast<std::size_t>(member)].name) +
+      return spec.name + (member < 0 ? "" : "." + name_of(spec, static_cast<std::size_t>(member))) +
              ": has the layout and id of " + made.entries_[other->second.index].spec.name;
     };
     std::string taken = claim(spec.id, -1);
     for (std::size_t i = 0; spec.is_struct && taken.empty() && i < spec.fields.size(); ++i)
       if (spec.fields[i].id) taken = claim({spec.id.subsystem, spec.fields[i].type, *spec.fields[i].id}, int(i));
+    for (std::size_t i = 0; taken.empty() && i < spec.parts.size(); ++i)
+      if (spec.parts[i].id)
+        taken = claim({spec.id.subsystem, Type::Struct, *spec.parts[i].id}, int(spec.fields.size() + i));
     if (!taken.empty()) return std::unexpected{std::move(taken)};
   }
   return made;
@@ -162,38 +177,47 @@ std::optional<ParameterPlace> Dictionary::place_of(std::uint32_t wire_id) const 
 
 std::optional<ParameterPlace> Dictionary::find(std::string_view text) const noexcept {
   if (const auto whole = index_of(text)) return ParameterPlace{*whole, -1};
-  const auto dot = text.find('.');
-  const std::string_view member = dot == std::string_view::npos ? text : text.substr(dot + 1);
   std::optional<ParameterPlace> found;
   for (std::size_t index = 0; index < entries_.size(); ++index) {
     const auto& spec = entries_[index].spec;
-    if (!spec.is_struct || (dot != std::string_view::npos && spec.name != text.substr(0, dot))) continue;
-    const auto place = std::ranges::find(spec.fields, member, &SpecField::name);
-    if (place == spec.fields.end()) continue;
-    if (found) return std::nullopt;  // ambiguous
-    found = ParameterPlace{static_cast<std::uint16_t>(index), static_cast<int>(place - spec.fields.begin())};
+    const bool within = text.size() > spec.name.size() && text.starts_with(spec.name) && text[spec.name.size()] == '.';
+    const std::string_view inside = within ? text.substr(spec.name.size() + 1) : std::string_view{};
+    for (std::size_t member = 0; member < number_of_members(spec); ++member) {
+      const std::string_view name = name_of(spec, member);
+      if (name != text && (!within || name != inside)) continue;
+      if (found) return std::nullopt;  // ambiguous
+      found = ParameterPlace{static_cast<std::uint16_t>(index), static_cast<int>(member)};
+    }
   }
   return found;
 }
 
 std::size_t Dictionary::wire_octets(std::size_t index, int member) const noexcept {
-  if (index >= entries_.size()) return 0;
-  const auto& fields = entries_[index].spec.fields;
-  if (member >= 0)
-    return static_cast<std::size_t>(member) < fields.size() ? octets_of(fields[static_cast<std::size_t>(member)].type) *
-                                                                  fields[static_cast<std::size_t>(member)].count
-                                                            : 0;
+  const Range range = range_at(index, member);
   std::size_t sum = 0;
-  for (const auto& field : fields) sum += octets_of(field.type) * field.count;
+  for (std::size_t i = range.first; i < range.first + range.count; ++i) {
+    const SpecField& field = entries_[index].spec.fields[i];
+    sum += octets_of(field.type) * field.count;
+  }
   return sum;
+}
+
+Dictionary::Range Dictionary::range_at(std::size_t index, int member) const noexcept {
+  if (index >= entries_.size()) return {};
+  const ParameterSpec& spec = entries_[index].spec;
+  if (member < 0) return {0, spec.fields.size()};
+  const auto number = static_cast<std::size_t>(member);
+  if (number < spec.fields.size()) return {number, 1};
+  if (number - spec.fields.size() >= spec.parts.size()) return {};
+  const SpecPart& part = spec.parts[number - spec.fields.size()];
+  return {part.first, part.count};
 }
 
 std::span<const NativeField> Dictionary::fields_at(std::size_t index, int member) const noexcept {
   const ParameterCell* const target = cell(index);
   if (target == nullptr) return {};
-  if (member < 0) return target->fields();
-  if (static_cast<std::size_t>(member) >= target->fields().size()) return {};
-  return target->fields().subspan(static_cast<std::size_t>(member), 1);
+  const Range range = range_at(index, member);
+  return target->fields().subspan(range.first, range.count);
 }
 
 std::size_t Dictionary::encode(std::size_t index, int member, MutableOctets big_endian) const noexcept {

@@ -31,6 +31,14 @@ struct SpecField {
   [[nodiscard]] std::size_t values() const noexcept { return type == Type::Text ? 1 : count; }
 };
 
+/// A structure within a structure: which of its fields are its own (adr 0103).
+struct SpecPart {
+  std::string name;
+  std::size_t first{};            ///< of ParameterSpec::fields
+  std::size_t count{};
+  std::optional<std::uint8_t> id{};  ///< with Type::Struct
+};
+
 /// A parameter as its descriptor declares it.
 struct ParameterSpec {
   std::string name;
@@ -38,6 +46,7 @@ struct ParameterSpec {
   std::vector<SpecField> fields;  ///< one for a value or array, the members of a structure
   bool is_struct{false};
   std::vector<Value> init{};      ///< one for each value of all fields in order, or empty (zeros, no words)
+  std::vector<SpecPart> parts{};  ///< structures within, at any depth
 };
 
 /// Why a C++ type is not the declared one; `explanation` names parameter, member, C++ type and declared type.
@@ -47,7 +56,8 @@ struct LayoutMismatch {
 };
 [[nodiscard]] std::optional<LayoutMismatch> compare(const ParameterSpec& spec, const ParameterCell& cell);
 
-/// `CUR_VALUES` or `CUR_VALUES.POSITION`, resolved. `member` -1: the whole parameter.
+/// `CUR_VALUES` or `CUR_VALUES.POSITION`, resolved. `member` -1: the whole parameter; from the number of its fields on: one of
+/// its parts.
 struct ParameterPlace {
   std::uint16_t index{};
   int member{-1};
@@ -82,7 +92,7 @@ class Dictionary {
   [[nodiscard]] std::optional<std::uint16_t> index_of(std::string_view name) const noexcept;
   /// A parameter, or a member that has an id, by ParameterId::wire().
   [[nodiscard]] std::optional<ParameterPlace> place_of(std::uint32_t wire_id) const noexcept;
-  /// A parameter, `PARAMETER.MEMBER`, or a member's name alone where only one structure has it.
+  /// A parameter, `PARAMETER.MEMBER`, or a member's name alone where only one structure has it; a part is a member, too.
   [[nodiscard]] std::optional<ParameterPlace> find(std::string_view text) const noexcept;
 
   /// Octets on the wire (packed); 0 for a place that does not exist.  Realtime: wait-free.
@@ -120,6 +130,12 @@ class Dictionary {
     ParameterSpec spec;
     ParameterCell* cell{nullptr};
   };
+  /// Of the fields of a parameter: the first one of a place and how many it has; nothing of a place that does not exist.
+  struct Range {
+    std::size_t first{};
+    std::size_t count{};
+  };
+  [[nodiscard]] Range range_at(std::size_t index, int member) const noexcept;
   [[nodiscard]] std::span<const NativeField> fields_at(std::size_t index, int member) const noexcept;
 
   std::vector<Entry> entries_;

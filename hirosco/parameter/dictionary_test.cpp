@@ -60,6 +60,69 @@ TEST(Dictionary, RejectsASecondParameterOfTheSameLayoutAndId) {
   EXPECT_THAT(refusal({goal(), other}), AllOf(HasSubstr("OTHER"), HasSubstr("DES_POSITION")));
 }
 
+struct PartGains {
+  double p;
+  double d;
+};
+struct PartLaw {
+  std::uint8_t mode;
+  PartGains gains;
+  std::array<PartGains, 2> joints;
+};
+ParameterSpec controller() {
+  return {"CONTROLLER",
+          {10, Type::Struct, 1},
+          {{"MODE", Type::Uint8, 1, 1},
+           {"GAINS.P", Type::Double, 1, 1},
+           {"GAINS.D", Type::Double, 1, 2},
+           {"JOINTS[0].P", Type::Double, 1, 3},
+           {"JOINTS[0].D", Type::Double, 1, 4},
+           {"JOINTS[1].P", Type::Double, 1, 5},
+           {"JOINTS[1].D", Type::Double, 1, 6}},
+          true,
+          {1, 2, 3, 4, 5, 6, 7},
+          {{"GAINS", 1, 2, 2}, {"JOINTS[0]", 3, 2, 3}, {"JOINTS[1]", 5, 2, 4}}};
+}
+
+TEST(Dictionary, KnowsAStructureWithinByNameAndById) {
+  const Dictionary dictionary = made({controller()});
+  EXPECT_EQ(dictionary.find("CONTROLLER.GAINS"), (ParameterPlace{0, 7}));
+  EXPECT_EQ(dictionary.find("GAINS"), (ParameterPlace{0, 7}));
+  EXPECT_EQ(dictionary.find("CONTROLLER.JOINTS[1].D"), (ParameterPlace{0, 6}));
+  EXPECT_EQ(dictionary.find("CONTROLLER.JOINTS"), std::nullopt);
+  EXPECT_EQ(dictionary.place_of(ParameterId{10, Type::Struct, 4}.wire()), (ParameterPlace{0, 9}));
+  EXPECT_EQ(dictionary.wire_octets(0, 9), 16u);
+  EXPECT_EQ(dictionary.wire_octets(0, 10), 0u) << "there is no fourth";
+  ParameterSpec twice = controller();
+  twice.parts[1].id = 2;
+  EXPECT_THAT(refusal({twice}), AllOf(HasSubstr("CONTROLLER.JOINTS[0]"), HasSubstr("layout and id")));
+  twice = controller();
+  twice.parts[2].count = 3;
+  EXPECT_THAT(refusal({twice}), HasSubstr("JOINTS[1]"));
+}
+
+TEST(Dictionary, SetsAndTellsAStructureWithinAndNothingBesideIt) {
+  Dictionary dictionary = made({controller()});
+  Parameter<PartLaw> parameter;
+  ASSERT_TRUE(dictionary.publish("CONTROLLER", parameter).has_value());
+  ASSERT_TRUE(dictionary.initialise());
+  std::array<std::byte, 16> told{};
+  ASSERT_EQ(dictionary.encode(0, 8, told), told.size());
+  OctetReader reader{told};
+  EXPECT_EQ(reader.get<double>(), 4);
+  EXPECT_EQ(reader.get<double>(), 5);
+  std::array<std::byte, 16> wanted;
+  OctetWriter{wanted}.put(-4.0).put(-5.0);
+  ASSERT_TRUE(dictionary.decode_into(0, 8, wanted));
+  const PartLaw now = parameter.load();
+  EXPECT_EQ(now.gains.p, 2);
+  EXPECT_EQ(now.joints[0].p, -4);
+  EXPECT_EQ(now.joints[0].d, -5);
+  EXPECT_EQ(now.joints[1].p, 6);
+  EXPECT_EQ(dictionary.accepts(0, 8, Octets{wanted}.first(15)).error().code, ErrorCode::Malformed);
+  EXPECT_EQ(dictionary.accepts(0, 10, {}).error().code, ErrorCode::NotFound);
+}
+
 TEST(Dictionary, KnowsAMemberByTheIdThatItHas) {
   ParameterSpec spec = current_values();
   spec.fields[1].id = 7;

@@ -18,8 +18,8 @@
 #include "hirosco/utilities/octets.hpp"
 
 /// Derives the layout of a parameter from its C++ type: no macro, no registration. A parameter may be a number, an
-/// enumeration, a bool, a std::array or Sized of those, a Text, or an aggregate of up to 16 such members. Members carry no
-/// `alignas`.
+/// enumeration, a bool, a std::array or Sized of those, a Text, or an aggregate of up to 16 such members, of aggregates and of
+/// std::arrays of these (adr 0103). Members carry no `alignas`.
 namespace hirosco {
 
 /// One value or array as it lies in memory.
@@ -217,48 +217,102 @@ template <MemberType F>
   return (offset + alignment - 1) / alignment * alignment;
 }
 
-template <class T, class... Members>
-[[nodiscard]] consteval auto structure_layout(Types<Members...>) {
-  static_assert((MemberType<Members> && ...),
-                "a member is a number, an enumeration, a bool, a std::array or Sized of those, or a Text; characters "
-                "have no definite size");
-  std::array<NativeField, sizeof...(Members)> fields{};
-  std::size_t end = 0;
-  std::size_t index = 0;
-  const auto add = [&]<class M>(std::type_identity<M>) {
-    fields[index++] = field_at<M>(round_up(end, alignof(M)));
-    end = round_up(end, alignof(M)) + sizeof(M);
-  };
-  (add(std::type_identity<Members>{}), ...);
-  std::size_t alignment = 1;
-  ((alignment = alignof(Members) > alignment ? alignof(Members) : alignment), ...);
-  return std::pair{fields, round_up(end, alignment)};
+/// An aggregate with members of its own; what an array is, is not.
+template <class T>
+concept StructureType = std::is_class_v<T> && std::is_aggregate_v<T> && !ArrayOf<T>::value;
+
+template <StructureType T>
+[[nodiscard]] consteval auto member_types() {
+  constexpr std::size_t count = member_count<T>();
+  static_assert(count >= 1, "a structure has at least one member");
+  static_assert(count <= max_members, "a structure has at most 16 members");
+  return decltype(members_of(std::declval<T&>())){};
+}
+
+/// Most values and arrays that a parameter has, those of structures within among them.
+inline constexpr std::size_t max_fields = 256;
+
+/// Values and arrays in an object of this type: its leaves.
+template <class T>
+[[nodiscard]] consteval std::size_t leaf_count() {
+  using Plain = std::remove_cv_t<T>;
+  using Element = typename ArrayOf<Plain>::Element;
+  if constexpr (MemberType<Plain>) {
+    return 1;
+  } else if constexpr (ArrayOf<Plain>::value && StructureType<Element>) {
+    static_assert(!requires { ArrayOf<Plain>::most; }, "an array of structures has the length of its type");
+    return ArrayOf<Plain>::count * leaf_count<Element>();
+  } else {
+    static_assert(
+        StructureType<Plain>,
+        "a member is a number, an enumeration, a bool, a std::array or Sized of those, a Text, a structure or a "
+        "std::array of structures; characters have no definite size");
+    return []<class... Members>(Types<Members...>) { return (leaf_count<Members>() + ...); }(member_types<Plain>());
+  }
+}
+
+/// The leaves of an object that lies at `offset`, from `index` on.
+template <class T>
+constexpr void add_leaves(std::span<NativeField> leaves, std::size_t& index, std::size_t offset) {
+  using Plain = std::remove_cv_t<T>;
+  if constexpr (MemberType<Plain>) {
+    leaves[index++] = field_at<Plain>(offset);
+  } else if constexpr (ArrayOf<Plain>::value) {
+    using Element = typename ArrayOf<Plain>::Element;
+    for (std::size_t i = 0; i < ArrayOf<Plain>::count; ++i)
+      add_leaves<Element>(leaves, index, offset + i * sizeof(Element));
+  } else {
+    std::size_t end = 0;
+    const auto add = [&]<class M>(std::type_identity<M>) {
+      end = round_up(end, alignof(M));
+      add_leaves<M>(leaves, index, offset + end);
+      end += sizeof(M);
+    };
+    [&]<class... Members>(Types<Members...>) { (add(std::type_identity<Members>{}), ...); }(member_types<Plain>());
+  }
+}
+
+/// Whether the members lie where this file takes them to be: each aligned, the whole filled up.
+template <class T>
+[[nodiscard]] consteval bool lies_plainly() {
+  using Plain = std::remove_cv_t<T>;
+  if constexpr (MemberType<Plain>) {
+    return true;
+  } else if constexpr (ArrayOf<Plain>::value) {
+    return lies_plainly<typename ArrayOf<Plain>::Element>();
+  } else {
+    return []<class... Members>(Types<Members...>) {
+      std::size_t end = 0;
+      std::size_t alignment = 1;
+      ((end = round_up(end, alignof(Members)) + sizeof(Members),
+        alignment = alignof(Members) > alignment ? alignof(Members) : alignment),
+       ...);
+      return round_up(end, alignment) == sizeof(Plain) && (lies_plainly<Members>() && ...);
+    }(member_types<Plain>());
+  }
 }
 
 }  // namespace layout_detail
 
 template <class T>
-concept ParameterStructure = std::is_class_v<T> && std::is_aggregate_v<T> && !layout_detail::ArrayOf<T>::value;
+concept ParameterStructure = layout_detail::StructureType<T> && !layout_detail::MemberType<T>;
 
-/// Fields of a parameter type in order, as std::array<NativeField, N>. A type that has no layout does not compile.
+/// Fields of a parameter type in order, as std::array<NativeField, N>; those of a structure within where it stands. A type that
+/// has no layout does not compile.
 template <class T>
 [[nodiscard]] consteval auto layout_of() {
   static_assert(std::is_trivially_copyable_v<T>, "a parameter is copied octet by octet");
-  if constexpr (ParameterStructure<T>) {
-    constexpr std::size_t count = layout_detail::member_count<T>();
-    static_assert(count >= 1, "a structure has at least one member");
-    static_assert(count <= layout_detail::max_members, "a structure has at most 16 members");
-    constexpr auto layout =
-        layout_detail::structure_layout<T>(decltype(layout_detail::members_of(std::declval<T&>())){});
-    static_assert(layout.second == sizeof(T), "members of a parameter structure carry no alignas or bit width");
-    return layout.first;
-  } else {
-    static_assert(
-        layout_detail::MemberType<T>,
-        "a parameter is a number, an enumeration, a bool, a std::array or Sized of those, a Text, or an aggregate "
-        "of those; characters have no definite size");
-    return std::array{layout_detail::field_at<T>(0)};
-  }
+  static_assert(
+      ParameterStructure<T> || layout_detail::MemberType<T>,
+      "a parameter is a number, an enumeration, a bool, a std::array or Sized of those, a Text, or an aggregate "
+      "of those; characters have no definite size");
+  constexpr std::size_t count = layout_detail::leaf_count<T>();
+  static_assert(count <= layout_detail::max_fields, "a parameter has at most 256 values and arrays");
+  static_assert(layout_detail::lies_plainly<T>(), "members of a parameter structure carry no alignas or bit width");
+  std::array<NativeField, count> fields{};
+  std::size_t index = 0;
+  layout_detail::add_leaves<T>(fields, index, 0);
+  return fields;
 }
 
 /// A type that layout_of accepts as a single value or array.

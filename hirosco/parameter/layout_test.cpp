@@ -141,6 +141,56 @@ TEST(Layout, CountsEveryNumberOfMembers) {
   }(std::make_index_sequence<16>{});
 }
 
+struct Gains {
+  double p;
+  float damping;
+};
+struct Joint {
+  std::uint8_t number;
+  Gains gains;
+  bool braked;
+};
+struct Controller {
+  std::uint16_t mode;
+  std::array<Joint, 2> joints;
+  Gains tip;
+  Text<5> note;
+};
+
+TEST(Layout, OfAStructureWithinAndOfAnArrayOfThemIsTheirValuesWhereTheyLie) {
+  constexpr auto fields = layout_of<Controller>();
+  constexpr std::size_t first = offsetof(Controller, joints), second = first + sizeof(Joint);
+  constexpr std::size_t tip = offsetof(Controller, tip), in_joint = offsetof(Joint, gains);
+  const std::array expected{NativeField{Type::Uint16, 1, 0},
+                            NativeField{Type::Uint8, 1, first},
+                            NativeField{Type::Double, 1, first + in_joint},
+                            NativeField{Type::Float, 1, first + in_joint + offsetof(Gains, damping)},
+                            NativeField{Type::Bool, 1, first + offsetof(Joint, braked)},
+                            NativeField{Type::Uint8, 1, second},
+                            NativeField{Type::Double, 1, second + in_joint},
+                            NativeField{Type::Float, 1, second + in_joint + offsetof(Gains, damping)},
+                            NativeField{Type::Bool, 1, second + offsetof(Joint, braked)},
+                            NativeField{Type::Double, 1, tip},
+                            NativeField{Type::Float, 1, tip + offsetof(Gains, damping)},
+                            NativeField{Type::Text, 5, offsetof(Controller, note)}};
+  EXPECT_EQ(fields, expected);
+}
+
+struct Chain {
+  std::uint8_t length;
+  Sized<float, 4> angles;
+};
+struct Chains {
+  std::array<Chain, 2> chains;
+};
+
+TEST(Layout, OfASizedArrayInAnArrayOfStructuresHasItsLength) {
+  constexpr auto fields = layout_of<Chains>();
+  ASSERT_EQ(fields.size(), 4u);
+  EXPECT_EQ(fields[3].offset, sizeof(Chain) + offsetof(Chain, angles));
+  EXPECT_EQ(fields[3].most, 4);
+}
+
 TEST(Layout, HasATextForMessages) {
   EXPECT_EQ(cpp_text({Type::Double, 1, 0}), "double");
   EXPECT_EQ(cpp_text({Type::Int32, 4, 0}), "std::array<std::int32_t, 4>");

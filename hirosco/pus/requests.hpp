@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
@@ -14,11 +15,18 @@
 namespace hirosco::pus {
 
 /// SET_STATE, CONFIGURE, what the framework's services have words for (PING, SELF_TEST), the functions of the descriptor, the
-/// requests of its own services.
+/// requests of its own services, and a setting for each writable parameter, `SET:GAINS`, and for what is in it, `SET:GAINS.P`:
+/// TC[20,3] with one parameter, whose values are the arguments.
 [[nodiscard]] std::vector<descriptor::Function> requests_of(const descriptor::Subsystem& subsystem);
 
 /// Whether it takes the way of what is essential, past what waits; a ping asks about the ordinary one.
 [[nodiscard]] bool goes_alone(const descriptor::Function& request) noexcept;
+
+/// Begins the name of a setting; no name of a descriptor has a colon.
+inline constexpr std::string_view setting_prefix = "SET:";
+
+/// Whether a telecommand of this service and subtype with this application data is such a request; of ST[08], by any name.
+[[nodiscard]] bool is_for(const descriptor::Function& request, std::uint8_t service, std::uint8_t subtype, Octets data);
 
 /// Application data of such a request, as encode_call() makes it.
 [[nodiscard]] Result<std::vector<std::byte>> encode_request(const descriptor::Function& request, GivenValues values);

@@ -87,6 +87,64 @@ TEST(Requests, AreReadBackAsCallsOfFunctionsToo) {
   EXPECT_EQ(decode_request(*named(requests, "SET_STATE"), *data), std::vector<Value>{5.0});
 }
 
+descriptor::Subsystem one_with_a_structure() {
+  descriptor::Subsystem subsystem;
+  subsystem.id = 10;
+  subsystem.enumerations = {{"COLOURS", {{0, "red"}, {1, "green"}}}};
+  descriptor::Parameter lamp;
+  lamp.field.name = "LAMP";
+  lamp.field.type = Type::Struct;
+  lamp.id = 4;
+  lamp.writable_states = 1 << static_cast<int>(descriptor::State::SafeOperational);
+  const auto member = [](std::string name, Type type, std::uint8_t id) {
+    descriptor::Parameter::Member made;
+    made.field.name = std::move(name);
+    made.field.type = type;
+    made.id = id;
+    return made;
+  };
+  lamp.members = {member("TITLE", Type::Text, 1), member("LIGHT.COLOUR", Type::Uint8, 2),
+                  member("LIGHT.LEVEL", Type::Float, 3)};
+  lamp.members[0].field.text_octets = 4;
+  lamp.members[1].field.enumeration = "COLOURS";
+  lamp.members[2].field.maximum = Number{1};
+  lamp.parts = {{"LIGHT", 9, 1, 2, {}}};
+  subsystem.parameters = {lamp};
+  return subsystem;
+}
+
+TEST(Requests, SetAParameterWholeAndEachPartOfIt) {
+  const auto requests = requests_of(one_with_a_structure());
+  const descriptor::Function* const whole = named(requests, "SET:LAMP");
+  const descriptor::Function* const light = named(requests, "SET:LAMP.LIGHT");
+  ASSERT_TRUE(whole != nullptr && light != nullptr && named(requests, "SET:LAMP.LIGHT.LEVEL") != nullptr);
+  EXPECT_TRUE(light->permitted_in(descriptor::State::SafeOperational));
+  EXPECT_FALSE(light->permitted_in(descriptor::State::Operational));
+  EXPECT_EQ(light->arguments[0].texts.size(), 2u);
+  const std::vector<std::optional<Value>> given{"on", 1.0, 0.5};
+  const auto data = encode_request(*whole, given);
+  ASSERT_TRUE(data) << data.error().text;
+  // N, the id of PTC 8 and so on: subsystem 10, STRUCT, 4; four octets of text, colour, level (IEEE 754).
+  const std::vector<unsigned char> expected{1, 0, 10, 32, 4, 'o', 'n', 0, 0, 1, 0x3F, 0, 0, 0};
+  EXPECT_TRUE(std::ranges::equal(*data, std::as_bytes(std::span{expected})));
+  EXPECT_EQ(decode_request(*whole, *data), (std::vector<Value>{std::string{"on"}, 1.0, 0.5}));
+  EXPECT_EQ(decode_request(*light, *data), std::nullopt) << "it is not what this one sets";
+  EXPECT_TRUE(is_for(*whole, 20, 3, *data));
+  EXPECT_FALSE(is_for(*light, 20, 3, *data));
+}
+
+TEST(Requests, SetNothingThatIsOutsideItsRangeOrIncomplete) {
+  const auto requests = requests_of(one_with_a_structure());
+  const descriptor::Function& light = *named(requests, "SET:LAMP.LIGHT");
+  const std::vector<std::optional<Value>> too_bright{1.0, 1.5}, half{1.0}, no_colour{3.0, 0.5}, many{1.0, 0.5, 0.5};
+  EXPECT_EQ(encode_request(light, too_bright).error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(encode_request(light, half).error().code, ErrorCode::InvalidArgument);
+  EXPECT_EQ(encode_request(light, no_colour).error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(encode_request(light, many).error().code, ErrorCode::InvalidArgument);
+  const std::vector<std::optional<Value>> long_words{"longer", 1.0, 0.5};
+  EXPECT_EQ(encode_request(*named(requests, "SET:LAMP"), long_words).error().code, ErrorCode::OutOfRange);
+}
+
 TEST(Requests, WhatIsEssentialGoesAloneAndAPingDoesNot) {
   const auto mission = one_with_a_service();
   auto requests = requests_of(mission.subsystems[0].subsystem);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/spacecraft/simulated_ground.hpp"
 
+#include "hirosco/utilities/allocation_guard.hpp"
+
 #include <utility>
 
 namespace hirosco::simulation {
@@ -16,6 +18,7 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
   ~OnBoardEnd() override { ground_.end_ = nullptr; }
 
   void step(TimePoint) override {
+    const HeapPermitted as_of_sockets;  // in a flight these queues are the system's
     while (!uplink_.empty()) {
       constexpr communication::ClientId only_client = 1;
       if (traffic_.telecommand(only_client, uplink_.front()) == communication::Taken::Later) {

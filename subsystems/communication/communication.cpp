@@ -83,6 +83,10 @@ class Communication final : public Subsystem, private communication::GroundTraff
     down_.reset();
     relay_lost_ = false;
     if (transport_) return ok();  // a ground that reconfigures its own link must not be cut off by that
+    ports_ = {};
+    for (Quota::Held& port : ports_) {
+      HIROSCO_TRY_LET(port, acquire_port());
+    }
     HIROSCO_TRY_LET(transport_, open_(*this));
     had_client_ = false;
     cuts_told_ = {};
@@ -111,6 +115,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
     dropped_ += static_cast<std::uint32_t>(left);
     closing_since_.reset();
     transport_.reset();
+    ports_ = {};
     return done;
   }
 
@@ -222,6 +227,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
   static constexpr Duration closing_patience = 500ms;
 
   OpenGroundTransport open_;
+  std::array<Quota::Held, 2> ports_;  ///< that it listens at; given back after it
   std::unique_ptr<GroundTransport> transport_;
   Event<> ground_link_lost_{"GROUND_LINK_LOST"};
   Event<> ground_link_restored_{"GROUND_LINK_RESTORED"};

@@ -128,8 +128,7 @@ void CommandedState::configure(std::uint8_t id, const descriptor::Subsystem& sub
   std::erase_if(parameters_, [&](const ParameterValue& set) {
     const auto place = descriptor::find_parameter(subsystem, set.id);
     return place && std::ranges::any_of(configuration->initial, [&](const auto& initial) {
-             const auto& to = initial.parameter;
-             return to.parameter == place->parameter && (!to.member || !place->member || to.member == place->member);
+             return descriptor::overlap(subsystem, initial.parameter, *place);
            });
   });
 }
@@ -142,13 +141,12 @@ void CommandedState::set_parameters(Octets data, const descriptor::Subsystem& su
     const auto place = descriptor::find_parameter(subsystem, id);
     if (!reader.good() || !place) return;
     const descriptor::Parameter& parameter = subsystem.parameters[place->parameter];
-    const Octets value =
-        reader.get(place->member ? parameter.members[*place->member].field.octets() : parameter.octets());
+    const Octets value = reader.get(parameter.octets(place->member));
     if (!reader.good()) return;
-    // A whole structure takes the place of its members.
+    // A whole structure takes the place of what is in it.
     std::erase_if(parameters_, [&](const ParameterValue& set) {
       const auto earlier = descriptor::find_parameter(subsystem, set.id);
-      return set.id == id || (!place->member && earlier && earlier->parameter == place->parameter);
+      return earlier && descriptor::covers(subsystem, *place, *earlier);
     });
     parameters_.push_back({id, copy(value)});
   }

@@ -33,11 +33,16 @@ void each_value(const descriptor::Subsystem& subsystem, Octets data, Take take) 
     const auto place = descriptor::find_parameter(subsystem, id);
     if (!reader.good() || !place) return;
     const descriptor::Parameter& parameter = subsystem.parameters[place->parameter];
-    const Octets value =
-        reader.get(place->member ? parameter.members[*place->member].field.octets() : parameter.octets());
+    const Octets value = reader.get(parameter.octets(place->member));
     if (!reader.good()) return;
     take(id, value);
   }
+}
+
+/// The parameter that an id is of, or is in.
+[[nodiscard]] std::uint32_t owner_of(const descriptor::Subsystem& subsystem, std::uint32_t id) {
+  const auto place = descriptor::find_parameter(subsystem, id);
+  return place ? descriptor::identity_of(subsystem, {{}, place->parameter, std::nullopt, {}}).wire() : id;
 }
 
 /// A write takes effect at the next cycle boundary, and a function may have come between two of them.
@@ -107,7 +112,7 @@ StoredValues::Ids StoredValues::set_by(const pus::TelecommandView& telecommand, 
   Ids ids;
   if (is_write(telecommand)) {
     each_value(subsystem, telecommand.application_data(), [&](std::uint32_t id, Octets) {
-      if (subject.values.has(id)) ids.insert(id);
+      if (const auto owner = owner_of(subsystem, id); subject.values.has(owner)) ids.insert(owner);
     });
     return ids;
   }
@@ -116,7 +121,9 @@ StoredValues::Ids StoredValues::set_by(const pus::TelecommandView& telecommand, 
       call ? subsystem.find_function(call->name) : subsystem.find_request(telecommand.service(), telecommand.subtype());
   if (request == nullptr) return ids;
   for (const auto& argument : request->arguments) {
-    const auto* parameter = argument.of.empty() ? nullptr : subsystem.find_parameter(argument.of);
+    const auto* parameter =
+        argument.of.empty() ? nullptr
+                            : subsystem.find_parameter(std::string_view{argument.of}.substr(0, argument.of.find('.')));
     if (parameter == nullptr || !parameter->persistent) continue;
     ids.insert(ParameterId{subsystem.id, parameter->field.type, parameter->id}.wire());
   }
@@ -160,14 +167,18 @@ void StoredValues::hear(std::uint16_t from, const pus::TelemetryView& report) {
 void StoredValues::take_write(Subject& subject, Octets data) {
   bool news = false;
   Ids set;
+  Ids in_part;
   each_value(subject.member->subsystem, data, [&](std::uint32_t id, Octets value) {
     news = subject.values.set(id, value) || news;
     set.insert(id);
+    if (const auto owner = owner_of(subject.member->subsystem, id); owner != id) in_part.insert(owner);
   });
   // What was asked for may have been told before this took effect.
   if (std::ranges::any_of(set,
                           [&](std::uint32_t id) { return subject.changed.contains(id) || subject.asked.contains(id); }))
     ask_later(subject, set);
+  // A structure is kept whole: what the rest of it is now says itself.
+  if (!in_part.empty()) ask_later(subject, in_part);
   if (news) changed(subject);
 }
 

@@ -45,12 +45,17 @@ ValueSet::ValueSet(const descriptor::MissionSubsystem& declared) : declared_{dec
   for (const descriptor::Parameter& parameter : declared.subsystem.parameters) {
     if (!parameter.persistent) continue;
     const std::uint32_t id = id_of(declared.subsystem, parameter);
-    fields_.emplace(id, parameter.field);
-    declared_init_.emplace(id, parameter.init);
+    parameters_.emplace(id, parameter);
     hash.add(std::string_view{parameter.field.name});
     hash.add(id);
     hash.add(parameter.field.elements());
     hash.add(std::string_view{parameter.field.unit});
+    for (const auto& member : parameter.members) {
+      hash.add(std::string_view{member.field.name});
+      hash.add(ParameterId{declared.subsystem.id, member.field.type, member.id}.wire());
+      hash.add(member.field.elements());
+      hash.add(std::string_view{member.field.unit});
+    }
   }
   layout_ = hash.value();
 }
@@ -59,14 +64,13 @@ void ValueSet::redeclare(const descriptor::Subsystem& declared) {
   for (const descriptor::Parameter& parameter : declared.parameters) {
     if (!parameter.persistent) continue;
     const std::uint32_t id = id_of(declared, parameter);
-    fields_.at(id) = parameter.field;
-    declared_init_.at(id) = parameter.init;
+    parameters_.at(id) = parameter;
   }
 }
 
 bool ValueSet::set(std::uint32_t id, Octets value) {
-  const auto field = fields_.find(id);
-  if (field == fields_.end() || !descriptor::values_within(field->second, value)) return false;
+  const auto field = parameters_.find(id);
+  if (field == parameters_.end() || !descriptor::values_within(field->second, value)) return false;
   const auto known = values_.find(id);
   if (known != values_.end() && std::ranges::equal(known->second, value)) return false;
   values_[id].assign(value.begin(), value.end());
@@ -89,8 +93,8 @@ std::expected<void, CopyFault> ValueSet::take(const ValueCopy& copy) {
   OctetReader reader{copy.values};
   for (auto count = reader.get<std::uint8_t>(); count > 0; --count) {
     const auto id = reader.get<std::uint32_t>();
-    const auto field = fields_.find(id);
-    if (!reader.good() || field == fields_.end()) return std::unexpected{CopyFault::Damaged};
+    const auto field = parameters_.find(id);
+    if (!reader.good() || field == parameters_.end()) return std::unexpected{CopyFault::Damaged};
     const Octets value = reader.get(field->second.octets());
     if (!reader.good()) return std::unexpected{CopyFault::Damaged};
     // One that has left its range takes the others along: who runs with the new gain runs with the new limit (docs/adr/0074).
@@ -109,12 +113,13 @@ void ValueSet::begin(descriptor::MissionSubsystem& member) const {
     const std::uint32_t id = id_of(member.subsystem, parameter);
     const auto value = values_.find(id);
     if (value == values_.end()) {
-      parameter.init = declared_init_.at(id);
+      parameter.init = parameters_.at(id).init;
       continue;
     }
-    parameter.init = *descriptor::values_within(parameter.field, value->second);  // it was when it was set
-    std::erase_if(member.overrides,
-                  [&](const descriptor::Override& other) { return other.parameter == parameter.field.name; });
+    parameter.init = *descriptor::values_within(parameter, value->second);  // it was when it was set
+    std::erase_if(member.overrides, [&](const descriptor::Override& other) {
+      return std::string_view{other.parameter}.substr(0, other.parameter.find('.')) == parameter.field.name;
+    });
     member.overrides.push_back({parameter.field.name, parameter.init});
   }
 }

@@ -22,14 +22,14 @@ class ValueSet {
   void redeclare(const descriptor::Subsystem& declared);
 
   /// It has persistent parameters at all.
-  [[nodiscard]] bool wanted() const noexcept { return !fields_.empty(); }
+  [[nodiscard]] bool wanted() const noexcept { return !parameters_.empty(); }
   /// FNV-1a 64 over name, id, type, size and unit of each: values of another layout mean something else.
   [[nodiscard]] std::uint64_t layout() const noexcept { return layout_; }
   [[nodiscard]] std::size_t size() const noexcept { return values_.size(); }
-  [[nodiscard]] bool has(std::uint32_t id) const { return fields_.contains(id); }
-  [[nodiscard]] std::string_view name_of(std::uint32_t id) const { return fields_.at(id).name; }
+  [[nodiscard]] bool has(std::uint32_t id) const { return parameters_.contains(id); }
+  [[nodiscard]] std::string_view name_of(std::uint32_t id) const { return parameters_.at(id).field.name; }
   /// Octets of a value on the wire.
-  [[nodiscard]] std::size_t octets_of(std::uint32_t id) const { return fields_.at(id).octets(); }
+  [[nodiscard]] std::size_t octets_of(std::uint32_t id) const { return parameters_.at(id).octets(); }
 
   /// Of the parameter with this ParameterId::wire(). False: it is not persistent, no telecommand could set that, or it was set already.
   bool set(std::uint32_t id, Octets value);
@@ -45,10 +45,9 @@ class ValueSet {
   void begin(descriptor::MissionSubsystem& member) const;
 
  private:
-  std::map<std::uint32_t, descriptor::Field> fields_;  ///< of each persistent parameter
+  std::map<std::uint32_t, descriptor::Parameter> parameters_;  ///< the persistent ones, as declared
   std::map<std::uint32_t, std::vector<std::byte>> values_;
   std::vector<descriptor::Override> declared_;
-  std::map<std::uint32_t, std::vector<Value>> declared_init_;
   std::uint64_t layout_{};
 };
 

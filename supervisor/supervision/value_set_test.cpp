@@ -158,5 +158,43 @@ TEST(ValueSet, TakesNothingOfWhatItsOctetsDoNotSay) {
   EXPECT_EQ(ValueSet{declared_arm()}.take(longer), std::unexpected{CopyFault::Damaged});
 }
 
+/// LIMITS{LOW, HIGH}, persistent.
+[[nodiscard]] descriptor::MissionSubsystem with_a_structure() {
+  descriptor::MissionSubsystem made;
+  made.subsystem.id = 10;
+  descriptor::Parameter limits = persistent_parameter("LIMITS", 5, 0, 0);
+  limits.field.type = Type::Struct;
+  limits.init.clear();
+  for (const std::uint8_t id : {std::uint8_t{6}, std::uint8_t{7}}) {
+    const auto single = persistent_parameter(id == 6 ? "LOW" : "HIGH", id, 0, 10);
+    limits.members.push_back({single.field, id});
+  }
+  made.subsystem.parameters = {limits};
+  made.overrides = {{"LIMITS.LOW", {Number{4}}}};
+  return made;
+}
+
+TEST(ValueSet, KeepsAStructureWholeInPlaceOfAllThatIsInIt) {
+  const auto declared = with_a_structure();
+  const std::uint32_t id = ParameterId{10, Type::Struct, 5}.wire();
+  ValueSet set{declared};
+  ASSERT_TRUE(set.has(id));
+  const std::array<std::byte, 4> good{std::byte{0}, std::byte{2}, std::byte{0}, std::byte{9}};
+  const std::array<std::byte, 4> beyond{std::byte{0}, std::byte{2}, std::byte{0}, std::byte{11}};
+  EXPECT_FALSE(set.set(id, beyond)) << "the second member has a range, too";
+  EXPECT_FALSE(set.set(id, Octets{good}.first(2)));
+  EXPECT_TRUE(set.set(id, good));
+  auto member = declared;
+  set.begin(member);
+  ASSERT_EQ(member.overrides.size(), 1u);
+  EXPECT_EQ(to_string(member.overrides[0]), "LIMITS=2 9");
+  ValueSet other{declared};
+  ASSERT_TRUE(other.take(whole_copy(set)).has_value());
+  EXPECT_EQ(other.octets(), set.octets());
+  auto renamed = declared;
+  renamed.subsystem.parameters[0].members[1].field.name = "TOP";
+  EXPECT_EQ(ValueSet{renamed}.take(whole_copy(set)).error(), CopyFault::Layout);
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -15,10 +15,13 @@
 namespace hirosco {
 namespace {
 
+struct Title {
+  Text<6> words;
+  std::array<bool, 2> shutters;
+};
 struct Lamp {
   bool lit;
-  Text<6> title;
-  std::array<bool, 2> shutters;
+  Title title;
   double level;
 };
 
@@ -32,11 +35,12 @@ void expect(bool holds, const char* what) {
   return {{"LAMP",
            {10, Type::Struct, 1},
            {{"LIT", Type::Bool, 1, 7},
-            {"TITLE", Type::Text, 6, 7},
-            {"SHUTTERS", Type::Bool, 2},
+            {"TITLE.WORDS", Type::Text, 6, 7},
+            {"TITLE.SHUTTERS", Type::Bool, 2},
             {"LEVEL", Type::Double, 1}},
            true,
-           {}},
+           {},
+           {{"TITLE", 1, 2, 8}}},
           {"ON", {10, Type::Bool, 2}, {{"ON", Type::Bool, 1}}, false, {}},
           {"NAME", {10, Type::Text, 3}, {{"NAME", Type::Text, 4}}, false, {}},
           {"COUNT", {10, Type::Uint16, 4}, {{"COUNT", Type::Uint16, 1}}, false, {}}};

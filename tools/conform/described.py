@@ -22,7 +22,9 @@ FRAMEWORK = {"CYCLE_STATS": [("OVERRUNS", 244, 5, 1), ("MAX_US", 240, 9, 1), ("A
              "LOOP_STATS": [("BUDGET_US", 246, 9, 8), ("LONGEST_US", 247, 9, 8), ("EXCEEDED", 241, 7, 8), ("MISSED", 242, 7, 8)],
              "RESOURCE_STATS": [("MEMORY", 246, 5, 1), ("MEMORY_HIGH", 247, 5, 1), ("DESCRIPTORS", 248, 5, 1), ("DESCRIPTORS_HIGH", 249, 5, 1),
                                 ("THREADS", 250, 5, 1), ("THREADS_HIGH", 251, 5, 1), ("POOL_USED", 252, 5, 8), ("POOL_HIGH", 253, 5, 8),
-                                ("POOL_REFUSED", 254, 5, 1)],
+                                ("POOL_REFUSED", 254, 5, 1), ("PORTS", 250, 3, 1), ("PORTS_HIGH", 251, 3, 1), ("FILES", 252, 3, 1),
+                                ("FILES_HIGH", 253, 3, 1), ("HELD_REFUSED", 254, 3, 1)],
+             "HEAP_USES": [("CYCLE", 255, 7, 1), ("SERVICE", 254, 7, 1), ("COUNTED", 255, 33, 1)],
              "DESCRIPTOR": [("HASH", 255, 5, 1), ("CHANGES", 240, 3, 1)],
              "LINK_STATS": [("RECEIVED", 242, 5, 1), ("LOST", 243, 5, 1)]}
 
@@ -43,6 +45,7 @@ class Value:
     writable: tuple = ()
     protection: bool = False
     members: list = dataclasses.field(default_factory=list)
+    parts: list = dataclasses.field(default_factory=list)  # structures within
     safe: list = dataclasses.field(default_factory=list)
 
     def size(self):
@@ -81,7 +84,7 @@ class Descriptor:
             self.enumerations[each.get("name")] = {text.text: int(text.get("value")) for text in each.iter("Text")}
         self.parameters = [self._parameter(each) for each in self.root.findall("Parameters/*") if each.tag in ("ParamRef", "StructRef")]
         # Those that it has without declaring them; a foreign one may leave them out.
-        ids = {"CYCLE_STATS": 39, "CYCLE_TIMES": 40, "LINK_STATS": 41, "CYCLE_BUDGET": 38, "CYCLE_SPIN": 35, "LOOP_STATS": 34, "RESOURCE_STATS": 37, "DESCRIPTOR": 36}
+        ids = {"CYCLE_STATS": 39, "CYCLE_TIMES": 40, "LINK_STATS": 41, "CYCLE_BUDGET": 38, "CYCLE_SPIN": 35, "LOOP_STATS": 34, "RESOURCE_STATS": 37, "HEAP_USES": 33, "DESCRIPTOR": 36}
         self.framework = [Value(name, STRUCT, id=ids[name], members=[Value(word, kind, count, place) for word, place, kind, count in members])
                           for name, members in FRAMEWORK.items()]
         self.functions = [Function(each.get("name"), self._states(each.get("states", "Operational")),
@@ -113,8 +116,10 @@ class Descriptor:
         members = FRAMEWORK.get(element.get("name")) if element.tag == "StructRef" and len(element) == 0 else None
         if element.tag == "StructRef":
             value = Value(element.get("name"), STRUCT)
-            value.members = ([Value(name, kind, count, number) for name, number, kind, count in members] if members
-                             else [self._parameter(each) for each in element.findall("ParamRef")])
+            if members:
+                value.members = [Value(name, kind, count, number) for name, number, kind, count in members]
+            else:
+                value.members, value.parts = self._inside(element)
         else:
             value = self._value(element)
         value.id = int(element.get("id"))
@@ -122,6 +127,30 @@ class Descriptor:
         value.writable = tuple(self._states(element.get("writable", "")))
         value.protection = element.get("protection") == "yes"
         return value
+
+    def _inside(self, element):
+        """Members and parts of a structure by their way; ids of the elements of an array go on behind those of the one before."""
+        members, parts = [], []
+        for each in element:
+            if each.tag == "ParamRef":
+                members.append(self._parameter(each))
+            if each.tag != "StructRef":
+                continue
+            inner, within = self._inside(each)
+            own = Value("", STRUCT, id=int(each.get("id")), members=inner)
+            ids = {}
+            for value in [own, *inner, *within]:
+                ids.setdefault(value.type, set()).add(value.id)
+            count = int(each.get("count", 1))
+            for i in range(count):
+                way = each.get("name") + (f"[{i}]" if count > 1 else "")
+                moved = {id(value): dataclasses.replace(value, name=f"{way}.{value.name}".rstrip("."),
+                                                        id=value.id + i * (max(ids[value.type]) - min(ids[value.type]) + 1))
+                         for value in [own, *inner, *within]}
+                for part in [own, *within]:
+                    parts.append(dataclasses.replace(moved[id(part)], members=[moved[id(member)] for member in part.members]))
+                members += [moved[id(member)] for member in inner]
+        return members, parts
 
     def _argument(self, place, element):
         value = self._value(element, self.find(element.get("of")) if element.get("of") else None)
@@ -133,15 +162,15 @@ class Descriptor:
         head, _, tail = name.partition(".")
         for parameter in self.parameters + self.framework:
             if parameter.name == head:
-                return next(member for member in parameter.members if member.name == tail) if tail else parameter
-        return next(member for parameter in self.parameters for member in parameter.members if member.name == name)
+                return next(inside for inside in parameter.members + parameter.parts if inside.name == tail) if tail else parameter
+        return next(inside for parameter in self.parameters for inside in parameter.members + parameter.parts if inside.name == name)
 
     def wire(self, value):
         return self.apid << 16 | value.type << 8 | value.id
 
     def readable(self):
-        """[(id on the wire, Value)] of every parameter and member."""
-        return [(self.wire(value), value) for parameter in self.parameters for value in (parameter, *parameter.members)]
+        """[(id on the wire, Value)] of every parameter and what is in it."""
+        return [(self.wire(value), value) for parameter in self.parameters for value in (parameter, *parameter.members, *parameter.parts)]
 
     def richest(self):
         """The configuration that has most to judge."""

@@ -86,7 +86,7 @@ def refused(judged):
 
 
 def is_writable(described, value, state):
-    owner = next(p for p in described.parameters if p is value or any(m is value for m in p.members))
+    owner = next(p for p in described.parameters if p is value or any(m is value for m in p.members + p.parts))
     return state in owner.writable
 
 

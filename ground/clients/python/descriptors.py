@@ -7,7 +7,7 @@ import dataclasses
 import math
 import numbers
 import struct
-from typing import Any, Optional, Sequence, Tuple, Union
+from typing import Any, Mapping, Optional, Sequence, Tuple, Union
 
 from .packets import ArgumentError, cuc_seconds
 
@@ -143,10 +143,19 @@ class Function:
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """A parameter or a member of one, by its id on the wire. A structure as a whole has several fields."""
+    """A parameter or what is in it, by its id on the wire. A structure has the fields of those within by their way: GAINS.P."""
     name: str
     wire: int
     fields: Tuple[Field, ...]
+    structure: bool = False
+
+    def encode(self, value: Any) -> bytes:
+        if not self.structure:
+            return self.fields[0].encode(value)
+        names = [field.name for field in self.fields]
+        if not isinstance(value, Mapping) or set(value) != set(names):
+            raise ArgumentError(f"{self.name}: a dictionary with {', '.join(names)} is wanted, not {value!r}")
+        return b"".join(field.encode(value[field.name]) for field in self.fields)
 
 
 @dataclasses.dataclass(frozen=True)

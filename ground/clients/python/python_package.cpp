@@ -188,7 +188,8 @@ class SubsystemClass {
  public:
   SubsystemClass(const Catalogue& catalogue, const descriptor::Subsystem& subsystem)
       : catalogue_{catalogue}, subsystem_{subsystem}, names_{subsystem_names} {
-    for (const auto& function : catalogue_.functions_of(subsystem_)) add_function(function);
+    for (const auto& function : catalogue_.functions_of(subsystem_))
+      if (function.sets == 0) add_function(function);  // parameters have methods of their own
     add_reports();
     for (const auto& parameter : subsystem_.parameters) add_parameter(parameter);
     for (const auto& event : subsystem_.events) add_event(event);
@@ -307,38 +308,49 @@ class SubsystemClass {
   }
 
   void add_parameter(const descriptor::Parameter& parameter) {
-    const std::string& name = parameter.field.name;
-    std::vector<Value> values;
-    for (const auto& member : parameter.members) values.push_back(value_of(member.field));
-    const bool structure = !values.empty();
-    if (!structure) values.push_back(value_of(parameter.field));
-    add_get(name, ParameterId{subsystem_.id, parameter.field.type, parameter.id}, values);
-    if (!structure && parameter.writable()) add_set(name, values.front());
-    for (std::size_t i = 0; i < parameter.members.size(); ++i) {
-      const auto& member = parameter.members[i];
-      const std::string whole = name + "." + member.field.name;
-      add_get(whole, ParameterId{subsystem_.id, member.field.type, member.id}, {values[i]});
-      if (parameter.writable()) add_set(whole, values[i]);
+    const auto index = static_cast<std::uint16_t>(&parameter - subsystem_.parameters.data());
+    add_place({parameter.field.name, index, std::nullopt, {}}, {});
+    for (std::uint16_t m = 0; m < parameter.numbers(); ++m) {
+      const std::string inside{parameter.identity_of(m).name};
+      add_place({parameter.field.name + "." + inside, index, m, {}}, inside + ".");
     }
   }
 
-  void add_get(const std::string& name, ParameterId id, const std::vector<Value>& values) {
-    parameters_ += fmt::format("            _r.Parameter({}, {:#x}, fields={}),\n", python_string(name), id.wire(),
-                               fields_tuple(values));
+  /// A parameter or what is in it; `way` of a structure within: before the names of its members.
+  void add_place(const descriptor::ParameterRef& place, const std::string& way) {
+    const descriptor::Parameter& parameter = subsystem_.parameters[place.parameter];
+    const ParameterId id = descriptor::identity_of(subsystem_, place);
+    std::vector<Value> values;
+    for (descriptor::Field field : descriptor::fields_of(subsystem_, place)) {
+      if (id.layout == Type::Struct && !way.empty()) field.name.erase(0, way.size());
+      values.push_back(value_of(field));
+    }
+    const bool dictionary = id.layout == Type::Struct;
+    add_get(place.text, id, values, dictionary);
+    if (parameter.writable()) add_set(place.text, values, dictionary);
+  }
+
+  void add_get(const std::string& name, ParameterId id, const std::vector<Value>& values, bool dictionary) {
+    parameters_ += fmt::format("            _r.Parameter({}, {:#x}, fields={}{}),\n", python_string(name), id.wire(),
+                               fields_tuple(values), dictionary ? ", structure=True" : "");
     std::vector<std::string> says{"Asks for " + doc(name) + "."};
-    if (values.size() > 1) says.front() += " A dictionary:";
+    if (dictionary) says.front() += " A dictionary:";
     says.emplace_back();
     for (const Value& value : values)
-      says.push_back((values.size() > 1 ? doc(value.field.name) + ": " : "") + described(value));
+      says.push_back((dictionary ? doc(value.field.name) + ": " : "") + described(value));
     add_method(names_.variable("get_" + name) + "(self, wait: float = 10.0)", says,
                fmt::format("self._get({}, wait)", python_string(name)));
   }
 
-  void add_set(const std::string& name, const Value& value) {
+  void add_set(const std::string& name, const std::vector<Value>& values, bool dictionary) {
+    std::vector<std::string> says{
+        "Sets " + doc(name) + (dictionary ? ", all of it at once. value, a dictionary:" : "."), ""};
+    for (const Value& value : values)
+      says.push_back((dictionary ? doc(value.field.name) : "value") + ": " + described(value));
     add_method(fmt::format("{}(self, value: {}, *, wait: _t.Optional[float] = 10.0) -> _r.Request",
-                           names_.variable("set_" + name), annotation(value)),
-               {"Sets " + doc(name) + ".", "", "value: " + described(value)},
-               fmt::format("self._set({}, value, wait)", python_string(name)));
+                           names_.variable("set_" + name),
+                           dictionary ? "_t.Mapping[str, _t.Any]" : annotation(values.front())),
+               says, fmt::format("self._set({}, value, wait)", python_string(name)));
   }
 
   void add_event(const descriptor::Event& event) {

@@ -149,11 +149,11 @@ class Subsystem:
         for field in parameter.fields:
             values[field.name] = field.decode(request.reply.data, offset)
             offset += field.octets
-        return values if len(parameter.fields) > 1 else next(iter(values.values()))
+        return values if parameter.structure else next(iter(values.values()))
 
     def _set(self, name: str, value: Any, wait: Optional[float]) -> Request:
         parameter = self._parameters[name]
-        data = struct.pack(">BI", 1, parameter.wire) + parameter.fields[0].encode(value)
+        data = struct.pack(">BI", 1, parameter.wire) + parameter.encode(value)
         return self._craft._send(self, f"set {name}", 20, 3, data, wait)
 
     def _next(self, sid: int, timeout: float) -> Housekeeping:

@@ -166,7 +166,7 @@ class Arm(Subsystem):
                                                  Field("CONFIGURATION", "UINT8"), Field("TIME", "TIME"), Field("CODE", "UINT16"),
                                                  Field("NUMBER", "INT64"), Field("REASON", "WORD")))),
                             parameters=(Parameter("KP", 0x0A0A03, (Field("KP", "DOUBLE"),)),
-                                        Parameter("LAMP", 0x0A2004, (Field("ON", "BOOL"), Field("TITLE", "TEXT", most=6, fixed=True))),
+                                        Parameter("LAMP", 0x0A2004, (Field("ON", "BOOL"), Field("TITLE", "TEXT", most=6, fixed=True)), structure=True),
                                         Parameter("TITLE", 0x0A2205, (Field("TITLE", "TEXT", most=6, fixed=True),))),
                             layouts=(Layout(7, 4, (Field("A", "UINT8", offset=2), Field("B", "INT8", offset=3))),
                                      Layout(9, 8, (Field("SUBSYSTEMS.APID", "UINT16", count=2, offset=2),
@@ -386,6 +386,11 @@ class Client(unittest.TestCase):
         thread = threading.Thread(target=run)
         thread.start()
         self.assertEqual(self.craft.arm._get("LAMP", 2.0), {"ON": True, "TITLE": "café"})
+        whole = self.craft.arm._about.parameters[1]
+        self.assertEqual(whole.encode({"TITLE": "on", "ON": False}), b"\0on\0\0\0\0")
+        for wrong in ({"ON": True}, {"ON": True, "TITLE": "", "LEVEL": 1}, True):
+            with self.assertRaisesRegex(runtime.ArgumentError, "ON, TITLE"):
+                whole.encode(wrong)
         self.craft.arm._set("TITLE", "dusk", 2.0)
         thread.join()
         self.assertEqual(asked, [b"\x01" + struct.pack(">I", 0x0A2205) + b"dusk\0\0"])

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <deque>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace hirosco {
@@ -16,14 +16,51 @@ struct Stored {
   std::vector<std::byte> packet;
 };
 
-/// One direction.
+/// One direction. Its places are used again and again, and there are some from the start: who speaks through it takes nothing from
+/// the heap but where more wait than ever did.
 struct Queue {
-  explicit Queue(std::size_t limit) : capacity{limit} {}
+  explicit Queue(std::size_t limit) : capacity{limit} { grow(); }
   std::mutex mutex;
   const std::size_t capacity;
-  std::deque<Stored> messages;
   bool reader_gone{false};
   bool writer_gone{false};
+
+  [[nodiscard]] std::size_t size() const noexcept { return count_; }
+  void push(const Message& message) {
+    if (count_ == places_.size()) grow();
+    Stored& place = places_[(first_ + count_) % places_.size()];
+    place.message = message;
+    place.message.packet = {};
+    place.packet.assign(message.packet.begin(), message.packet.end());
+    ++count_;
+  }
+  /// Its packet is copied into the buffer.
+  [[nodiscard]] Message pop(MessageBuffer& buffer) {
+    Stored& place = places_[first_];
+    Message message = std::exchange(place.message, {});
+    std::ranges::copy(place.packet, buffer.octets.begin());
+    message.packet = Octets{buffer.octets}.first(place.packet.size());
+    first_ = (first_ + 1) % places_.size();
+    --count_;
+    return message;
+  }
+  void clear() noexcept {
+    for (; count_ > 0; --count_, first_ = (first_ + 1) % places_.size()) places_[first_].message = {};
+  }
+
+ private:
+  void grow() {
+    constexpr std::size_t least = 16;
+    const std::size_t before = places_.size();
+    std::ranges::rotate(places_, places_.begin() + static_cast<std::ptrdiff_t>(first_));
+    first_ = 0;
+    places_.resize(std::min(capacity, std::max(least, 2 * before)));
+    for (std::size_t i = before; i < places_.size(); ++i) places_[i].packet.reserve(max_packet_octets);
+  }
+
+  std::vector<Stored> places_;
+  std::size_t first_{0};
+  std::size_t count_{0};
 };
 
 class End final : public Channel {
@@ -35,25 +72,19 @@ class End final : public Channel {
       return fail(ErrorCode::InvalidArgument, "octets of packet", static_cast<std::int64_t>(message.packet.size()));
     const std::scoped_lock lock{out_.mutex};
     if (out_.reader_gone || out_.writer_gone) return fail(ErrorCode::Unavailable, "peer of control channel is gone");
-    if (out_.messages.size() >= out_.capacity) return fail(ErrorCode::ResourceExhausted, "peer does not read");
-    Stored stored{message, {message.packet.begin(), message.packet.end()}};
-    stored.message.packet = {};
-    out_.messages.push_back(std::move(stored));
+    if (out_.size() >= out_.capacity) return fail(ErrorCode::ResourceExhausted, "peer does not read");
+    out_.push(message);
     return ok();
   }
 
   [[nodiscard]] Result<Found> receive(MessageBuffer& buffer) override {
     const std::scoped_lock lock{in_.mutex};
     if (in_.reader_gone) return fail(ErrorCode::Unavailable, "control channel is closed");
-    if (in_.messages.empty()) {
+    if (in_.size() == 0) {
       if (in_.writer_gone) return fail(ErrorCode::Unavailable, "peer of control channel is gone");
       return Found{};
     }
-    Stored stored = std::move(in_.messages.front());
-    in_.messages.pop_front();
-    std::ranges::copy(stored.packet, buffer.octets.begin());
-    stored.message.packet = Octets{buffer.octets}.first(stored.packet.size());
-    return Found{Flow::New, std::move(stored.message)};
+    return Found{Flow::New, in_.pop(buffer)};
   }
 
   void close() noexcept {
@@ -63,7 +94,7 @@ class End final : public Channel {
     }
     const std::scoped_lock lock{in_.mutex};
     in_.reader_gone = true;
-    in_.messages.clear();
+    in_.clear();
   }
 
  private:
@@ -76,7 +107,7 @@ class End final : public Channel {
 struct ChannelPair::State {
   explicit State(std::size_t capacity) : down{capacity}, up{capacity} {}
   Queue down;  ///< to the subsystem
-  Queue up;    ///< to the supervisor
+  Queue up;  ///< to the supervisor
   End supervisor{down, up};
   End subsystem{up, down};
 };
@@ -91,7 +122,7 @@ Channel& ChannelPair::subsystem_end() noexcept { return state_->subsystem; }
 bool ChannelPair::empty() const noexcept {
   const auto nothing_in = [](Queue& queue) {
     const std::scoped_lock lock{queue.mutex};
-    return queue.messages.empty();
+    return queue.size() == 0;
   };
   return nothing_in(state_->down) && nothing_in(state_->up);
 }

@@ -81,28 +81,12 @@ std::string_view resolve(Commands& commands, const Subsystem& commanded) {
 namespace {
 
 [[nodiscard]] std::string_view resolve_parameter(Thing& thing, const Subsystem& other) {
-  const auto dot = thing.name.find('.');
-  const Parameter* parameter = other.find_parameter(std::string_view{thing.name}.substr(0, dot));
-  if (parameter == nullptr) return "it has no such parameter";
-  ParameterRef place{.text = thing.name,
-                     .parameter = static_cast<std::uint16_t>(parameter - other.parameters.data()),
-                     .member = std::nullopt,
-                     .at = {}};
-  Type type = parameter->field.type;
-  std::uint8_t id = parameter->id;
-  if (dot != std::string::npos) {
-    const auto member =
-        std::ranges::find(parameter->members, std::string_view{thing.name}.substr(dot + 1),
-                          [](const Parameter::Member& each) { return std::string_view{each.field.name}; });
-    if (member == parameter->members.end()) return "it has no such parameter";
-    place.member = static_cast<std::uint16_t>(member - parameter->members.begin());
-    type = member->field.type;
-    id = member->id;
-  }
-  if (thing.kind == Thing::Kind::Set && !parameter->writable())
+  const auto place = find_place(other, thing.name);
+  if (!place) return "it has no such parameter";
+  if (thing.kind == Thing::Kind::Set && !other.parameters[place->parameter].writable())
     return "its descriptor makes this parameter never writable";
-  thing.id = ParameterId{other.id, type, id}.wire();
-  thing.fields = fields_of(other, place);
+  thing.id = identity_of(other, *place).wire();
+  thing.fields = fields_of(other, *place);
   return {};
 }
 
@@ -205,20 +189,85 @@ std::optional<ParameterRef> find_parameter(const Subsystem& subsystem, std::uint
     const auto index = static_cast<std::uint16_t>(i);
     const std::string& name = parameter.field.name;
     if (is(parameter.field.type, parameter.id)) return ParameterRef{name, index, std::nullopt, {}};
-    for (std::size_t m = 0; m < parameter.members.size(); ++m)
-      if (is(parameter.members[m].field.type, parameter.members[m].id))
-        return ParameterRef{name + "." + parameter.members[m].field.name, index, static_cast<std::uint16_t>(m), {}};
+    for (std::uint16_t m = 0; m < parameter.numbers(); ++m)
+      if (const auto inner = parameter.identity_of(m); is(inner.type, inner.id))
+        return ParameterRef{name + "." + std::string{inner.name}, index, m, {}};
   }
   return std::nullopt;
 }
 
+std::optional<ParameterRef> find_place(const Subsystem& subsystem, std::string_view name) {
+  const std::string_view owner = name.substr(0, name.find('.'));
+  const Parameter* parameter = subsystem.find_parameter(owner);
+  if (parameter == nullptr) return std::nullopt;
+  const auto index = static_cast<std::uint16_t>(parameter - subsystem.parameters.data());
+  if (owner.size() == name.size()) return ParameterRef{std::string{name}, index, std::nullopt, {}};
+  for (std::uint16_t m = 0; m < parameter->numbers(); ++m)
+    if (parameter->identity_of(m).name == name.substr(owner.size() + 1))
+      return ParameterRef{std::string{name}, index, m, {}};
+  return std::nullopt;
+}
+
+namespace {
+
+/// Of the members of its parameter: first and one behind the last; a value without members is one.
+[[nodiscard]] std::pair<std::size_t, std::size_t> extent(const Subsystem& subsystem, const ParameterRef& reference) {
+  const Parameter& parameter = subsystem.parameters.at(reference.parameter);
+  if (parameter.members.empty()) return {0, 1};
+  const auto members = parameter.members_at(reference.member);
+  const auto first = static_cast<std::size_t>(members.data() - parameter.members.data());
+  return {first, first + members.size()};
+}
+
+}  // namespace
+
+bool covers(const Subsystem& subsystem, const ParameterRef& whole, const ParameterRef& part) {
+  if (whole.parameter != part.parameter) return false;
+  const auto [first, end] = extent(subsystem, whole);
+  const auto [from, to] = extent(subsystem, part);
+  return first <= from && to <= end;
+}
+
+bool overlap(const Subsystem& subsystem, const ParameterRef& one, const ParameterRef& other) {
+  if (one.parameter != other.parameter) return false;
+  const auto [first, end] = extent(subsystem, one);
+  const auto [from, to] = extent(subsystem, other);
+  return first < to && from < end;
+}
+
+ParameterId identity_of(const Subsystem& subsystem, const ParameterRef& reference) {
+  const Parameter& parameter = subsystem.parameters.at(reference.parameter);
+  if (!reference.member) return {subsystem.id, parameter.field.type, parameter.id};
+  const auto inner = parameter.identity_of(*reference.member);
+  return {subsystem.id, inner.type, inner.id};
+}
+
 std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference) {
   const Parameter& parameter = subsystem.parameters.at(reference.parameter);
-  if (reference.member) return {parameter.members.at(*reference.member).field};
   if (parameter.field.type != Type::Struct) return {parameter.field};
   std::vector<Field> fields;
-  for (const Parameter::Member& member : parameter.members) fields.push_back(member.field);
+  for (const Parameter::Member& member : parameter.members_at(reference.member)) fields.push_back(member.field);
   return fields;
+}
+
+std::vector<Value> values_at_begin(const Parameter& parameter) {
+  if (!parameter.init.empty()) return parameter.init;
+  std::vector<Value> values;
+  const auto add = [&](const Field& field) {
+    const Value nothing = field.type == Type::Text ? Value{std::string{}} : Value{Number{0}};
+    values.insert(values.end(), field.values(), nothing);
+  };
+  if (parameter.members.empty()) add(parameter.field);
+  for (const Parameter::Member& member : parameter.members) add(member.field);
+  return values;
+}
+
+void begin_with(Parameter& parameter, std::optional<std::uint16_t> member, std::vector<Value> values) {
+  std::size_t first = 0;
+  for (const Parameter::Member* each = parameter.members.data(); each != parameter.members_at(member).data(); ++each)
+    first += each->field.values();
+  parameter.init = values_at_begin(parameter);
+  std::ranges::move(values, parameter.init.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 }  // namespace hirosco::descriptor

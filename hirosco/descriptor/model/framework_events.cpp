@@ -15,6 +15,20 @@ constexpr const char* losses_enumeration = "FRAMEWORK.DEVICE_LOSS";
 constexpr const char* errors_enumeration = "FRAMEWORK.ERRORS";
 constexpr const char* resources_enumeration = "FRAMEWORK.RESOURCES";
 
+constexpr const char* foreign_enumeration = "FRAMEWORK.FOREIGN";
+
+/// By their place among the parameters.
+void add_foreign_names(Subsystem& subsystem) {
+  if (std::ranges::find(subsystem.enumerations, foreign_enumeration, &Enumeration::name) !=
+      subsystem.enumerations.end())
+    return;
+  Enumeration names{foreign_enumeration, {}};
+  for (std::size_t i = 0; i < subsystem.parameters.size(); ++i)
+    if (const Parameter& each = subsystem.parameters[i]; !each.from.empty())
+      names.texts.push_back({static_cast<std::int64_t>(i), each.field.name});
+  subsystem.enumerations.push_back(std::move(names));
+}
+
 template <class E>
 void add_enumeration(Subsystem& subsystem, const char* name) {
   if (std::ranges::find(subsystem.enumerations, name, &Enumeration::name) != subsystem.enumerations.end()) return;
@@ -92,9 +106,15 @@ void add_framework_events(Subsystem& subsystem) {
        argument("USED", Type::Uint32), argument("LIMIT", Type::Uint32), argument("CROSSINGS", Type::Uint32)});
   add("CYCLE_NOT_REALTIME", cycle_not_realtime, Severity::Low,
       {argument("HEAP", Type::Uint32), argument("LOCKS", Type::Uint32), argument("OUTPUTS", Type::Uint32)});
+  add("SERVICE_USES_HEAP", service_uses_heap, Severity::Low,
+      {argument("ALLOCATIONS", Type::Uint32), argument("FREES", Type::Uint32)});
   if (!subsystem.service_loops.empty())
     add("SERVICE_LOOP_HANGS", service_loop_hangs, Severity::Low,
         {argument("LOOP", Type::Uint8), argument("FOR_MS", Type::Uint32)});
+  if (std::ranges::any_of(subsystem.parameters, [](const Parameter& each) { return !each.from.empty(); })) {
+    add_foreign_names(subsystem);
+    add("FOREIGN_UNKNOWN", foreign_unknown, Severity::Low, {argument("PARAMETER", Type::Uint16, foreign_enumeration)});
+  }
   for (std::size_t i = 0; i < subsystem.devices.size(); ++i)
     add(event_name(subsystem.devices[i].name, "_LOST"), device_lost(i), Severity::High,
         {argument("REASON", Type::Uint8, losses_enumeration), argument("SILENT_CYCLES", Type::Uint32),

@@ -27,6 +27,9 @@ inline constexpr std::uint16_t resource_warning = 0xF007;
 inline constexpr std::uint16_t cycle_not_realtime = 0xF008;
 /// Only where services run in loops of their own.
 inline constexpr std::uint16_t service_loop_hangs = 0xF009;
+/// Only where a parameter has the value of another subsystem's.
+inline constexpr std::uint16_t foreign_unknown = 0xF00A;
+inline constexpr std::uint16_t service_uses_heap = 0xF00B;
 /// Of the device with this index, NAME_LOST.
 [[nodiscard]] constexpr std::uint16_t device_lost(std::size_t device) noexcept {
   return static_cast<std::uint16_t>(0xF100 + device);

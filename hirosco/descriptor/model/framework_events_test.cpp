@@ -36,10 +36,11 @@ std::string codes(const std::string& text) {
 
 TEST(FrameworkEvents, AreThereInADescriptorThatDeclaresNone) {
   const auto subsystem = read_text(R"(<Subsystem name="BARE" id="10"/>)").value.value();
-  const std::pair<const char*, std::uint16_t> wanted[]{
-      {"STATE_CHANGED", 0xF000},     {"STATE_FAILED", 0xF001},     {"CONFIGURATION_FAILED", 0xF002},
-      {"CYCLE_OVERRUNS", 0xF003},    {"REPORTS_LOST", 0xF004},     {"SUPERVISOR_SILENT", 0xF005},
-      {"CYCLE_OVER_BUDGET", 0xF006}, {"RESOURCE_WARNING", 0xF007}, {"CYCLE_NOT_REALTIME", 0xF008}};
+  const std::pair<const char*, std::uint16_t> wanted[]{{"STATE_CHANGED", 0xF000},        {"STATE_FAILED", 0xF001},
+                                                       {"CONFIGURATION_FAILED", 0xF002}, {"CYCLE_OVERRUNS", 0xF003},
+                                                       {"REPORTS_LOST", 0xF004},         {"SUPERVISOR_SILENT", 0xF005},
+                                                       {"CYCLE_OVER_BUDGET", 0xF006},    {"RESOURCE_WARNING", 0xF007},
+                                                       {"CYCLE_NOT_REALTIME", 0xF008},   {"SERVICE_USES_HEAP", 0xF00B}};
   EXPECT_EQ(subsystem.events.size(), std::size(wanted));
   for (const auto& [name, id] : wanted) {
     const Event* event = subsystem.find_event(name);

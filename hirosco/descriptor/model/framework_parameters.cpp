@@ -52,12 +52,15 @@ std::vector<Parameter> framework_parameters() {
                  member("EXCEEDED", 241, Uint64, "", max_service_loops),
                  member("MISSED", 242, Uint64, "", max_service_loops)}),
       structure(framework_parameter::link_stats, 41, {member("RECEIVED", 242, Uint32), member("LOST", 243, Uint32)}),
-      structure(
-          framework_parameter::resource_stats, 37,
-          {member("MEMORY", 246, Uint32, "kB"), member("MEMORY_HIGH", 247, Uint32, "kB"),
-           member("DESCRIPTORS", 248, Uint32), member("DESCRIPTORS_HIGH", 249, Uint32), member("THREADS", 250, Uint32),
-           member("THREADS_HIGH", 251, Uint32), member("POOL_USED", 252, Uint32, "", most_pools),
-           member("POOL_HIGH", 253, Uint32, "", most_pools), member("POOL_REFUSED", 254, Uint32)}),
+      structure(framework_parameter::resource_stats, 37,
+                {member("MEMORY", 246, Uint32, "kB"), member("MEMORY_HIGH", 247, Uint32, "kB"),
+                 member("DESCRIPTORS", 248, Uint32), member("DESCRIPTORS_HIGH", 249, Uint32),
+                 member("THREADS", 250, Uint32), member("THREADS_HIGH", 251, Uint32),
+                 member("POOL_USED", 252, Uint32, "", most_pools), member("POOL_HIGH", 253, Uint32, "", most_pools),
+                 member("POOL_REFUSED", 254, Uint32), member("PORTS", 250, Uint16), member("PORTS_HIGH", 251, Uint16),
+                 member("FILES", 252, Uint16), member("FILES_HIGH", 253, Uint16), member("HELD_REFUSED", 254, Uint16)}),
+      structure(framework_parameter::heap_uses, 33,
+                {member("CYCLE", 255, Uint64), member("SERVICE", 254, Uint64), member("COUNTED", 255, Bool)}),
       structure(framework_parameter::descriptor, 36, {member("HASH", 255, Uint32), member("CHANGES", 240, Uint16)})};
 }
 
@@ -94,6 +97,14 @@ void add_framework_parameters(Subsystem& subsystem) {
   std::ranges::move(output_parameters(subsystem.devices), std::back_inserter(all));
   for (Parameter& parameter : all)
     if (subsystem.find_parameter(parameter.field.name) == nullptr) subsystem.parameters.push_back(std::move(parameter));
+}
+
+std::vector<std::string> built_in_parameters(const Subsystem& subsystem) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : framework_parameters()) names.push_back(parameter.field.name);
+  for (const Device& device : subsystem.devices)
+    if (device.actuator) names.push_back(output_parameter(device));
+  return names;
 }
 
 }  // namespace hirosco::descriptor

@@ -28,12 +28,14 @@ inline constexpr const char* loop_stats = "LOOP_STATS";
 inline constexpr const char* link_stats = "LINK_STATS";
 /// hirosco::ResourceStatistics
 inline constexpr const char* resource_stats = "RESOURCE_STATS";
+/// hirosco::HeapUses
+inline constexpr const char* heap_uses = "HEAP_USES";
 /// hirosco::DescriptorInForce
 inline constexpr const char* descriptor = "DESCRIPTOR";
 }  // namespace framework_parameter
 
-/// CYCLE_STATS, CYCLE_TIMES, CYCLE_BUDGET, CYCLE_SPIN, LINK_STATS, LOOP_STATS, RESOURCE_STATS and DESCRIPTOR, with the ids that are theirs where a
-/// descriptor gives no other.
+/// CYCLE_STATS, CYCLE_TIMES, CYCLE_BUDGET, CYCLE_SPIN, LINK_STATS, LOOP_STATS, RESOURCE_STATS, HEAP_USES and DESCRIPTOR, with the ids that are
+/// theirs where a descriptor gives no other.
 [[nodiscard]] std::vector<Parameter> framework_parameters();
 
 /// "NAME_OUTPUT": what is put out to an actuator, or what its author would put out (adr 0073).
@@ -43,6 +45,9 @@ inline constexpr const char* descriptor = "DESCRIPTOR";
 /// More actuators, or more output fields of one type, than these have no ids left.
 inline constexpr std::size_t most_actuators = 200;
 inline constexpr std::size_t most_output_fields = 200;
+
+/// Names of those that the framework writes: all of the above.
+[[nodiscard]] std::vector<std::string> built_in_parameters(const Subsystem& subsystem);
 
 /// Appends all of them and STATES; those that are there stay as they are.
 void add_framework_parameters(Subsystem& subsystem);

@@ -26,7 +26,7 @@ TEST(FrameworkParameters, AreThereInADescriptorThatDeclaresNoneWithTheSameIdsInA
   const auto subsystem = with("").value.value();
   const std::pair<const char*, std::uint8_t> wanted[]{{"CYCLE_STATS", 39},    {"CYCLE_TIMES", 40}, {"CYCLE_BUDGET", 38},
                                                       {"CYCLE_SPIN", 35},     {"LOOP_STATS", 34},  {"LINK_STATS", 41},
-                                                      {"RESOURCE_STATS", 37}, {"DESCRIPTOR", 36}};
+                                                      {"RESOURCE_STATS", 37}, {"HEAP_USES", 33}, {"DESCRIPTOR", 36}};
   ASSERT_EQ(subsystem.parameters.size(), std::size(wanted));
   for (const auto& [name, id] : wanted) {
     const Parameter* parameter = subsystem.find_parameter(name);
@@ -40,14 +40,15 @@ TEST(FrameworkParameters, AreThereInADescriptorThatDeclaresNoneWithTheSameIdsInA
   EXPECT_EQ(subsystem.find_parameter("LINK_STATS")->octets(), 8U);
   EXPECT_EQ(subsystem.find_parameter("CYCLE_SPIN")->octets(), 16U);
   EXPECT_EQ(subsystem.find_parameter("LOOP_STATS")->octets(), 192U);
-  EXPECT_EQ(subsystem.find_parameter("RESOURCE_STATS")->octets(), 92U);
+  EXPECT_EQ(subsystem.find_parameter("RESOURCE_STATS")->octets(), 102U);
+  EXPECT_EQ(subsystem.find_parameter("HEAP_USES")->octets(), 17U);
   EXPECT_EQ(subsystem.find_parameter("DESCRIPTOR")->octets(), 6U);
 }
 
 TEST(FrameworkParameters, StandBehindTheAuthorsOwn) {
   const auto subsystem = with(R"(<ParamRef name="X" id="1" type="DOUBLE"/>)").value.value();
   EXPECT_EQ(subsystem.parameters.front().field.name, "X");
-  EXPECT_EQ(subsystem.parameters.size(), 9U);
+  EXPECT_EQ(subsystem.parameters.size(), 10U);
 }
 
 TEST(FrameworkParameters, AreReferredToLikeDeclaredOnes) {
@@ -64,7 +65,7 @@ TEST(FrameworkParameters, AreReferredToLikeDeclaredOnes) {
 
 TEST(FrameworkParameters, DeclaredByHandAreToldOnceInWords) {
   for (const char* name : {"CYCLE_STATS", "CYCLE_TIMES", "CYCLE_BUDGET", "CYCLE_SPIN", "LINK_STATS", "LOOP_STATS",
-                           "RESOURCE_STATS", "DESCRIPTOR"}) {
+                           "RESOURCE_STATS", "HEAP_USES", "DESCRIPTOR"}) {
     const std::string told = "E0213 '" + std::string{name} + "' is built in: every subsystem has it\n";
     EXPECT_EQ(problems_of("<StructRef name=\"" + std::string{name} +
                           R"(" id="40"><ParamRef name="LOST" id="243" type="UINT32"/></StructRef>)"),
@@ -91,7 +92,7 @@ TEST(FrameworkParameters, TakeAnotherIdFromTheDescriptorAndNothingElse) {
   const auto subsystem = with(R"(<StructRef name="CYCLE_STATS" id="7"/>)").value.value();
   EXPECT_EQ(subsystem.find_parameter("CYCLE_STATS")->id, 7);
   EXPECT_EQ(subsystem.find_parameter("CYCLE_STATS")->members.size(), 3U);
-  EXPECT_EQ(subsystem.parameters.size(), 8U);
+  EXPECT_EQ(subsystem.parameters.size(), 9U);
   EXPECT_EQ(problems_of(R"(<StructRef name="CYCLE_STATS" id="7"/>
     <StructRef name="A" id="7"><ParamRef name="X" id="1" type="INT8"/></StructRef>
     <StructRef name="B" id="39"><ParamRef name="X" id="2" type="INT8"/></StructRef>)"),
@@ -114,7 +115,7 @@ TEST(FrameworkParameters, LeaveTheNamesOfTheirMembersToAuthors) {
 TEST(FrameworkParameters, AddedTwiceAreThereOnce) {
   auto subsystem = with("").value.value();
   add_framework_parameters(subsystem);
-  EXPECT_EQ(subsystem.parameters.size(), 8U);
+  EXPECT_EQ(subsystem.parameters.size(), 9U);
   EXPECT_EQ(std::ranges::count(subsystem.enumerations, "STATES", &Enumeration::name), 1);
 }
 

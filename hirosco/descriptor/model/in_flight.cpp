@@ -72,6 +72,13 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
   return std::ranges::equal(a, b, [](const Thing& x, const Thing& y) { return x.kind == y.kind && x.name == y.name; });
 }
 
+[[nodiscard]] bool same_parts(const std::vector<Parameter::Part>& flown, const std::vector<Parameter::Part>& fresh) {
+  return std::ranges::equal(flown, fresh, [](const Parameter::Part& a, const Parameter::Part& b) {
+    [[maybe_unused]] const auto& [name, id, first, count, at] = b;
+    return a.name == name && a.id == id && a.first == first && a.count == count;
+  });
+}
+
 /// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
 class Comparison {
  public:
@@ -135,8 +142,8 @@ class Comparison {
         });
   }
   void function(const Function& flown, const Function& fresh, const std::string& kind) {
-    [[maybe_unused]] const auto& [name, service, subtype, states, essential, confirm, arguments_, description, at] =
-        fresh;
+    [[maybe_unused]] const auto& [name, service, subtype, states, essential, confirm, arguments_, description, at,
+                                  sets] = fresh;
     const std::string what = kind + name;
     unless(flown.service == service && flown.subtype == subtype, at, what + ": its type", code_why);
     unless(flown.states == states && flown.essential == essential, at, what + ": when it is permitted", safety_why);
@@ -147,7 +154,8 @@ class Comparison {
           [&](const Function& a, const Function& b) { function(a, b, kind); });
   }
   void parameter(const Parameter& flown, const Parameter& fresh) {
-    [[maybe_unused]] const auto& [value, id, init, writable_states, protection, persistent, members] = fresh;
+    [[maybe_unused]] const auto& [value, id, init, writable_states, protection, persistent, members, parts, from, age] =
+        fresh;
     const std::string what = "parameter " + value.name;
     field(flown.field, value, what);
     unless(flown.id == id, value.at, what + ": its id", layout_why);
@@ -164,6 +172,8 @@ class Comparison {
           field(a.field, member, what + "." + member.name);
           unless(a.id == member_id, member.at, what + "." + member.name + ": its id", layout_why);
         });
+    unless(same_parts(flown.parts, parts), value.at, what + ": the structures within", layout_why);
+    unless(flown.from == from && flown.age == age, value.at, what + ": whose value it has", code_why);
   }
   void parameters(const Subsystem& flown, const Subsystem& fresh) {
     lists(

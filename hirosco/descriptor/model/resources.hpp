@@ -20,8 +20,10 @@ enum class Resource : std::uint8_t {
   Descriptors = 3,  ///< of files, sockets and the like
   Processor = 4,  ///< percent of one processor
   Pool = 5,  ///< blocks of one size; its own, so nobody else keeps books of it
+  Ports = 6,  ///< of UDP and TCP
+  Files = 7,  ///< open ones
 };
-inline constexpr std::size_t counted_resources = 5;  ///< all before Pool
+inline constexpr std::size_t counted_resources = 8;  ///< Pool among them, of which there is no amount
 
 /// By Resource; empty = not declared, so not limited.
 using Amounts = std::array<std::optional<std::uint32_t>, counted_resources>;
@@ -60,6 +62,8 @@ struct EnumTexts<descriptor::Resource> {
                                                                   {Threads, "threads"},
                                                                   {Descriptors, "descriptors"},
                                                                   {Processor, "processor"},
-                                                                  {Pool, "pool"}});
+                                                                  {Pool, "pool"},
+                                                                  {Ports, "ports"},
+                                                                  {Files, "files"}});
 };
 }  // namespace hirosco

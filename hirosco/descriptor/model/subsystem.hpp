@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,7 @@
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/descriptor/model/parameters.hpp"
 #include "hirosco/descriptor/model/resources.hpp"
 #include "hirosco/descriptor/model/service_list.hpp"
 #include "hirosco/parameter/exact_number.hpp"
@@ -25,88 +27,8 @@
 /// All references are resolved: indices point into the vectors of the same descriptor.
 namespace hirosco::descriptor {
 
-/// The ten states (paper 4.2, figure 4). The transition table is in hirosco/subsystem/author/states.hpp.
-enum class State : std::uint8_t {
-  Offline = 0,
-  SoftwareInit = 1,
-  HardwareInit = 2,
-  PreOperational = 3,
-  SafeOperational = 4,
-  Operational = 5,
-  ErrorOperational = 6,
-  PostOperational = 7,
-  HardwareDeinit = 8,
-  SoftwareDeinit = 9,
-};
-
 /// Severity of an event (PUS ST[05]); the value is the message subtype of its report.
 enum class Severity : std::uint8_t { Info = 1, Low = 2, Medium = 3, High = 4 };
-
-struct EnumerationText {
-  std::int64_t value{};
-  std::string text;
-};
-struct Enumeration {
-  std::string name;
-  std::vector<EnumerationText> texts;
-};
-
-/// A typed, named, ranged value: member, argument, link field or device field.
-struct Field {
-  std::string name;
-  Type type{Type::Double};
-  std::uint32_t count{1};            ///< array length; 1 = a single value
-  std::string unit;                  ///< SI, as text; empty = none
-  std::optional<Number> minimum;     ///< inclusive, in `unit`
-  std::optional<Number> maximum;     ///< inclusive, in `unit`
-  std::string enumeration;           ///< name of an Enumeration; empty = none
-  Location at;
-  bool text{false};                  ///< the octets are words up to the first zero; of the framework's events only
-  std::uint16_t text_octets{0};      ///< of TEXT: most octets that the words take
-  /// Values: the elements of an array, one for anything else.
-  [[nodiscard]] std::uint32_t values() const noexcept { return type == Type::Text ? 1 : count; }
-  /// Elements in memory and on the wire: of TEXT its octets.
-  [[nodiscard]] std::uint32_t elements() const noexcept { return type == Type::Text ? text_octets : count; }
-  /// Octets on the wire; an argument has more (Function::Argument::octets).
-  [[nodiscard]] std::size_t octets() const noexcept { return octets_of(type) * elements(); }
-};
-
-/// A parameter of the dictionary: a single value or array, or a structure of such.
-struct Parameter {
-  Field field;                       ///< for a structure: name and Type::Struct
-  std::uint8_t id{};
-  std::vector<Value> init;           ///< `field.values()` of them or empty (zeros, no words)
-  std::uint16_t writable_states{0};  ///< bit n set: ST[20] may set it in State n; 0 = never
-  bool protection{false};            ///< a limit that protects: only its own function raises it
-  bool persistent{false};            ///< what telecommands set outlives the process (docs/adr/0087)
-  struct Member {
-    Field field;
-    std::uint8_t id{};
-  };
-  std::vector<Member> members;       ///< of a structure, in order
-  /// Octets on the wire: packed, no padding.
-  [[nodiscard]] std::size_t octets() const noexcept {
-    if (members.empty()) return field.octets();
-    std::size_t sum = 0;
-    for (const auto& member : members) sum += member.field.octets();
-    return sum;
-  }
-  [[nodiscard]] bool writable() const noexcept { return writable_states != 0; }
-  [[nodiscard]] bool writable_in(State state) const noexcept {
-    return (writable_states >> static_cast<int>(state) & 1) != 0;
-  }
-};
-
-/// Most octets that the persistent parameters of a subsystem take together, each with 4 for its id: one report of ST[20] has them all.
-inline constexpr std::size_t max_persistent_octets = 800;
-
-/// A parameter or one member of it, resolved: `CUR_VALUES` or `CUR_VALUES.POSITION`.
-struct ParameterRef {
-  std::string text;  ///< as written
-  std::uint16_t parameter{};  ///< index into Subsystem::parameters
-  std::optional<std::uint16_t> member;  ///< index into Parameter::members
-  Location at;
-};
 
 /// One housekeeping report structure (Listing 2).
 struct HousekeepingStructure {
@@ -156,6 +78,7 @@ struct Function {
   std::vector<Argument> arguments;
   std::string description;
   Location at;
+  std::uint32_t sets{0};  ///< of ST[20]: the parameter that it sets, by ParameterId::wire(); 0: it is no setting
   [[nodiscard]] bool permitted_in(State state) const noexcept { return (states >> static_cast<int>(state) & 1) != 0; }
 };
 
@@ -363,10 +286,19 @@ struct Commands {
   std::vector<Function> requests{};  ///< what it says of `functions`, in their order
 };
 
+/// A parameter that has the value of one of another subsystem, heard by its housekeeping (adr 0103).
+struct Foreign {
+  std::uint16_t parameter{};  ///< index into Subsystem::parameters
+  std::string name;  ///< of the other's
+  std::uint16_t structure{0};  ///< by which it is heard; like the next 0 before a mission says who the other is
+  std::size_t offset{0};  ///< of the value, behind the id of the structure
+};
+
 /// Whose housekeeping and events it may have the supervisor pass on to it (adr 0098).
 struct Subscribes {
   std::string subsystem;  ///< as this descriptor calls it
   std::vector<Thing> things;
+  std::vector<Foreign> foreign{};
   Location at;
   std::uint16_t apid{0};  ///< as the mission has it, like the next; 0 = not known yet
   std::filesystem::path file{};  ///< its descriptor
@@ -424,15 +356,19 @@ struct NoThing {
   std::string_view why{};
 };
 [[nodiscard]] NoThing resolve(std::vector<Thing>& things, const Subsystem& other);
+/// Says by which of the structures that are heard, and where in it, each foreign parameter comes. The first that does not, and why in
+/// words.
+struct NoForeign {
+  const Foreign* foreign{nullptr};
+  std::string why{};
+};
+[[nodiscard]] NoForeign resolve_foreign(const Subsystem& own, Subscribes& heard, const Subsystem& other);
 
 /// Names of the actuator devices that have no second inhibit: nothing but their subsystem keeps them from moving.
 [[nodiscard]] std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem);
 
 /// A parameter, or a member, by ParameterId::wire().
 [[nodiscard]] std::optional<ParameterRef> find_parameter(const Subsystem& subsystem, std::uint32_t wire);
-
-/// Fields a reference stands for, in wire order: one for a value or member, all members for a structure.
-[[nodiscard]] std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference);
 
 }  // namespace hirosco::descriptor
 

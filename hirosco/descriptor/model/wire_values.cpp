@@ -28,4 +28,17 @@ std::optional<std::vector<Value>> values_within(const Field& field, Octets big_e
   return values;
 }
 
+std::optional<std::vector<Value>> values_within(const Parameter& parameter, Octets big_endian) {
+  if (parameter.members.empty()) return values_within(parameter.field, big_endian);
+  if (big_endian.size() != parameter.octets()) return std::nullopt;
+  std::vector<Value> all;
+  for (const Parameter::Member& member : parameter.members) {
+    const auto values = values_within(member.field, big_endian.first(member.field.octets()));
+    if (!values) return std::nullopt;
+    all.insert(all.end(), values->begin(), values->end());
+    big_endian = big_endian.subspan(member.field.octets());
+  }
+  return all;
+}
+
 }  // namespace hirosco::descriptor

@@ -14,4 +14,7 @@ namespace hirosco::descriptor {
 /// finite and within the range, a BOOL 0 or 1, a TEXT in UTF-8 with zeros behind. Empty otherwise.  Realtime: allocates.
 [[nodiscard]] std::optional<std::vector<Value>> values_within(const Field& field, Octets big_endian);
 
+/// The same of a whole parameter: all values of a structure in order.  Realtime: allocates.
+[[nodiscard]] std::optional<std::vector<Value>> values_within(const Parameter& parameter, Octets big_endian);
+
 }  // namespace hirosco::descriptor

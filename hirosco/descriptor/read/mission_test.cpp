@@ -180,7 +180,7 @@ constexpr Mistake mistakes[] = {
     {"E0111", R"(value="-0.7 1.5")", R"(value="@here there")"},
     {"E0201", R"(<Set )", R"(<Set parameter="DES_POSITION" value="0 0"/><Set )"},
     {"E0204", R"("DES_POSITION" value)", R"("@DES_POSITIONS" value)", "'DES_POSITION'"},
-    {"E0204", R"("DES_POSITION" value)", R"("@CUR_VALUES" value)"},
+    {"E0204", R"("DES_POSITION" value)", R"("@CYCLE_STATS" value)"},
     {"E0207", R"(value="-0.7 1.5")", R"(value="@-0.7 2.7")", "-2 to 2.6"},
     {"E0209", R"(value="-0.7 1.5")", R"(value="@-0.7")"},
     {"E0319", R"("DES_POSITION" value="-0.7 1.5")", R"("@TORQUE_LIMIT" value="9")", "change it in the descriptor"},

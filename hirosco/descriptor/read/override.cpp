@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <utility>
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/descriptor/read/read.hpp"
@@ -35,28 +36,33 @@ std::string to_string(const Override& changed) {
 
 Result<> apply_override(Subsystem& subsystem, std::string_view text) {
   const std::string_view name = text.substr(0, text.find('='));
-  const auto parameter =
-      std::ranges::find_if(subsystem.parameters, [&](const Parameter& p) { return p.field.name == name; });
-  if (parameter == subsystem.parameters.end()) return fail(ErrorCode::NotFound, "no such parameter");
+  const auto place = find_place(subsystem, name);
+  if (!place) return fail(ErrorCode::NotFound, "no such parameter");
   if (name.size() == text.size()) return fail(ErrorCode::OutOfRange, "no value");
-  const Field& field = parameter->field;
+  const std::vector<Field> fields = fields_of(subsystem, *place);
+  Parameter& parameter = subsystem.parameters[place->parameter];
   std::string_view given = text.substr(name.size() + 1);
-  if (field.type == Type::Text) {
-    if (given.size() > field.text_octets || !is_text(given)) return fail(ErrorCode::OutOfRange, "no such text");
-    parameter->init = {std::string{given}};
+  if (fields.size() == 1 && fields.front().type == Type::Text) {
+    if (given.size() > fields.front().text_octets || !is_text(given))
+      return fail(ErrorCode::OutOfRange, "no such text");
+    begin_with(parameter, place->member, {std::string{given}});
     return ok();
   }
   std::vector<Value> values;
-  for (bool more = true; more;) {
-    const auto end = given.find(' ');
-    const auto value = value_in(field, given.substr(0, end));
-    if (!value) return fail(ErrorCode::OutOfRange, "not a number of its type");
-    values.push_back(*value);
-    more = end != given.npos;
-    given.remove_prefix(more ? end + 1 : given.size());
+  bool more = true;
+  for (const Field& field : fields) {
+    if (field.type == Type::Text) return fail(ErrorCode::OutOfRange, "words among numbers");
+    for (std::uint32_t i = 0; i < field.values(); ++i) {
+      const auto end = given.find(' ');
+      if (!std::exchange(more, end != given.npos)) return fail(ErrorCode::OutOfRange, "another number of values");
+      const auto value = value_in(field, given.substr(0, end));
+      if (!value) return fail(ErrorCode::OutOfRange, "not a number of its type");
+      values.push_back(*value);
+      given.remove_prefix(end == given.npos ? given.size() : end + 1);
+    }
   }
-  if (values.size() != field.values()) return fail(ErrorCode::OutOfRange, "another number of values");
-  parameter->init = std::move(values);
+  if (more) return fail(ErrorCode::OutOfRange, "another number of values");
+  begin_with(parameter, place->member, std::move(values));
   return ok();
 }
 

@@ -37,6 +37,12 @@ Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
     subscribes.apid = known->apid;
     subscribes.file = known->file;
     resolve_as(subscribes.things, known->things);
+    // What is heard cannot change in flight: where it stands does not either.
+    if (subscribes.foreign.size() == known->foreign.size())
+      for (std::size_t i = 0; i < known->foreign.size(); ++i) {
+        subscribes.foreign[i].structure = known->foreign[i].structure;
+        subscribes.foreign[i].offset = known->foreign[i].offset;
+      }
   }
   for (const auto& [word, change] : changes) {
     if (needs_other(word)) continue;

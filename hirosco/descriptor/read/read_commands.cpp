@@ -104,6 +104,7 @@ void MissionReader::resolve_commands() {
     for (Commands& commands : member.subsystem.commands) resolve_one(member, commands);
     for (Subscribes& subscribes : member.subsystem.subscribes) resolve_one(member, subscribes);
   }
+  check_foreign_circles();
 }
 
 const MissionSubsystem* MissionReader::find_other(const MissionSubsystem& member, const std::string& named,
@@ -149,6 +150,7 @@ void MissionReader::resolve_one(const MissionSubsystem& member, Subscribes& subs
   subscribes.file = found->subsystem.file;
   Problems problems{member.subsystem.file};
   resolve_things(subscribes.things, found->subsystem, subscribes.at, problems);
+  if (problems.count() == 0) resolve_foreign_of(member, subscribes, found->subsystem, problems);
   subsystem_problems_.push_back(problems.take());
 }
 
@@ -230,6 +232,8 @@ Result<> apply_subscribes(Subsystem& subsystem, std::string_view text, const Fil
   named->file = described.file;
   if (resolve(named->things, described).thing != nullptr)
     return fail(ErrorCode::NotFound, "who is heard has no such structure or event");
+  if (resolve_foreign(subsystem, *named, described).foreign != nullptr)
+    return fail(ErrorCode::Mismatch, "who is heard has no such parameter");
   return ok();
 }
 

@@ -298,27 +298,31 @@ void MissionReader::read_override(const xml::Element& element, MissionSubsystem&
   const auto* value = attributes.required("value");
   if (name == nullptr || value == nullptr) return;
   auto& parameters = member.subsystem.parameters;
-  const auto found = std::ranges::find_if(parameters, [&](const Parameter& p) { return p.field.name == name->value; });
-  if (found == parameters.end() || found->field.type == Type::Struct) {
+  const auto found = find_place(member.subsystem, name->value);
+  const std::vector<std::string> built_in = built_in_parameters(member.subsystem);
+  const auto is_built_in = [&](const Parameter& parameter) {
+    return std::ranges::find(built_in, parameter.field.name) != built_in.end();
+  };
+  if (!found || is_built_in(parameters[found->parameter])) {
     std::vector<std::string_view> known;
     for (const Parameter& parameter : parameters)
-      if (parameter.field.type != Type::Struct) known.push_back(parameter.field.name);
-    problems_.add(
-        *name, "E0204",
-        fmt::format("'{}' has no parameter {} with a value of its own", member.subsystem.name, in_quotes(name->value)),
-        did_you_mean(name->value, known));
+      if (!is_built_in(parameter)) known.push_back(parameter.field.name);
+    problems_.add(*name, "E0204",
+                  fmt::format("'{}' has no parameter {}", member.subsystem.name, in_quotes(name->value)),
+                  did_you_mean(name->value, known));
     return;
   }
   names.add(name->value, place(name->value_at), problems_, name->value.size());
   for (const Configuration& configuration : member.subsystem.configurations)
     for (const Configuration::Initial& initial : configuration.initial)
-      if (&parameters[initial.parameter.parameter] == &*found)
+      if (overlap(member.subsystem, initial.parameter, *found))
         return problems_.add(*name, "E0319",
                              fmt::format("configuration '{}' sets '{}' itself", configuration.name, name->value),
                              "the value would not last: change it in the descriptor");
-  auto values = read_values(problems_, *value, name->value, {&found->field, 1}, member.subsystem.enumerations);
+  auto values =
+      read_values(problems_, *value, name->value, fields_of(member.subsystem, *found), member.subsystem.enumerations);
   if (!values) return;
-  found->init = *values;
+  begin_with(parameters[found->parameter], found->member, *values);
   member.overrides.push_back({name->value, std::move(*values)});
 }
 

@@ -114,45 +114,6 @@ void SubsystemReader::read_enumeration(const xml::Element& element) {
   subsystem_.enumerations.push_back(std::move(enumeration));
 }
 
-void SubsystemReader::read_structure(const xml::Element& element) {
-  if (read_built_in(element)) return;
-  Attributes attributes{element, problems_};
-  Parameter parameter;
-  parameter.field.name = attributes.name();
-  parameter.field.type = Type::Struct;
-  parameter.field.at = place(element.at);
-  if (const auto* type = attributes.optional("type"); type != nullptr && type->value != "STRUCT")
-    problems_.add(*type, "E0104", "the type of a <StructRef> is 'STRUCT', not " + in_quotes(type->value));
-  parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
-  read_access(attributes, parameter);
-  read_persistent(attributes, parameter);
-  claim_parameter_id(attributes, Type::Struct, parameter.id);
-  if (!parameter.field.name.empty())
-    parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
-  Unique names{"member name", "E0201"};
-  each_child(element, problems_,
-             {{"ParamRef", [&](const xml::Element& child) { read_member(child, parameter, names); }, 256},
-              {"StructRef", [&](const xml::Element& child) {
-                 problems_.add(child, "E0102", "a structure inside a structure is not possible",
-                               "reference its members one by one");
-               }}});
-  if (parameter.writable())
-    for (const xml::Element& child : element.children) expect_range(child, "member");
-  if (parameter.members.empty()) problems_.add(element, "E0106", "<StructRef> needs at least one <ParamRef>");
-  subsystem_.parameters.push_back(std::move(parameter));
-}
-
-void SubsystemReader::read_member(const xml::Element& element, Parameter& structure, Unique& names) {
-  Attributes attributes{element, problems_};
-  Parameter::Member member;
-  member.field = read_field(attributes, Says::WordsAndRange);
-  member.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
-  claim_parameter_id(attributes, member.field.type, member.id);
-  no_children(element, problems_);
-  if (!member.field.name.empty()) names.add(member.field.name, place(element.at), problems_, element.name.size() + 1);
-  structure.members.push_back(std::move(member));
-}
-
 void SubsystemReader::read_parameter(const xml::Element& element) {
   if (read_built_in(element)) return;
   Attributes attributes{element, problems_};
@@ -160,9 +121,10 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
   parameter.field = read_field(attributes, Says::WordsAndRange);
   parameter.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
   if (const auto* init = attributes.optional("init"); init != nullptr)
-    initial_values_.push_back({subsystem_.parameters.size(), init});
+    initial_values_.push_back({subsystem_.parameters.size(), std::nullopt, init});
   read_access(attributes, parameter);
   read_persistent(attributes, parameter);
+  read_from(attributes, parameter);
   claim_parameter_id(attributes, parameter.field.type, parameter.id);
   no_children(element, problems_);
   if (parameter.writable()) expect_range(element, "parameter");
@@ -181,10 +143,11 @@ void SubsystemReader::read_parameter(const xml::Element& element) {
 
 /// Once all enumerations are known, whose names they may be given by.
 void SubsystemReader::read_initial_values() {
-  for (const auto& [index, at] : initial_values_) {
+  for (const auto& [index, member, at] : initial_values_) {
     Parameter& parameter = subsystem_.parameters[index];
-    auto values = read_values(problems_, *at, parameter.field.name, {&parameter.field, 1}, subsystem_.enumerations);
-    if (values) parameter.init = std::move(*values);
+    const auto fields = fields_of(subsystem_, {{}, static_cast<std::uint16_t>(index), member, {}});
+    auto values = read_values(problems_, *at, fields.front().name, fields, subsystem_.enumerations);
+    if (values) begin_with(parameter, member, std::move(*values));
   }
 }
 
@@ -222,9 +185,11 @@ void SubsystemReader::read_persistent(Attributes& attributes, Parameter& paramet
   const std::string& name = parameter.field.name;
   const bool before_it_moves =
       parameter.writable_in(State::PreOperational) || parameter.writable_in(State::SafeOperational);
-  if (parameter.field.type == Type::Struct)
-    problems_.add(at, "E0236", fmt::format("'{}' is a structure and persistent", name),
-                  "parameters of their own are persistent, not the members of a structure");
+  const bool words = std::ranges::any_of(
+      parameter.members, [](const Parameter::Member& member) { return member.field.type == Type::Text; });
+  if (words)
+    problems_.add(at, "E0236", fmt::format("'{}' has words among its members and is persistent", name),
+                  "a TEXT is persistent as a parameter of its own");
   else if (parameter.protection)
     problems_.add(at, "E0236", fmt::format("'{}' is a protection and persistent", name),
                   "what a function has loosened begins as the descriptor says");
@@ -248,10 +213,10 @@ void SubsystemReader::claim_parameter_id(Attributes& attributes, Type type, std:
                      written->value.size(), "type and id together must be unique, members included");
 }
 
-Field SubsystemReader::read_field(Attributes& attributes, Says says) {
+Field SubsystemReader::read_field(Attributes& attributes, Says says, NameKind kind) {
   Field field;
   field.at = place(attributes.element().at);
-  field.name = attributes.name();
+  field.name = attributes.name("name", kind);
   if (const auto* type = attributes.required("type"); type != nullptr) {
     field.type = attributes.one_of("type", Type::Double);
     const bool numbers_only = says == Says::Nothing || says == Says::Words || says == Says::Range || says == Says::Lent;
@@ -307,9 +272,9 @@ void SubsystemReader::check_field_range(Attributes& attributes, Field& field) {
 }
 
 void SubsystemReader::read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
-                                       Says says) {
+                                       Says says, NameKind kind) {
   Attributes attributes{element, problems_};
-  Field field = read_field(attributes, says);
+  Field field = read_field(attributes, says, kind);
   no_children(element, problems_);
   if (!field.name.empty()) names.add(field.name, place(element.at), problems_, element.name.size() + 1);
   fields.push_back(std::move(field));
@@ -369,10 +334,10 @@ void SubsystemReader::index_references(std::size_t own) {
   const auto& parameters = subsystem_.parameters;
   for (std::size_t i = 0; i < parameters.size(); ++i) add(parameters[i].field.name, i, std::nullopt);
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    for (std::size_t m = 0; m < parameters[i].members.size(); ++m) {
-      const std::string& member = parameters[i].members[m].field.name;
-      if (i < own) add(member, i, static_cast<std::uint16_t>(m));
-      add(parameters[i].field.name + "." + member, i, static_cast<std::uint16_t>(m));
+    for (std::uint16_t m = 0; m < parameters[i].numbers(); ++m) {
+      const std::string member{parameters[i].identity_of(m).name};
+      if (i < own) add(member, i, m);
+      add(parameters[i].field.name + "." + member, i, m);
     }
 }
 
@@ -406,13 +371,13 @@ std::string SubsystemReader::suggest_reference(std::string_view text) const {
   if (hint.empty() || first == last) return hint;
   const ParameterRef& nearest = references_.find(hint.substr(first + 1, last - first - 1))->second.front();
   const Parameter& parameter = subsystem_.parameters[nearest.parameter];
-  const Field& field = nearest.member ? parameter.members[*nearest.member].field : parameter.field;
+  const Field& field = nearest.member ? parameter.members_at(nearest.member).front().field : parameter.field;
   return hint + fmt::format(" (line {})", field.at.line);
 }
 
 std::size_t SubsystemReader::octets_of_reference(const ParameterRef& reference) const {
   const Parameter& parameter = subsystem_.parameters[reference.parameter];
-  return reference.member ? parameter.members[*reference.member].field.octets() : parameter.octets();
+  return parameter.octets(reference.member);
 }
 
 }  // namespace hirosco::descriptor::detail

@@ -33,6 +33,8 @@ Amounts read_amounts(Attributes& attributes) {
   take(Resource::Threads, attributes.integer("threads", least_threads, 1'000'000));
   take(Resource::Descriptors, attributes.integer("descriptors", least_descriptors, 1'000'000));
   take(Resource::Processor, attributes.integer("processor_percent", 1, 100'000));
+  take(Resource::Ports, attributes.integer("ports", 0, 65'535));
+  take(Resource::Files, attributes.integer("files", 0, 1'000'000));
   return amounts;
 }
 

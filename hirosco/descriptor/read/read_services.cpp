@@ -367,8 +367,7 @@ void SubsystemReader::read_provides(const xml::Element& element, Services& servi
   std::size_t octets = 0, fields = 0;
   for (const ParameterRef& reference : set.parameters) {
     octets += octets_of_reference(reference);
-    const auto& members = subsystem_.parameters[reference.parameter].members;
-    fields += reference.member || members.empty() ? 1 : members.size();
+    fields += fields_of(subsystem_, reference).size();
     if (octets > max_link_payload_octets || fields > max_set_fields) break;
     for (const Field& field : fields_of(subsystem_, reference)) {
       if (!is_carried(field.type))
@@ -425,7 +424,8 @@ void SubsystemReader::read_requires(const xml::Element& element, Services& servi
   const Says says = set.terms.lent() ? Says::Lent : Says::Nothing;
   Unique names{"field name", "E0201"};
   each_child(element, problems_,
-             {{"Field", [&](const auto& child) { read_plain_field(child, set.fields, names, says); }, max_set_fields}});
+             {{"Field", [&](const auto& child) { read_plain_field(child, set.fields, names, says, NameKind::Way); },
+               max_set_fields}});
   if (set.fields.empty()) problems_.add(element, "E0106", "<Requires> needs at least one <Field>");
   if (set.terms.lent()) check_lent(element, set.name, set.fields);
   std::size_t octets = 0;

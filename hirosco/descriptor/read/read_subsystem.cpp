@@ -68,6 +68,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
   for (const xml::Element* element : configurations) read_configuration(*element);
   for (const xml::Element* element : bumpless) read_bumpless(*element);
   check_service_list(root);
+  check_foreign();
   imply_framework_events();
   check_enumerations();
   check_addresses();

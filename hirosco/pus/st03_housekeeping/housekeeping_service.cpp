@@ -62,9 +62,10 @@ HousekeepingService::HousekeepingService(const descriptor::Subsystem& subsystem,
   for (std::size_t i = 0; i < subsystem.parameters.size(); ++i) {
     const auto& parameter = subsystem.parameters[i];
     add(parameter.field.type, parameter.id, i, -1, parameter.octets());
-    for (std::size_t m = 0; m < parameter.members.size(); ++m)
-      add(parameter.members[m].field.type, parameter.members[m].id, i, static_cast<int>(m),
-          parameter.members[m].field.octets());
+    for (std::uint16_t m = 0; m < parameter.numbers(); ++m) {
+      const auto inner = parameter.identity_of(m);
+      add(inner.type, inner.id, i, m, parameter.octets(m));
+    }
   }
 }
 

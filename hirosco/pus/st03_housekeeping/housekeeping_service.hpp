@@ -42,7 +42,7 @@ struct SampleSink {
 struct SampledValue {
   std::uint32_t wire{};              ///< ParameterId::wire() of the parameter or member
   std::uint16_t parameter{};         ///< index into Subsystem::parameters
-  std::int16_t member{-1};           ///< index into Parameter::members, -1 = whole
+  std::int16_t member{-1};           ///< as ParameterRef::member, -1 = whole
   std::uint16_t octets{};
 };
 

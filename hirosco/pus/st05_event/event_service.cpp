@@ -88,19 +88,21 @@ void EventService::switch_reports(Octets data, const Request& request, bool enab
 void EventService::report_disabled_events(const Request& request) {
   verification_.accepted(request);
   verification_.started(request);
-  std::vector<std::uint16_t> disabled;
-  for (const auto& event : events_)
-    if (!event.enabled) disabled.push_back(event.id);
-  std::span<const std::uint16_t> rest{disabled};
+  auto left = static_cast<std::size_t>(std::ranges::count_if(events_, [](const auto& each) { return !each.enabled; }));
+  auto event = events_.begin();
   do {
-    const auto part = rest.first(std::min(rest.size(), max_instructions));
-    rest = rest.subspan(part.size());
+    std::size_t part = std::min(left, max_instructions);
+    left -= part;
     std::array<std::byte, 1 + 2 * max_instructions> buffer;
     OctetWriter writer{buffer};
-    writer.put(static_cast<std::uint8_t>(part.size()));
-    for (const std::uint16_t id : part) writer.put(id);
+    writer.put(static_cast<std::uint8_t>(part));
+    for (; part > 0; ++event)
+      if (!event->enabled) {
+        writer.put(event->id);
+        --part;
+      }
     sink_.report(service_type, disabled_list, request.source, writer.written());
-  } while (!rest.empty());
+  } while (left > 0);
   verification_.completed(request);
 }
 

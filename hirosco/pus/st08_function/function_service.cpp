@@ -81,12 +81,27 @@ class ArgumentTaker {
         put(taken_[i]);
         continue;
       }
-      std::vector<std::byte> data;
-      if (!append_values(data, ArgumentList{function_.arguments}.subspan(i, 1), {}, Ids::None))
-        return bad_argument(count, i + 1);
-      put(data);
+      OctetWriter writer{MutableOctets{call_.arguments}.subspan(at)};
+      if (!put_declared(writer, function_.arguments[i])) return bad_argument(count, i + 1);
+      at += writer.written().size();
     }
     return std::nullopt;
+  }
+
+  /// As append_values() has it, without the heap; false: there is no declared value.
+  [[nodiscard]] static bool put_declared(OctetWriter& writer, const Argument& argument) noexcept {
+    if (!argument.fallback) return false;
+    const bool wants_words = argument.field.type == Type::Text;
+    if (const auto* words = std::get_if<std::string>(&*argument.fallback)) {
+      if (!wants_words || !permits(argument, *words)) return false;
+      writer.put(static_cast<std::uint16_t>(words->size())).put(std::as_bytes(std::span{*words}));
+      return writer.good();
+    }
+    const Number& number = std::get<Number>(*argument.fallback);
+    if (wants_words || !permits(argument, number)) return false;
+    for (std::uint32_t i = 0; i < argument.field.count; ++i)
+      if (!write_number(writer, argument.field.type, number)) return false;
+    return writer.good();
   }
 
   const Function& function_;

@@ -14,6 +14,7 @@
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "hirosco/resource/quota.hpp"
 #include "hirosco/subsystem/author/event_port.hpp"
 #include "hirosco/subsystem/author/handler.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
@@ -186,6 +187,11 @@ class Subsystem {
   /// containers of std::pmr and by try_allocate(). What they refuse is never taken from elsewhere; without pools they refuse
   /// everything.  Realtime: lock-free, but a refusal to a container throws. Thread: any.
   [[nodiscard]] PoolResource& resources() noexcept;
+  /// One port or file of those that its descriptor's <Resources> permits (`ports`, `files`; all, where it does not say): taken before
+  /// the socket or file is opened, held as long as that. ResourceExhausted: all are held, with their number.
+  /// Realtime: lock-free. Thread: any.
+  [[nodiscard]] Result<Quota::Held> acquire_port() noexcept;
+  [[nodiscard]] Result<Quota::Held> acquire_file() noexcept;
   [[nodiscard]] State state() const noexcept;
   [[nodiscard]] const descriptor::Subsystem& own_descriptor() const noexcept;
 

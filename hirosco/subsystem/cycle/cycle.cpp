@@ -255,7 +255,11 @@ void CycleLoop::account(const CyclePace::Start& start, TimePoint started) noexce
   hold_to_budget();
   // They change slowly and are many words: not in each cycle.
   constexpr std::uint64_t cycles_between = 16;
-  if (count_ % cycles_between == 1) resource_statistics_.store(parts_.resources.statistics());
+  if (count_ % cycles_between == 1) {
+    resource_statistics_.store(parts_.resources.statistics());
+    heap_uses_.store(
+        {realtime_.sum().heap, service_heap_.load(std::memory_order_relaxed), RealtimeScope::hook_present()});
+  }
   if (count_ % cycles_between == 2 && parts_.loops.any()) loop_statistics_.store(parts_.loops.statistics());
 
   if (overruns_.account(execution, started - start.planned)) {

@@ -106,6 +106,9 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] Parameter<LinkStatistics>& link_statistics() noexcept { return link_statistics_; }
   [[nodiscard]] Parameter<ResourceStatistics>& resource_statistics() noexcept { return resource_statistics_; }
   [[nodiscard]] Parameter<LoopStatistics>& loop_statistics() noexcept { return loop_statistics_; }
+  [[nodiscard]] Parameter<HeapUses>& heap_uses() noexcept { return heap_uses_; }
+  /// What the service loop has used of the heap, for HEAP_USES.  Realtime: wait-free. Thread: any.
+  void note_service_heap(std::uint64_t uses) noexcept { service_heap_.store(uses, std::memory_order_relaxed); }
 
   /// Whether the author's node wrote this parameter in the newest cycle: what anybody else writes would not last.
   /// Realtime: wait-free. Thread: any.
@@ -194,6 +197,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   Parameter<LinkStatistics> link_statistics_;
   Parameter<ResourceStatistics> resource_statistics_;
   Parameter<LoopStatistics> loop_statistics_;
+  Parameter<HeapUses> heap_uses_;
+  std::atomic<std::uint64_t> service_heap_{0};
   std::vector<std::unique_ptr<OutputParameter>> outputs_;
   std::vector<std::byte> event_buffer_;  ///< room for the largest event of the descriptor
   struct Watched {

@@ -13,6 +13,7 @@
 #include "hirosco/data_transfer/layout.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
+#include "hirosco/resource/quota.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
 #include "hirosco/subsystem/cycle/output_parameter.hpp"
 
@@ -29,6 +30,7 @@ class DeviceSlot {
   struct Way {
     std::unique_ptr<DataFlow> flow;
     std::uint8_t endnode{0};  ///< 0: the preferred one, then the fall-backs in their order
+    Quota::Held port{};  ///< that its flow has
   };
   /// `ways`: at least one, in their order; `sampling`: of the cycle.
   DeviceSlot(const descriptor::Device& device, const descriptor::DeviceUse& use, DevicePortBase& port,

@@ -196,7 +196,9 @@ LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const des
     const ParameterCell* cell = dictionary.cell(reference.parameter);
     const auto& layout = cell->fields();
     const auto fields = descriptor::fields_of(subsystem, reference);
-    const std::size_t first = reference.member.value_or(0);
+    const auto& parameter = subsystem.parameters[reference.parameter];
+    const auto first =
+        static_cast<std::size_t>(parameter.members_at(reference.member).data() - parameter.members.data());
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const NativeField& native = layout[first + i];
       fields_.push_back({fields[i].name, fields[i].type, fields[i].count});

@@ -14,6 +14,7 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+#include "hirosco/resource/quota.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 
@@ -23,6 +24,7 @@ namespace hirosco {
 
 /// One end of an established link: made by the service loop, used by the cycle, freed by the service loop.
 struct AttachedLink {
+  Quota::Held port{};  ///< of a link by UDP; given back after its ends, which stand below
   std::uint8_t id{0};                    ///< in the mission
   pus::st128::Agreement agreement;
   std::unique_ptr<LinkWriter> writer;    ///< producer

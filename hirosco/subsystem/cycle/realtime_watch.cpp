@@ -21,4 +21,12 @@ bool RealtimeWatch::account(const RealtimeUses& of_cycle) noexcept {
   return true;
 }
 
+bool HeapWatch::account(const AllocationCount& of_step, TimePoint now) noexcept {
+  sum_ = {sum_.allocations + of_step.allocations, sum_.frees + of_step.frees, sum_.octets + of_step.octets};
+  if (sum_ == told_ || now < again_) return false;
+  told_ = sum_;
+  again_ = now + 1s;
+  return true;
+}
+
 }  // namespace hirosco

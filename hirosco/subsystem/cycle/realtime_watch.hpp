@@ -28,4 +28,27 @@ class RealtimeWatch {
   RealtimeUses told_;
 };
 
+/// Uses of the heap once a subsystem is commissioned, as a parameter of every subsystem: HEAP_USES
+/// (descriptor/model/framework_parameters.hpp).
+struct HeapUses {
+  std::uint64_t cycle{0};  ///< allocations and frees in cycles of this configuration
+  std::uint64_t service{
+      0};  ///< in steps of the service loop in Safe-Operational and Operational, since the process began
+  bool counted{false};  ///< false: this program does not see them, and the two are 0
+};
+
+/// Sums what steps of the service loop use of the heap (docs/adr/0103), in programs that see it.  Thread: the service loop.
+class HeapWatch {
+ public:
+  /// After each step, with what it did. \return true when it is to be told: at once when it is the first, and then once a
+  /// second while more is done.  Realtime: wait-free.
+  [[nodiscard]] bool account(const AllocationCount& of_step, TimePoint now) noexcept;
+  [[nodiscard]] const AllocationCount& sum() const noexcept { return sum_; }
+
+ private:
+  AllocationCount sum_;
+  AllocationCount told_;
+  TimePoint again_{};
+};
+
 }  // namespace hirosco

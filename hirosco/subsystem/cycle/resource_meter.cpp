@@ -3,6 +3,7 @@
 #include "hirosco/subsystem/cycle/resource_meter.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -10,7 +11,10 @@ namespace hirosco {
 
 using descriptor::Resource;
 
-ResourceMeter::ResourceMeter(const descriptor::Resources& declared) : declared_{declared} {
+ResourceMeter::ResourceMeter(const descriptor::Resources& declared)
+    : declared_{declared},
+      ports_{"all ports that its descriptor permits are held", amount_of(declared.most, Resource::Ports)},
+      files_{"all files that its descriptor permits are held", amount_of(declared.most, Resource::Files)} {
   if (declared.pools.empty()) return;
   std::vector<PoolSpec> specs;
   for (const descriptor::Pool& pool : declared.pools) specs.push_back({pool.block_octets, pool.blocks});
@@ -36,12 +40,20 @@ void ResourceMeter::note(const ProcessUsage& usage) noexcept {
   note(Resource::Descriptors, usage.descriptors);
 }
 
+void ResourceMeter::note_held() noexcept {
+  note(Resource::Ports, ports_.used());
+  note(Resource::Files, files_.used());
+}
+
 void ResourceMeter::note(Resource resource, std::uint32_t amount) noexcept {
   Seen& seen = seen_[static_cast<std::size_t>(resource)];
   seen.now.store(amount, std::memory_order_relaxed);
   if (amount > seen.high.load(std::memory_order_relaxed)) seen.high.store(amount, std::memory_order_relaxed);
   const auto most = amount_of(declared_.most, resource);
-  if (!most) return;
+  if (!most || amount == 0) {
+    seen.above = false;
+    return;
+  }
   constexpr std::uint64_t whole = 100;
   const bool above = amount * whole >= std::uint64_t{*most} * declared_.warning_percent;
   if (above && !seen.above) ++seen.crossings;
@@ -73,6 +85,14 @@ ResourceStatistics ResourceMeter::statistics() const noexcept {
   const auto high = [&](Resource resource) { return of(resource).high.load(std::memory_order_relaxed); };
   ResourceStatistics all{now(Resource::Memory),       high(Resource::Memory), now(Resource::Descriptors),
                          high(Resource::Descriptors), now(Resource::Threads), high(Resource::Threads)};
+  const auto small = [](std::uint32_t count) {
+    return static_cast<std::uint16_t>(std::min<std::uint32_t>(count, std::numeric_limits<std::uint16_t>::max()));
+  };
+  all.ports = small(ports_.used());
+  all.ports_high = small(ports_.high());
+  all.files = small(files_.used());
+  all.files_high = small(files_.high());
+  all.held_refused = small(ports_.refused() + files_.refused());
   if (pools_ == nullptr) return all;
   for (std::size_t i = 0; i < pools_->size(); ++i) {
     const PoolUsage usage = pools_->usage(i);

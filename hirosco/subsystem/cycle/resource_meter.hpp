@@ -11,6 +11,7 @@
 
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/resource/pool_resource.hpp"
+#include "hirosco/resource/quota.hpp"
 #include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/time.hpp"
 
@@ -27,6 +28,11 @@ struct ResourceStatistics {
   std::array<std::uint32_t, descriptor::most_pools> pool_used{};  ///< blocks, by ascending size
   std::array<std::uint32_t, descriptor::most_pools> pool_high{};  ///< most ever
   std::uint32_t pool_refused{0};  ///< requests for which there was no block
+  std::uint16_t ports{0};  ///< acquired by the framework for devices and links, and by the author
+  std::uint16_t ports_high{0};
+  std::uint16_t files{0};  ///< acquired by the author
+  std::uint16_t files_high{0};
+  std::uint16_t held_refused{0};  ///< requests for a port or file beyond what the descriptor permits
 };
 
 /// The resources of one subsystem: its pools, how much it has taken, and where that crosses the warning level of its descriptor.
@@ -42,6 +48,9 @@ class ResourceMeter {
   /// Why there are no pools although the descriptor says so; empty: all is there.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
   [[nodiscard]] PoolResource& pools() noexcept { return resource_; }
+  /// Of ports and files: who opens one takes it here before.
+  [[nodiscard]] Quota& ports() noexcept { return ports_; }
+  [[nodiscard]] Quota& files() noexcept { return files_; }
 
   /// Use that has reached the warning level from below since it was told last.
   struct Crossing {
@@ -53,6 +62,8 @@ class ResourceMeter {
   };
   /// What was seen of the process.  Thread: service loop.
   void note(const ProcessUsage& usage) noexcept;
+  /// How many ports and files are held now.  Thread: service loop.
+  void note_held() noexcept;
   /// Tells each crossing once.  Realtime: bounded. Thread: service loop.
   void tell_crossings(const std::function<void(const Crossing&)>& tell);
 
@@ -72,6 +83,7 @@ class ResourceMeter {
   const descriptor::Resources& declared_;
   std::array<Seen, descriptor::counted_resources> seen_;
   std::array<std::atomic<std::uint32_t>, descriptor::most_pools> pool_crossings_{};  ///< by who allocates
+  Quota ports_, files_;
   std::unique_ptr<BlockPools> pools_;
   PoolResource resource_;
   std::string problem_;

@@ -133,5 +133,80 @@ TEST_F(ResourcesOfASubsystem, ThreeQuartersOfAPoolAreAnEventOncePerCrossingAndIt
   EXPECT_GT(told.pool_refused, 0U);
 }
 
+/// Speaks to two sensors by UDP and opens what else it likes.
+struct Talker final : Subsystem {
+  struct Angle {
+    double rad;
+  };
+  struct Nothing {
+    std::uint8_t no;
+  };
+  DevicePort<Angle, Nothing> left, right;
+  Result<Step> software_init() override {
+    use_device("LEFT", left);
+    use_device("RIGHT", right);
+    return done;
+  }
+  using Subsystem::acquire_file;
+  using Subsystem::acquire_port;
+};
+
+std::string talker(const std::string& resources) {
+  return R"(<Subsystem name="TALKER" id="21">)" + resources + R"(
+    <Device name="LEFT"><Input><Field name="ANGLE" type="DOUBLE"/></Input><Output><Field name="NO" type="UINT8" safe="0"/></Output></Device>
+    <Device name="RIGHT"><Input><Field name="ANGLE" type="DOUBLE"/></Input><Output><Field name="NO" type="UINT8" safe="0"/></Output></Device>
+    <Configuration name="C" id="1" sampling_us="1000">
+      <Device name="LEFT"><Endnode transfer="udp" address="127.0.0.1:20101"/></Device>
+      <Device name="RIGHT"><Endnode transfer="udp" address="127.0.0.1:20102"/></Device>
+    </Configuration></Subsystem>)";
+}
+
+TEST(PortsAndFiles, OfDevicesAndTheAuthorAreHeldInOneBookAndHousekeeping) {
+  Talker talking;
+  testing::Rig rig{talking, talker(R"(<Resources ports="3" files="1"/>)")};
+  rig.bring_to(State::PreOperational);
+  auto port = talking.acquire_port();
+  ASSERT_TRUE(port);
+  const auto none = talking.acquire_port();
+  ASSERT_FALSE(none);
+  EXPECT_STREQ(none.error().text, "all ports that its descriptor permits are held");
+  EXPECT_EQ(none.error().value, 3);
+  {
+    const auto file = talking.acquire_file();
+    ASSERT_TRUE(file);
+    EXPECT_FALSE(talking.acquire_file());
+  }
+  for (int i = 0; i < 120; ++i) {
+    rig.cycle();
+    rig.service();
+  }
+  const ResourceStatistics told = rig.subsystem.cycle().resource_statistics().load();
+  EXPECT_EQ(told.ports, 3U);
+  EXPECT_EQ(told.ports_high, 3U);
+  EXPECT_EQ(told.files, 0U);
+  EXPECT_EQ(told.files_high, 1U);
+  EXPECT_EQ(told.held_refused, 2U);
+  EXPECT_GE(rig.heard(descriptor::framework_event::resource_warning), 1) << "3 of 3 are above 75 %";
+  // What a configuration takes is given back with it.
+  port = Quota::Held{};
+  rig.set_state_now(State::Offline);
+  EXPECT_EQ(talking.acquire_port().has_value(), true);
+  EXPECT_EQ(rig.subsystem.meter().ports().used(), 0U);
+}
+
+TEST(PortsAndFiles, BeyondWhatItSaysAConfigurationIsRefusedWithTheReason) {
+  Talker talking;
+  testing::Rig rig{talking, talker(R"(<Resources ports="1"/>)")};
+  rig.set_state_now(State::PreOperational);
+  const std::string outcome = rig.configure_now(1);
+  EXPECT_EQ(outcome.substr(0, 6), "1 3 8:") << outcome;
+  const auto told = std::ranges::any_of(rig.explanations, [](const std::string& words) {
+    return words.find("all ports that its descriptor permits are held") != std::string::npos;
+  });
+  EXPECT_TRUE(told);
+  EXPECT_EQ(rig.subsystem.meter().ports().used(), 0U) << "the first was given back";
+  EXPECT_EQ(rig.subsystem.meter().ports().refused(), 1U);
+}
+
 }  // namespace
 }  // namespace hirosco

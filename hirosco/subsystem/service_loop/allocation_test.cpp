@@ -249,5 +249,88 @@ TEST(CycleAllocations, OneInAThousandCyclesIsCaught) {
   EXPECT_EQ(flight.uses().allocations, 10u);
 }
 
+/// Every telecommand that a subsystem takes while it acts, good ones and bad ones, again and again.
+class Palette {
+ public:
+  explicit Palette(Rig& rig) : rig_{rig} {}
+  void next() {
+    const std::uint32_t kp = ParameterId{10, Type::Double, 2}.wire(), kd = ParameterId{10, Type::Double, 3}.wire();
+    constexpr std::uint32_t unknown = 0x000A'0A63;
+    const auto data = [this](const auto&... values) {
+      OctetWriter writer{room_};
+      (writer.put(values), ...);
+      return writer.written();
+    };
+    const std::uint8_t one{1}, two{2};
+    const std::uint16_t structure{4712}, own{7};
+    switch (turn_++ % 16) {
+      case 0: rig_.send(17, 1, {}); break;
+      case 1: rig_.send(20, 1, data(two, kp, kd)); break;
+      case 2: rig_.send(20, 1, data(one, unknown)); break;
+      case 3: rig_.send(20, 3, data(two, kp, 7.0, kd, 1.0)); break;
+      case 4: rig_.send(20, 3, data(one, kp, 1e9)); break;
+      case 5: rig_.call("SET_GOAL", {0.5}); break;
+      case 6: rig_.send(8, 1, data(one)); break;
+      case 7: rig_.send(3, 6, data(one, structure)); break;
+      case 8: rig_.send(3, 5, data(one, structure)); break;
+      case 9: rig_.send(3, 27, data(one, structure)); break;
+      case 10: rig_.send(3, 31, data(one, structure, std::uint32_t{20})); break;
+      case 11: rig_.send(5, 6, data(one, own)); break;
+      case 12: rig_.send(5, 5, data(one, own)); break;
+      case 13: rig_.send(199, 1, {}); break;
+      case 14: rig_.send(128, 9, data(one)); break;
+      default: rig_.send(20, 1, {}); break;
+    }
+  }
+
+ private:
+  Rig& rig_;
+  std::array<std::byte, 64> room_{};
+  unsigned turn_{0};
+};
+
+TEST(ServiceLoopAllocations, ThereAreNoneForAnyTelecommandOnceCommissioned) {
+  ASSERT_TRUE(RealtimeScope::hook_present());
+  Probe probe;
+  CountedFlight flight{probe};
+  ASSERT_EQ(flight.rig().state(), State::Operational);
+  for (int i = 0; i < 64; ++i) flight.cycle();
+  flight.rig().raised.clear();
+  // The probe's own table of nodes has grown in its first cycles.
+  const std::uint64_t before = flight.rig().subsystem.cycle().heap_uses().load().cycle;
+  Palette palette{flight.rig()};
+  for (int i = 0; i < 10'000; ++i) {
+    palette.next();
+    flight.cycle();
+  }
+  EXPECT_EQ(flight.rig().heard(descriptor::framework_event::service_uses_heap), 0);
+  const HeapUses told = flight.rig().subsystem.cycle().heap_uses().load();
+  EXPECT_EQ(told.service, 0u);
+  EXPECT_EQ(told.cycle, before);
+  EXPECT_TRUE(told.counted);
+}
+
+/// Its service loop grows a vector once in a while.
+struct CarelessService final : Probe {
+  std::vector<double> history;
+  int steps{0};
+  void service(TimePoint) override {
+    if (++steps % 1'000 == 0) history.push_back(1.0), history.shrink_to_fit();
+  }
+};
+
+TEST(ServiceLoopAllocations, OneOfTheAuthorIsToldAndCounted) {
+  CarelessService careless;
+  CountedFlight flight{careless};
+  flight.rig().raised.clear();
+  careless.steps = 0;
+  careless.history.clear();
+  for (int i = 0; i < 10'000; ++i) flight.cycle();
+  // 5 s: each second the sum, and the first at once.
+  EXPECT_GE(flight.rig().heard(descriptor::framework_event::service_uses_heap), 5);
+  EXPECT_LE(flight.rig().heard(descriptor::framework_event::service_uses_heap), 6);
+  EXPECT_GE(flight.rig().subsystem.cycle().heap_uses().load().service, 10u);
+}
+
 }  // namespace
 }  // namespace hirosco

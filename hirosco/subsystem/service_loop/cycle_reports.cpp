@@ -144,6 +144,7 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
   look_at_resources_at_ = now + ResourceMeter::look_every;
   if (platform_.usage)
     if (const auto usage = platform_.usage()) resources_.note(*usage);
+  resources_.note_held();
   resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
     const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),
                                           static_cast<double>(found.used), static_cast<double>(found.limit),

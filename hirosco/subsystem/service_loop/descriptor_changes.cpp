@@ -26,25 +26,22 @@ using Refused = std::optional<FailureNotice>;
   return notice.because({ErrorCode::NotPermitted, number, words});
 }
 
-/// What Software-Init begins with; zeros and no words where nothing is declared.
-[[nodiscard]] std::vector<Value> begins_with(const descriptor::Parameter& parameter) {
-  if (!parameter.init.empty()) return parameter.init;
-  std::vector<Value> values;
-  const auto add = [&](const descriptor::Field& field) {
-    const Value nothing = field.type == Type::Text ? Value{std::string{}} : Value{Number{0}};
-    values.insert(values.end(), field.values(), nothing);
-  };
-  if (parameter.members.empty()) add(parameter.field);
-  for (const auto& member : parameter.members) add(member.field);
-  return values;
+[[nodiscard]] bool within(const descriptor::Field& field, const Value& value) {
+  const Number* const number = std::get_if<Number>(&value);
+  return number == nullptr ||
+         !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum));
 }
 
-[[nodiscard]] bool within(const descriptor::Field& field, const std::vector<Value>& values) {
-  return std::ranges::all_of(values, [&](const Value& value) {
-    const Number* const number = std::get_if<Number>(&value);
-    return number == nullptr ||
-           !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum));
-  });
+/// `values`: all that it begins with, or none for zeros.
+[[nodiscard]] bool within(const descriptor::Parameter& parameter, const std::vector<Value>& values) {
+  auto value = values.begin();
+  const auto fits = [&](const descriptor::Field& field) {
+    bool good = true;
+    for (std::uint32_t i = 0; i < field.values() && value != values.end(); ++i) good = within(field, *value++) && good;
+    return good;
+  };
+  if (parameter.members.empty()) return fits(parameter.field);
+  return std::ranges::all_of(parameter.members, [&](const auto& member) { return fits(member.field); });
 }
 
 }  // namespace
@@ -94,7 +91,7 @@ std::optional<FailureNotice> GenericSubsystem::left_outside(const descriptor::Su
       refusal_ = "the value of " + parameter.field.name + " is outside its new range: set it before";
       return refuse(FailureCode::NotPermittedNow, refusal_.c_str(), parameter.field.at.line);
     };
-    if (parameter.persistent && !within(parameter.field, dictionary_.spec(index).init)) return outside();
+    if (parameter.persistent && !within(parameter, dictionary_.spec(index).init)) return outside();
     if (!parameter.writable() || !initialised_) continue;
     room.resize(parameter.octets());
     if (dictionary_.snapshot_encode(index, -1, room) != room.size()) return FailureNotice{FailureCode::Busy};
@@ -119,7 +116,7 @@ std::optional<FailureNotice> GenericSubsystem::take() {
   // What a persistent parameter was left with outlives its descriptor.
   for (std::size_t index = 0; index < descriptor_.parameters.size(); ++index)
     if (const auto& parameter = descriptor_.parameters[index]; !parameter.persistent)
-      dictionary_.begin_with(index, begins_with(parameter));
+      dictionary_.begin_with(index, descriptor::values_at_begin(parameter));
   tell_descriptor();
   return std::nullopt;
 }

@@ -9,6 +9,7 @@
 
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/parameter/number.hpp"
+#include "hirosco/pus/st01_verification/instructions.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
 #include "hirosco/pus/standard_services.hpp"
 
@@ -33,6 +34,7 @@ constexpr int messages_per_step = 64;
       for (const auto& member : parameter.members)
         spec.fields.push_back({member.field.name, member.field.type, member.field.elements(), member.id});
     else spec.fields.push_back({parameter.field.name, parameter.field.type, parameter.field.elements()});
+    for (const auto& part : parameter.parts) spec.parts.push_back({part.name, part.first, part.count, part.id});
     specs.push_back(std::move(spec));
   }
   auto dictionary = Dictionary::make(specs);
@@ -76,12 +78,15 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem desc
       services_{&housekeeping_service_, &event_service_, &function_service_,
                 &parameter_service_,    &link_service_,  &descriptor_service_},
       requester_{descriptor_, channel_, platform.clock.now()},
-      subscriber_{descriptor_, channel_} {
+      subscriber_{descriptor_, channel_},
+      foreign_{descriptor_, foreign_home()} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
     made_services_.push_back(kind->make(*this));
     services_.push_back(made_services_.back().get());
   }
+  // One for each command that can be on its way to the cycle: none grows it then.
+  open_calls_.reserve(std::decay_t<decltype(rings_.commands)>::capacity());
   tell_descriptor();
   if (OwnLoop* const loop = loop_of(housekeeping_service_.type())) loop->host(housekeeping_service_);
   loops_looked_at_ = platform_.clock.now();
@@ -108,7 +113,29 @@ GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
 
 // --- the service loop --------------------------------------------------------------------------------------------------
 
+/// Commissioning uses the heap, and so does each change of state: what is between them must not (adr 0103).
+bool GenericSubsystem::commissioned() const noexcept {
+  return (state_ == State::SafeOperational || state_ == State::Operational) && !way_;
+}
+
 TimePoint GenericSubsystem::service_step(TimePoint now) {
+  if (!commissioned()) return step_services(now);
+  AllocationCount used;
+  TimePoint next;
+  {
+    const RealtimeScope watched;
+    next = step_services(now);
+    used = watched.count();
+  }
+  if (!commissioned() || !heap_watch_.account(used, now)) return next;
+  const AllocationCount& sum = heap_watch_.sum();
+  cycle_.note_service_heap(sum.allocations + sum.frees);
+  raise_in_service(descriptor::framework_event::service_uses_heap,
+                   std::array{static_cast<double>(sum.allocations), static_cast<double>(sum.frees)});
+  return next;
+}
+
+TimePoint GenericSubsystem::step_services(TimePoint now) {
   take_cycle_reports();
   take_loop_reports();
   receive_messages();
@@ -119,6 +146,7 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
   requester_.step(now);
   // As for what is asked: its own reports come first.
   if (backlog_.empty()) subscriber_.step(now);
+  foreign_.step(now, state_ == State::SafeOperational || state_ == State::Operational);
   author_.service(now);
   for (pus::Service* service : services_)
     if (loop_of(service->type()) == nullptr) service->step(now);
@@ -291,6 +319,29 @@ std::size_t GenericSubsystem::size_of(std::uint32_t parameter) {
   return dictionary_.wire_octets(place->index, place->member);
 }
 
+namespace {
+
+/// Each number of these octets, which are of its length, within the range that it has.  Realtime: bounded.
+[[nodiscard]] bool in_range(const descriptor::Parameter& declared, int member, Octets value) {
+  OctetReader reader{value};
+  const auto fits = [&](const descriptor::Field& field) {
+    if (field.type == Type::Text) return static_cast<void>(reader.get(field.octets())), true;
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      const Number number = read_number(reader, field.type);
+      if (!(number == number)) return false;
+      if (field.minimum && number < *field.minimum) return false;
+      if (field.maximum && number > *field.maximum) return false;
+    }
+    return true;
+  };
+  if (declared.members.empty()) return fits(declared.field);
+  const std::span<const descriptor::Parameter::Member> all{declared.members};
+  const auto asked = member < 0 ? all : declared.members_at(static_cast<std::uint16_t>(member));
+  return std::ranges::all_of(asked, [&](const auto& each) { return fits(each.field); });
+}
+
+}  // namespace
+
 std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_t parameter, Octets value) {
   const auto place = dictionary_.place_of(parameter);
   if (!place) return std::unexpected{pus::FailureCode::UnknownIdentifier};
@@ -301,37 +352,39 @@ std::expected<void, pus::FailureCode> GenericSubsystem::check_write(std::uint32_
     return std::unexpected{pus::FailureCode::NotPermittedNow};
   if (!dictionary_.accepts(place->index, place->member, value))
     return std::unexpected{pus::FailureCode::ValueNotAcceptable};
-  OctetReader reader{value};
-  const auto in_range = [&](const descriptor::Field& field) {
-    if (field.type == Type::Text) return static_cast<void>(reader.get(field.octets())), true;
-    for (std::uint32_t i = 0; i < field.count; ++i) {
-      const Number number = read_number(reader, field.type);
-      if (!(number == number)) return false;
-      if (field.minimum && number < *field.minimum) return false;
-      if (field.maximum && number > *field.maximum) return false;
-    }
-    return true;
-  };
-  bool good = true;
-  if (place->member >= 0) good = in_range(declared.members[static_cast<std::size_t>(place->member)].field);
-  else if (declared.members.empty()) good = in_range(declared.field);
-  else
-    for (const auto& member : declared.members) good = good && in_range(member.field);
-  if (!good) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
+  if (!in_range(declared, place->member, value)) return std::unexpected{pus::FailureCode::ValueNotAcceptable};
   return {};
 }
 
 std::expected<void, pus::FailureCode> GenericSubsystem::submit_write(
     std::span<const pus::ParameterAccess::Write> writes, const pus::Request&) {
-  std::vector<ParameterWrite> batch;
+  std::array<ParameterWrite, pus::max_instructions> batch;
+  std::size_t count = 0;
   for (const auto& write : writes)
-    if (const auto place = dictionary_.place_of(write.id)) batch.push_back({place->index, place->member, write.value});
-  if (const auto queued = writes_.enqueue(dictionary_, batch); !queued)
+    if (const auto place = dictionary_.place_of(write.id); place && count < batch.size())
+      batch[count++] = {place->index, place->member, write.value};
+  if (const auto queued = writes_.enqueue(dictionary_, std::span{batch}.first(count)); !queued)
     return std::unexpected{queued.error().code == ErrorCode::OutOfRange ? pus::FailureCode::CapacityExceeded
                                                                         : pus::FailureCode::Busy};
   // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
   if (cycle_rests()) writes_.apply(dictionary_);
   return {};
+}
+
+/// What is heard of others comes into a parameter as what a telecommand sets, without asking whether one may.
+ForeignParameters::Home GenericSubsystem::foreign_home() {
+  const auto accepts = [this](std::uint16_t parameter, Octets value) {
+    return dictionary_.accepts(parameter, -1, value) && in_range(descriptor_.parameters[parameter], -1, value);
+  };
+  const auto set = [this](std::uint16_t parameter, Octets value) {
+    const ParameterWrite write{parameter, -1, value};
+    if (!writes_.enqueue(dictionary_, {&write, 1})) return false;
+    if (cycle_rests()) writes_.apply(dictionary_);
+    return true;
+  };
+  return {.set = set, .accepts = accepts, .tell = [this](std::uint16_t parameter) {
+            raise_in_service(descriptor::framework_event::foreign_unknown, std::array{static_cast<double>(parameter)});
+          }};
 }
 
 }  // namespace hirosco

@@ -32,6 +32,7 @@
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/service_loop/backlog.hpp"
 #include "hirosco/subsystem/service_loop/failure.hpp"
+#include "hirosco/subsystem/service_loop/foreign_parameters.hpp"
 #include "hirosco/subsystem/service_loop/own_loop.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
 #include "hirosco/subsystem/service_loop/self_tests.hpp"
@@ -159,6 +160,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void bind_function(std::string_view name, BoundHandler handler);
   [[nodiscard]] CycleLoop& cycle() noexcept { return cycle_; }
   [[nodiscard]] PoolResource& resources() noexcept { return resources_.pools(); }
+  [[nodiscard]] ResourceMeter& meter() noexcept { return resources_; }
 
   /// All that Software-Init finds, tried in Offline before any flight. Nothing is kept of it.
   [[nodiscard]] std::vector<Mistake> try_introduction();
@@ -275,6 +277,9 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void raise_failure(std::uint16_t event, std::uint8_t what, const Failure& why);
   void tell_losses(TimePoint now);
   void look_at_resources(TimePoint now);
+  [[nodiscard]] bool commissioned() const noexcept;
+  TimePoint step_services(TimePoint now);
+  [[nodiscard]] ForeignParameters::Home foreign_home();
 
   Subsystem& author_;
   descriptor::Subsystem descriptor_;
@@ -355,6 +360,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Backlog backlog_;
   Requester requester_;
   Subscriber subscriber_;
+  HeapWatch heap_watch_;
+  ForeignParameters foreign_;
   std::array<std::uint64_t, 6> told_losses_{};
   TimePoint losses_told_at_{};
   std::uint64_t last_heartbeat_{0};

@@ -153,6 +153,7 @@ void GenericSubsystem::check_introduction() {
     for (const descriptor::Provides& lent : configuration.provides)
       if (lent.terms.lent() && !lent_ports_.contains(lent.name))
         mistake("set lent but without a place to make it, lend_link: " + lent.name);
+  if (std::string problem = foreign_.use(subscriber_); !problem.empty()) mistake(std::move(problem));
   check_settings();
   for (const CustomService* service : own_services_)
     for (std::string& problem : service->problems()) mistake(std::move(problem));
@@ -163,6 +164,7 @@ void GenericSubsystem::check_introduction() {
 
 void GenericSubsystem::forget_introduction() {
   subscriber_.forget();
+  foreign_.forget();
   requester_.forget();  // first: who waits may still end what it was asked itself
   const LoopsAtRest at_rest{loops_};
   dictionary_.unpublish_all();

@@ -60,6 +60,9 @@ Result<LinkRoute> GenericSubsystem::attach(const pus::st128::AttachRequest& requ
   if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
   if (mechanism->in_memory() && !memory) return fail(ErrorCode::Malformed, "no memory beside the attach request");
   auto link = std::make_unique<AttachedLink>();
+  if (agreement.method == LinkMethod::Udp) {
+    HIROSCO_TRY_LET(link->port, resources_.ports().take());
+  }
   link->id = request.link;
   link->made = request.header_epoch();
   link->agreement = agreement;

@@ -150,6 +150,7 @@ Result<Step> GenericSubsystem::initialise_software() {
   publish(descriptor::framework_parameter::link_stats, cycle_.link_statistics());
   publish(descriptor::framework_parameter::loop_stats, cycle_.loop_statistics());
   publish(descriptor::framework_parameter::resource_stats, cycle_.resource_statistics());
+  publish(descriptor::framework_parameter::heap_uses, cycle_.heap_uses());
   publish(descriptor::framework_parameter::descriptor, descriptor_in_force_);
   for (const auto& output : cycle_.outputs()) publish(output->name(), *output);
   if (step) check_introduction();
@@ -160,6 +161,7 @@ Result<Step> GenericSubsystem::initialise_software() {
     return fail(said.code, problems_text_.c_str(), said.value);
   }
   HIROSCO_TRY(dictionary_.initialise());
+  foreign_.begin(dictionary_);
   initialised_ = true;
   return done;
 }
@@ -172,7 +174,7 @@ void GenericSubsystem::remember_persistent() {
     const descriptor::Parameter& parameter = descriptor_.parameters[index];
     if (!parameter.persistent) continue;
     const std::size_t octets = dictionary_.snapshot_encode(index, -1, room);
-    if (auto values = descriptor::values_within(parameter.field, Octets{room}.first(octets)))
+    if (auto values = descriptor::values_within(parameter, Octets{room}.first(octets)))
       dictionary_.begin_with(index, std::move(*values));
   }
 }
@@ -340,8 +342,11 @@ Result<std::vector<DeviceSlot::Way>> GenericSubsystem::open_ways(const descripto
   std::vector<DeviceSlot::Way> ways;
   std::optional<Error> first;
   const auto open = [&](const descriptor::Endnode& endnode, std::size_t at) {
-    auto flow = platform_.flows.open({endnode.transfer, endnode.address}, FlowSide::Subsystem);
-    if (flow) return ways.push_back({std::move(*flow), static_cast<std::uint8_t>(at)});
+    Result<Quota::Held> port = Quota::Held{};
+    if (endnode.transfer == Transfer::Udp) port = resources_.ports().take();
+    auto flow = port ? platform_.flows.open({endnode.transfer, endnode.address}, FlowSide::Subsystem)
+                     : Result<std::unique_ptr<DataFlow>>{std::unexpected{port.error()}};
+    if (flow) return ways.push_back({std::move(*flow), static_cast<std::uint8_t>(at), std::move(*port)});
     if (!first) first = flow.error();
     const std::array arguments{static_cast<double>(descriptor::DeviceLoss::NotOpened), static_cast<double>(at),
                                static_cast<double>(ways.empty() ? at + 1 : ways.front().endnode), 0.0};

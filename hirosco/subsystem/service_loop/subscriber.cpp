@@ -83,9 +83,18 @@ bool Subscriber::ask(Bound& bound) {
   return true;
 }
 
+bool Subscriber::wanted_by_another(const Bound& bound) const noexcept {
+  return std::ranges::any_of(
+      bound_, [&](const Bound& each) { return &each != &bound && each.what == bound.what && each.wanted; });
+}
+
 void Subscriber::step(TimePoint now) {
   for (Bound& bound : bound_) {
     if (bound.wanted == bound.port->active_ || bound.refused || now < bound.again) continue;
+    if (!bound.wanted && wanted_by_another(bound)) {
+      bound.port->active_ = false;
+      continue;
+    }
     if (!ask(bound)) return;  // the supervisor is behind
     bound.again = now + patience;
   }
@@ -123,12 +132,17 @@ void Subscriber::hear_verification(const pus::TelemetryView& report) {
 bool Subscriber::hear_values(const pus::TelemetryView& report, What what) {
   OctetReader reader{report.source_data()};
   const st129::Subscribed heard{report.apid(), what, reader.get<std::uint16_t>()};
-  const auto bound = std::ranges::find(bound_, heard, &Bound::what);
-  if (!reader.good() || bound == bound_.end() || !bound->wanted) return false;
-  SubscriptionPort& port = *bound->port;
-  ++port.received_;
-  if (!port.take(reader.rest())) ++port.unreadable_;
-  return true;
+  if (!reader.good()) return false;
+  const Octets values = reader.rest();
+  bool taken = false;
+  for (const Bound& bound : bound_) {
+    if (bound.what != heard || !bound.wanted) continue;
+    SubscriptionPort& port = *bound.port;
+    ++port.received_;
+    if (!port.take(values)) ++port.unreadable_;
+    taken = true;
+  }
+  return taken;
 }
 
 void Subscriber::forget() {

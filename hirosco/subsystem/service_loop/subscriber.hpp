@@ -25,6 +25,10 @@ class Subscriber {
 
   /// Binds a subscription. What is wrong with it in words; empty when nothing is.
   [[nodiscard]] std::string use(SubscriptionPort& port);
+  /// Binds one of the framework's own, which takes whatever this structure has.
+  void add(SubscriptionPort& port, const pus::st129::Subscribed& what) {
+    bound_.push_back({.port = &port, .what = what});
+  }
   /// What a bound one hears begins or ends. NotPermitted: it is not bound.
   [[nodiscard]] Result<> set(SubscriptionPort& port, bool wanted);
   /// A report that came for this subsystem, or by it. True: it was meant for nobody but this.
@@ -43,6 +47,7 @@ class Subscriber {
     TimePoint again{};
   };
   bool ask(Bound& bound);
+  [[nodiscard]] bool wanted_by_another(const Bound& bound) const noexcept;
   void hear_verification(const pus::TelemetryView& report);
   bool hear_values(const pus::TelemetryView& report, pus::st129::Subscribed::What what);
 

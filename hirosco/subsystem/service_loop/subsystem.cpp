@@ -64,6 +64,9 @@ void Subsystem::abort_call(const Call& call, pus::FailureCode code, const Error&
 Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, pus::GivenValues values) {
   return framework_->send_request(asked, values);
 }
+Result<Quota::Held> Subsystem::acquire_port() noexcept { return framework_->meter().ports().take(); }
+Result<Quota::Held> Subsystem::acquire_file() noexcept { return framework_->meter().files().take(); }
+
 void Subsystem::bind_subscription(SubscriptionPort& heard) { framework_->use_subscription(heard); }
 Result<> Subsystem::set_subscription(SubscriptionPort& heard, bool wanted) {
   return framework_->set_subscription(heard, wanted);

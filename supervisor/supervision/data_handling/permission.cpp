@@ -73,8 +73,7 @@ using Notice = std::optional<FailureNotice>;
     // An unknown one hides the width of all behind it; the addressee refuses the whole (pus-c tailoring, ST[20]).
     if (!reader.good() || !place) return std::nullopt;
     const descriptor::Parameter* const parameter = &subsystem.parameters[place->parameter];
-    static_cast<void>(
-        reader.get(place->member ? parameter->members[*place->member].field.octets() : parameter->octets()));
+    static_cast<void>(reader.get(parameter->octets(place->member)));
     const bool opened = std::ranges::any_of(situation.mode.permits, [&](const descriptor::Permit& permit) {
       return (permit.subsystem == "*" || permit.subsystem == subsystem.name) &&
              listed(permit.parameters, parameter->field.name);

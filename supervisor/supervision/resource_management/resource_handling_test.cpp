@@ -56,6 +56,18 @@ TEST_F(ResourceHandlingTest, WhoDoesNotFitBesideTheOthersIsNotStartedAndTheReaso
   EXPECT_FALSE(scarce.claim(*craft.member(hand)));
 }
 
+TEST_F(ResourceHandlingTest, PortsAndFilesStandInTheSameBooks) {
+  for (auto& member : craft.mission.subsystems) {
+    says(member, Resource::Ports, 2);
+    says(member, Resource::Files, 1);
+  }
+  craft.mission.budget[static_cast<std::size_t>(Resource::Ports)] = 3;
+  ResourceHandling scarce{craft, parts.own};
+  EXPECT_FALSE(scarce.claim(*craft.member(arm)));
+  EXPECT_EQ(scarce.claim(*craft.member(hand)), "ports short: it asks for 2, 2 of 3 are reserved");
+  EXPECT_EQ(scarce.book(Resource::Files).reserved(), 1U) << "not limited, but held";
+}
+
 TEST_F(ResourceHandlingTest, WhoTakesMoreThanItSaysIsFencedEndedAndNamedOnce) {
   start_all(Operational);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));

@@ -35,15 +35,17 @@ namespace {
 /// A value that begins its next Software-Init and that no telecommand could set any more.
 [[nodiscard]] const descriptor::Parameter* outside(const descriptor::Subsystem& fresh,
                                                    const descriptor::Override& kept) {
-  const descriptor::Parameter* parameter = fresh.find_parameter(kept.parameter);
-  if (parameter == nullptr) return nullptr;
-  const descriptor::Field& field = parameter->field;
-  const bool good = std::ranges::all_of(kept.values, [&](const Value& value) {
-    const Number* const number = std::get_if<Number>(&value);
-    return number == nullptr ||
-           !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum));
-  });
-  return good ? nullptr : parameter;
+  const auto place = descriptor::find_place(fresh, kept.parameter);
+  if (!place) return nullptr;
+  bool good = true;
+  auto value = kept.values.begin();
+  for (const descriptor::Field& field : descriptor::fields_of(fresh, *place))
+    for (std::uint32_t i = 0; i < field.values() && value != kept.values.end(); ++i, ++value) {
+      const Number* const number = std::get_if<Number>(&*value);
+      good = good && (number == nullptr ||
+                      !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum)));
+    }
+  return good ? nullptr : &fresh.parameters[place->parameter];
 }
 
 /// Sealed memory that holds the text.

@@ -33,6 +33,7 @@ std::string_view describe(NameKind kind) noexcept {
   switch (kind) {
     case NameKind::Plain: return "a name has 1 to 64 letters, digits and underscores and begins with no digit";
     case NameKind::Loose: return "a name has 1 to 64 letters, digits, '_', '-' and '.' and begins with no digit";
+    case NameKind::Way: return "a name has 1 to 64 letters, digits, '_', '.', '[' and ']' and begins with no digit";
     case NameKind::Function: return "a function name has 1 to 16 upper-case letters, digits and underscores";
   }
   return "";
@@ -46,7 +47,8 @@ bool is_name(std::string_view text, NameKind kind) noexcept {
   return std::ranges::all_of(text, [kind](char c) {
     if (is_digit(c) || c == '_') return true;
     if (kind == NameKind::Function) return is_upper(c);
-    return is_letter(c) || (kind == NameKind::Loose && (c == '-' || c == '.'));
+    return is_letter(c) || (kind == NameKind::Loose && (c == '-' || c == '.')) ||
+           (kind == NameKind::Way && (c == '.' || c == '[' || c == ']'));
   });
 }
 

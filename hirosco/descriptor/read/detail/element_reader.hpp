@@ -91,6 +91,7 @@ class Problems {
 enum class NameKind {
   Plain,     ///< letters, digits, underscore
   Loose,     ///< also hyphen and dot: modes, plans, devices, executables
+  Way,       ///< also dots and brackets: what stands in a structure within
   Function,  ///< upper case, digits, underscore, at most 16
 };
 

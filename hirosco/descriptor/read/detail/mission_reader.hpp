@@ -66,6 +66,10 @@ class MissionReader {
 
   // read_commands.cpp
   void read_redirected(const xml::Element& element, MissionSubsystem& member, Redirected::Kind kind, Unique& names);
+  // read_foreign.cpp
+  void resolve_foreign_of(const MissionSubsystem& member, Subscribes& heard, const Subsystem& other,
+                          Problems& problems);
+  void check_foreign_circles();
   /// Whom the members command and hear, once all are known.
   void resolve_commands();
   void resolve_one(const MissionSubsystem& member, Commands& commands);

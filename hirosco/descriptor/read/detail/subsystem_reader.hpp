@@ -95,7 +95,15 @@ class SubsystemReader {
   void read_structure(const xml::Element& element);
   void read_parameter(const xml::Element& element);
   void read_initial_values();
-  void read_member(const xml::Element& element, Parameter& structure, Unique& names);
+  // read_structures.cpp
+  struct Inside;
+  [[nodiscard]] std::uint8_t read_structure_id(Attributes& attributes);
+  [[nodiscard]] Inside read_inside(const xml::Element& element, int level);
+  void read_member(const xml::Element& element, Inside& structure, Unique& names);
+  void read_within(const xml::Element& element, Inside& outer, Unique& names, int level);
+  void add_elements(Attributes& attributes, const std::string& name, std::size_t elements, const Inside& inner,
+                    Inside& outer);
+  void expect_ranges(const xml::Element& structure);
   /// A number that comes from outside has a range.
   void expect_range(const xml::Element& element, std::string_view what);
   /// Who may set it: writable, protection.
@@ -107,9 +115,9 @@ class SubsystemReader {
   void name_values(std::vector<Function::Argument>& arguments);
   /// What a field says besides name, type, count and unit.
   enum class Says { Nothing, Words, Range, WordsAndRange, Argument, Report, Lent };
-  [[nodiscard]] Field read_field(Attributes& attributes, Says says);
+  [[nodiscard]] Field read_field(Attributes& attributes, Says says, NameKind kind = NameKind::Plain);
   void read_plain_field(const xml::Element& element, std::vector<Field>& fields, Unique& names,
-                        Says says = Says::Nothing);
+                        Says says = Says::Nothing, NameKind kind = NameKind::Plain);
   void read_words(Attributes& attributes, Field& field);
   void check_field_range(Attributes& attributes, Field& field);
   /// The `name` attribute resolved against the parameters.
@@ -119,6 +127,11 @@ class SubsystemReader {
   [[nodiscard]] std::optional<ParameterRef> resolve(const xml::Attribute& name, std::string_view user);
   [[nodiscard]] std::string suggest_reference(std::string_view text) const;
   [[nodiscard]] std::size_t octets_of_reference(const ParameterRef& reference) const;
+
+  // read_foreign.cpp
+  /// Whose value it has: after read_access and read_persistent.
+  void read_from(Attributes& attributes, Parameter& parameter);
+  void check_foreign();
 
   // read_custom_service.cpp
   void read_custom_service(const xml::Element& element);
@@ -201,7 +214,13 @@ class SubsystemReader {
   std::size_t configurations_{0};    ///< that the descriptor has
   std::vector<Parameter> built_in_{framework_parameters()};
   std::vector<EnumerationUse> enumeration_uses_;
-  std::vector<std::pair<std::size_t, const xml::Attribute*>> initial_values_;  ///< of which parameter
+  struct InitialValue {
+    std::size_t parameter;
+    std::optional<std::uint16_t> member;
+    const xml::Attribute* at;
+  };
+  std::vector<InitialValue> initial_values_;
+  std::vector<std::pair<std::size_t, const xml::Attribute*>> foreign_;  ///< which parameter, and its `from`
   std::size_t persistent_octets_{0};
   std::map<std::uint16_t, std::string> raised_by_;  ///< the function whose argument is first `of` a parameter
   std::vector<std::pair<const xml::Element*, Event>> framework_severities_;  ///< as the descriptor wants them
