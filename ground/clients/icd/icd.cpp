@@ -195,6 +195,7 @@ class SubsystemPart {
       add(name, parameter.field, parameter.id, parameter.writable() && parameter.members.empty());
       for (const auto& member : parameter.members)
         add(name + "." + member.field.name, member.field, member.id, parameter.writable());
+      for (const auto& part : parameter.parts) add(name + "." + part.name, {.type = Type::Struct}, part.id, false);
     }
   }
 

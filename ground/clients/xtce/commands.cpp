@@ -259,6 +259,8 @@ class Commands {
       add(parameter.field.name, parameter.field, parameter.id);
       for (const auto& member : parameter.members)
         add(parameter.field.name + "." + member.field.name, member.field, member.id);
+      for (const auto& part : parameter.parts)
+        add(parameter.field.name + "." + part.name, {.type = Type::Struct}, part.id);
     }
     return ids;
   }

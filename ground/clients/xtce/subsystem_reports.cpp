@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
 #include "hirosco/pus/service/service_kind.hpp"
 
@@ -30,17 +31,16 @@ class SubsystemReports {
         continue;
       }
       SpaceSystem& structure = system_.add_system(name);
-      std::vector<std::pair<std::string, std::string>> members;
-      XtceNames names;
+      std::vector<std::string> types;
       for (const auto& member : parameter.members) {
-        const std::string type = type_of(member.field);
-        paths.push_back(structure.add_parameter(member.field.name, type, "", id_of(member.field, member.id)));
-        members.emplace_back(names.unique(member.field.name), type);
+        types.push_back(type_of(member.field));
+        paths.push_back(structure.add_parameter(member.field.name, types.back(), "", id_of(member.field, member.id)));
       }
-      // Reports of ST[20] may carry the structure as a whole.
-      (void)structure.add_parameter("WHOLE", types_.aggregate(members),
-                                    "All members, as a report of service 20 has them",
-                                    id_of(parameter.field, parameter.id));
+      // Reports of ST[20] may carry the structure as a whole, or one that stands in it.
+      add_whole(structure, "WHOLE", parameter.members, types, id_of(parameter.field, parameter.id));
+      for (const auto& part : parameter.parts)
+        add_whole(structure, part.name, std::span{parameter.members}.subspan(part.first, part.count),
+                  std::span{types}.subspan(part.first, part.count), id_of({.type = Type::Struct}, part.id));
     }
   }
 
@@ -94,6 +94,15 @@ class SubsystemReports {
     return types_.value(kind_of(field, catalogue_.texts_of(subsystem_, {}, field)));
   }
 
+  void add_whole(SpaceSystem& place, const std::string& name, std::span<const descriptor::Parameter::Member> members,
+                 std::span<const std::string> types, const std::string& id) {
+    std::vector<std::pair<std::string, std::string>> all;
+    XtceNames names;
+    for (std::size_t i = 0; i < members.size(); ++i)
+      all.emplace_back(names.unique(members[i].field.name), types[i]);
+    (void)place.add_parameter(name, types_.aggregate(all), "All members, as a report of service 20 has them", id);
+  }
+
   void add_field(SpaceSystem& place, Container& container, const descriptor::Function::Argument& field) {
     constexpr unsigned length_bits = 16;
     if (field.field.type == Type::Text) {
@@ -110,10 +119,12 @@ class SubsystemReports {
   std::size_t add_values(const std::vector<descriptor::ParameterRef>& references, std::vector<Element>& entries) const {
     std::size_t octets = 0;
     for (const auto& reference : references) {
-      const auto& paths = paths_[reference.parameter];
-      if (reference.member) entries.push_back(entry_of(paths[*reference.member]));
-      else
-        for (const std::string& path : paths) entries.push_back(entry_of(path));
+      const auto& all = subsystem_.parameters[reference.parameter].members;
+      const auto members = subsystem_.parameters[reference.parameter].members_at(reference.member);
+      std::span paths = paths_[reference.parameter];
+      if (!members.empty())
+        paths = paths.subspan(static_cast<std::size_t>(members.data() - all.data()), members.size());
+      for (const std::string& path : paths) entries.push_back(entry_of(path));
       for (const auto& field : descriptor::fields_of(subsystem_, reference)) octets += field.octets();
     }
     return octets;

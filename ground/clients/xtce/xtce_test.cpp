@@ -71,6 +71,42 @@ TEST(Xtce, SaysAHousekeepingStructureByApplicationProcessIdAndLength) {
   EXPECT_EQ(only(only(container, "RepeatEntry"), "FixedValue").text, "4");
 }
 
+/// A structure of two alike; a report has the second of them.
+descriptor::Mission with_structures_within() {
+  auto mission = mission_with("ARM");
+  auto& subsystem = mission.subsystems.front().subsystem;
+  auto& pose = subsystem.parameters[1];
+  pose.members = {{testing::field_of("AXES[1].X", Type::Double), 20},
+                  {testing::field_of("AXES[1].ON", Type::Bool), 21},
+                  {testing::field_of("AXES[2].X", Type::Double), 22},
+                  {testing::field_of("AXES[2].ON", Type::Bool), 23}};
+  pose.parts = {{"AXES[1]", 9, 0, 2, {}}, {"AXES[2]", 10, 2, 2, {}}};
+  auto& report = subsystem.housekeeping.front();
+  report.sampled_once = {{"POSE.AXES[2]", 1, 5, {}}};
+  report.sampled_repeatedly.clear();
+  return mission;
+}
+
+TEST(Xtce, AReportOfAStructureWithinHasItsMembersAndNoOthers) {
+  const auto document = document_of(with_structures_within());
+  std::vector<std::string> entries;
+  for (const auto* entry : all(only(document, "SequenceContainer", "HK_99"), "ParameterRefEntry"))
+    entries.push_back(attribute(*entry, "parameterRef"));
+  ASSERT_EQ(entries.size(), 3U) << "and the CRC";
+  EXPECT_TRUE(entries[0].ends_with("/POSE/AXES_2__X")) << entries[0];
+  EXPECT_TRUE(entries[1].ends_with("/POSE/AXES_2__ON")) << entries[1];
+  // 14 + (id 2, 8 + 1) + CRC 2 - 1.
+  EXPECT_EQ(attribute(*all(only(document, "SequenceContainer", "HK_99"), "Comparison")[2], "value"), "26");
+}
+
+TEST(Xtce, AStructureWithinIsReadByItsOwnIdAsAWhole) {
+  const auto document = document_of(with_structures_within());
+  EXPECT_EQ(all(document, "Parameter", "AXES_2_").size(), 1U);
+  const std::string type = attribute(only(document, "Parameter", "AXES_2_"), "parameterTypeRef");
+  const auto& aggregate = only(document, "AggregateParameterType", type.substr(type.rfind('/') + 1));
+  EXPECT_EQ(all(aggregate, "Member").size(), 2U);
+}
+
 TEST(Xtce, SaysUnitRangeAndNamesOfValues) {
   const auto document = document_of(mission_with("ARM"));
   const auto& type = only(document, "FloatParameterType");
