@@ -195,7 +195,11 @@ class SubsystemPart {
       add(name, parameter.field, parameter.id, parameter.writable() && parameter.members.empty());
       for (const auto& member : parameter.members)
         add(name + "." + member.field.name, member.field, member.id, parameter.writable());
-      for (const auto& part : parameter.parts) add(name + "." + part.name, {.type = Type::Struct}, part.id, false);
+      for (const auto& part : parameter.parts) {
+        descriptor::Field whole;
+        whole.type = Type::Struct;
+        add(name + "." + part.name, whole, part.id, false);
+      }
     }
   }
 

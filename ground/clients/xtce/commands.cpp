@@ -252,15 +252,14 @@ class Commands {
 
   [[nodiscard]] Texts parameter_ids() const {
     Texts ids;
-    const auto add = [&](const std::string& name, const descriptor::Field& field, std::uint8_t id) {
-      ids.push_back({ParameterId{subsystem_.id, field.type, id}.wire(), name});
+    const auto add = [&](const std::string& name, Type type, std::uint8_t id) {
+      ids.push_back({ParameterId{subsystem_.id, type, id}.wire(), name});
     };
     for (const auto& parameter : subsystem_.parameters) {
-      add(parameter.field.name, parameter.field, parameter.id);
+      add(parameter.field.name, parameter.field.type, parameter.id);
       for (const auto& member : parameter.members)
-        add(parameter.field.name + "." + member.field.name, member.field, member.id);
-      for (const auto& part : parameter.parts)
-        add(parameter.field.name + "." + part.name, {.type = Type::Struct}, part.id);
+        add(parameter.field.name + "." + member.field.name, member.field.type, member.id);
+      for (const auto& part : parameter.parts) add(parameter.field.name + "." + part.name, Type::Struct, part.id);
     }
     return ids;
   }

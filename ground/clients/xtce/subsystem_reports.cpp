@@ -27,20 +27,21 @@ class SubsystemReports {
       const std::string& name = parameter.field.name;
       if (parameter.members.empty()) {
         paths.push_back(
-            system_.add_parameter(name, type_of(parameter.field), "", id_of(parameter.field, parameter.id)));
+            system_.add_parameter(name, type_of(parameter.field), "", id_of(parameter.field.type, parameter.id)));
         continue;
       }
       SpaceSystem& structure = system_.add_system(name);
       std::vector<std::string> types;
       for (const auto& member : parameter.members) {
         types.push_back(type_of(member.field));
-        paths.push_back(structure.add_parameter(member.field.name, types.back(), "", id_of(member.field, member.id)));
+        paths.push_back(
+            structure.add_parameter(member.field.name, types.back(), "", id_of(member.field.type, member.id)));
       }
       // Reports of ST[20] may carry the structure as a whole, or one that stands in it.
-      add_whole(structure, "WHOLE", parameter.members, types, id_of(parameter.field, parameter.id));
+      add_whole(structure, "WHOLE", parameter.members, types, id_of(parameter.field.type, parameter.id));
       for (const auto& part : parameter.parts)
         add_whole(structure, part.name, std::span{parameter.members}.subspan(part.first, part.count),
-                  std::span{types}.subspan(part.first, part.count), id_of({.type = Type::Struct}, part.id));
+                  std::span{types}.subspan(part.first, part.count), id_of(Type::Struct, part.id));
     }
   }
 
@@ -87,8 +88,8 @@ class SubsystemReports {
  private:
   [[nodiscard]] static std::string number(unsigned value) { return std::to_string(value); }
   [[nodiscard]] Condition apid() const { return {root_.apid, number(subsystem_.id)}; }
-  [[nodiscard]] std::string id_of(const descriptor::Field& field, std::uint8_t id) const {
-    return std::to_string(ParameterId{subsystem_.id, field.type, id}.wire());
+  [[nodiscard]] std::string id_of(Type type, std::uint8_t id) const {
+    return std::to_string(ParameterId{subsystem_.id, type, id}.wire());
   }
   [[nodiscard]] std::string type_of(const descriptor::Field& field) {
     return types_.value(kind_of(field, catalogue_.texts_of(subsystem_, {}, field)));
@@ -98,8 +99,7 @@ class SubsystemReports {
                  std::span<const std::string> types, const std::string& id) {
     std::vector<std::pair<std::string, std::string>> all;
     XtceNames names;
-    for (std::size_t i = 0; i < members.size(); ++i)
-      all.emplace_back(names.unique(members[i].field.name), types[i]);
+    for (std::size_t i = 0; i < members.size(); ++i) all.emplace_back(names.unique(members[i].field.name), types[i]);
     (void)place.add_parameter(name, types_.aggregate(all), "All members, as a report of service 20 has them", id);
   }
 

@@ -26,7 +26,7 @@ TEST(FrameworkParameters, AreThereInADescriptorThatDeclaresNoneWithTheSameIdsInA
   const auto subsystem = with("").value.value();
   const std::pair<const char*, std::uint8_t> wanted[]{{"CYCLE_STATS", 39},    {"CYCLE_TIMES", 40}, {"CYCLE_BUDGET", 38},
                                                       {"CYCLE_SPIN", 35},     {"LOOP_STATS", 34},  {"LINK_STATS", 41},
-                                                      {"RESOURCE_STATS", 37}, {"HEAP_USES", 33}, {"DESCRIPTOR", 36}};
+                                                      {"RESOURCE_STATS", 37}, {"HEAP_USES", 33},   {"DESCRIPTOR", 36}};
   ASSERT_EQ(subsystem.parameters.size(), std::size(wanted));
   for (const auto& [name, id] : wanted) {
     const Parameter* parameter = subsystem.find_parameter(name);
