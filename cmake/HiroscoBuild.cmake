@@ -111,13 +111,13 @@ add_custom_target(flown)
 add_custom_target(optimised)
 add_dependencies(optimised flown)
 
-# hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit])
+# hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit] [COST seconds])
 # One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast. Labels: unit (the default) beside
 # the code; concurrency: threads meet, so under TSan; figures: flies simulations, which takes minutes under a sanitizer;
 # allocations (whoever counts them): a sanitizer owns the heap functions; endtoend, realtime, fault: real processes, alone on
-# the machine; long: in ./check --all only.
+# the machine; long: in ./check --all only. COST: of those that take longest, which begin first.
 function(hirosco_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "COST" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
     return()
   endif()
@@ -138,6 +138,9 @@ function(hirosco_test name)
     set(ARG_LABELS unit)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
+  if(ARG_COST)
+    set_tests_properties(${name} PROPERTIES COST ${ARG_COST})
+  endif()
   if(NOT ARG_LABELS MATCHES "unit|concurrency|long")
     add_dependencies(optimised ${name})
   endif()

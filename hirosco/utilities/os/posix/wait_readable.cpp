@@ -12,7 +12,7 @@
 namespace hirosco {
 namespace {
 
-[[nodiscard]] Duration monotonic() noexcept {
+[[nodiscard]] Duration now_monotonic() noexcept {
   timespec value{};
   (void)clock_gettime(CLOCK_MONOTONIC, &value);
   return std::chrono::seconds{value.tv_sec} + Duration{value.tv_nsec};
@@ -23,9 +23,9 @@ namespace {
 bool wait_readable(int descriptor, Duration timeout) noexcept {
   if (descriptor < 0 || descriptor >= FD_SETSIZE)
     return false;  // as one that is never ready: it has no place in the set
-  const Duration end = monotonic() + std::max(timeout, Duration{0});
+  const Duration end = now_monotonic() + std::max(timeout, Duration{0});
   for (;;) {
-    const Duration left = std::max(end - monotonic(), Duration{0});
+    const Duration left = std::max(end - now_monotonic(), Duration{0});
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
     const timespec rest{static_cast<time_t>(whole.count()), static_cast<long>((left - whole).count())};
     fd_set set;
