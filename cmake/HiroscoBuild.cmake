@@ -77,6 +77,7 @@ endfunction()
 # The headers that every test includes, compiled once, and tests themselves compiled for speed of building, four files in one
 # piece: together this is a third of the time. What is under test keeps its own options. In a piece names of the files of one
 # target must differ.
+# A second word is a header of ours that nearly all of its files include: it is compiled once, too.
 function(hirosco_compile_as_test name)
   if(HIROSCO_IN_PIECES)
     set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 4)
@@ -86,9 +87,14 @@ function(hirosco_compile_as_test name)
     $<$<CONFIG:Release>:-O1>
     $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow>)
   set_target_properties(${name} PROPERTIES PCH_WARN_INVALID OFF)
+  set(headers <gtest/gtest.h> <gmock/gmock.h> <algorithm> <array> <chrono> <expected> <functional> <map> <memory> <optional>
+      <span> <string> <vector>)
   if(name STREQUAL "hirosco_test_headers")
-    target_precompile_headers(${name} PRIVATE <gtest/gtest.h> <gmock/gmock.h> <algorithm> <array> <chrono> <expected>
-      <functional> <map> <memory> <optional> <span> <string> <vector>)
+    target_precompile_headers(${name} PRIVATE ${headers})
+    return()
+  endif()
+  if(ARGN AND HIROSCO_SANITIZE AND HIROSCO_IN_PIECES)
+    target_precompile_headers(${name} PRIVATE ${headers} ${PROJECT_SOURCE_DIR}/${ARGN})
     return()
   endif()
   if(NOT TARGET hirosco_test_headers)
@@ -111,13 +117,13 @@ add_custom_target(flown)
 add_custom_target(optimised)
 add_dependencies(optimised flown)
 
-# hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit] [COST seconds])
+# hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit] [COST seconds] [HEADER file])
 # One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast. Labels: unit (the default) beside
 # the code; concurrency: threads meet, so under TSan; figures: flies simulations, which takes minutes under a sanitizer;
 # allocations (whoever counts them): a sanitizer owns the heap functions; endtoend, realtime, fault: real processes, alone on
 # the machine; long: in ./check --all only. COST: of those that take longest, which begin first.
 function(hirosco_test name)
-  cmake_parse_arguments(ARG "" "COST" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "COST;HEADER" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
     return()
   endif()
@@ -132,7 +138,7 @@ function(hirosco_test name)
   target_link_libraries(${name} PRIVATE hirosco_options ${ARG_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE HIROSCO_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              HIROSCO_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  hirosco_compile_as_test(${name})
+  hirosco_compile_as_test(${name} ${ARG_HEADER})
   add_test(NAME ${name} COMMAND ${name})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
@@ -155,11 +161,11 @@ function(hirosco_test name)
 endfunction()
 
 # hirosco_library(NAME [IN_MODULES] [OWN_HEADERS] SOURCES *.cpp TESTS *_test.cpp DEPENDS targets... [LABELS of the test...]
-#   [EXAMPLE example.cpp])
+#   [TEST_HEADER file] [EXAMPLE example.cpp])
 # IN_MODULES: subsystems and devices use it, so it can be linked into their modules. OWN_HEADERS: it compiles headers of its own.
 # Makes the library hirosco::NAME, its test NAME_test, and its example NAME_example (run as a test).
 function(hirosco_library name)
-  cmake_parse_arguments(ARG "IN_MODULES;OWN_HEADERS" "EXAMPLE" "SOURCES;TESTS;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "IN_MODULES;OWN_HEADERS" "EXAMPLE;TEST_HEADER" "SOURCES;TESTS;DEPENDS;LABELS" ${ARGN})
   add_library(hirosco_${name} STATIC ${ARG_SOURCES})
   add_library(hirosco::${name} ALIAS hirosco_${name})
   # The same objects for programs and for modules, so that nothing is compiled twice; hidden, so that calls stay as direct as
@@ -173,7 +179,7 @@ function(hirosco_library name)
     hirosco_compile_with_headers(hirosco_${name})
   endif()
   if(ARG_TESTS)
-    hirosco_test(${name}_test SOURCES ${ARG_TESTS} DEPENDS hirosco::${name} LABELS ${ARG_LABELS})
+    hirosco_test(${name}_test SOURCES ${ARG_TESTS} DEPENDS hirosco::${name} LABELS ${ARG_LABELS} HEADER ${ARG_TEST_HEADER})
   endif()
   if(ARG_EXAMPLE AND BUILD_TESTING)
     add_executable(${name}_example ${ARG_EXAMPLE})
