@@ -41,12 +41,12 @@ if(HIROSCO_SANITIZE)
     target_compile_options(hirosco_options INTERFACE -fno-sanitize=vptr,null,object-size,alignment)
   endif()
 endif()
-# Ten files in one piece, with sanitizers twenty: half the time to build. A change of one file compiles its piece, some ten seconds.
+# Ten files in one piece, with sanitizers twelve: half the time to build. A change of one file compiles its piece, some ten seconds.
 if(HIROSCO_IN_PIECES)
   set(CMAKE_UNITY_BUILD ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
   if(HIROSCO_SANITIZE)
-    set(CMAKE_UNITY_BUILD_BATCH_SIZE 20)
+    set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
   endif()
   # In a piece types of one file may use its anonymous namespace; the second one g++ 12 sees where there is none.
   target_compile_options(hirosco_options INTERFACE

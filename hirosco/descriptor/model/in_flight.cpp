@@ -136,18 +136,16 @@ class Comparison {
           const std::string which = what + ": argument " + value.name;
           field(a.field, value, which);
           unless(a.of == of, value.at, which + ": whose value it is", code_why);
-          unless(a.fallback.has_value() == fallback.has_value(), value.at, which + ": whether it may be left out",
-                 code_why);
+          unless(a.fallback.has_value() == fallback.has_value(), value.at, which + ": whether optional", code_why);
           unless(same_texts(a.texts, texts), value.at, which + ": its values and their names", meaning_why);
         });
   }
   void function(const Function& flown, const Function& fresh, const std::string& kind) {
-    [[maybe_unused]] const auto& [name, service, subtype, states, essential, confirm, arguments_, description, at,
-                                  sets] = fresh;
+    [[maybe_unused]] const auto& [name, service, subtype, states, essential, confirm, args, text, at, sets] = fresh;
     const std::string what = kind + name;
     unless(flown.service == service && flown.subtype == subtype, at, what + ": its type", code_why);
     unless(flown.states == states && flown.essential == essential, at, what + ": when it is permitted", safety_why);
-    arguments(flown.arguments, arguments_, what);
+    arguments(flown.arguments, args, what);
   }
   void functions(const std::vector<Function>& flown, const std::vector<Function>& fresh, const std::string& kind) {
     lists(flown, fresh, kind, its_name, its_place, code_why,
