@@ -12,7 +12,7 @@ struct Nobody final : Observer {
   void routed(const pus::TelemetryView&) override {}
 };
 
-class ReactionCauses : public testing::Test {
+class ReactionCauses : public ::testing::Test {
  protected:
   ReactionCauses() { clock.advance(std::chrono::hours{1}); }
   void tell(std::string_view line) { causes.told(clock.onboard(), line); }

@@ -9,6 +9,7 @@ namespace {
 
 using testing::arm;
 using testing::camera;
+using testing::damages;
 using ::testing::ElementsAre;
 using testing::GuardTest;
 using testing::hand;

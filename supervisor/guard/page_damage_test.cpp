@@ -8,19 +8,12 @@ namespace hirosco::supervisor {
 namespace {
 
 using testing::arm;
+using testing::damages;
 using ::testing::ElementsAre;
 using testing::GuardTest;
 using testing::Life;
 using Kind = GuardFinding::Kind;
 using namespace std::chrono_literals;
-
-/// What may become of a word of shared memory: one flipped bit, and whole words that damage leaves behind.
-std::vector<std::uint32_t> damages(std::uint32_t word) {
-  std::vector<std::uint32_t> damaged{0, ~0U, ~word, 0x5555'5555, 0xAAAA'AAAA, word + 1, word - 1};
-  for (unsigned bit = 0; bit < 32; ++bit) damaged.push_back(word ^ 1U << bit);
-  std::erase(damaged, word);
-  return damaged;
-}
 
 /// All states, permitted or not; calls `check` after each damage of each word of `page`.
 template <class Check>

@@ -24,7 +24,9 @@ namespace hirosco::ground::testing {
   mission.name = name;
   mission.supervisor.name = "SUPERVISOR";
   mission.supervisor.id = 1;
-  mission.supervisor.parameters.push_back({.field = field_of("MODE", Uint8), .init = {}, .members = {}});
+  descriptor::Parameter current_mode;
+  current_mode.field = field_of("MODE", Uint8);
+  mission.supervisor.parameters = {current_mode};
   descriptor::Function set_mode;
   set_mode.name = "SET_MODE";
   set_mode.arguments.push_back({.field = field_of("MODE", Uint8), .of = {}, .fallback = {}});

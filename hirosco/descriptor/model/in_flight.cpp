@@ -131,13 +131,13 @@ class Comparison {
     lists(
         flown, fresh, what + ": argument ", [](const Function::Argument& each) { return each.field.name; },
         [](const Function::Argument& each) { return each.field.at; }, code_why,
-        [&](const Function::Argument& a, const Function::Argument& b) {
+        [&](const auto& a, const auto& b) {
           [[maybe_unused]] const auto& [value, of, fallback, texts] = b;
-          const std::string which = what + ": argument " + value.name;
-          field(a.field, value, which);
-          unless(a.of == of, value.at, which + ": whose value it is", code_why);
-          unless(a.fallback.has_value() == fallback.has_value(), value.at, which + ": whether optional", code_why);
-          unless(same_texts(a.texts, texts), value.at, which + ": its values and their names", meaning_why);
+          const std::string its = what + ": argument " + value.name;
+          field(a.field, value, its);
+          unless(a.of == of, value.at, its + ": whose value it is", code_why);
+          unless(!a.fallback == !fallback, value.at, its + ": whether it may be left out", code_why);
+          unless(same_texts(a.texts, texts), value.at, its + ": its values and their names", meaning_why);
         });
   }
   void function(const Function& flown, const Function& fresh, const std::string& kind) {

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <new>
+#include <vector>
 
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
@@ -117,5 +118,13 @@ struct GuardTest : ::testing::Test {
     return page.permits(page.epoch.load());
   }
 };
+
+/// What may become of a word of shared memory: one flipped bit, and whole words that damage leaves behind.
+inline std::vector<std::uint32_t> damages(std::uint32_t word) {
+  std::vector<std::uint32_t> damaged{0, ~0U, ~word, 0x5555'5555, 0xAAAA'AAAA, word + 1, word - 1};
+  for (unsigned bit = 0; bit < 32; ++bit) damaged.push_back(word ^ 1U << bit);
+  std::erase(damaged, word);
+  return damaged;
+}
 
 }  // namespace hirosco::supervisor::testing
