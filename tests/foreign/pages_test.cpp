@@ -295,6 +295,7 @@ TEST(InterfacePages, CodesAndWords) {
   descriptor::Configuration& used = bare.configurations.emplace_back();
   used.requires_.emplace_back().name = "NAME";
   used.devices.emplace_back().fall_backs.emplace_back();
+  bare.parameters.emplace_back().from = "OTHER.VALUE";
   descriptor::add_framework_events(bare);
   std::map<std::uint64_t, std::string> events, severities;
   for (const descriptor::Event& event : bare.events) {
