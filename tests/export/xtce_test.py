@@ -23,7 +23,7 @@ import flat
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 ROKVISS = REPOSITORY / "missions/rokviss/mission.xml"
 # Missions of every kind: arrays, words and switches, own services, images, loops of services.
-MISSIONS = ["missions/rokviss", "missions/hello", "tests/typed", "tests/imager", "tests/loops", "tests/foreign"]
+MISSIONS = ["missions/rokviss", "missions/hello", "tests/typed", "tests/imager", "tests/loops", "tests/author/lamp"]
 # What the flight has to tell, or it proves little: services with subtypes.
 KINDS = {(1, 1), (1, 2), (1, 3), (1, 4), (1, 5), (1, 7), (1, 8), (1, 10), (3, 10), (3, 25), (3, 35), (5, 1), (5, 2), (5, 4), (5, 8),
          (17, 2), (17, 129), (20, 2), (129, 5), (129, 7)}

@@ -282,14 +282,13 @@ TEST(InterfacePages, CodesAndWords) {
                                     {of(ErrorCode::Timeout), "Timeout"},
                                     {of(ErrorCode::SystemFailure), "SystemFailure"},
                                     {of(ErrorCode::Internal), "Internal"}});
-  using descriptor::DeviceLoss;
-  expect_numbers("device loss", {{of(DeviceLoss::Silent), "Silent"},
-                                 {of(DeviceLoss::HungUp), "HungUp"},
-                                 {of(DeviceLoss::Damaged), "Damaged"},
-                                 {of(DeviceLoss::WrongSize), "WrongSize"},
-                                 {of(DeviceLoss::Repeated), "Repeated"},
-                                 {of(DeviceLoss::LetGo), "LetGo"},
-                                 {of(DeviceLoss::NotOpened), "NotOpened"}});
+  expect_numbers("device loss", {{of(descriptor::DeviceLoss::Silent), "Silent"},
+                                 {of(descriptor::DeviceLoss::HungUp), "HungUp"},
+                                 {of(descriptor::DeviceLoss::Damaged), "Damaged"},
+                                 {of(descriptor::DeviceLoss::WrongSize), "WrongSize"},
+                                 {of(descriptor::DeviceLoss::Repeated), "Repeated"},
+                                 {of(descriptor::DeviceLoss::LetGo), "LetGo"},
+                                 {of(descriptor::DeviceLoss::NotOpened), "NotOpened"}});
   descriptor::Subsystem bare;
   bare.devices.emplace_back().name = "NAME";
   descriptor::Configuration& used = bare.configurations.emplace_back();
