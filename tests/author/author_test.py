@@ -12,6 +12,7 @@ import struct
 import subprocess
 import tempfile
 import threading
+import time
 import unittest
 import urllib.error
 import urllib.request
@@ -256,10 +257,14 @@ class Flown(Outside, unittest.TestCase):
             with self.assertRaises(urllib.error.HTTPError) as refused:
                 ask("/api/commands", {"subsystem": "LAMP", "function": "LABEL", "arguments": {**given, name: value}})
             self.assertEqual(refused.exception.code, 400)
-        log = self.hirosco("log", "--service", "200")
-        self.assertIn("LAMP METER DIMMED=1 CURRENT=0.9 A", log)
-        self.assertIn(f"LAMP LABELLED OWNER='Ada' SERIAL={2**64 - 2} LENT=off", log)
-        self.assertIn(f"LAMP LABELLED OWNER='by JSON' SERIAL={2**64 - 3} LENT=on", log)
+        self.logged("200", "LAMP METER DIMMED=1 CURRENT=0.9 A", f"LAMP LABELLED OWNER='Ada' SERIAL={2**64 - 2} LENT=off",
+                    f"LAMP LABELLED OWNER='by JSON' SERIAL={2**64 - 3} LENT=on")
+
+    def logged(self, service, *lines):
+        """What was told a moment ago comes into the log when it is written."""
+        end = time.monotonic() + 10.0
+        while any(line not in (log := self.hirosco("log", "--service", service)) for line in lines):
+            self.assertLess(time.monotonic(), end, f"{lines} in\n{log}")
 
     def typed_arguments(self, lamp, ask, url):
         """A 64-bit integer, an enumeration, a text and an array, by terminal, API, form and Python: no digit and no octet is lost."""
@@ -280,9 +285,7 @@ class Flown(Outside, unittest.TestCase):
         if self.by_form(url):
             numbers.append(2**64 - 4)
         octets = {2**64 - 1: 15, 2**64 - 2: 13, 2**64 - 3: 11, 2**64 - 4: 11}
-        log = self.hirosco("log", "--service", "5")
-        for number in numbers:
-            self.assertIn(f"PROGRAMMED SERIAL={number} COLOUR=amber NOTE_OCTETS={octets[number]} STEPS=0.25,0.5,1", log)
+        self.logged("5", *(f"PROGRAMMED SERIAL={number} COLOUR=amber NOTE_OCTETS={octets[number]} STEPS=0.25,0.5,1" for number in numbers))
         sent = [one["arguments"] for one in ask("/api/commands?from=0&to=1e12&limit=200")["commands"] if one["function"] == "PROGRAM"]
         self.assertEqual(sorted(one["SERIAL"] for one in sent), sorted(map(str, numbers)))
         self.assertIn("\u20ac from JSON", [one["NOTE"] for one in sent])

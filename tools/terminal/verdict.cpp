@@ -10,7 +10,7 @@
 namespace hirosco::terminal {
 namespace {
 
-/// By bit of Inhibition; the page has the same words (ground/web/page/stop.js).
+/// By bit of Inhibition; the page has the same words (ground/web/page/stop_story.js).
 constexpr std::array<std::string_view, 7> inhibitions{"stopped by SAFE ALL or by the supervisor",
                                                       "a link that it requires is missing",
                                                       "its device is lost",

@@ -204,7 +204,7 @@ class LinkMechanism {
 
 /// The mechanisms of a platform.
 using LinkMechanisms = std::span<const LinkMechanism* const>;
-/// Those that are built in, one row each in `mechanisms.cpp`.
+/// Those that are built in, one row each in `*_mechanisms.cpp`; through shared memory by `latest_link.cpp`, `queued_link.cpp`, `loaned_link.cpp`.
 [[nodiscard]] LinkMechanisms standard_link_mechanisms() noexcept;
 /// Of the same methods and kinds, for a craft in one process on virtual time: in memory, whatever their method, so that
 /// nothing depends on the host's network.

@@ -12,12 +12,12 @@
 
 namespace hirosco::pus {
 
-/// What ST[20] needs of the parameters. Ids are ParameterId::wire(); values are big-endian as on the wire.
+/// What ST[20] needs of the parameters; ranges, states and protections are judged by who implements it (`GenericSubsystem::check_write()`). Ids are ParameterId::wire(); values are big-endian as on the wire.
 /// Thread: the service loop.
 struct ParameterAccess {
   struct Write {
     std::uint32_t id{};
-    Octets value;                    ///< views the telecommand: copy it before returning
+    Octets value;  ///< views the telecommand: copy it before returning
   };
   virtual ~ParameterAccess() = default;
   /// Called once before the reads of one report: they all see the values of one cycle.

@@ -7,7 +7,7 @@
 #include "hirosco/subsystem/cycle/cycle.hpp"
 
 /// The cycle's part in stopping an actuator: what it looks at before each output (the supervisor's stop, its permission and its
-/// heartbeat; what is lost stands in `lost_inputs.cpp`), and what an output is while it is inhibited. What stops one that does not
+/// heartbeat; what is lost stands in `lost_inputs.cpp`, all reasons are in `pages/pages.hpp`, Inhibition), and what an output is while it is inhibited. What stops one that does not
 /// obey is the guard's: `supervisor/guard/guard.hpp`.
 namespace hirosco {
 

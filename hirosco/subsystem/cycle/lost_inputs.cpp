@@ -10,7 +10,7 @@
 /// NAME_STALE, medium. What inhibited means for an output stands in `actuator_gate.cpp`, `write_outputs()`.
 /// From there on it is the supervisor's (`supervision/event_handling/`): `reactions.cpp` hears the event, `plan_choice.cpp`
 /// finds the plan of the mission or, without one, that of the severity, and `procedures/steps/` act: `shut_down_network` for
-/// high, `set_state` to Safe-Operational for medium.
+/// high, `set_state` to Safe-Operational for medium. Of a link that the mission gives `on_loss`, `link_losses.cpp` decides instead.
 namespace hirosco {
 
 void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {

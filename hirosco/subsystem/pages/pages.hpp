@@ -24,7 +24,7 @@ enum Inhibition : std::uint32_t {
   inhibited_by_link = 2,  ///< a required link is stale or its producer reports a fault
   inhibited_by_device = 4,  ///< a device is silent
   inhibited_by_author = 8,  ///< the subsystem itself (a limit)
-  inhibited_by_failure = 16,  ///< a state's node failed
+  inhibited_by_failure = 16,  ///< a state's node failed, or its output jumped at a bumpless change
   inhibited_by_supervisor = 32,  ///< the supervisor is gone
   inhibited_by_fall_back = 64,  ///< an endnode has gone over to a fall-back that has not answered yet; passes by itself
 };

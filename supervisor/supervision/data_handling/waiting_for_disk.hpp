@@ -17,7 +17,7 @@ namespace hirosco::supervisor {
 
 /// Telecommands that were permitted and leave when their record is on the disk, not before (decision 24): in the order in which
 /// they came, bounded in number and time. It only keeps them: `Telecommands::take()` puts in what is not
-/// essential, `Telecommands::forward_durable()` takes out what `PacketLog::durable()` says is on the disk.
+/// essential, `Telecommands::forward_durable()` takes out what `PacketLog::durable()` says is on the disk and no fence has made void since.
 /// Thread: the supervisor's.
 class WaitingForDisk {
  public:

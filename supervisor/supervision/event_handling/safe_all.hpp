@@ -17,7 +17,8 @@
 namespace hirosco::supervisor {
 
 /// SAFE_ALL, however it was asked for: the guard stops everything, the states follow, and what became of it is told by who
-/// was to stop. Thread: the supervisor's; the stop itself is the guard's.
+/// was to stop. It holds until a SET_STATE(Operational) that was permitted after it leaves (`Telecommands::forward()`, `Guard::release()`).
+/// Thread: the supervisor's; the stop itself is the guard's.
 class SafeAll final : public Remembered {
  public:
   SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, std::vector<Undertaking*> under_way)

@@ -9,7 +9,7 @@ import {state_name} from '../commanding.js';
 import {clock_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, events, flight, mission, mode_of, newest_s, now_s, outcome_of, replay, replay_from, slow} from '../store.js';
-import {fallen, stop} from '../stop.js';
+import {fallen, stop} from '../stop_story.js';
 import {is_wanted} from './link_graph.js';
 import {is_known, state_look} from './subsystem_card.js';
 

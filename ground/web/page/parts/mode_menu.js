@@ -9,7 +9,7 @@ import {finished, send} from '../commanding.js';
 import {state_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, link, mission, mode_of, operator, outcome_of, replay} from '../store.js';
-import {fallen} from '../stop.js';
+import {fallen} from '../stop_story.js';
 import {usePopup} from './popup.js';
 
 /// What the supervisor is told to change to: {name, id (of the telecommand), steps, failed}; null when nothing is under way.

@@ -4,7 +4,7 @@
 // What stands behind and above the curves of a plot: gaps, limits, what was commanded and what happened, the stop, the pinned cursors, the
 // whole range of a joint. Each is a plugin of uPlot.
 import {brief_text} from '../format.js';
-import {stop} from '../stop.js';
+import {stop} from '../stop_story.js';
 import {columns, commands, events, gaps, outcome_of, values} from '../store.js';
 import {colour} from '../theme.js';
 import {pins} from './plot_cursor.js';

@@ -9,7 +9,7 @@ import {target_line} from './hand.js';
 import {usual_description} from '../scene/usual.js';
 import {drawing_code, scene_of_mission} from './scene_file.js';
 import {typed} from './typed.js';
-import {fallen, fallen_text, inhibited_text} from '../stop.js';
+import {fallen, fallen_text, inhibited_text} from '../stop_story.js';
 import {columns, commands, fast, freshness, mission, operator, outcome_of, replay, slow, status_of, values} from '../store.js';
 
 const gamepad_period_ms = 60;

@@ -5,7 +5,7 @@
 import {clock_text} from '../format.js';
 import {html} from '../html.js';
 import {link, mission, operator, replay_from} from '../store.js';
-import {acknowledge, bring_up_again, fallen, rising, stop} from '../stop.js';
+import {acknowledge, bring_up_again, fallen, rising, stop} from '../stop_story.js';
 import {plot_names, scene_of_mission} from './scene_file.js';
 import {Severity} from './icons.js';
 

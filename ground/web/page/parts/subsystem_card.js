@@ -3,7 +3,7 @@
 import {state_name, state_names} from '../commanding.js';
 import {duration_text, rate_text, state_text} from '../format.js';
 import {html} from '../html.js';
-import {fallen_text, inhibited_text, is_switched_off} from '../stop.js';
+import {fallen_text, inhibited_text, is_switched_off} from '../stop_story.js';
 import {link, replay, slow, status_of, subsystem_of} from '../store.js';
 
 export const state_look = (state) => ({Operational: 'good', SafeOperational: 'amber', PreOperational: 'amber',

@@ -10,7 +10,7 @@ import {Severity} from '../parts/icons.js';
 import {LogSearch} from '../parts/log_search.js';
 import {Panel} from '../parts/panel.js';
 import {Chain} from '../parts/stop_banner.js';
-import {story} from '../stop.js';
+import {story} from '../stop_story.js';
 import {counts, events, mission, replay} from '../store.js';
 
 const severities = ['high', 'medium', 'low', 'info'];

@@ -11,7 +11,7 @@ import {Robot} from '../parts/robot.js';
 import {scene_of_mission} from '../parts/scene_file.js';
 import {SubsystemCard} from '../parts/subsystem_card.js';
 import {html} from '../html.js';
-import {stop} from '../stop.js';
+import {stop} from '../stop_story.js';
 import {Why} from './events.js';
 import {state_name} from '../commanding.js';
 import {unit_text} from '../format.js';

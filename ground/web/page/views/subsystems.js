@@ -7,7 +7,7 @@ import {html} from '../html.js';
 import {Panel} from '../parts/panel.js';
 import {StateDiagram} from '../parts/state_diagram.js';
 import {SubsystemCard, configuration_of, state_look, waits_text} from '../parts/subsystem_card.js';
-import {inhibited_text} from '../stop.js';
+import {inhibited_text} from '../stop_story.js';
 import {columns, freshness, link, mission, mode_of, operator, replay, slow, status_of, subsystem_of, values} from '../store.js';
 
 /// "Bring telepresence up": every step with its verdict; the first refusal stops it.
