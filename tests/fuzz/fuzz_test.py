@@ -15,6 +15,7 @@ MOST_RUNS_WITH_A_DEFECT = 2_000_000
 ARGUMENTS = "hirosco/pus/service/arguments.cpp"
 FRAMES = "hirosco/data_transfer/control/stream_frame.cpp"
 DATAGRAMS = "hirosco/data_transfer/link/link_datagram.cpp"
+STREAMS = "hirosco/data_transfer/device/stream_framing.cpp"
 DICTIONARY = "hirosco/parameter/dictionary.cpp"
 PARAMETERS = "hirosco/pus/st20_parameter/parameter_service.cpp"
 URDF = "robotics/urdf/read.cpp"
@@ -56,6 +57,16 @@ TARGETS = {"arguments": (
      "there is a fourth kind of frame":
          (FRAMES, "kind > static_cast<std::uint8_t>(StreamFrameKind::Permit)",
           "kind > static_cast<std::uint8_t>(StreamFrameKind::Permit) + 1")}),
+    "stream_framing": (
+    [STREAMS],
+    {"the check of a frame is not looked at":
+         (STREAMS, "if (check.get<std::uint16_t>() == crc16(frame)) {", "if (check.get<std::uint16_t>() != 0x5A5A) {"),
+     "a head may promise more than a frame can have":
+         (STREAMS, "sync == stream_sync && octets <= max_frame_octets &&", "sync == stream_sync &&"),
+     "a head is not checked":
+         (STREAMS, " && check == crc16(head.first(checked_head_octets))", " && check != 0xFFFF"),
+     "a frame is taken before its last octet is there":
+         (STREAMS, "if (waiting.size() < whole)", "if (waiting.size() + 1 < whole)")}),
     "link_datagram": (
     [DATAGRAMS],
     {"the check sum is not looked at":

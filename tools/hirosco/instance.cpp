@@ -47,7 +47,8 @@ struct Address {
   std::vector<std::string> found;
   const auto note = [&](const descriptor::Endnode& endnode) {
     const FlowMeans* means = find_flow_means(endnode.transfer);
-    if (means != nullptr && means->form == AddressForm::HostPort) found.push_back(endnode.address);
+    if (means == nullptr || means->form == AddressForm::Name) return;
+    if (means->form == AddressForm::HostPort || endnode.address.starts_with('/')) found.push_back(endnode.address);
   };
   for (const auto& member : mission.subsystems) {
     for (const auto& device : member.subsystem.devices)

@@ -38,7 +38,7 @@ void fix_epoch() {
 }
 
 /// Every process of the flight knows where it belongs, those started again later, too: by environment.
-void tell_children(const FlightEntry& flight) {
+void tell_children(const FlightEntry& flight, const descriptor::Mission& mission) {
   const auto tell = [](const char* variable, const std::string& value) {
     if (value.empty()) ::unsetenv(variable);
     else ::setenv(variable, value.c_str(), 1);
@@ -46,6 +46,7 @@ void tell_children(const FlightEntry& flight) {
   tell(communication::telemetry_address_variable, flight.telemetry);
   tell(communication::telecommand_address_variable, flight.telecommand);
   tell(flight_instance_variable, flight.named() ? flight.instance : std::string{});
+  tell(device_networks_variable, to_text(mission.device_networks));
 }
 
 /// Whoever names a flight has to know where to find what is its own.
@@ -184,7 +185,7 @@ int run(const RunOptions& options) {
   if (!locks) return exit_environment;
   const auto& folder = flight.folder;
   introduce(flight, options);
-  tell_children(flight);
+  tell_children(flight, mission);
   clear_injections(*mission, folder);
   fix_epoch();
   supervisor::KeeperPlan plan;

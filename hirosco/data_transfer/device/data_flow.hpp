@@ -21,10 +21,12 @@ inline constexpr std::size_t max_frame_octets = 1024;
 struct Received {
   Flow flow{Flow::None};
   std::size_t octets{0};             ///< of the buffer that were filled
+  std::uint32_t damaged{0};          ///< places since the last receive where a stream was damaged; datagrams have none
 };
 
 /// Any means of communication with a device (paper 4.1): whole frames, both ways, never blocking.
-/// Realtime: bounded; send() at most one system call, receive() one for each frame that waits, of so many at most.
+/// Realtime: bounded, no allocation; so many system calls at most, none of which waits. Who looks for a peer that has gone does so
+/// at most each reconnect_pause.
 /// Thread: the one user.
 class DataFlow {
  public:
@@ -46,7 +48,7 @@ class DataFlow {
 };
 
 /// How frames travel between a subsystem and a device.
-enum class Transfer : std::uint8_t { SharedMemory, MessageQueue, Unix, Udp, Tcp, Serial };
+enum class Transfer : std::uint8_t { SharedMemory, MessageQueue, Unix, Udp, Tcp, Serial, Can, Ethercat };
 template <>
 struct EnumTexts<Transfer> {
   using enum Transfer;
@@ -55,16 +57,30 @@ struct EnumTexts<Transfer> {
                                                       {Unix, "unix"},
                                                       {Udp, "udp"},
                                                       {Tcp, "tcp"},
-                                                      {Serial, "serial"}});
+                                                      {Serial, "serial"},
+                                                      {Can, "can"},
+                                                      {Ethercat, "ethercat"}});
 };
 
 /// Which end of a flow is opened: the subsystem's or the device's.
 enum class FlowSide : std::uint8_t { Subsystem, Device };
 
+/// What a flow carries: device frames, or the octets of an author's own protocol (FrameProtocol), which a stream hands on as
+/// they come.
+enum class Framing : std::uint8_t { Frames, Raw };
+template <>
+struct EnumTexts<Framing> {
+  static constexpr auto table = enum_table<Framing>({{Framing::Frames, "frames"}, {Framing::Raw, "raw"}});
+};
+
+/// A flow that lost its peer looks for it no more often than this.
+inline constexpr Duration reconnect_pause = std::chrono::milliseconds{50};
+
 /// The part of an endnode descriptor that a flow needs.
 struct FlowAddress {
   Transfer transfer{};
-  std::string address;  ///< a name, a path, or host:port
+  std::string address;  ///< a name, a line, or host:port
+  Framing framing{Framing::Frames};
 };
 
 /// Opens data flows. Real: by means of transfer; simulated: a pair of mailboxes in memory.  Realtime: allocates.

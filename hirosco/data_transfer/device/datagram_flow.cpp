@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/data_transfer/device/datagram_flow.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -11,9 +9,9 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
+#include "hirosco/data_transfer/device/device_socket.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 
@@ -22,11 +20,7 @@ namespace {
 
 constexpr int most_at_once = 16;
 
-struct Address {
-  sockaddr_storage storage{};
-  socklen_t octets{0};
-  [[nodiscard]] const sockaddr* get() const noexcept { return reinterpret_cast<const sockaddr*>(&storage); }
-};
+using Address = SocketAddress;
 
 bool is_gone(int number) noexcept {
   return number == ECONNREFUSED || number == ENOENT || number == ECONNRESET || number == ENOTCONN || number == EPIPE;
@@ -93,28 +87,6 @@ class DatagramFlow final : public DataFlow {
   std::string own_path_;
 };
 
-Result<Address> loopback(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos) return fail(ErrorCode::InvalidArgument, "address is not host:port");
-  const std::string host = text.substr(0, colon) == "localhost" ? "127.0.0.1" : text.substr(0, colon);
-  std::uint16_t port = 0;
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data() + colon + 1, end, port);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0)
-    return fail(ErrorCode::InvalidArgument, "port is not 1 .. 65535");
-  sockaddr_in internet{};
-  internet.sin_family = AF_INET;
-  internet.sin_port = htons(port);
-  if (::inet_pton(AF_INET, host.c_str(), &internet.sin_addr) != 1)
-    return fail(ErrorCode::InvalidArgument, "host is not an IPv4 address");
-  if (ntohl(internet.sin_addr.s_addr) >> 24 != 127)
-    return fail(ErrorCode::NotPermitted, "address is not a loopback one");
-  Address address;
-  std::memcpy(&address.storage, &internet, sizeof internet);
-  address.octets = sizeof internet;
-  return address;
-}
-
 Address unix_address(const std::string& path) noexcept {
   sockaddr_un local{};
   local.sun_family = AF_UNIX;
@@ -125,8 +97,8 @@ Address unix_address(const std::string& path) noexcept {
   return address;
 }
 
-Result<FileDescriptor> make_socket(int family) noexcept {
-  FileDescriptor socket{::socket(family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+Result<FileDescriptor> make_unix_socket() noexcept {
+  FileDescriptor socket{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
   if (!socket) return fail(ErrorCode::SystemFailure, "make socket", errno);
   return socket;
 }
@@ -148,17 +120,14 @@ void remove_stale(const std::string& path, const Address& address) noexcept {
 
 }  // namespace
 
-Result<std::unique_ptr<DataFlow>> open_udp_flow(const std::string& address, FlowSide side) {
-  HIROSCO_TRY_LET(const Address device, loopback(address));
-  HIROSCO_TRY_LET(FileDescriptor socket, make_socket(AF_INET));
-  if (side == FlowSide::Device) {
-    HIROSCO_TRY(bind_to(socket, device));
-    return std::make_unique<DatagramFlow>(std::move(socket), Address{}, true, std::string{});
-  }
+Result<std::unique_ptr<DataFlow>> open_udp_flow(const FlowOpening& opening) {
+  HIROSCO_TRY_LET(const DeviceRoute route, find_route(opening));
+  const bool device = opening.side == FlowSide::Device;
+  HIROSCO_TRY_LET(FileDescriptor socket, make_device_socket(SOCK_DGRAM, route, device ? route.device : route.own));
   // Connected: only then does the system tell that nobody listens, and drop what others send.
-  if (::connect(socket.get(), device.get(), device.octets) != 0)
+  if (!device && ::connect(socket.get(), route.device.get(), route.device.octets) != 0)
     return fail(ErrorCode::SystemFailure, "connect socket", errno);
-  return std::make_unique<DatagramFlow>(std::move(socket), Address{}, false, std::string{});
+  return std::make_unique<DatagramFlow>(std::move(socket), Address{}, device, std::string{});
 }
 
 Result<std::unique_ptr<DataFlow>> open_unix_flow(const std::string& address, FlowSide side) {
@@ -167,7 +136,7 @@ Result<std::unique_ptr<DataFlow>> open_unix_flow(const std::string& address, Flo
   const std::string subsystem = address + ".subsystem";
   const std::string& own_path = side == FlowSide::Device ? address : subsystem;
   const Address own = unix_address(own_path);
-  HIROSCO_TRY_LET(FileDescriptor socket, make_socket(AF_UNIX));
+  HIROSCO_TRY_LET(FileDescriptor socket, make_unix_socket());
   remove_stale(own_path, own);
   HIROSCO_TRY(bind_to(socket, own));
   return std::make_unique<DatagramFlow>(std::move(socket), unix_address(side == FlowSide::Device ? subsystem : address),

@@ -8,18 +8,27 @@
 #include <string>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/device_network.hpp"
 
 namespace hirosco {
 
-/// What an address of a means of transfer is: a name, which belongs to the instance of a flight, or host:port, which is one
-/// of the computer's and cannot be had twice.
-enum class AddressForm : std::uint8_t { Name, HostPort };
+/// What an address of a means of transfer is: a name, which belongs to the instance of a flight; host:port, which is one of the
+/// computer's and cannot be had twice; or a line, which is either: a name or a path below /dev, behind it "@BAUD".
+enum class AddressForm : std::uint8_t { Name, HostPort, Line };
 
-/// One means of transfer of the real set: a function that opens its flows, and a row in `flow_means.cpp`.
+/// What is opened.
+struct FlowOpening {
+  std::string address;  ///< with the flight's instance in it
+  FlowSide side{FlowSide::Subsystem};
+  Framing framing{Framing::Frames};
+  std::span<const DeviceNetwork> networks{};  ///< outside this computer that it may be in
+};
+
+/// One means of transfer of the real set: a function that opens its flows, and a row in `linux_flow_means.cpp`.
 struct FlowMeans {
   Transfer transfer;
   AddressForm form;
-  Result<std::unique_ptr<DataFlow>> (*open)(const std::string& address, FlowSide side);
+  Result<std::unique_ptr<DataFlow>> (*open)(const FlowOpening& opening);
 };
 
 /// Those that are built in.

@@ -5,16 +5,25 @@
 #include <array>
 
 #include "hirosco/data_transfer/device/datagram_flow.hpp"
+#include "hirosco/data_transfer/device/message_queue_flow.hpp"
+#include "hirosco/data_transfer/device/serial_flow.hpp"
 #include "hirosco/data_transfer/device/shared_memory_flow.hpp"
+#include "hirosco/data_transfer/device/tcp_flow.hpp"
 
 namespace hirosco {
 namespace {
 
 /// A means is in force where it stands here: for descriptors, subsystems, the supervisor's inhibits and devices.
 constexpr std::array built_in_means{
-    FlowMeans{Transfer::SharedMemory, AddressForm::Name, SharedMemoryFlow::open},
-    FlowMeans{Transfer::Unix, AddressForm::Name, open_unix_flow},
+    FlowMeans{Transfer::SharedMemory, AddressForm::Name,
+              [](const FlowOpening& at) { return SharedMemoryFlow::open(at.address, at.side); }},
+    FlowMeans{Transfer::Unix, AddressForm::Name,
+              [](const FlowOpening& at) { return open_unix_flow(at.address, at.side); }},
     FlowMeans{Transfer::Udp, AddressForm::HostPort, open_udp_flow},
+    FlowMeans{Transfer::Tcp, AddressForm::HostPort, open_tcp_flow},
+    FlowMeans{Transfer::Serial, AddressForm::Line, open_serial_flow},
+    FlowMeans{Transfer::MessageQueue, AddressForm::Name,
+              [](const FlowOpening& at) { return open_message_queue_flow(at.address, at.side); }},
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -10,22 +11,29 @@
 namespace hirosco {
 namespace {
 
-[[nodiscard]] std::string own_instance() {
-  const char* name = std::getenv(flight_instance_variable);
-  return name != nullptr ? name : "";
+[[nodiscard]] std::string told(const char* variable) {
+  const char* text = std::getenv(variable);
+  return text != nullptr ? text : "";
 }
 
 }  // namespace
 
-SystemFlowFactory::SystemFlowFactory() : SystemFlowFactory{own_instance()} {}
-SystemFlowFactory::SystemFlowFactory(const std::string& instance) : suffix_{instance.empty() ? "" : "." + instance} {}
+SystemFlowFactory::SystemFlowFactory()
+    : SystemFlowFactory{told(flight_instance_variable), read_device_networks(told(device_networks_variable))} {}
+SystemFlowFactory::SystemFlowFactory(const std::string& instance, std::vector<DeviceNetwork> networks)
+    : suffix_{instance.empty() ? "" : "." + instance}, networks_{std::move(networks)} {}
 
 Result<std::unique_ptr<DataFlow>> SystemFlowFactory::do_open(const FlowAddress& address, FlowSide side) {
   const FlowMeans* means = find_flow_means(address.transfer);
   if (means == nullptr)
     return fail(ErrorCode::NotPermitted, "this means of transfer is not built in",
                 std::to_underlying(address.transfer));
-  return means->open(means->form == AddressForm::Name ? address.address + suffix_ : address.address, side);
+  FlowOpening opening{address.address, side, address.framing, networks_};
+  const bool line = means->form == AddressForm::Line;
+  if (means->form == AddressForm::Name || (line && !opening.address.starts_with('/')))
+    opening.address.insert(std::min(line ? opening.address.find('@') : std::string::npos, opening.address.size()),
+                           suffix_);
+  return means->open(opening);
 }
 
 }  // namespace hirosco

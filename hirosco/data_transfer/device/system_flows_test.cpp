@@ -31,8 +31,8 @@ std::string unique_name() {
 }
 
 /// A port that the system says is free.
-std::string free_port() {
-  const FileDescriptor socket{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+std::string free_port(int kind = SOCK_DGRAM) {
+  const FileDescriptor socket{::socket(AF_INET, kind | SOCK_CLOEXEC, 0)};
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -58,13 +58,32 @@ struct UdpTraits {
   static FlowAddress address() { return {Transfer::Udp, "127.0.0.1:" + free_port()}; }
 };
 
+struct TcpTraits {
+  using Factory = SystemFlowFactory;
+  static constexpr bool knows_its_peer = true;
+  static FlowAddress address() { return {Transfer::Tcp, "127.0.0.1:" + free_port(SOCK_STREAM)}; }
+};
+struct SerialTraits {
+  using Factory = SystemFlowFactory;
+  static constexpr bool knows_its_peer = true;
+  static FlowAddress address() { return {Transfer::Serial, "/tmp/hirosco-" + unique_name()}; }
+};
+struct MessageQueueTraits {
+  using Factory = SystemFlowFactory;
+  static constexpr bool knows_its_peer = true;
+  static FlowAddress address() { return {Transfer::MessageQueue, unique_name()}; }
+};
+
 INSTANTIATE_TYPED_TEST_SUITE_P(SharedMemory, FlowConformance, SharedMemoryTraits);
 INSTANTIATE_TYPED_TEST_SUITE_P(Unix, FlowConformance, UnixTraits);
 INSTANTIATE_TYPED_TEST_SUITE_P(Udp, FlowConformance, UdpTraits);
+INSTANTIATE_TYPED_TEST_SUITE_P(Tcp, FlowConformance, TcpTraits);
+INSTANTIATE_TYPED_TEST_SUITE_P(Serial, FlowConformance, SerialTraits);
+INSTANTIATE_TYPED_TEST_SUITE_P(MessageQueue, FlowConformance, MessageQueueTraits);
 
 TEST(SystemFlowFactory, RefusesMeansThatAreNotBuiltIn) {
   SystemFlowFactory factory;
-  for (const Transfer means : {Transfer::MessageQueue, Transfer::Tcp, Transfer::Serial, static_cast<Transfer>(99)})
+  for (const Transfer means : {Transfer::Can, Transfer::Ethercat, static_cast<Transfer>(99)})
     EXPECT_EQ(factory.open({means, "x"}, FlowSide::Subsystem).error().code, ErrorCode::NotPermitted);
 }
 
@@ -72,7 +91,7 @@ TEST(SystemFlowFactory, KeepsTheDevicesOfTwoFlightsOfOneMissionApart) {
   SystemFlowFactory plain{""};
   SystemFlowFactory one{"one"};
   SystemFlowFactory two{"two"};
-  for (const FlowAddress& address : {SharedMemoryTraits::address(), UnixTraits::address()}) {
+  for (const FlowAddress& address : {SharedMemoryTraits::address(), UnixTraits::address(), MessageQueueTraits::address()}) {
     const auto of_plain = plain.open(address, FlowSide::Device);
     const auto of_one = one.open(address, FlowSide::Device);
     ASSERT_TRUE(of_plain);
@@ -91,12 +110,22 @@ TEST(SystemFlowFactory, KeepsTheDevicesOfTwoFlightsOfOneMissionApart) {
 
 TEST(UdpFlow, RefusesEveryAddressOutsideThisComputer) {
   SystemFlowFactory factory;
-  for (const char* address : {"0.0.0.0:5000", "192.0.2.1:5000", "128.0.0.1:5000"})
-    EXPECT_EQ(factory.open({Transfer::Udp, address}, FlowSide::Device).error().code, ErrorCode::NotPermitted)
-        << address;
-  for (const char* address : {"127.0.0.1", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:12x", "somewhere:5000", ""})
-    EXPECT_EQ(factory.open({Transfer::Udp, address}, FlowSide::Device).error().code, ErrorCode::InvalidArgument)
-        << address;
+  for (const Transfer means : {Transfer::Udp, Transfer::Tcp})
+    for (const FlowSide side : {FlowSide::Device, FlowSide::Subsystem}) {
+      for (const char* address : {"192.0.2.1:5000", "128.0.0.1:5000", "[2001:db8::7]:5000"})
+        EXPECT_EQ(factory.open({means, address}, side).error().code, ErrorCode::NotPermitted) << address;
+      for (const char* address : {"127.0.0.1", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:12x", "somewhere:5000", "",
+                                  "0.0.0.0:5000", "224.0.0.1:5000"})
+        EXPECT_EQ(factory.open({means, address}, side).error().code, ErrorCode::InvalidArgument) << address;
+    }
+}
+
+TEST(DeviceNetworks, ALetInNetworkIsNoneWhereThisComputerHasNoAddressInIt) {
+  SystemFlowFactory factory{"", read_device_networks("192.0.2.0/24 198.51.100.0/24")};
+  for (const Transfer means : {Transfer::Udp, Transfer::Tcp}) {
+    EXPECT_EQ(factory.open({means, "192.0.2.1:5000"}, FlowSide::Subsystem).error().code, ErrorCode::Unavailable);
+    EXPECT_EQ(factory.open({means, "203.0.113.1:5000"}, FlowSide::Subsystem).error().code, ErrorCode::NotPermitted);
+  }
 }
 
 TEST(UnixFlow, TakesOverThePathOfADeadProcessButNoFile) {

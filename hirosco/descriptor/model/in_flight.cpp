@@ -33,7 +33,7 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
       a, b, [](const EnumerationText& x, const EnumerationText& y) { return x.value == y.value && x.text == y.text; });
 }
 [[nodiscard]] bool same_address(const Endnode& a, const Endnode& b) {
-  return a.transfer == b.transfer && a.address == b.address && a.byte_order == b.byte_order;
+  return a.transfer == b.transfer && a.address == b.address && a.byte_order == b.byte_order && a.framing == b.framing;
 }
 [[nodiscard]] bool same_end(const std::optional<Endnode>& a, const std::optional<Endnode>& b) {
   return a.has_value() == b.has_value() && (!a || same_address(*a, *b));

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/data_transfer/device/device_network.hpp"
 #include "hirosco/descriptor/model/manifest.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/utilities/result.hpp"
@@ -167,6 +168,9 @@ struct GroundAddresses {
   std::string telecommand{"127.0.0.1:10025"};
 };
 
+/// Most networks that a mission names for its devices.
+inline constexpr std::size_t max_device_networks = 16;
+
 struct DatabaseUse {
   std::string strategy{"sqlite"};  ///< sqlite | ascii | postgresql
   std::string server{};  ///< of postgresql, as libpq takes it, without a password; empty = none
@@ -194,6 +198,8 @@ struct Mission {
   GroundAddresses ground;
   std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
   std::optional<Manifest> manifest{};  ///< none: whatever has the name of an executable is started (adr 0089)
+  /// Outside this computer, where devices may be reached (docs/adr/0112); empty: nowhere.
+  std::vector<DeviceNetwork> device_networks{};
   bool isolation_required{false};  ///< no subsystem is started where this computer cannot isolate it (adr 0081)
   Amounts budget{};  ///< of all subsystems together; what is empty is not limited
   std::vector<MissionSubsystem> subsystems;

@@ -144,8 +144,9 @@ struct Requires {
 /// Address and means of transfer of a data flow (paper 4.1).
 struct Endnode {
   Transfer transfer{Transfer::SharedMemory};
-  std::string address;  ///< a name, or host:port
+  std::string address;  ///< a name, a line, or host:port
   ByteOrder byte_order{ByteOrder::Little};
+  Framing framing{Framing::Frames};  ///< Raw: by a protocol of the author's (adr 0112)
   Location at;
 };
 

@@ -16,23 +16,6 @@ constexpr std::int64_t least_sampling_us = least_sampling / std::chrono::microse
 constexpr std::int64_t max_sampling_us = 3'600'000'000;  // an hour
 constexpr double max_watchdog_ms = 60'000;
 
-/// What is wrong with an address of this form; empty when nothing is.
-std::string_view refuse_address(AddressForm form, std::string_view address) noexcept {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
-           c == '.';
-  };
-  switch (form) {
-    case AddressForm::HostPort:
-      return classify_address(address) == Address::Malformed ? "host:port is needed, for example 127.0.0.1:5000" : "";
-    case AddressForm::Name:
-      return !address.empty() && address.size() <= 64 && address.front() != '.' && std::ranges::all_of(address, plain)
-                 ? ""
-                 : "a name of 1 to 64 letters, digits, '_', '-' and '.' is needed, no path";
-  }
-  return "";
-}
-
 }  // namespace
 
 void SubsystemReader::read_configuration(const xml::Element& element) {
@@ -287,6 +270,7 @@ void SubsystemReader::read_fall_back(const xml::Element& element, DeviceUse& use
                   "a fall-back has an address of its own");
   use.fall_backs.push_back(std::move(found));
   use.fall_backs.back().byte_order = use.endnode.byte_order;
+  use.fall_backs.back().framing = use.endnode.framing;
 }
 
 void read_setting(const xml::Element& element, Problems& problems, Unique& names, std::vector<Setting>& settings) {
@@ -302,6 +286,13 @@ void read_setting(const xml::Element& element, Problems& problems, Unique& names
 
 void SubsystemReader::read_endnode(Attributes& attributes, DeviceUse& use) {
   use.endnode = read_address(attributes);
+  use.endnode.framing = attributes.one_of("framing", Framing::Frames);
+  // Who was stopped and goes on sends what is old: a device with a protocol of its own has neither epoch nor watchdog against it.
+  const Device* device = use.device < subsystem_.devices.size() ? &subsystem_.devices[use.device] : nullptr;
+  if (use.endnode.framing == Framing::Raw && device != nullptr && device->actuator && !device->enable)
+    problems_.add(*attributes.optional("framing"), "E0348",
+                  fmt::format("the actuator '{}' has a protocol that knows no epoch, and no <Enable>", device->name),
+                  "give it a second inhibit that the supervisor's side holds, or device frames");
   if (const auto* order = attributes.optional("byte_order"); order != nullptr && order->value != "native")
     use.endnode.byte_order = attributes.one_of("byte_order", ByteOrder::Little);
 }
@@ -318,11 +309,11 @@ Endnode SubsystemReader::read_address(Attributes& attributes) {
     const auto* address = attributes.required("address");
     if (address != nullptr) {
       endnode.address = address->value;
-      const std::string_view wrong = means != nullptr ? refuse_address(means->form, endnode.address) : "";
+      const std::string wrong = means != nullptr ? refuse_address(means->form, endnode.address) : "";
       if (!wrong.empty())
         problems_.add(*address, "E0217",
                       fmt::format("{} is no address for {}", in_quotes(endnode.address), transfer->value),
-                      std::string{wrong});
+                      wrong);
     }
   }
   static_cast<void>(attributes.required("address"));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/descriptor/model/status_rows.hpp"
 #include "hirosco/descriptor/read/detail/mission_reader.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
@@ -60,6 +59,8 @@ Mission MissionReader::read(const xml::Element& root) {
   // What is referred to is read before what refers to it, whatever the order in the file.
   std::vector<const xml::Element*> grounds, budgets, devices, links, modes, recoveries, consoles;
   const auto later = [](auto& list) { return [&list](const xml::Element& element) { list.push_back(&element); }; };
+  for (const xml::Element& child : root.children)
+    if (child.name == "DeviceNetwork") read_device_network(child);
   bool supervised = false;
   each_child(root, problems_,
              {{"Supervisor",
@@ -72,6 +73,7 @@ Mission MissionReader::read(const xml::Element& root) {
               {"Resources", later(budgets), 1},
               {"Manifest", [this](const auto& element) { read_manifest(element); }, 1},
               {"Isolation", [this](const auto& element) { read_isolation(element); }, 1},
+              {"DeviceNetwork", [](const xml::Element&) {}, max_device_networks},
               {"Subsystem", [this](const auto& element) { read_member(element); }, 255},
               {"SimulatedDevice", later(devices), 255},
               {"Links", later(links), 1},
@@ -347,31 +349,6 @@ std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) 
   std::ranges::move(reading.warnings, std::back_inserter(warnings_));
   if (!reading.value) incomplete_ = true;
   return std::move(reading.value);
-}
-
-void MissionReader::check_endnodes(const Subsystem& subsystem) {
-  Problems problems{subsystem.file};
-  for (const Device& device : subsystem.devices)
-    if (device.enable) check_endnode(*device.enable, subsystem.name, problems);
-  for (const PowerSwitch& power : subsystem.power_switches) check_endnode(power.endnode, subsystem.name, problems);
-  for (const Configuration& configuration : subsystem.configurations)
-    for (const DeviceUse& use : configuration.devices) {
-      check_endnode(use.endnode, subsystem.name, problems);
-      for (const Endnode& other : use.fall_backs) check_endnode(other, subsystem.name, problems);
-    }
-  if (problems.count() != 0) subsystem_problems_.push_back(problems.take());
-}
-
-void MissionReader::check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems) {
-  const FlowMeans* means = find_flow_means(endnode.transfer);
-  if (means != nullptr && means->form == AddressForm::HostPort && classify_address(endnode.address) == Address::Foreign)
-    problems.add(endnode.at, "E0313", in_quotes(endnode.address) + " leaves this computer",
-                 "only loopback addresses are allowed: 127.0.0.1", 8);
-  const auto taken = addresses_.try_emplace({endnode.transfer, endnode.address}, subsystem).first;
-  if (taken->second != subsystem)
-    problems.add(endnode.at, "E0313",
-                 fmt::format("{} is a device's of '{}'", in_quotes(endnode.address), taken->second),
-                 "each device needs an address of its own", 8);
 }
 
 void MissionReader::read_simulated_device(const xml::Element& element) {

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "hirosco/data_transfer/device/frame_protocol.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/layout.hpp"
@@ -181,6 +182,10 @@ class DevicePortBase {
   [[nodiscard]] bool reads(std::string_view name) const noexcept {
     return std::ranges::find(reads_, name) != reads_.end();
   }
+  /// What this device speaks where a configuration reaches it with framing="raw"; before use_device(). It outlives the port's use.
+  void speak(FrameProtocol& protocol) noexcept { protocol_ = &protocol; }
+  /// Null: device frames alone.
+  [[nodiscard]] FrameProtocol* protocol() const noexcept { return protocol_; }
   void will_read(std::span<const std::string_view> settings) { reads_.assign(settings.begin(), settings.end()); }
   [[nodiscard]] std::span<const NativeField> input_layout() const noexcept { return input_layout_.all(); }
   [[nodiscard]] std::span<const NativeField> output_layout() const noexcept { return output_layout_.all(); }
@@ -201,6 +206,7 @@ class DevicePortBase {
   MutableOctets output_;
   std::span<const descriptor::Setting> settings_;
   std::vector<std::string_view> reads_;
+  FrameProtocol* protocol_{nullptr};
   bool alive_{false};
   bool fresh_{false};
   std::uint16_t flags_{0};

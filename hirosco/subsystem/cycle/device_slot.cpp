@@ -105,6 +105,10 @@ void DeviceSlot::read(bool count_silence, bool counts) noexcept {
   }
   if (left_obeys_cycles_ > 0 && counts_) --left_obeys_cycles_;
   const auto received = ways_[way_].flow->receive(frame_);
+  if (received && received->damaged > 0) {
+    port_->damaged_frames_ += received->damaged;
+    count(since_good_.damaged);
+  }
   if (received && received->flow == Flow::New) take_frame(Octets{frame_}.first(received->octets));
   if (port_->fresh_) {
     since_good_ = {};

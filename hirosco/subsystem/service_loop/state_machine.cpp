@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/data_transfer/device/frame_protocol.hpp"
 #include "hirosco/data_transfer/device/power_frame.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/framework_parameters.hpp"
@@ -338,15 +340,21 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_configuration(
 
 /// The preferred endnode and its fall-backs. One that cannot be opened is passed over and told; if none can, the error is the
 /// first one's.
-Result<std::vector<DeviceSlot::Way>> GenericSubsystem::open_ways(const descriptor::DeviceUse& use) {
+Result<std::vector<DeviceSlot::Way>> GenericSubsystem::open_ways(const descriptor::DeviceUse& use,
+                                                                        const DevicePortBase& port) {
   std::vector<DeviceSlot::Way> ways;
   std::optional<Error> first;
   const auto open = [&](const descriptor::Endnode& endnode, std::size_t at) {
-    Result<Quota::Held> port = Quota::Held{};
-    if (endnode.transfer == Transfer::Udp) port = resources_.ports().take();
-    auto flow = port ? platform_.flows.open({endnode.transfer, endnode.address}, FlowSide::Subsystem)
-                     : Result<std::unique_ptr<DataFlow>>{std::unexpected{port.error()}};
-    if (flow) return ways.push_back({std::move(*flow), static_cast<std::uint8_t>(at), std::move(*port)});
+    Result<Quota::Held> held = Quota::Held{};
+    const FlowMeans* means = find_flow_means(endnode.transfer);
+    if (means != nullptr && means->form == AddressForm::HostPort) held = resources_.ports().take();
+    auto flow = held ? platform_.flows.open({endnode.transfer, endnode.address, endnode.framing}, FlowSide::Subsystem)
+                     : Result<std::unique_ptr<DataFlow>>{std::unexpected{held.error()}};
+    if (flow && endnode.framing == Framing::Raw) {
+      if (port.protocol() != nullptr) flow = make_raw_flow(std::move(*flow), *port.protocol());
+      else flow = fail(ErrorCode::Mismatch, "its port speaks no protocol of its own");
+    }
+    if (flow) return ways.push_back({std::move(*flow), static_cast<std::uint8_t>(at), std::move(*held)});
     if (!first) first = flow.error();
     const std::array arguments{static_cast<double>(descriptor::DeviceLoss::NotOpened), static_cast<double>(at),
                                static_cast<double>(ways.empty() ? at + 1 : ways.front().endnode), 0.0};
@@ -394,7 +402,7 @@ std::optional<Failure> GenericSubsystem::apply_configuration(const descriptor::C
     if (port == device_ports_.end()) return mismatch("no port for the device " + device.name);
     if (const auto difference = DeviceSlot::difference(device, *port->second); !difference.empty())
       return mismatch("device " + device.name + ": " + difference);
-    auto ways = open_ways(use);
+    auto ways = open_ways(use, *port->second);
     if (!ways) return of("device " + device.name + ": ", ways.error());
     plan.devices.emplace_back(device, use, *port->second, std::move(*ways), configuration.sampling, platform_.realtime);
     plan.device_lost_events.push_back(descriptor::framework_event::device_lost(use.device));

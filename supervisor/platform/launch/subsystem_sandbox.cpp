@@ -20,6 +20,12 @@ namespace {
 
 void add_address(const descriptor::Endnode& endnode, Sandbox& sandbox) {
   if (endnode.transfer == Transfer::SharedMemory) sandbox.writable.emplace_back("/dev/shm");
+  // Queues lie in no folder that programs see, but where one is shown, that is the one whose files they are.
+  if (endnode.transfer == Transfer::MessageQueue) sandbox.writable.emplace_back("/dev/mqueue");
+  if (endnode.transfer == Transfer::Serial) {
+    const std::string line = endnode.address.substr(0, endnode.address.rfind('@'));
+    sandbox.writable.push_back(line.starts_with('/') ? line : "/dev/pts");
+  }
   // A socket is made beside the other's.
   if (endnode.transfer == Transfer::Unix)
     sandbox.writable.push_back(std::filesystem::absolute(endnode.address).parent_path().string());

@@ -60,8 +60,11 @@ class MissionReader {
   void read_simulated_device(const xml::Element& element);
   /// The descriptor that the attribute names; reported when it cannot be taken.
   [[nodiscard]] std::optional<Subsystem> read_descriptor(Attributes& attributes);
+  // read_addresses.cpp
+  void read_device_network(const xml::Element& element);
   void check_endnodes(const Subsystem& subsystem);
   void check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems);
+  // read_mission.cpp
   [[nodiscard]] std::string executable(Attributes& attributes);
 
   // read_commands.cpp

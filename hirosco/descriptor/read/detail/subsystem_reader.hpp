@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/descriptor/model/framework_parameters.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/descriptor/read/detail/element_reader.hpp"
@@ -21,6 +22,9 @@ inline constexpr std::size_t max_event_octets = 4096 - 22 - 2;
 
 /// One <Setting> of a device, or of its simulation.
 void read_setting(const xml::Element& element, Problems& problems, Unique& names, std::vector<Setting>& settings);
+
+/// What is wrong with an address of this form; empty when nothing is. Whether it leaves this computer is the mission's matter.
+[[nodiscard]] std::string refuse_address(AddressForm form, const std::string& address);
 
 /// Amounts of resources, as a subsystem and a mission say them.
 [[nodiscard]] Amounts read_amounts(Attributes& attributes);

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/data_transfer/device/serial_line.hpp"
+
+namespace hirosco {
+
+/// Device frames on a serial line (stream_framing.hpp), 8 bits, no parity, one stop bit, no flow control. A path below /dev is opened by
+/// either side. Any other is a pseudo-terminal: the device makes one and leaves a symbolic link of that name to it, as it does for whoever
+/// comes; the subsystem follows it. A line that is not there, or hangs up, is looked for again each reconnect_pause. A frame is let go
+/// while the one before has not gone out. AlreadyExists: a living pseudo-terminal has the name, or another process the line.
+/// Realtime: but for a driver that takes its time to open a line that was plugged in again.
+[[nodiscard]] Result<std::unique_ptr<DataFlow>> open_serial_flow(const FlowOpening& opening);
+
+}  // namespace hirosco
