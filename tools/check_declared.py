@@ -162,8 +162,8 @@ def main():
     planted = [
         ("Event@colour has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
             attribute, attribute + '<xs:attribute name="colour" type="xs:string"/>'))), rows),
-        ("Transfer=tcp has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
-            '<xs:enumeration value="udp"/>', '<xs:enumeration value="udp"/><xs:enumeration value="tcp"/>'))), rows),
+        ("Transfer=can has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
+            '<xs:enumeration value="udp"/>', '<xs:enumeration value="udp"/><xs:enumeration value="can"/>'))), rows),
         ("colour is in no schema", {}, [*rows, dict(rows[0], declared="Event@colour")]),
         ("has several rows", {}, [*rows, rows[0]]),
         ("says nothing", {}, changed("Subsystem/Hang", honoured_by=" ")),

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -53,6 +54,34 @@ using Place = std::map<std::string, std::pair<std::size_t, std::size_t>>;  ///< 
     return found;
   }();
   return all;
+}
+
+[[nodiscard]] inline std::uint64_t number_of(const std::string& text) { return std::stoull(text, nullptr, 0); }
+
+/// Marks that a test has looked at.
+inline std::vector<std::string>& compared() {
+  static std::vector<std::string> marks;
+  return marks;
+}
+
+[[nodiscard]] inline const Table& table(const std::string& mark) {
+  compared().push_back(mark);
+  const auto found = tables().find(mark);
+  EXPECT_NE(found, tables().end()) << mark;
+  static const Table none;
+  return found == tables().end() ? none : found->second;
+}
+
+inline void expect_octets(const std::string& mark, const Place& code) {
+  Place page;
+  for (const Row& row : table("octets: " + mark)) page[row.at(2)] = {number_of(row[0]), number_of(row[1])};
+  EXPECT_EQ(page, code) << mark;
+}
+
+inline void expect_numbers(const std::string& mark, std::map<std::uint64_t, std::string> code) {
+  std::map<std::uint64_t, std::string> page;
+  for (const Row& row : table("numbers: " + mark)) page[number_of(row.at(0))] = row.at(1);
+  EXPECT_EQ(page, code) << mark;
 }
 
 }  // namespace hirosco

@@ -19,6 +19,7 @@
 #include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/data_transfer/device/power_frame.hpp"
 #include "hirosco/data_transfer/device/shared_memory_flow.hpp"
+#include "hirosco/data_transfer/device/stream_framing.hpp"
 #include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/link/loaned_link.hpp"
 #include "hirosco/data_transfer/link/queued_link.hpp"
@@ -33,33 +34,6 @@
 
 namespace hirosco {
 namespace {
-
-[[nodiscard]] std::uint64_t number_of(const std::string& text) { return std::stoull(text, nullptr, 0); }
-
-std::vector<std::string>& compared() {
-  static std::vector<std::string> marks;
-  return marks;
-}
-
-[[nodiscard]] const Table& table(const std::string& mark) {
-  compared().push_back(mark);
-  const auto found = tables().find(mark);
-  EXPECT_NE(found, tables().end()) << mark;
-  static const Table none;
-  return found == tables().end() ? none : found->second;
-}
-
-void expect_octets(const std::string& mark, const Place& code) {
-  Place page;
-  for (const Row& row : table("octets: " + mark)) page[row.at(2)] = {number_of(row[0]), number_of(row[1])};
-  EXPECT_EQ(page, code) << mark;
-}
-
-void expect_numbers(const std::string& mark, std::map<std::uint64_t, std::string> code) {
-  std::map<std::uint64_t, std::string> page;
-  for (const Row& row : table("numbers: " + mark)) page[number_of(row.at(0))] = row.at(1);
-  EXPECT_EQ(page, code) << mark;
-}
 
 template <class E>
 [[nodiscard]] std::uint64_t of(E value) {
@@ -411,6 +385,19 @@ TEST(InterfacePages, Devices) {
                {0x50, 0x48, 0x96, 1, 3, 2, 5, 6, 7, 8});
   expect_frame(write_power_status(buffer, {.on = false, .sequence = 0x08070605}).value(),
                {0x50, 0x48, 0xE9, 0, 0, 0, 5, 6, 7, 8});
+}
+
+TEST(InterfacePages, FramesInAStream) {
+  expect_octets("streamed device frame", {{"sync", {0, 2}},
+                                          {"frame_octets", {2, 2}},
+                                          {"head_control", {4, 2}},
+                                          {"frame", {stream_head_octets, 0}}});
+  std::array<std::byte, 64> buffer;
+  const Octets streamed = write_streamed(buffer, std::array{std::byte{0xDE}, std::byte{0xAD}});
+  // Check sums by Python's binascii.crc_hqx.
+  const std::array<unsigned, 10> expected{0x48, 0x53, 2, 0, 0x63, 0x0E, 0xDE, 0xAD, 0x60, 0x4F};
+  ASSERT_EQ(streamed.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(std::to_integer<unsigned>(streamed[i]), expected[i]) << i;
 }
 
 /// Of the memory itself: how it is laid out stands in the flow's source only.

@@ -66,7 +66,7 @@ def played(descriptor, folder):
         most = int(LATE_S / (int(configuration.get("sampling_us")) / 1e6)) + 1
         for device in configuration.findall("Device"):
             endnode = device.find("Endnode")
-            if endnode.get("transfer") == "shared_memory":
+            if endnode.get("transfer") not in ("unix", "udp"):
                 endnode.set("transfer", "unix")
                 endnode.set("address", device.get("name"))
                 changed.append(f"{device.get('name')} on a socket")

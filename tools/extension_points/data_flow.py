@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""POSIX message queues as a means of transfer to devices. It passes the conformance of all flows, and descriptors may ask for it."""
+"""A means of transfer to devices by a word that has none yet: CAN, by a gateway process behind message queues. It passes the conformance of all flows, and
+descriptors may ask for it."""
 WHO = "a data flow"
 BEFORE = "3 + 5"
 GOAL = "own files + 1 row (and its file in CMake)"
 MOST_FILES, MOST_EDITED = 2, 1
-FILES = {"hirosco/data_transfer/device/message_queue_flow.hpp": """\
+FILES = {"hirosco/data_transfer/device/can_gateway_flow.hpp": """\
 #pragma once
 
 #include <memory>
@@ -15,12 +16,12 @@ FILES = {"hirosco/data_transfer/device/message_queue_flow.hpp": """\
 
 namespace hirosco {
 
-/// Frames in order by POSIX message queues; each side owns the queue that it reads.
-[[nodiscard]] Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& address, FlowSide side);
+/// Frames in order to a gateway of a CAN bus, by POSIX message queues; each side owns the queue that it reads.
+[[nodiscard]] Result<std::unique_ptr<DataFlow>> open_can_gateway_flow(const std::string& address, FlowSide side);
 
 }  // namespace hirosco
-""", "hirosco/data_transfer/device/message_queue_flow.cpp": """\
-#include "hirosco/data_transfer/device/message_queue_flow.hpp"
+""", "hirosco/data_transfer/device/can_gateway_flow.cpp": """\
+#include "hirosco/data_transfer/device/can_gateway_flow.hpp"
 
 #include <fcntl.h>
 #include <mqueue.h>
@@ -33,11 +34,11 @@ namespace hirosco {
 namespace hirosco {
 namespace {
 
-class MessageQueueFlow final : public DataFlow {
+class CanGatewayFlow final : public DataFlow {
  public:
-  MessageQueueFlow(std::string own, std::string peer, mqd_t queue)
+  CanGatewayFlow(std::string own, std::string peer, mqd_t queue)
       : own_{std::move(own)}, peer_{std::move(peer)}, queue_{queue} {}
-  ~MessageQueueFlow() override {
+  ~CanGatewayFlow() override {
     ::mq_close(queue_);
     ::mq_unlink(own_.c_str());
   }
@@ -76,7 +77,7 @@ class MessageQueueFlow final : public DataFlow {
 
 }  // namespace
 
-Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& address, FlowSide side) {
+Result<std::unique_ptr<DataFlow>> open_can_gateway_flow(const std::string& address, FlowSide side) {
   const std::string subsystem = "/" + address + ".subsystem", device = "/" + address + ".device";
   const auto& [own, peer] = side == FlowSide::Device ? std::tie(device, subsystem) : std::tie(subsystem, device);
   mq_attr room{};
@@ -85,18 +86,18 @@ Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& add
   const mqd_t queue = ::mq_open(own.c_str(), O_RDONLY | O_NONBLOCK | O_CREAT | O_EXCL, 0600, &room);
   if (queue < 0 && errno == EEXIST) return fail(ErrorCode::AlreadyExists, "this side of the flow is open");
   if (queue < 0) return fail(ErrorCode::Unavailable, "message queue", errno);
-  return std::make_unique<MessageQueueFlow>(own, peer, queue);
+  return std::make_unique<CanGatewayFlow>(own, peer, queue);
 }
 
 }  // namespace hirosco
 """}
 EDITS = [
-    ("hirosco/data_transfer/device/linux_flow_means.cpp", '#include "hirosco/data_transfer/device/shared_memory_flow.hpp"\n',
-     '#include "hirosco/data_transfer/device/message_queue_flow.hpp"\n#include "hirosco/data_transfer/device/shared_memory_flow.hpp"\n'),
+    ("hirosco/data_transfer/device/linux_flow_means.cpp", '#include "hirosco/data_transfer/device/datagram_flow.hpp"\n',
+     '#include "hirosco/data_transfer/device/can_gateway_flow.hpp"\n#include "hirosco/data_transfer/device/datagram_flow.hpp"\n'),
     ("hirosco/data_transfer/device/linux_flow_means.cpp", "    FlowMeans{Transfer::Udp,",
-     "    FlowMeans{Transfer::MessageQueue, AddressForm::Name, open_message_queue_flow},\n    FlowMeans{Transfer::Udp,"),
+     "    FlowMeans{Transfer::Can, AddressForm::Name,\n              [](const FlowOpening& at) { return open_can_gateway_flow(at.address, at.side); }},\n    FlowMeans{Transfer::Udp,"),
 ]
-SOURCES = ["hirosco/data_transfer/device/linux_flow_means.cpp", "hirosco/data_transfer/device/message_queue_flow.cpp"]
+SOURCES = ["hirosco/data_transfer/device/linux_flow_means.cpp", "hirosco/data_transfer/device/can_gateway_flow.cpp"]
 TRY = """\
 #include <unistd.h>
 
@@ -107,20 +108,20 @@ TRY = """\
 namespace hirosco::testing {
 namespace {
 
-struct MessageQueueTraits {
+struct CanGatewayTraits {
   using Factory = SystemFlowFactory;
   static constexpr bool knows_its_peer = false;
   static FlowAddress address() {
     static int number = 0;
-    return {Transfer::MessageQueue, "hirosco-" + std::to_string(::getpid()) + "-" + std::to_string(number++)};
+    return {Transfer::Can, "hirosco-" + std::to_string(::getpid()) + "-" + std::to_string(number++)};
   }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(MessageQueue, FlowConformance, MessageQueueTraits);
+INSTANTIATE_TYPED_TEST_SUITE_P(CanGateway, FlowConformance, CanGatewayTraits);
 
-TEST(MessageQueueFlow, ADescriptorMayAskForIt) {
+TEST(CanGatewayFlow, ADescriptorMayAskForIt) {
   const descriptor::FileSource source = [](const std::filesystem::path& file) {
     auto text = descriptor::file_system()(file);
-    constexpr std::string_view now = "<Endnode transfer=\\"shared_memory\\"", then = "<Endnode transfer=\\"message_queue\\"";
+    constexpr std::string_view now = "<Endnode transfer=\\"shared_memory\\"", then = "<Endnode transfer=\\"can\\"";
     text->replace(text->find(now), now.size(), then);
     return text;
   };

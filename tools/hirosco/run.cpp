@@ -46,7 +46,7 @@ void tell_children(const FlightEntry& flight, const descriptor::Mission& mission
   tell(communication::telemetry_address_variable, flight.telemetry);
   tell(communication::telecommand_address_variable, flight.telecommand);
   tell(flight_instance_variable, flight.named() ? flight.instance : std::string{});
-  tell(device_networks_variable, to_text(mission.device_networks));
+  tell(device_networks_variable, words_of(mission.device_networks));
 }
 
 /// Whoever names a flight has to know where to find what is its own.

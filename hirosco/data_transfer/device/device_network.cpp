@@ -75,7 +75,7 @@ std::vector<DeviceNetwork> read_device_networks(std::string_view text) {
   return found;
 }
 
-std::string to_text(std::span<const DeviceNetwork> networks) {
+std::string words_of(std::span<const DeviceNetwork> networks) {
   std::string text;
   for (const DeviceNetwork& network : networks) text += (text.empty() ? "" : " ") + to_text(network);
   return text;

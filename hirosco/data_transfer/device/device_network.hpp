@@ -30,7 +30,7 @@ struct DeviceNetwork {
 
 /// Words with blanks between them, as the environment of a flight has them. What is no network is left out: nothing is permitted by it.
 [[nodiscard]] std::vector<DeviceNetwork> read_device_networks(std::string_view text);
-[[nodiscard]] std::string to_text(std::span<const DeviceNetwork> networks);
+[[nodiscard]] std::string words_of(std::span<const DeviceNetwork> networks);
 
 /// Null: in none of them.
 [[nodiscard]] const DeviceNetwork* find_network(std::span<const DeviceNetwork> networks,

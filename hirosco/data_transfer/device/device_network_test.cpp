@@ -42,7 +42,7 @@ TEST(DeviceNetwork, HasTheAddressesOfItsPrefixAndNoOthers) {
 
 TEST(DeviceNetwork, SeveralAreWordsAndWhatIsNoneOfThemPermitsNothing) {
   const auto networks = read_device_networks("192.0.2.0/24%eth1 nonsense 2001:db8::/64  10.1.0.0/16");
-  EXPECT_EQ(to_text(networks), "192.0.2.0/24%eth1 2001:db8::/64 10.1.0.0/16");
+  EXPECT_EQ(words_of(networks), "192.0.2.0/24%eth1 2001:db8::/64 10.1.0.0/16");
   EXPECT_EQ(find_network(networks, read_internet_address("10.1.255.1").value()), &networks[2]);
   EXPECT_EQ(find_network(networks, read_internet_address("10.2.0.1").value()), nullptr);
   EXPECT_TRUE(read_device_networks("").empty());

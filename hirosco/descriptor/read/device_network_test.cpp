@@ -30,7 +30,7 @@ TEST(MissionDeviceNetwork, PermitsTheDevicesInIt) {
   for (const char* transfer : {"udp", "tcp"}) {
     const auto reading = with(network, "192.0.2.7:5001", transfer);
     ASSERT_TRUE(reading.value) << code(reading);
-    EXPECT_EQ(to_text(reading.value->device_networks), "192.0.2.0/24");
+    EXPECT_EQ(words_of(reading.value->device_networks), "192.0.2.0/24");
   }
   EXPECT_TRUE(with(R"(<DeviceNetwork address="2001:db8::/64" interface="eth1"/>)", "[2001:db8::7]:5001").value);
 }
