@@ -101,8 +101,9 @@ struct Played {
     for (const auto& use : configuration.devices) {
       if (&subsystem.devices[use.device] != &device) continue;
       if (use.endnode.framing == Framing::Raw)
-        return std::unexpected{fmt::format("{} of {} has a protocol of its own, and a simulated device speaks device frames",
-                                           device.name, subsystem.name)};
+        return std::unexpected{
+            fmt::format("{} of {} has a protocol of its own, and a simulated device speaks device frames", device.name,
+                        subsystem.name)};
       if (played.first == nullptr) {
         played = {&device, addresses_of(use), use.endnode.byte_order, &configuration, configuration.sampling};
         continue;

@@ -167,7 +167,9 @@ std::vector<Way> all_ways() {
   const auto named = [](Transfer transfer, const std::string& before = "") {
     return [=] { return FlowAddress{transfer, before + unique_name()}; };
   };
-  const auto at_port = [](Transfer transfer, int kind) { return [=] { return FlowAddress{transfer, free_port(kind)}; }; };
+  const auto at_port = [](Transfer transfer, int kind) {
+    return [=] { return FlowAddress{transfer, free_port(kind)}; };
+  };
   const auto raw = [](auto address) {
     return [=] {
       FlowAddress made = address();

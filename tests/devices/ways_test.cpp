@@ -136,7 +136,8 @@ TEST_P(Ways, AFrameOfAnotherSizeIsNoNewsAndSaysSo) {
   }
   EXPECT_EQ(port.input().value, 1);
   const auto reason = slot->loss().reason;
-  EXPECT_EQ(reason, GetParam().framing == Framing::Raw ? descriptor::DeviceLoss::Damaged : descriptor::DeviceLoss::WrongSize);
+  EXPECT_EQ(reason,
+            GetParam().framing == Framing::Raw ? descriptor::DeviceLoss::Damaged : descriptor::DeviceLoss::WrongSize);
 }
 
 TEST_P(Ways, ADeviceThatRepeatsItselfIsLostInItsLimit) {
@@ -257,7 +258,9 @@ class Axis final : public simulation::SimulatedDevice {
     return payload.exhausted() ? ok() : fail(ErrorCode::Malformed, "payload");
   }
   void write_sensors(OctetWriter& payload) noexcept override { payload.put(wanted); }
-  [[nodiscard]] Result<> do_fault(const simulation::Words&) override { return fail(ErrorCode::InvalidArgument, "none"); }
+  [[nodiscard]] Result<> do_fault(const simulation::Words&) override {
+    return fail(ErrorCode::InvalidArgument, "none");
+  }
   [[nodiscard]] std::string do_truth() const override { return ""; }
 };
 
@@ -316,7 +319,8 @@ std::vector<Way> frame_ways() {
   std::erase_if(found, [](const Way& way) { return way.framing == Framing::Raw; });
   return found;
 }
-INSTANTIATE_TEST_SUITE_P(All, Duties, ::testing::ValuesIn(frame_ways()), [](const auto& way) { return way.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, Duties, ::testing::ValuesIn(frame_ways()),
+                         [](const auto& way) { return way.param.name; });
 
 }  // namespace
 }  // namespace hirosco::testing

@@ -388,10 +388,9 @@ TEST(InterfacePages, Devices) {
 }
 
 TEST(InterfacePages, FramesInAStream) {
-  expect_octets("streamed device frame", {{"sync", {0, 2}},
-                                          {"frame_octets", {2, 2}},
-                                          {"head_control", {4, 2}},
-                                          {"frame", {stream_head_octets, 0}}});
+  expect_octets(
+      "streamed device frame",
+      {{"sync", {0, 2}}, {"frame_octets", {2, 2}}, {"head_control", {4, 2}}, {"frame", {stream_head_octets, 0}}});
   std::array<std::byte, 64> buffer;
   const Octets streamed = write_streamed(buffer, std::array{std::byte{0xDE}, std::byte{0xAD}});
   // Check sums by Python's binascii.crc_hqx.

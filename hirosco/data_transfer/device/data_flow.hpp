@@ -21,7 +21,7 @@ inline constexpr std::size_t max_frame_octets = 1024;
 struct Received {
   Flow flow{Flow::None};
   std::size_t octets{0};             ///< of the buffer that were filled
-  std::uint32_t damaged{0};          ///< places since the last receive where a stream was damaged; datagrams have none
+  std::uint32_t damaged{0};  ///< places since the last receive where a stream was damaged; datagrams have none
 };
 
 /// Any means of communication with a device (paper 4.1): whole frames, both ways, never blocking.

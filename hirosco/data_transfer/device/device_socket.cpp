@@ -82,7 +82,8 @@ Result<FileDescriptor> make_device_socket(int type, const DeviceRoute& route, co
   FileDescriptor socket{::socket(route.device.storage.ss_family, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
   if (!socket) return fail(ErrorCode::SystemFailure, "make socket", errno);
   if (route.network != nullptr) {
-    if (!set_option(socket, SO_DONTROUTE, 1)) return fail(ErrorCode::SystemFailure, "keep a socket in its network", errno);
+    if (!set_option(socket, SO_DONTROUTE, 1))
+      return fail(ErrorCode::SystemFailure, "keep a socket in its network", errno);
     const std::string& interface = route.network->interface;
 #ifdef SO_BINDTODEVICE
     if (!interface.empty() && ::setsockopt(socket.get(), SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(),

@@ -20,7 +20,8 @@ class FrameProtocol {
   struct Heard {
     bool whole{false};  ///< a message was complete; of several the newest
     std::uint16_t flags{0};  ///< device_flag
-    Octets payload{};  ///< its values as the fields of <Input> lie, in the endnode's byte order; views memory of the protocol
+    Octets
+        payload{};  ///< its values as the fields of <Input> lie, in the endnode's byte order; views memory of the protocol
     std::uint32_t damaged{0};  ///< messages that were damaged
   };
   virtual ~FrameProtocol() = default;

@@ -48,8 +48,10 @@ class RawFlow final : public DataFlow {
       const auto heard = protocol_.hear(Octets{came}.first(std::min(received->octets, came.size())));
       newest.damaged += heard.damaged;
       if (!heard.whole) continue;
-      HIROSCO_TRY_LET(const Octets status,
-                      write_status(buffer, {.epoch = epoch_, .sequence = sequence_, .flags = heard.flags, .payload = heard.payload}));
+      HIROSCO_TRY_LET(
+          const Octets status,
+          write_status(buffer,
+                       {.epoch = epoch_, .sequence = sequence_, .flags = heard.flags, .payload = heard.payload}));
       newest.flow = Flow::New;
       newest.octets = status.size();
     }

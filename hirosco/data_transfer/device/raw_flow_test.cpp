@@ -43,7 +43,8 @@ struct RawFlow : ::testing::Test {
 
   void command(DeviceMode mode, std::uint32_t sequence) {
     std::array<std::byte, max_frame_octets> frame;
-    ASSERT_TRUE(flow->send(write_command(frame, {.mode = mode, .epoch = 7, .sequence = sequence, .payload = {}}).value()));
+    ASSERT_TRUE(
+        flow->send(write_command(frame, {.mode = mode, .epoch = 7, .sequence = sequence, .payload = {}}).value()));
   }
   void say(std::initializer_list<int> octets) {
     std::vector<std::byte> wire;

@@ -30,12 +30,11 @@ struct Speed {
   std::uint32_t baud;
   speed_t code;
 };
-constexpr std::array speeds{Speed{1200, B1200},       Speed{2400, B2400},       Speed{4800, B4800},
-                            Speed{9600, B9600},       Speed{19'200, B19200},    Speed{38'400, B38400},
-                            Speed{57'600, B57600},    Speed{115'200, B115200},  Speed{230'400, B230400},
-                            Speed{460'800, B460800},  Speed{500'000, B500000},  Speed{921'600, B921600},
-                            Speed{1'000'000, B1000000}, Speed{2'000'000, B2000000}, Speed{3'000'000, B3000000},
-                            Speed{4'000'000, B4000000}};
+constexpr std::array speeds{
+    Speed{1200, B1200},         Speed{2400, B2400},         Speed{4800, B4800},         Speed{9600, B9600},
+    Speed{19'200, B19200},      Speed{38'400, B38400},      Speed{57'600, B57600},      Speed{115'200, B115200},
+    Speed{230'400, B230400},    Speed{460'800, B460800},    Speed{500'000, B500000},    Speed{921'600, B921600},
+    Speed{1'000'000, B1000000}, Speed{2'000'000, B2000000}, Speed{3'000'000, B3000000}, Speed{4'000'000, B4000000}};
 
 [[nodiscard]] const Speed* find_speed(std::uint32_t baud) noexcept {
   const auto found = std::ranges::find(speeds, baud, &Speed::baud);

@@ -24,7 +24,8 @@ TEST(SerialLine, IsAPathAndASpeedThatLinesHave) {
   EXPECT_EQ(read_serial_line("/dev/ttyUSB0@9600").value().baud, 9600U);
   EXPECT_EQ(read_serial_line("arm").value().baud, 115'200U);
   EXPECT_EQ(read_serial_line("arm@4000000").value().baud, 4'000'000U);
-  for (const char* text : {"", "@9600", "arm@", "arm@12345", "arm@9600x", "arm@-1"}) EXPECT_FALSE(read_serial_line(text)) << text;
+  for (const char* text : {"", "@9600", "arm@", "arm@12345", "arm@9600x", "arm@-1"})
+    EXPECT_FALSE(read_serial_line(text)) << text;
 }
 
 /// A pseudo-terminal of the test's own: what is behind a line that somebody else made.

@@ -10,8 +10,9 @@ namespace hirosco {
 namespace {
 
 constexpr std::size_t longest_line_path = 200;
-constexpr std::array line_speeds{1200U,    2400U,    4800U,    9600U,    19'200U,    38'400U,    57'600U,    115'200U,
-                                 230'400U, 460'800U, 500'000U, 921'600U, 1'000'000U, 2'000'000U, 3'000'000U, 4'000'000U};
+constexpr std::array line_speeds{1200U,      2400U,      4800U,      9600U,     19'200U,  38'400U,
+                                 57'600U,    115'200U,   230'400U,   460'800U,  500'000U, 921'600U,
+                                 1'000'000U, 2'000'000U, 3'000'000U, 4'000'000U};
 
 }  // namespace
 

@@ -20,7 +20,8 @@ struct Head {
 
 [[nodiscard]] Head read_head(Octets head) noexcept {
   OctetReader reader{head, std::endian::little};
-  const auto sync = reader.get<std::uint16_t>(), octets = reader.get<std::uint16_t>(), check = reader.get<std::uint16_t>();
+  const auto sync = reader.get<std::uint16_t>(), octets = reader.get<std::uint16_t>(),
+             check = reader.get<std::uint16_t>();
   return {sync == stream_sync && octets <= max_frame_octets && check == crc16(head.first(checked_head_octets)), octets};
 }
 
@@ -78,8 +79,8 @@ std::optional<Octets> StreamDeframer::next() noexcept {
 void StreamDeframer::skip_to_sync() noexcept {
   const auto first = static_cast<std::byte>(stream_sync & 0xFF);
   const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(end_);
-  begin_ = static_cast<std::size_t>(
-      std::find(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_) + 1, end, first) - buffer_.begin());
+  begin_ = static_cast<std::size_t>(std::find(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_) + 1, end, first) -
+                                    buffer_.begin());
 }
 
 std::uint32_t StreamDeframer::take_damaged() noexcept { return std::exchange(damaged_, 0); }

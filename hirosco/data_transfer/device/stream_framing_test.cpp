@@ -104,7 +104,8 @@ TEST(StreamFraming, FindsItsPlaceAgainAfterDamageOfAnyOctet) {
       if (found.frames.size() < sent.size() || kind == 2) {
         EXPECT_GE(found.damaged, 1U) << at << " " << kind;
       }
-      for (const auto& frame : found.frames) EXPECT_NE(std::ranges::find(sent, frame), sent.end()) << "an invented frame";
+      for (const auto& frame : found.frames)
+        EXPECT_NE(std::ranges::find(sent, frame), sent.end()) << "an invented frame";
       EXPECT_TRUE(std::ranges::equal(std::span{found.frames}.last(2), std::span{sent}.last(2))) << at << " " << kind;
     }
 }

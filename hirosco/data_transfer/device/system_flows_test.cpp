@@ -91,7 +91,8 @@ TEST(SystemFlowFactory, KeepsTheDevicesOfTwoFlightsOfOneMissionApart) {
   SystemFlowFactory plain{""};
   SystemFlowFactory one{"one"};
   SystemFlowFactory two{"two"};
-  for (const FlowAddress& address : {SharedMemoryTraits::address(), UnixTraits::address(), MessageQueueTraits::address()}) {
+  for (const FlowAddress& address :
+       {SharedMemoryTraits::address(), UnixTraits::address(), MessageQueueTraits::address()}) {
     const auto of_plain = plain.open(address, FlowSide::Device);
     const auto of_one = one.open(address, FlowSide::Device);
     ASSERT_TRUE(of_plain);

@@ -19,8 +19,9 @@ Reading<Mission> with(const std::string& elements, const std::string& address, c
   const std::string robot = file_system()(data / "coronagraph.xml").value();
   const std::string now = changed("transfer=\"udp\" address=\"127.0.0.1:5001\"",
                                   "transfer=\"" + transfer + "\" address=\"" + address + "\"", robot);
-  const auto source = overlay({{"mission.xml", changed(std::string{first}, elements + "\n" + std::string{first}, mission)},
-                               {"coronagraph.xml", now}});
+  const auto source =
+      overlay({{"mission.xml", changed(std::string{first}, elements + "\n" + std::string{first}, mission)},
+               {"coronagraph.xml", now}});
   return read_mission(data / "mission.xml", source);
 }
 std::string code(const Reading<Mission>& reading) { return reading.problems.empty() ? "" : reading.problems[0].code; }
@@ -60,9 +61,9 @@ TEST(MissionDeviceNetwork, IsANetworkOfTheCraftsOwn) {
 TEST(MissionDeviceNetwork, ThatStandsBehindWhoNeedsItIsReadAsWell) {
   const std::string mission = file_system()(data / "mission.xml").value();
   const std::string robot = file_system()(data / "coronagraph.xml").value();
-  const auto reading = read_mission(
-      data / "mission.xml", overlay({{"mission.xml", changed("</Mission>", network + "</Mission>", mission)},
-                                     {"coronagraph.xml", changed("127.0.0.1:5001", "192.0.2.7:5001", robot)}}));
+  const auto reading = read_mission(data / "mission.xml",
+                                    overlay({{"mission.xml", changed("</Mission>", network + "</Mission>", mission)},
+                                             {"coronagraph.xml", changed("127.0.0.1:5001", "192.0.2.7:5001", robot)}}));
   EXPECT_TRUE(reading.value) << code(reading);
 }
 

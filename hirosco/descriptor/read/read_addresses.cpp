@@ -88,9 +88,10 @@ namespace {
 void check_reach_of(const Endnode& endnode, const std::vector<DeviceNetwork>& permitted, Problems& problems) {
   const auto address = read_device_address(endnode.address);
   if (!address)
-    return problems.add(endnode.at, "E0313",
-                        fmt::format("{} is no address of one device: {}", in_quotes(endnode.address), address.error().text),
-                        "numbers are wanted, as what a name means is another computer's word", 8);
+    return problems.add(
+        endnode.at, "E0313",
+        fmt::format("{} is no address of one device: {}", in_quotes(endnode.address), address.error().text),
+        "numbers are wanted, as what a name means is another computer's word", 8);
   if (address->loopback() || find_network(permitted, *address) != nullptr) return;
   problems.add(endnode.at, "E0313", in_quotes(endnode.address) + " leaves this computer",
                "127.0.0.1, or let the mission name the craft's network: <DeviceNetwork address=\"192.0.2.0/24\"/>", 8);

@@ -312,8 +312,7 @@ Endnode SubsystemReader::read_address(Attributes& attributes) {
       const std::string wrong = means != nullptr ? refuse_address(means->form, endnode.address) : "";
       if (!wrong.empty())
         problems_.add(*address, "E0217",
-                      fmt::format("{} is no address for {}", in_quotes(endnode.address), transfer->value),
-                      wrong);
+                      fmt::format("{} is no address for {}", in_quotes(endnode.address), transfer->value), wrong);
     }
   }
   static_cast<void>(attributes.required("address"));

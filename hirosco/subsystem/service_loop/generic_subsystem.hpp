@@ -249,7 +249,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
   Result<Step> initialise_software();
   void remember_persistent();
   Result<Step> leave_cycle();
-  [[nodiscard]] Result<std::vector<DeviceSlot::Way>> open_ways(const descriptor::DeviceUse& use, const DevicePortBase& port);
+  [[nodiscard]] Result<std::vector<DeviceSlot::Way>> open_ways(const descriptor::DeviceUse& use,
+                                                               const DevicePortBase& port);
   /// Whether the switches of its devices say so; for who has none: always.
   [[nodiscard]] bool powered(Power wanted) const noexcept;
   [[nodiscard]] bool power_takes_too_long() const noexcept;

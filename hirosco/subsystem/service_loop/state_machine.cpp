@@ -341,7 +341,7 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::command_configuration(
 /// The preferred endnode and its fall-backs. One that cannot be opened is passed over and told; if none can, the error is the
 /// first one's.
 Result<std::vector<DeviceSlot::Way>> GenericSubsystem::open_ways(const descriptor::DeviceUse& use,
-                                                                        const DevicePortBase& port) {
+                                                                 const DevicePortBase& port) {
   std::vector<DeviceSlot::Way> ways;
   std::optional<Error> first;
   const auto open = [&](const descriptor::Endnode& endnode, std::size_t at) {

@@ -212,10 +212,10 @@ class SubsystemReader {
   Unique structure_ids_{"housekeeping structure id", "E0211"};
   Unique provided_{"provided set", "E0201"};
   Unique required_{"required set", "E0201"};
-  std::vector<Provides> provides_;   ///< under <Subsystem>: valid in every configuration
+  std::vector<Provides> provides_;  ///< under <Subsystem>: valid in every configuration
   std::vector<Requires> requires_;
   Duration self_test_within_{default_self_test_within};  ///< where a configuration says nothing else
-  std::size_t configurations_{0};    ///< that the descriptor has
+  std::size_t configurations_{0};  ///< that the descriptor has
   std::vector<Parameter> built_in_{framework_parameters()};
   std::vector<EnumerationUse> enumeration_uses_;
   struct InitialValue {
