@@ -24,12 +24,9 @@ WATCHDOG_S, STOP_S, SLACK_S = 0.25, 0.1, 0.15
 
 def mission_in(folder, port):
     """The mission beside descriptors of its own: a port that nobody else has."""
-    root = HERE.parents[1]
     (folder / "axis_serial.xml").write_text((HERE / "axis_serial.xml").read_text())
     (folder / "axis_tcp.xml").write_text((HERE / "axis_tcp.xml").read_text().replace("10071", str(port)))
-    (folder / "mission.xml").write_text((HERE / "mission.xml").read_text().replace("../../", f"{os.path.relpath(root, folder)}/").replace(
-        f'{os.path.relpath(root, folder)}/supervisor/', "@hirosco/supervisor/").replace(
-        f'{os.path.relpath(root, folder)}/subsystems/', "@hirosco/subsystems/"))
+    (folder / "mission.xml").write_text((HERE / "mission.xml").read_text().replace("../../", "@hirosco/"))
     return folder / "mission.xml"
 
 

@@ -134,9 +134,7 @@ void GenericSubsystem::check_settings() {
         if (port == device_ports_.end() || !port->second->reads(setting.name))
           mistake("nobody reads setting '" + setting.name + "' of '" + device + "'", setting.at);
       if (use.endnode.framing == Framing::Raw && port != device_ports_.end() && port->second->protocol() == nullptr)
-        mistake("device '" + device +
-                    "' is reached by a protocol of its own (framing=\"raw\"), and its port does not speak() one",
-                use.at);
+        mistake("device '" + device + "' is reached with framing=\"raw\", and its port does not speak() a protocol");
     }
 }
 

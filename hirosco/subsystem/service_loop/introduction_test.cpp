@@ -141,6 +141,34 @@ TEST(AuthorsMistakes, SettingsThatAreNamedAreNone) {
   EXPECT_EQ(rig.state(), State::PreOperational);
 }
 
+struct Mute final : FrameProtocol {
+  std::size_t say(const DeviceCommand&, MutableOctets) noexcept override { return 0; }
+  Heard hear(Octets) noexcept override { return {}; }
+  void restart() noexcept override {}
+};
+
+TEST(AuthorsMistakes, ADeviceOfItsOwnProtocolNeedsAPortThatSpeaksIt) {
+  const std::string raw = R"(<Subsystem name="S" id="10">
+    <Device name="MOTOR"><Input><Field name="Q" type="DOUBLE"/></Input><Output><Field name="Q" type="DOUBLE"/></Output></Device>
+    <Configuration name="C" id="1" sampling_us="1000">
+      <Device name="MOTOR"><Endnode transfer="serial" address="/dev/ttyUSB0@9600" framing="raw"/></Device>
+    </Configuration>
+  </Subsystem>)";
+  Mute protocol;
+  for (const bool speaks : {false, true}) {
+    Motor motor;
+    motor.names = [&](Motor& own) {
+      if (speaks) own.motor.speak(protocol);
+      own.use_device("MOTOR", own.motor);
+    };
+    Rig rig{motor, raw};
+    rig.set_state_now(State::PreOperational);
+    EXPECT_EQ(rig.state(), speaks ? State::PreOperational : State::Offline);
+    if (speaks) EXPECT_EQ(rig.configure_now(1), "1 3 7");
+    else EXPECT_THAT(rig.explanations, ElementsAre(::testing::HasSubstr("does not speak() a protocol")));
+  }
+}
+
 TEST(AuthorsMistakes, AreFoundWithoutAFlightAndNothingIsKept) {
   Motor motor;
   motor.names = [](Motor& own) { own.use_device("MOTOR", own.motor, {"STIFFNESS", "DAMPING"}); };
