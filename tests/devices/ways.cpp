@@ -49,7 +49,8 @@ class FramesDevice final : public PlayedDevice {
     if (!received || received->flow != Flow::New) return std::nullopt;
     const auto command = read_command(Octets{buffer}.first(received->octets));
     if (!command) return std::nullopt;
-    newest_ = {.epoch = command->epoch, .sequence = command->sequence};
+    newest_.epoch = command->epoch;
+    newest_.sequence = command->sequence;
     OctetReader reader{command->payload, std::endian::little};
     return reader.get<double>();
   }

@@ -50,6 +50,8 @@ struct Queue {
   room.mq_maxmsg = waiting_frames;
   room.mq_msgsize = max_frame_octets;
   FileDescriptor file{::mq_open(name.c_str(), O_RDWR | O_NONBLOCK | O_CREAT | O_CLOEXEC, 0600, &room)};
+  if (!file && errno == EACCES)
+    return fail(ErrorCode::NotPermitted, "a message queue is refused: a sandbox needs /dev/mqueue mounted", errno);
   if (!file) return fail(ErrorCode::SystemFailure, "open message queue", errno);
   mq_attr found{};
   if (::mq_getattr(file.get(), &found) != 0 || found.mq_msgsize != room.mq_msgsize)

@@ -77,6 +77,10 @@ TEST(SerialFlow, CarriesEveryOctetAndCountsDamageOnTheWay) {
   device.put(damaged);
   ASSERT_TRUE(flow->wait(1h));
   EXPECT_EQ(flow->receive(buffer).value().damaged, 1U);
+  device.put(damaged);
+  ASSERT_TRUE(flow->wait(1h));
+  EXPECT_EQ(flow->receive(buffer).value().damaged, 1U) << "each of them, without a good one between";
+  device.put(streamed(2));
   device.put(Octets{streamed(2)}.subspan(5));  // begins in the middle
   device.put(streamed(3));
   ASSERT_TRUE(flow->wait(1h));

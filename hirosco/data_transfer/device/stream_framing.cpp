@@ -65,9 +65,10 @@ std::optional<Octets> StreamDeframer::next() noexcept {
       return frame;
     }
     // Octets of it may be missing, and then the next head lies in it. Inside of such a one nothing is looked into again.
-    if (!std::exchange(lost_, true)) ++damaged_;
+    lost_ = true;
     const std::size_t end = begin_ + whole;
     if (begin_ >= suspect_end_) {
+      ++damaged_;
       begin_ += stream_head_octets;
       suspect_end_ = end;
     } else begin_ = end;

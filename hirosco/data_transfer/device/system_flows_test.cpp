@@ -122,9 +122,9 @@ TEST(UdpFlow, RefusesEveryAddressOutsideThisComputer) {
 }
 
 TEST(DeviceNetworks, ALetInNetworkIsNoneWhereThisComputerHasNoAddressInIt) {
-  SystemFlowFactory factory{"", read_device_networks("192.0.2.0/24 198.51.100.0/24")};
+  SystemFlowFactory factory{"", read_device_networks("198.51.100.0/24 2001:db8::/32")};
   for (const Transfer means : {Transfer::Udp, Transfer::Tcp}) {
-    EXPECT_EQ(factory.open({means, "192.0.2.1:5000"}, FlowSide::Subsystem).error().code, ErrorCode::Unavailable);
+    EXPECT_EQ(factory.open({means, "198.51.100.1:5000"}, FlowSide::Subsystem).error().code, ErrorCode::Unavailable);
     EXPECT_EQ(factory.open({means, "203.0.113.1:5000"}, FlowSide::Subsystem).error().code, ErrorCode::NotPermitted);
   }
 }
