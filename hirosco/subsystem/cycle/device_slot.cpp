@@ -105,8 +105,10 @@ void DeviceSlot::read(bool count_silence, bool counts) noexcept {
   }
   if (left_obeys_cycles_ > 0 && counts_) --left_obeys_cycles_;
   const auto received = ways_[way_].flow->receive(frame_);
-  if (received && received->damaged > 0) {
-    port_->damaged_frames_ += received->damaged;
+  // A frame that no frame is as long as is damage, too: somebody is there.
+  const bool too_long = !received && received.error().code == ErrorCode::Malformed;
+  if (const std::uint32_t damaged = too_long ? 1 : received ? received->damaged : 0; damaged > 0) {
+    port_->damaged_frames_ += damaged;
     count(since_good_.damaged);
   }
   if (received && received->flow == Flow::New) take_frame(Octets{frame_}.first(received->octets));
@@ -118,7 +120,7 @@ void DeviceSlot::read(bool count_silence, bool counts) noexcept {
     return;
   }
   if (!heard_ && !count_silence) return;
-  hung_up_ = !received && heard_;
+  hung_up_ = !received && !too_long && heard_;
   const bool hangs_up = hung_up_ && port_->alive_;
   if (!counts_ && !hangs_up) return;
   count(since_good_.silent_cycles);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
@@ -107,6 +108,40 @@ TEST_F(MotorSlot, NoOutputLeavesItsDeclaredRange) {
   port.output().current[1] = 1'000;
   made.write(5, true, false);
   EXPECT_EQ(numbers_of(heard().payload), (std::vector{10, 0, 0xE8, 0x03}));
+}
+
+/// A way that is harmed: by frames that no flow carries, or by octets between them.
+struct Harmed final : DataFlow {
+  bool too_long{false};
+  bool harmed{false};  ///< after one whole frame
+  Result<> do_send(Octets) noexcept override { return ok(); }
+  Result<Received> do_receive(MutableOctets buffer) noexcept override {
+    const std::array<std::byte, 2> angle{};
+    if (!std::exchange(harmed, true))
+      return Received{
+          Flow::New, write_status(buffer, {.epoch = 0, .sequence = 1, .flags = 0, .payload = angle}).value().size(), 0};
+    if (too_long) return fail(ErrorCode::Malformed, "frame is longer than expected", 2000);
+    return Received{Flow::None, 0, 3};
+  }
+  bool do_wait(Duration) noexcept override { return false; }
+};
+
+TEST_F(MotorSlot, WhatIsHarmedOnItsWayIsCountedAndIsNoHangUp) {
+  for (const bool too_long : {false, true}) {
+    auto harmed = std::make_unique<Harmed>();
+    harmed->too_long = too_long;
+    std::vector<DeviceSlot::Way> ways;
+    ways.push_back({std::move(harmed), 0});
+    DeviceSlot made{device, use, port, std::move(ways), 1ms, true};
+    made.read(true);
+    ASSERT_TRUE(port.alive());
+    for (int cycle = 1; cycle <= 3; ++cycle) {
+      made.read(true);
+      EXPECT_EQ(made.just_lost(), cycle == 3) << "in its limit, not at once";
+    }
+    EXPECT_EQ(port.damaged_frames(), too_long ? 3U : 9U);
+    EXPECT_EQ(made.loss().reason, descriptor::DeviceLoss::Damaged);
+  }
 }
 
 struct Pushed {
