@@ -20,7 +20,7 @@ constexpr std::size_t longest_name = 64;
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
 }
 
-[[nodiscard]] bool is_name(std::string_view text) noexcept {
+[[nodiscard]] bool is_plain_name(std::string_view text) noexcept {
   return !text.empty() && text.size() <= longest_name && text.front() != '.' && std::ranges::all_of(text, is_plain);
 }
 
@@ -41,10 +41,10 @@ std::string refuse_address(AddressForm form, const std::string& address) {
     case AddressForm::HostPort:
       return classify_address(address) == Address::Malformed ? "host:port is needed, for example 127.0.0.1:5000" : "";
     case AddressForm::Name:
-      return is_name(address) ? "" : "a name of 1 to 64 letters, digits, '_', '-' and '.' is needed, no path";
+      return is_plain_name(address) ? "" : "a name of 1 to 64 letters, digits, '_', '-' and '.' is needed, no path";
     case AddressForm::Line: {
       const std::string path = address.substr(0, address.rfind('@'));
-      if (!is_name(path) && !is_device_file(path))
+      if (!is_plain_name(path) && !is_device_file(path))
         return "a file below /dev, or the name of a pseudo-terminal, is needed: /dev/ttyUSB0@115200";
       return read_serial_line(address) ? "" : "no line has this speed: 9600, 115200, 1000000, ...";
     }
