@@ -52,7 +52,7 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\"/><RealTimeLinkService><Provides name=\"P\" "
         "methods=\"tipc\"><ParamRef name=\"X\"/></Provides></RealTimeLinkService>",
         "<Device name=\"D\" actuator=\"yes\"><Output><Field name=\"F\" type=\"INT8\" safe=\"0\"/></Output>"
-        "<Enable transfer=\"serial\" address=\"x\"/></Device>",
+        "<Enable transfer=\"can\" address=\"x\"/></Device>",
         "<Device name=\"D\"><Input><Field name=\"F\" type=\"INT8\" enumeration=\"E\"/></Input></Device>"}) {
     const std::string text = std::string{"<Subsystem name=\"S\" id=\"10\">"} + body + "</Subsystem>";
     std::ofstream{file} << text;
