@@ -185,7 +185,7 @@ int run(const RunOptions& options) {
   if (!locks) return exit_environment;
   const auto& folder = flight.folder;
   introduce(flight, options);
-  tell_children(flight, mission);
+  tell_children(flight, *mission);
   clear_injections(*mission, folder);
   fix_epoch();
   supervisor::KeeperPlan plan;
