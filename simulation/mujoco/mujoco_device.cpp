@@ -90,7 +90,9 @@ Result<> MujocoDevice::differ(const Words& words) {
   if (what == "friction") {
     HIROSCO_TRY_LET(const double factor, words.number(1, 0, 100));
     double more = 0;
-    if (words.count() > 2) HIROSCO_TRY_LET(more, words.number(2, 0, 1000));
+    if (words.count() > 2) {
+      HIROSCO_TRY_LET(more, words.number(2, 0, 1000));
+    }
     HIROSCO_TRY(words.expect(words.count() > 2 ? 3 : 2));
     robot_->set_friction(factor, more);
     return ok();

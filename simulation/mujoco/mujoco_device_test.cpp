@@ -88,7 +88,8 @@ TEST_F(MujocoDeviceTest, SaysWhatItDoesNotTake) {
 
 TEST(MujocoDevice, WithoutAFileOrWithOneThatIsNoneIsNotPluggedIn) {
   LocalFlows flows;
-  for (const auto& files : {std::map<std::string, std::string>{}, {{"MODEL_FILE", "nowhere.urdf"}}, {{"MODEL_FILE", __FILE__}}}) {
+  using Files = std::map<std::string, std::string>;
+  for (const Files& files : {Files{}, Files{{"MODEL_FILE", "nowhere.urdf"}}, Files{{"MODEL_FILE", __FILE__}}}) {
     MujocoDevice device{flows, {Transfer::SharedMemory, "device"}, {.files = files}};
     const auto plugged = device.plug();
     ASSERT_FALSE(plugged);

@@ -109,7 +109,8 @@ TEST(MujocoRobot, RefusesInWordsWhatItCannotMove) {
 }
 
 TEST(MujocoRobot, TakesTheOrderOfJointsFromTheFile) {
-  const auto robot = MujocoRobot::make(R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"><inertial><mass value="1"/>
+  const auto robot = MujocoRobot::make(R"(<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><link name="c"><inertial><mass value="1"/>
       <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
     <joint name="second" type="prismatic"><parent link="b"/><child link="c"/><limit lower="0" upper="1" velocity="1" effort="7"/></joint>
     <joint name="first" type="continuous"><parent link="a"/><child link="b"/><limit velocity="1" effort="3"/></joint></robot>)");

@@ -25,6 +25,10 @@ constexpr double most_off_line_m = 0.002;
 /// An external torque has to last for a contact, so many cycles.
 constexpr std::uint32_t contact_after_cycles = 3;
 
+[[nodiscard]] std::int64_t millimetres(double metres) noexcept {
+  return static_cast<std::int64_t>(std::clamp(1e3 * metres, -1e6, 1e6));
+}
+
 }  // namespace
 
 std::unique_ptr<Subsystem> make_robot_arm() { return std::make_unique<RobotArm>(); }
@@ -100,6 +104,7 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
 /// Takes the present position as the reference: entering Operational moves nothing.
 void RobotArm::engage() noexcept {
   setpoints_->rest(measured_.position);
+  clearance_m_.store(clearance_->nearest(measured_.position).distance_m);
   law_->reset();
   contact_cycles_ = 0;
 }
@@ -107,6 +112,7 @@ void RobotArm::engage() noexcept {
 void RobotArm::advance() noexcept {
   if (jog_left_s_ > 0 && (jog_left_s_ -= cycle_s_) <= 0) setpoints_->brake();
   static_cast<void>(setpoints_->advance());
+  watch_clearance();
   const double progressed = setpoints_->progress();
   motion_values_.store({static_cast<std::uint8_t>(setpoints_->kind()), setpoints_->duration_s(), progressed});
   if (stop_ && setpoints_->at_rest()) {
@@ -196,6 +202,20 @@ void RobotArm::watch(bool follows) noexcept {
   raise(event, static_cast<std::uint8_t>(found->joint + 1), found->value, found->limit);
 }
 
+/// Comes to rest before links meet, or one of them what it is to keep out of; who is too near already may go away.
+void RobotArm::watch_clearance() noexcept {
+  const double now_m = clearance_->nearest(setpoints_->now().position).distance_m;
+  clearance_m_.store(now_m);
+  if (setpoints_->at_rest() || setpoints_->braking()) return;
+  const auto ahead = clearance_->nearest(setpoints_->braked());
+  if (ahead.distance_m >= clearance_limit_m_.load() || ahead.distance_m >= now_m) return;
+  raise(too_near_, ahead.distance_m);
+  if (motion_) abort(*motion_, Trouble::too_near, ahead.names, millimetres(ahead.distance_m));
+  motion_.reset();
+  jog_left_s_ = 0;
+  setpoints_->brake();
+}
+
 /// Whoever pushes meets an arm that stands where it was met.
 void RobotArm::watch_contact() noexcept {
   const robot_arm::ContactValues values = contact_values_.load();
@@ -252,6 +272,9 @@ Outcome RobotArm::move_j(const FunctionValues& values, const Call& call) noexcep
   if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
   const JointVector goal = robot_arm::vector_of(std::span{values}.first(bounds_.size()));
   if (!in_range(goal)) return refused(Trouble::out_of_range);
+  const auto there = clearance_->nearest(goal);
+  if (there.distance_m < clearance_limit_m_.load() && there.distance_m < clearance_m_.load())
+    return refused(Trouble::too_near, there.names, millimetres(there.distance_m));
   return start(setpoints_->go(goal, values[bounds_.size()]), call);
 }
 
@@ -287,10 +310,23 @@ Outcome RobotArm::jog_l(const FunctionValues& values, const Call& call) noexcept
 
 /// A limit that the arm's present load exceeds already would only stop it.
 Outcome RobotArm::set_torque_limit(double share) noexcept {
+  if (measured_.torque.size() == 0) return refused(pus::FailureCode::NotPermittedNow);
   for (std::size_t i = 0; i < bounds_.size(); ++i)
     if (!(std::abs(measured_.torque[static_cast<Eigen::Index>(i)]) < share * bounds_[i].effort))
       return refused(Trouble::load_above_limit, "joint", static_cast<std::int64_t>(i + 1));
   torque_limit_.store(share);
+  return ok();
+}
+
+Outcome RobotArm::keep_out(const robot_arm::KeepOut& numbers) noexcept {
+  if (!clearance_) return refused(pus::FailureCode::NotPermittedNow);
+  std::array<robot_arm::Capsule, robot_arm::Clearance::most_volumes> volumes;
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    const double* its = numbers.data() + i * robot_arm::volume_numbers;
+    volumes[i] = {{its[0], its[1], its[2]}, {its[3], its[4], its[5]}, its[6]};
+  }
+  clearance_->keep_out(volumes);
+  keep_out_.store(numbers);
   return ok();
 }
 
@@ -315,16 +351,18 @@ void RobotArm::bind_functions() {
     return running;
   });
   on_function("SET_TORQUE_LIMIT", [this](double share) { return set_torque_limit(share); });
+  on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return keep_out(numbers); });
   on_function("SET_CONTACT", [this](std::uint8_t reaction, double limit) -> Outcome {
     contact_values_.store({reaction, limit});
     return ok();
   });
   on_function("SET_PAYLOAD", [this](double mass_kg, std::array<double, 3> place_m) -> Outcome {
     payload_values_.store({mass_kg, place_m});
-    observer_->reset();
+    if (observer_) observer_->reset();
     return ok();
   });
   on_function("SET_TOOL", [this](std::array<double, 3> place_m) -> Outcome {
+    if (!setpoints_) return refused(pus::FailureCode::NotPermittedNow);
     if (motion_ || stop_ || !setpoints_->at_rest()) return refused(pus::FailureCode::Busy);
     tool_place_m_.store(place_m);
     setpoints_->set_tool({robotics::Matrix3::Identity(), {place_m[0], place_m[1], place_m[2]}});

@@ -11,6 +11,7 @@
 
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "robotics/dynamics/dynamics.hpp"
+#include "subsystems/robot_arm/control/clearance.hpp"
 #include "subsystems/robot_arm/control/law.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
@@ -34,6 +35,7 @@ class RobotArm final : public Subsystem {
     too_slow = 0x8007,  ///< longer than a telecommand is waited for
     line_lost = 0x8008,  ///< the joints cannot follow the line
     no_goal = 0x8009,  ///< it is no place, or where it stands already
+    too_near = 0x800A,  ///< to itself, or to a volume that it keeps out of
   };
   enum class Reaction : std::uint8_t { None, Hold };
 
@@ -62,6 +64,7 @@ class RobotArm final : public Subsystem {
   void control() noexcept;
   void watch(bool follows) noexcept;
   void watch_contact() noexcept;
+  void watch_clearance() noexcept;
   void arrive() noexcept;
   template <FailureEnumeration Code>
   void end_motion(Code why) noexcept;
@@ -79,6 +82,7 @@ class RobotArm final : public Subsystem {
   Outcome jog_j(const FunctionValues& values, const Call& call) noexcept;
   Outcome jog_l(const FunctionValues& values, const Call& call) noexcept;
   Outcome set_torque_limit(double share) noexcept;
+  Outcome keep_out(const robot_arm::KeepOut& numbers) noexcept;
 
   Parameter<robot_arm::CurrentValues> current_;
   Parameter<robot_arm::Joints> desired_position_, desired_velocity_, external_torque_;
@@ -89,12 +93,15 @@ class RobotArm final : public Subsystem {
   Parameter<std::array<double, 3>> gravity_m_s2_, tool_place_m_;
   Parameter<double> bandwidth_rad_s_, acceleration_, jerk_, goal_tolerance_;
   Parameter<double> torque_limit_, torque_hard_, speed_limit_, following_limit_;
+  Parameter<double> clearance_limit_m_, clearance_m_;
+  Parameter<robot_arm::KeepOut> keep_out_;
   Parameter<std::uint8_t> active_;
   Event<> motion_done_{"MOTION_DONE"};
   /// Joint from 1, what was measured, the limit.
   Event<std::uint8_t, double, double> position_exceeded_{"POSITION_LIMIT_EXCEEDED"}, speed_exceeded_{"SPEED_LIMIT_EXCEEDED"},
       torque_exceeded_{"TORQUE_LIMIT_EXCEEDED"}, torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"},
       following_exceeded_{"FOLLOWING_LIMIT_EXCEEDED"}, contact_{"CONTACT"};
+  Event<double> too_near_{"TOO_NEAR"};  ///< m
   DevicePort<robot_arm::ArmInput, robot_arm::ArmOutput> device_;
 
   std::optional<robotics::Model> model_;
@@ -105,6 +112,8 @@ class RobotArm final : public Subsystem {
   std::optional<robot_arm::Law> law_;
   std::optional<robot_arm::MomentumObserver> observer_;
   std::optional<robot_arm::Setpoints> setpoints_;
+  robot_arm::Hulls hulls_;
+  std::optional<robot_arm::Clearance> clearance_;
   robot_arm::Watch watch_;
   robotics::State model_state_;
   robot_arm::Measured measured_;

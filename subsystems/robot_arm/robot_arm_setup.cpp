@@ -35,7 +35,7 @@ Result<Step> RobotArm::software_init() {
   use_device(device_name, device_, {model_setting, tip_setting});
   for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_,
                                                             &torque_exceeded_, &torque_hard_exceeded_,
-                                                            &following_exceeded_, &contact_})
+                                                            &following_exceeded_, &contact_, &too_near_})
     use_event(*event);
   HIROSCO_TRY(read_model());
   bind_functions();
@@ -61,6 +61,9 @@ void RobotArm::publish_all() {
   publish("TORQUE_HARD", torque_hard_);
   publish("SPEED_LIMIT", speed_limit_);
   publish("FOLLOWING_LIMIT", following_limit_);
+  publish("CLEARANCE_LIMIT", clearance_limit_m_);
+  publish("CLEARANCE", clearance_m_);
+  publish("KEPT_OUT", keep_out_);
   publish("ACTIVE", active_);
 }
 
@@ -86,7 +89,12 @@ Result<> RobotArm::read_model() {
   HIROSCO_TRY_LET(const std::string tip, setting_of_all(tip_setting));
   if (named.empty()) return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of ARM");
   const auto file = descriptor::file_of(own_descriptor(), named);
-  const auto reading = robotics::urdf::read(file, descriptor::file_system());
+  const auto text = descriptor::file_system()(file);
+  if (!text) {
+    problem_ = fmt::format("{} {}", file.string(), text.error().text);
+    return fail(text.error().code, problem_.c_str());
+  }
+  const auto reading = robotics::urdf::read(file, *text);
   if (!reading.value) {
     const auto& first = reading.problems.front();
     problem_ = fmt::format("{}:{}:{}: {}: {}", file.filename().string(), first.at.line, first.at.column, first.code,
@@ -96,6 +104,7 @@ Result<> RobotArm::read_model() {
   auto made = robotics::Model::make(robotics::urdf::describe(*reading.value));
   if (!made) return fail(made.error());
   model_ = std::move(*made);
+  hulls_ = robot_arm::hulls_of(*text);
   const auto tips = robotics::urdf::tips(*reading.value);
   if (tip.empty() && tips.size() != 1)
     return fail(ErrorCode::InvalidArgument, "the robot has several ends: setting TIP of ARM names the link",
@@ -143,6 +152,8 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   law_.emplace(*model_, tip_, cycle_s_);
   observer_.emplace(joints, cycle_s_, observer_gain_per_s);
   setpoints_.emplace(*model_, tip_, bounds_, cycle_s_);
+  clearance_.emplace(*model_, hulls_, clearance_limit_m_.load());
+  static_cast<void>(keep_out(keep_out_.load()));
   const auto place = tool_place_m_.load();
   setpoints_->set_tool({robotics::Matrix3::Identity(), {place[0], place[1], place[2]}});
   watch_.arm();

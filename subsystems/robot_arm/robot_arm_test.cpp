@@ -40,7 +40,7 @@ std::string chain(std::size_t joints) {
     const char* axis = i % 3 == 1 ? "1 0 0" : i % 3 == 2 ? "0 1 0" : "0 0 1";
     text += "<joint name='j" + std::to_string(i) + "' type='revolute'><origin xyz='0 0.02 0.1'/><parent link='" + below +
             "'/><child link='" + link + "'/><axis xyz='" + axis +
-            "'/><limit lower='-2' upper='2' velocity='2' effort='100'/><dynamics damping='0.2' friction='0.1'/></joint>"
+            "'/><limit lower='-2' upper='2' velocity='2' effort='200'/><dynamics damping='0.2' friction='0.1'/></joint>"
             "<link name='" +
             link +
             "'><inertial><origin xyz='0.01 0 0.05'/><mass value='0.5'/><inertia ixx='0.004' ixy='0' ixz='0' iyy='0.004' iyz='0' "
@@ -210,7 +210,7 @@ TEST_F(RobotArmTest, RefusesAGoalBeyondTheRangeOfOneJointOfTheFile) {
 TEST_F(RobotArmTest, HoldEndsAMotionOnItsWayAndStaysThere) {
   flown.operate();
   const auto motion = flown.move_j(goal);
-  flown.cycle(600);
+  flown.cycle(400);
   const auto hold = flown.rig.call("HOLD");
   flown.cycle(3);
   EXPECT_EQ(flown.rig.outcome(hold), "1 3 7");
@@ -228,7 +228,7 @@ TEST_F(RobotArmTest, HoldEndsAMotionOnItsWayAndStaysThere) {
 TEST_F(RobotArmTest, StopLeavesItToItsBrakesUntilItIsBroughtUpAnew) {
   flown.operate();
   const auto motion = flown.move_j(goal);
-  flown.cycle(600);
+  flown.cycle(400);
   const auto stop = flown.rig.call("STOP");
   flown.finish(stop);
   EXPECT_EQ(flown.rig.outcome(stop), "1 3 7");
@@ -274,7 +274,7 @@ INSTANTIATE_TEST_SUITE_P(Each, RobotArmLimits,
                                            Excessive{"position", 1022, [](auto& m) { m.position[1] = 2.3; }},
                                            Excessive{"speed", 1023, [](auto& m) { m.velocity[0] = 2.3; }},
                                            Excessive{"following", 1024, [](auto& m) { m.position[5] -= 0.2; }}),
-                         [](const auto& info) { return "By" + std::to_string(info.param.event); });
+                         [](const auto& each) { return "By" + std::to_string(each.param.event); });
 
 TEST_F(RobotArmTest, StopsWhereSomebodyIsMet) {
   flown.operate();
@@ -332,6 +332,49 @@ TEST_F(RobotArmTest, GoesStraightWithinTwoMillimetres) {
   EXPECT_LE((tool().position - to).norm(), 0.001);
 }
 
+TEST_F(RobotArmTest, RefusesAGoalInWhichItMeetsItselfAndNamesWho) {
+  flown.operate();
+  const auto request = flown.move_j(vector_of(std::array{0.0, 0.0, 2.6, 2.2, 0.0, 0.0}));
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(request), StartsWith("1 4:800a"));
+  const std::string names = "upper_arm and ";
+  EXPECT_THAT(flown.rig.outcome(request), HasSubstr(testing::hex(std::as_bytes(std::span{names}))));
+}
+
+TEST_F(RobotArmTest, StopsBeforeWhatItIsToKeepOutOfAndMayGoAwayFromIt) {
+  flown.rig.bring_to(State::PreOperational, 1);
+  flown.cycle(5);
+  flown.command(State::SafeOperational);
+  robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+  const auto tool_at = [&](const JointVector& q) {
+    robotics::State state;
+    state.q = q;
+    state.qd = JointVector::Zero(6);
+    dynamics.update(state);
+    return dynamics.frame_pose(flown.model.find_frame("tool").value()).position;
+  };
+  // Between start and goal, where both are free.
+  const robotics::Vector3 between = tool_at((start + goal) / 2);
+  std::vector<std::optional<Value>> numbers;
+  for (const double number : {between.x(), between.y(), between.z(), between.x(), between.y(), between.z(), 0.05})
+    numbers.emplace_back(number);
+  numbers.resize(28, Value{0.0});
+  const auto set = flown.rig.call_with("KEEP_OUT", numbers);
+  flown.cycle(5);
+  ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  flown.command(State::Operational);
+  const auto motion = flown.move_j(goal);
+  flown.finish(motion);
+  EXPECT_THAT(flown.rig.outcome(motion), HasSubstr("8:800a"));
+  EXPECT_EQ(flown.rig.events(1026), 1);
+  flown.cycle(1000);
+  EXPECT_GT((tool_at(flown.plant.measured().position) - between).norm(), 0.05);
+  EXPECT_GT(flown.off(goal), 0.1);
+  const auto away = flown.move_j(start);
+  flown.finish(away);
+  EXPECT_EQ(flown.rig.outcome(away), "1 3 5:0001 7");
+}
+
 TEST_F(RobotArmTest, PassesItsSelfTest) {
   flown.rig.bring_to(State::PreOperational, 1);
   flown.cycle(5);
@@ -357,7 +400,9 @@ TEST_P(RobotArmRefuses, WhatDoesNotFitTogether) {
   const auto arm = make_robot_arm();
   testing::Rig rig{*arm, text};
   const std::string up = rig.set_state_now(State::PreOperational);
-  if (up == "1 3 7") EXPECT_THAT(rig.configure_now(1), StartsWith("1 3 8:"));
+  if (up == "1 3 7") {
+    EXPECT_THAT(rig.configure_now(1), StartsWith("1 3 8:"));
+  }
   EXPECT_THAT(rig.explanations, Contains(HasSubstr(told)));
 }
 

@@ -68,6 +68,11 @@ struct SixJoints : ::testing::Test {
   }
 };
 
+TEST(SixJointsPage, ShowsTheRobotThatFlies) {
+  const auto text = [](const char* file) { return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / file).value(); };
+  EXPECT_EQ(text("missions/six_joints/page/robot_arm.urdf"), text("subsystems/robot_arm/robot_arm.urdf"));
+}
+
 TEST_F(SixJoints, ReachesItsGoalsWithinAMilliradianHoweverTheWorldDiffersFromTheFile) {
   struct Case {
     const char* name;

@@ -12,10 +12,10 @@ using testing::bounds_of;
 using testing::model_of;
 using testing::Plant;
 
-constexpr double cycle_s = 0.001;
 const Law::Settings settings{.gravity_m_s2 = {0, 0, -9.81}};
 
 struct LawTest : ::testing::Test {
+  static constexpr double cycle_s = 0.001;
   robotics::Model model = model_of(testing::six_joints);
   std::vector<JointBounds> bounds = bounds_of(model);
   robotics::Dynamics dynamics{model, robotics::Base::Fixed};
@@ -53,12 +53,13 @@ TEST_F(LawTest, AtItsSetpointGivesWhatGravityTakesAndNothingElse) {
 
 TEST_F(LawTest, MeetsAnErrorWithTheSameAccelerationInEveryJoint) {
   const JointVector zeros = JointVector::Zero(6);
-  Measured measured{wanted.position - 0.01 * JointVector::Ones(6), zeros, zeros};
+  Measured measured{wanted.position - 0.002 * JointVector::Ones(6), zeros, zeros};
   const JointVector given = torque(measured);
   robotics::Coordinates acceleration;
   ASSERT_TRUE(dynamics.forward(robotics::Coordinates{given}, acceleration));
   // 3 w2 e, and what the integral has learnt in one cycle.
-  const double w = settings.bandwidth_rad_s, expected = 3 * w * w * 0.01 + w * w * w * 0.01 * cycle_s;
+  const double w = settings.bandwidth_rad_s, expected = 3 * w * w * 0.002 + w * w * w * 0.002 * cycle_s;
+  ASSERT_FALSE(law.saturated());
   for (Eigen::Index i = 0; i < 6; ++i) EXPECT_NEAR(acceleration[i], expected, 1e-6 * expected) << i;
 }
 

@@ -113,6 +113,26 @@ robotics::Pose Setpoints::tool() noexcept {
   return dynamics_.frame_pose(tip_) * tool_;
 }
 
+JointVector Setpoints::braked() const noexcept {
+  constexpr double farther = 1.5;
+  if (kind_ == Kind::Rest) return now_.position;
+  if (kind_ == Kind::Line) return now_.position + farther * ramp_s / 2 * now_.velocity;
+  double longest_s = 0;
+  for (std::size_t i = 0; i < bounds_.size(); ++i)
+    longest_s = std::max(longest_s, std::abs(now_.velocity[static_cast<Eigen::Index>(i)]) / bounds_[i].motion.acceleration);
+  if (kind_ == Kind::JointPath) {
+    robotics::PointToPoint::Sample sample;
+    path_.at(path_s_ + farther * pace_ * longest_s / 2, sample);
+    return sample.position;
+  }
+  JointVector there = now_.position;
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    const double speed = now_.velocity[static_cast<Eigen::Index>(i)];
+    there[static_cast<Eigen::Index>(i)] += farther * speed * std::abs(speed) / (2 * bounds_[i].motion.acceleration);
+  }
+  return there;
+}
+
 const Setpoint& Setpoints::advance() noexcept {
   switch (kind_) {
     case Kind::Rest: break;

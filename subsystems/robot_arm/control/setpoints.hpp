@@ -40,6 +40,9 @@ class Setpoints {
   [[nodiscard]] const Setpoint& now() const noexcept { return now_; }
   [[nodiscard]] Kind kind() const noexcept { return kind_; }
   [[nodiscard]] bool at_rest() const noexcept { return kind_ == Kind::Rest; }
+  [[nodiscard]] bool braking() const noexcept { return braking_; }
+  /// About where it would come to rest if it braked now; rather farther than nearer.
+  [[nodiscard]] JointVector braked() const noexcept;
   /// Of a path: 0 to 1.
   [[nodiscard]] double progress() const noexcept;
   [[nodiscard]] double duration_s() const noexcept { return path_.duration_s(); }

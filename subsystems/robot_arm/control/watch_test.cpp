@@ -38,6 +38,8 @@ TEST_P(WatchTest, TellsTheSecondOfThreeSamplesBeyondALimitOnceAndByName) {
   const JointVector zeros = JointVector::Zero(2);
   const JointVector* setpoint = what == Excess::Following ? &zeros : nullptr;
   for (const double value : {beyond, -beyond, std::numeric_limits<double>::quiet_NaN()}) {
+    // Then the position itself is told, or the hard limit.
+    if ((what == Excess::Following || what == Excess::Torque) && std::isnan(value)) continue;
     Watch watch;
     for (const double permitted : {within, -within})
       for (int i = 0; i < 5; ++i) EXPECT_FALSE(watch.update(with(what, permitted), setpoint, bounds, {}));
@@ -57,6 +59,13 @@ TEST_P(WatchTest, TellsTheSecondOfThreeSamplesBeyondALimitOnceAndByName) {
 INSTANTIATE_TEST_SUITE_P(Each, WatchTest,
                          ::testing::Values(Case{Excess::Position, 2.019, 2.021}, Case{Excess::Speed, 3.29, 3.31},
                                            Case{Excess::Torque, 7.99, 8.01}, Case{Excess::Following, 0.099, 0.101}));
+
+TEST(Watch, TakesATorqueThatIsNoNumberForBeyondTheHardLimit) {
+  Watch watch;
+  const Measured none = with(Excess::Torque, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(watch.update(none, nullptr, bounds, {}));
+  EXPECT_EQ(watch.update(none, nullptr, bounds, {})->what, Excess::TorqueHard);
+}
 
 TEST(Watch, TellsTheHardTorqueBesidesTheSoftOne) {
   Watch watch;
