@@ -65,24 +65,23 @@ void MujocoDevice::write_sensors(OctetWriter& payload) noexcept {
     payload.put(robot_->torque(i) + (noise_n_m_ > 0 ? noise_n_m_ * random_.normal() : 0));
 }
 
-/// Q1,Q2,...: as many as there are joints.
-Result<> MujocoDevice::stand(std::string_view posture) {
-  std::vector<double> positions;
+/// A,B,...: as many as there are joints.
+Result<std::vector<double>> MujocoDevice::each_joint(std::string_view text) const {
+  std::vector<double> numbers;
   while (true) {
     double value = 0;
-    const auto [end, problem] = std::from_chars(posture.data(), posture.data() + posture.size(), value);
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (problem != std::errc{} || !std::isfinite(value))
-      return fail(ErrorCode::InvalidArgument, "not a number", static_cast<std::int64_t>(positions.size()));
-    positions.push_back(value);
-    posture.remove_prefix(static_cast<std::size_t>(end - posture.data()));
-    if (posture.empty()) break;
-    if (posture.front() != ',') return fail(ErrorCode::InvalidArgument, "numbers with commas between them");
-    posture.remove_prefix(1);
+      return fail(ErrorCode::InvalidArgument, "not a number", static_cast<std::int64_t>(numbers.size()));
+    numbers.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (text.empty()) break;
+    if (text.front() != ',') return fail(ErrorCode::InvalidArgument, "numbers with commas between them");
+    text.remove_prefix(1);
   }
-  if (positions.size() != robot_->joints())
+  if (numbers.size() != robot_->joints())
     return fail(ErrorCode::InvalidArgument, "another number of joints", static_cast<std::int64_t>(robot_->joints()));
-  robot_->place(positions);
-  return ok();
+  return numbers;
 }
 
 Result<> MujocoDevice::differ(const Words& words) {
@@ -126,9 +125,14 @@ Result<> MujocoDevice::differ(const Words& words) {
 
 Result<> MujocoDevice::do_fault(const Words& words) {
   if (!robot_) return fail(ErrorCode::Unavailable, "it has no world yet");
-  if (words[0] == "posture") {
+  if (words[0] == "posture" || words[0] == "rotors") {
     HIROSCO_TRY(words.expect(2));
-    return stand(words[1]);
+    HIROSCO_TRY_LET(const std::vector<double> numbers, each_joint(words[1]));
+    if (words[0] == "posture") robot_->place(numbers);
+    else if (std::ranges::all_of(numbers, [](double inertia) { return inertia >= 0 && inertia < 1e3; }))
+      robot_->set_rotors(numbers);
+    else return fail(ErrorCode::OutOfRange, "an inertia is from 0 to 1000");
+    return ok();
   }
   return differ(words);
 }

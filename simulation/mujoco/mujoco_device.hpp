@@ -19,7 +19,7 @@ namespace hirosco::simulation {
 /// Without a command the brakes are closed. A controlled stop slows down by brakes that give as much as the drives, then they hold
 /// with twice of it.
 /// Faults besides the common ones, each also a <Setting> of its mission:
-///   posture Q1,Q2,... | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | gravity X Y Z | push X Y Z | noise N_M
+///   posture Q1,Q2,... | rotors J1,J2,... | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | gravity X Y Z | push X Y Z | noise N_M
 class MujocoDevice final : public SimulatedDevice {
  public:
   static constexpr std::array fault_lines{
@@ -46,7 +46,7 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] std::string do_truth() const override;
   void do_heal() noexcept override;
   [[nodiscard]] bool can(Stop) const noexcept override { return true; }
-  [[nodiscard]] Result<> stand(std::string_view posture);
+  [[nodiscard]] Result<std::vector<double>> each_joint(std::string_view text) const;
   [[nodiscard]] Result<> differ(const Words& words);
 
   std::optional<MujocoRobot> robot_;

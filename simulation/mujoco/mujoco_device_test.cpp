@@ -82,7 +82,7 @@ TEST_F(MujocoDeviceTest, GivesNoMoreThanEachJointsEffort) {
 }
 
 TEST_F(MujocoDeviceTest, SaysWhatItDoesNotTake) {
-  for (const char* line : {"posture 1,2", "posture 1,2,3,4,5,x", "mass 0", "payload -1", "friction", "gravity 1 2", "dance"})
+  for (const char* line : {"posture 1,2", "posture 1,2,3,4,5,x", "rotors 1,1,1,1,1,-1", "mass 0", "payload -1", "friction", "gravity 1 2", "dance"})
     EXPECT_FALSE(device.fault(line)) << line;
 }
 

@@ -17,6 +17,7 @@ using xml::Element;
 
 constexpr double longest_sub_step_s = 0.0005;
 constexpr double brake_share = 2;  ///< of a joint's effort
+constexpr double slowing_share = 0.3;
 /// Of a joint whose file says nothing.
 constexpr double default_effort = 100;
 /// Dry friction of MuJoCo gives way a little; this little: time constant and how near to rigid.
@@ -134,9 +135,11 @@ void MujocoRobot::place(std::span<const double> positions) noexcept {
 }
 
 void MujocoRobot::brake(Brakes brakes) noexcept {
-  const double share = brakes == Brakes::Open ? 0 : brakes == Brakes::Slowing ? 1 : brake_share;
   for (const Joint& joint : joints_) {
-    model_->dof_frictionloss[joint.dof] = joint.friction * friction_factor_ + more_friction_ + share * joint.effort;
+    const double held = brakes == Brakes::Open      ? 0
+                        : brakes == Brakes::Slowing ? std::abs(data_->qfrc_bias[joint.dof]) + slowing_share * joint.effort
+                                                    : brake_share * joint.effort;
+    model_->dof_frictionloss[joint.dof] = joint.friction * friction_factor_ + more_friction_ + held;
     model_->dof_damping[joint.dof] = joint.damping * friction_factor_;
   }
 }
@@ -157,7 +160,8 @@ void MujocoRobot::step(std::span<const double> torques, Brakes brakes, Duration 
 
 /// Friction and brakes act between drive and link, mechanical stops on the link itself.
 void MujocoRobot::feel() noexcept {
-  for (Joint& joint : joints_) joint.torque = data_->qfrc_applied[joint.dof] + data_->qfrc_passive[joint.dof];
+  for (Joint& joint : joints_) joint.torque = data_->qfrc_applied[joint.dof] + data_->qfrc_passive[joint.dof] -
+                                             model_->dof_armature[joint.dof] * data_->qacc[joint.dof];
   for (int i = 0; i < data_->nefc; ++i) {
     if (data_->efc_type[i] != mjCNSTR_FRICTION_DOF) continue;
     const auto found = std::ranges::find(joints_, data_->efc_id[i], &Joint::dof);
@@ -196,6 +200,11 @@ void MujocoRobot::set_payload(double mass_kg) noexcept {
 void MujocoRobot::set_friction(double factor, double more) noexcept {
   friction_factor_ = factor;
   more_friction_ = more;
+}
+void MujocoRobot::set_rotors(std::span<const double> inertias) noexcept {
+  for (std::size_t i = 0; i < std::min(inertias.size(), joints_.size()); ++i)
+    model_->dof_armature[joints_[i].dof] = inertias[i];
+  change_inertia();
 }
 void MujocoRobot::set_gravity(double x, double y, double z) noexcept {
   model_->opt.gravity[0] = x;

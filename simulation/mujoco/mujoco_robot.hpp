@@ -24,7 +24,7 @@ class MujocoRobot {
  public:
   enum class Brakes : std::uint8_t {
     Open,
-    Slowing,  ///< as strong as the joint's drive
+    Slowing,  ///< what holds the load, and 0.3 of the joint's drive
     Closed,  ///< twice as strong
   };
 
@@ -34,7 +34,7 @@ class MujocoRobot {
   [[nodiscard]] std::size_t joints() const noexcept { return joints_.size(); }
   [[nodiscard]] double position(std::size_t joint) const noexcept;
   [[nodiscard]] double velocity(std::size_t joint) const noexcept;
-  /// What the drive and the brake give to the link: behind friction, which is theirs.
+  /// What the drive and the brake give to the link: behind friction and rotor, which are theirs.
   [[nodiscard]] double torque(std::size_t joint) const noexcept { return joints_[joint].torque; }
   [[nodiscard]] double effort(std::size_t joint) const noexcept { return joints_[joint].effort; }
   /// Of the last link, in the axes of the base, m.
@@ -50,6 +50,8 @@ class MujocoRobot {
   void set_inertia_factor(double factor) noexcept;
   /// Of the file's friction and damping, and more dry friction of every joint, N m or N.
   void set_friction(double factor, double more) noexcept;
+  /// What the drive of each joint moves besides links, behind its gear, kg m2 or kg; the file does not have it.
+  void set_rotors(std::span<const double> inertias) noexcept;
   /// A point with this mass at the origin of the last link.
   void set_payload(double mass_kg) noexcept;
   void set_gravity(double x, double y, double z) noexcept;

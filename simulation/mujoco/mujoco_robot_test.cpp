@@ -90,6 +90,16 @@ TEST(MujocoRobot, DampsAsItsFileSays) {
   EXPECT_NEAR(robot.velocity(0), 0.5 * (1 - std::exp(-2 / inertia_kg_m2 * 0.25)), 1e-6);
 }
 
+TEST(MujocoRobot, AcceleratesRotorsBesidesLinksAndFeelsTheLinksAlone) {
+  auto robot = MujocoRobot::make(pendulum()).value();
+  robot.set_gravity(0, 0, 0);
+  robot.set_rotors(std::array{0.3});
+  for (int i = 0; i < 100; ++i) robot.step(std::array{4.0}, Brakes::Open, 1ms);
+  const double acceleration = 4.0 / (inertia_kg_m2 + 0.3);
+  EXPECT_NEAR(robot.velocity(0), 0.1 * acceleration, 1e-6);
+  EXPECT_NEAR(robot.torque(0), inertia_kg_m2 * acceleration, 1e-6);
+}
+
 TEST(MujocoRobot, IsHeavierWhereThatIsWanted) {
   auto robot = MujocoRobot::make(pendulum()).value();
   robot.place(std::array{0.5});

@@ -172,9 +172,10 @@ robot_arm::Payload RobotArm::payload() const noexcept {
   return {values.mass_kg, {values.place_m[0], values.place_m[1], values.place_m[2]}};
 }
 
-robot_arm::Law::Settings RobotArm::law_settings() const noexcept {
+robot_arm::Law::Settings RobotArm::law_settings() noexcept {
   const auto gravity = gravity_m_s2_.load();
-  return {.bandwidth_rad_s = bandwidth_rad_s_.load(), .gravity_m_s2 = {gravity[0], gravity[1], gravity[2]}};
+  rotor_ = rotor_inertia_.load();
+  return {.bandwidth_rad_s = bandwidth_rad_s_.load(), .rotor = rotor_, .gravity_m_s2 = {gravity[0], gravity[1], gravity[2]}};
 }
 
 void RobotArm::control() noexcept {
@@ -236,7 +237,7 @@ void RobotArm::watch_contact() noexcept {
         values.limit * bounds_[worst].effort);
   if (setpoints_->at_rest() && !motion_) return;
   end_motion(Trouble::contact);
-  setpoints_->rest(measured_.position);
+  setpoints_->halt(measured_.position, measured_.velocity);
 }
 
 // --- functions ---------------------------------------------------------------------------------------------------------

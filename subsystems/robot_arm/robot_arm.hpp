@@ -73,7 +73,7 @@ class RobotArm final : public Subsystem {
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] Outcome start(const Result<>& planned, const Call& call) noexcept;
   [[nodiscard]] robot_arm::Payload payload() const noexcept;
-  [[nodiscard]] robot_arm::Law::Settings law_settings() const noexcept;
+  [[nodiscard]] robot_arm::Law::Settings law_settings() noexcept;
   [[nodiscard]] Result<> check_sensors() noexcept;
   [[nodiscard]] Result<> check_law(std::size_t joint, double side) noexcept;
 
@@ -85,7 +85,7 @@ class RobotArm final : public Subsystem {
   Outcome keep_out(const robot_arm::KeepOut& numbers) noexcept;
 
   Parameter<robot_arm::CurrentValues> current_;
-  Parameter<robot_arm::Joints> desired_position_, desired_velocity_, external_torque_;
+  Parameter<robot_arm::Joints> rotor_inertia_, desired_position_, desired_velocity_, external_torque_;
   Parameter<robot_arm::ToolValues> tool_values_;
   Parameter<robot_arm::MotionValues> motion_values_;
   Parameter<robot_arm::PayloadValues> payload_values_;
@@ -117,6 +117,7 @@ class RobotArm final : public Subsystem {
   robot_arm::Watch watch_;
   robotics::State model_state_;
   robot_arm::Measured measured_;
+  robot_arm::Joints rotor_;
   robot_arm::JointVector goal_;
   double cycle_s_{0.001};
   std::size_t tried_{0};  ///< in a self test: each joint to each side

@@ -53,6 +53,7 @@ void RobotArm::publish_all() {
   publish("PAYLOAD", payload_values_);
   publish("CONTACT_WATCH", contact_values_);
   publish("GRAVITY", gravity_m_s2_);
+  publish("ROTOR_INERTIA", rotor_inertia_);
   publish("BANDWIDTH", bandwidth_rad_s_);
   publish("ACCELERATION", acceleration_);
   publish("JERK", jerk_);
@@ -186,6 +187,7 @@ Result<> RobotArm::check_lengths() noexcept {
       Length{current.torque.size(), joints, "CUR_VALUES.TORQUE has another length than the robot has joints"},
       Length{desired_position_.load().size(), joints, "DES_POSITION has another length than the robot has joints"},
       Length{desired_velocity_.load().size(), joints, "DES_VELOCITY has another length than the robot has joints"},
+      Length{rotor_inertia_.load().size(), joints, "ROTOR_INERTIA has another length than the robot has joints"},
       Length{external_torque_.load().size(), joints, "EXTERNAL_TORQUE has another length than the robot has joints"},
       Length{device_.input().position.size(), joints, "ARM's POSITION has another length than the robot has joints"},
       Length{device_.input().velocity.size(), joints, "ARM's VELOCITY has another length than the robot has joints"},

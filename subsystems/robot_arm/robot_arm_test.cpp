@@ -55,8 +55,9 @@ std::string descriptor_text() { return descriptor::file_system()(std::string{fol
 /// robot_arm.xml for another robot.
 std::string descriptor_for(std::size_t joints, const std::string& file) {
   std::string text = descriptor_text();
-  std::string safe;
-  for (std::size_t i = 0; i < joints; ++i) safe += i == 0 ? "0" : " 0";
+  std::string safe, rotors;
+  for (std::size_t i = 0; i < joints; ++i) safe += i == 0 ? "0" : " 0", rotors += i == 0 ? "0.1" : " 0.1";
+  replace_all(text, "init=\"0.5 0.5 0.4 0.1 0.1 0.1\"", "init=\"" + rotors + "\"");
   replace_all(text, "safe=\"0 0 0 0 0 0\"", "safe=\"" + safe + "\"");
   replace_all(text, "count=\"6\"", "count=\"" + std::to_string(joints) + "\"");
   replace_all(text, "value=\"robot_arm.urdf\"", "value=\"" + file + "\"");
@@ -86,6 +87,7 @@ struct Flown {
 
   Flown(std::size_t joints, std::string urdf, double mass_factor = 1)
       : n{joints}, file{std::move(urdf)}, model{model_of(file, mass_factor)} {
+    plant.rotor = 0.1;
     commanded = outside = JointVector::Zero(static_cast<Eigen::Index>(n));
   }
   void cycle(int count = 1) {

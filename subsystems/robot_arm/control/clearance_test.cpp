@@ -70,7 +70,7 @@ TEST_F(ClearanceTest, NamesTheLinkThatComesNearAVolumeToKeepOutOf) {
   const JointVector upright = JointVector::Zero(6);
   const std::array volumes{Capsule{{0.5, -1, 0.7}, {0.5, 1, 0.7}, 0.2}};
   clearance.keep_out(volumes);
-  EXPECT_GT(clearance.nearest(upright).distance_m, 0.1);
+  EXPECT_GT(clearance.nearest(upright).distance_m, 0.05);
   const auto near = clearance.nearest(vector_of(std::array{0.0, 0.8, 0.3, 0.0, 0.0, 0.0}));
   EXPECT_LT(near.distance_m, 0);
   EXPECT_NE(std::string{near.names}.find("volume"), std::string::npos) << near.names;

@@ -15,6 +15,11 @@ constexpr double not_learnt = 0.05;
 /// Friction changes its sign over this speed.
 constexpr double friction_knee = 0.02;
 
+[[nodiscard]] double rotor_of(const Law::Settings& settings, Eigen::Index joint) noexcept {
+  const auto i = static_cast<std::size_t>(joint);
+  return i < settings.rotor.size() ? settings.rotor[i] : 0;
+}
+
 }  // namespace
 
 Law::Law(const robotics::Model& model, robotics::FrameId tip, double cycle_s)
@@ -36,7 +41,7 @@ void Law::learn(const JointVector& error, const Setpoint& wanted, const Measured
     if (rests && std::abs(error[i]) < left_alone && std::abs(measured.velocity[i]) < friction_knee) continue;
     if (!(std::abs(error[i]) < not_learnt) || saturated_) continue;
     const double most = settings.integral_share * bounds[static_cast<std::size_t>(i)].effort /
-                        std::max(mass_(i, i), 1e-9) / (w * w * w);
+                        std::max(mass_(i, i) + rotor_of(settings, i), 1e-9) / (w * w * w);
     integral_[i] = std::clamp(integral_[i] + error[i] * cycle_s_, -most, most);
   }
 }
@@ -58,7 +63,7 @@ JointVector Law::torque(const Setpoint& wanted, const Measured& measured, roboti
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     const auto& joint = joints[static_cast<std::size_t>(i)];
     const double speed = wanted.velocity[i];
-    double value = force[i] + joint.damping * speed + joint.friction * std::tanh(speed / friction_knee);
+    double value = force[i] + rotor_of(settings, i) * acceleration[i] + joint.damping * speed + joint.friction * std::tanh(speed / friction_knee);
     if (!std::isfinite(value)) value = 0;
     const double effort = bounds[static_cast<std::size_t>(i)].effort;
     torque[i] = std::clamp(value, -effort, effort);

@@ -21,6 +21,8 @@ class Law {
     double bandwidth_rad_s{40};
     /// Of a joint's effort, at most so much is the integral's.
     double integral_share{0.3};
+    /// Of each joint: what its drive moves besides links, behind the gear, kg m2 or kg; empty: nothing. The URDF file does not have it.
+    std::span<const double> rotor{};
     Vector3 gravity_m_s2{Vector3::Zero()};  ///< for the payload; the same as that of `dynamics`
   };
   Law(const robotics::Model& model, robotics::FrameId tip, double cycle_s);

@@ -45,6 +45,7 @@ void Setpoints::rest(const JointVector& position) noexcept {
 void Setpoints::come_to_rest() noexcept {
   kind_ = Kind::Rest;
   braking_ = false;
+  urgency_ = 1;
   off_line_m_ = 0;
   now_.velocity.setZero(now_.position.size());
   now_.acceleration.setZero(now_.position.size());
@@ -97,6 +98,18 @@ void Setpoints::jog(const Vector6& twist) noexcept {
   braking_ = false;
   twist_ = twist;
   posture_ = now_.position;
+}
+
+void Setpoints::halt(const JointVector& position, const JointVector& velocity) noexcept {
+  now_.position = position;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    now_.velocity[i] = std::clamp(velocity[i], -bounds_[joint].motion.velocity, bounds_[joint].motion.velocity);
+  }
+  off_line_m_ = 0;
+  kind_ = Kind::JointJog;
+  braking_ = true;
+  urgency_ = 4;
 }
 
 void Setpoints::brake() noexcept {
@@ -214,7 +227,7 @@ void Setpoints::advance_jog(const JointVector& wanted) noexcept {
   for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);
     const JointBounds& its = bounds_[joint];
-    const double most = its.motion.velocity, step = its.motion.acceleration * cycle_s_;
+    const double most = its.motion.velocity, step = urgency_ * its.motion.acceleration * cycle_s_;
     const double left = std::max(0.0, its.highest - now_.position[i]), right = std::max(0.0, now_.position[i] - its.lowest);
     const double up = std::min(most, std::sqrt(2 * 0.8 * its.motion.acceleration * left));
     const double down = std::min(most, std::sqrt(2 * 0.8 * its.motion.acceleration * right));

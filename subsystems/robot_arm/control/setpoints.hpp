@@ -32,6 +32,8 @@ class Setpoints {
   /// With these velocities from now on, until brake(); of the joints, or a twist [ω; v] of the tool in the axes of the base.
   void jog(const JointVector& velocity) noexcept;
   void jog(const Vector6& twist) noexcept;
+  /// Comes to rest from here as fast as four times the accelerations permit, whatever way it was on.
+  void halt(const JointVector& position, const JointVector& velocity) noexcept;
   /// Comes to rest: on its path, where there is one.
   void brake() noexcept;
 
@@ -72,6 +74,7 @@ class Setpoints {
   Setpoint now_;
   Kind kind_{Kind::Rest};
   bool braking_{false};
+  double urgency_{1};  ///< factor of accelerations while it halts
   robotics::PointToPoint path_{};
   robotics::PointToPoint::Sample sample_{};
   double path_s_{0};  ///< how far on its path, in its own time

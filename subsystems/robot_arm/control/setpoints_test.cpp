@@ -81,6 +81,21 @@ TEST_F(SetpointsTest, BrakesOnItsPathWhereverItIsOnIt) {
   }
 }
 
+TEST_F(SetpointsTest, HaltsFromWhereItIsWithFourTimesItsAccelerationsAtMost) {
+  ASSERT_TRUE(setpoints.go(vector_of(std::array{-1.5, -0.5, 0.2, 0.9, -0.7, 2.0}), 1));
+  for (int i = 0; i < 600; ++i) ASSERT_NO_FATAL_FAILURE(advance());
+  const JointVector from = setpoints.now().position, velocity = setpoints.now().velocity;
+  setpoints.halt(from, velocity);
+  int cycles = 0;
+  while (!setpoints.at_rest() && cycles < 1000) {
+    ASSERT_NO_FATAL_FAILURE(advance(4));
+    ++cycles;
+  }
+  EXPECT_NEAR(cycles * cycle_s, velocity.cwiseAbs().maxCoeff() / 16, 0.003);
+  for (Eigen::Index i = 0; i < 6; ++i)
+    EXPECT_NEAR(setpoints.now().position[i] - from[i], velocity[i] * std::abs(velocity[i]) / 32, 0.002) << i;
+}
+
 TEST_F(SetpointsTest, GoesStraightAndTurnsMeanwhile) {
   const robotics::Pose from = setpoints.tool();
   robotics::Pose goal = from;

@@ -68,7 +68,13 @@ class Plant {
       }
       measured_.torque = force;
       if (outside != nullptr) force += *outside;
-      ASSERT_TRUE(dynamics_.forward(force, acceleration));
+      robotics::MassMatrix mass;
+      robotics::Coordinates bias;
+      dynamics_.mass_matrix(mass);
+      dynamics_.bias(bias);
+      for (Eigen::Index i = 0; i < force.size(); ++i) mass(i, i) += rotor;
+      acceleration = mass.llt().solve(force - bias);
+      measured_.torque -= rotor * acceleration;
       state_.qd += h * acceleration;
       state_.q += h * state_.qd;
     }
@@ -78,6 +84,7 @@ class Plant {
   [[nodiscard]] const Measured& measured() const { return measured_; }
 
   double friction_factor{1};
+  double rotor{0};  ///< of each joint
 
  private:
   const robotics::Model& model_;
